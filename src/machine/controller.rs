@@ -1,0 +1,164 @@
+//! Controller profiles: what a controller reads, how it plans, and which words
+//! lower speed and acceleration. Profiles are data (TOML).
+
+/// A controller profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Controller {
+    /// Its name, such as `iso`.
+    pub name: String,
+    /// One line on what it stands for.
+    pub description: String,
+    /// How program text is read.
+    pub language: Language,
+    /// How it plans.
+    pub planner: Planner,
+    /// Words that limit speed or acceleration, best first.
+    pub knobs: Vec<Knob>,
+    /// How the speed of a rapid can be lowered without such a word.
+    pub rapid_knob: RapidKnob,
+}
+
+/// How program text is read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Language {
+    /// The family of words.
+    pub family: Family,
+    /// The words that `G4` takes, with the seconds in one unit of each; if a
+    /// block has several, the last in this list wins (Marlin: S over P).
+    pub dwell: Vec<(u8, f64)>,
+    /// `true`: metric at power-on.
+    pub metric: bool,
+    /// `true`: absolute positions (G90) at power-on.
+    pub absolute: bool,
+    /// `true`: arc centres I J K are absolute (G90.1) at power-on.
+    pub arc_absolute: bool,
+    /// Which path modes G61, G61.1 and G64 select; 0: not known.
+    pub g61: PathMode,
+    /// See `g61`.
+    pub g61_1: PathMode,
+    /// See `g61`.
+    pub g64: PathMode,
+    /// Path mode at power-on.
+    pub power_on_mode: PathMode,
+    /// Whether G0 obeys F like G1.
+    pub rapid_uses_feed: bool,
+    /// Further G words (number × 10, rounded) without motion that are passed over.
+    pub ignored_g: Vec<u16>,
+    /// Further M numbers without motion that are passed over.
+    pub ignored_m: Vec<u16>,
+    /// Whether `/` blocks exist (grbl and printers have none).
+    pub block_delete: bool,
+}
+
+/// The family of words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// ISO 6983 as most machine tools read it.
+    Iso,
+    /// RS274/NGC as LinuxCNC reads it.
+    Rs274,
+    /// Marlin and its kin: 3D printers.
+    Marlin,
+    /// ISG kernel, Beckhoff TwinCAT CNC.
+    Isg,
+}
+
+/// What happens at the joint of two blocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathMode {
+    /// Every block ends at rest.
+    ExactStop,
+    /// Blocks are run through or blended.
+    LookAhead,
+}
+
+/// How rapids run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RapidPath {
+    /// A straight line: all axes start and arrive together.
+    Linear,
+    /// Each axis runs its own ramp.
+    Independent,
+}
+
+/// How the controller plans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Planner {
+    /// How rapids run, if the machine does not say.
+    pub rapid: RapidPath,
+    /// How acceleration is shared on arcs.
+    pub arc_rule: ArcRule,
+}
+
+/// How acceleration is shared between turning and speeding up on an arc.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ArcRule {
+    /// Tangential and centripetal each at most `a_min/√2`, `a_min` the smallest
+    /// limit of the moving axes.
+    Shared,
+    /// LinuxCNC 2.9: speed at most `√(0.866·a·r)`, tangential acceleration
+    /// `a·√(1 − (v²/(r·a))²)` at that speed, `a` the smaller limit of the plane.
+    LinuxCnc,
+}
+
+/// How a rapid's speed can be lowered besides `knobs`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RapidKnob {
+    /// Not at all.
+    None,
+    /// By writing it as a feed: `G1 F…`.
+    G1,
+}
+
+/// A word that limits speed or acceleration until it is taken back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Knob {
+    /// Letter and number × 10 of the word, such as `(b'G', 1310)`.
+    pub code: (u8, u16),
+    /// What it acts on.
+    pub target: KnobTarget,
+    /// What stands behind the word.
+    pub argument: KnobArgument,
+    /// Unit of the value.
+    pub unit: KnobUnit,
+    /// Smallest step of a value that is written.
+    pub step: f64,
+    /// Smallest value that is accepted.
+    pub min: f64,
+    /// True when a document confirms it.
+    pub verified: bool,
+}
+
+/// What a knob acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KnobTarget {
+    /// Acceleration of feed moves.
+    FeedAccel,
+    /// Acceleration of rapids.
+    RapidAccel,
+    /// Acceleration of all moves.
+    Accel,
+    /// Speed of rapids.
+    RapidSpeed,
+}
+
+/// What stands behind a knob's word.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum KnobArgument {
+    /// `= value` for all axes (`G131 = 50`).
+    Assign,
+    /// A value for each axis letter (`G130 X70 Y60`).
+    Axes,
+    /// One value behind any of these letters, the path's limit (`M204 P500 T500`).
+    Path(Vec<u8>),
+}
+
+/// Unit of a knob's value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KnobUnit {
+    /// Percent of the machine's limit; 100 takes it back.
+    Percent,
+    /// Program units per s² (mm/s², or inch/s² after G20); the machine's own
+    /// limit takes it back.
+    PerSecondSquared,
+}

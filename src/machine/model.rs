@@ -1,0 +1,122 @@
+//! The validated machine: what the rest of gwatt reads.
+
+use super::axis::{AXES, Axis, AxisSet, AxisValues};
+use super::controller::{Controller, PathMode, RapidPath};
+
+/// A machine: its axes, converters and limits, all values checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Machine {
+    /// The name in the file.
+    pub name: String,
+    /// What its controller reads, plans and can be told.
+    pub controller: Controller,
+    /// Axes by `AxisId as usize`; `None` where the machine has none.
+    pub axes: [Option<Axis>; AXES],
+    /// The axes that exist.
+    pub axis_set: AxisSet,
+    /// At least one; several where groups of axes have converters of their own.
+    pub converters: Vec<Converter>,
+    /// How the path is followed; from `[path]`, else from the controller.
+    pub path: Path,
+    /// The spindle, if described.
+    pub spindle: Option<Spindle>,
+    /// What program words switch on and off.
+    pub loads: Vec<Load>,
+    /// Limits for combinations of axes.
+    pub presets: Vec<Preset>,
+    /// Margin, overrides and floors.
+    pub limits: Limits,
+    /// Fields that were read but are not checked against yet, as `[table] field`.
+    pub unchecked: Vec<String>,
+}
+
+/// A converter (power supply) and the axes it feeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Converter {
+    /// Its name; empty when there is only one without a name.
+    pub name: String,
+    /// The axes it feeds; all of them when there is only one.
+    pub axes: AxisSet,
+    /// Peak power in W, margin not taken off.
+    pub peak_power_w: f64,
+    /// Largest power that may be fed back in W; `None`: no limit.
+    pub regen_power_w: Option<f64>,
+    /// What is drawn at all times in W.
+    pub base_load_w: f64,
+    /// Whether fed-back power feeds the other axes.
+    pub credit_regen: bool,
+}
+
+/// How the machine follows a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Path {
+    /// `Some(ExactStop)` overrides the program's G64; `Some(Blend)` is the mode
+    /// at power-on; `None`: the controller's.
+    pub mode: Option<PathMode>,
+    /// Straight rapids, or each axis for itself.
+    pub rapid: RapidPath,
+}
+
+/// The spindle's data, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spindle {
+    /// Inertia at the spindle in kg·m².
+    pub inertia_kg_m2: f64,
+    /// Friction torque in N·m.
+    pub friction_nm: f64,
+    /// Largest speed in 1/min.
+    pub max_rpm: f64,
+    /// Speed up to which the torque is constant, in 1/min; 0: not given.
+    pub base_rpm: f64,
+    /// Time to `max_rpm` in s.
+    pub accel_time_s: f64,
+    /// Time to full acceleration in s.
+    pub jerk_time_s: f64,
+    /// Whether feed moves wait for the speed.
+    pub wait: bool,
+}
+
+/// A load that program words switch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// Word that switches it on: letter and number.
+    pub on: (u8, f64),
+    /// Words that switch it off.
+    pub off: Vec<(u8, f64)>,
+    /// What it draws in W.
+    pub power_w: f64,
+    /// Index of its converter.
+    pub converter: usize,
+}
+
+/// Limits that hold when exactly these axes start together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preset {
+    /// The combination.
+    pub axes: AxisSet,
+    /// Largest axis speeds in mm/s (infinite where not given).
+    pub speed_mm_s: AxisValues,
+    /// Largest axis accelerations in mm/s² (infinite where not given).
+    pub accel_mm_s2: AxisValues,
+    /// Whether any speed, and any acceleration, is given.
+    pub has_speed: bool,
+    /// See `has_speed`.
+    pub has_accel: bool,
+}
+
+/// Margin, overrides and floors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Share of the peak power that is kept free; [0, 1).
+    pub margin: f64,
+    /// Largest feed override as a factor; 1 = 100 %.
+    pub feed_override_max: f64,
+    /// Largest rapid override as a factor; (0, 1].
+    pub rapid_override_max: f64,
+    /// Largest spindle override as a factor.
+    pub spindle_override_max: f64,
+    /// No cutting feed is lowered below this, mm/s; 0: no floor.
+    pub min_feed_mm_s: f64,
+    /// Nor below this share of min(F, axis-limited speed); 0: no floor.
+    pub min_feed_ratio: f64,
+}

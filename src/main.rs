@@ -1,0 +1,2 @@
+//! gwatt on the command line.
+fn main() {}
