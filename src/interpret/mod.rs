@@ -1,1 +1,5 @@
-//! interpret
+//! Blocks to moves: modal state, coordinates, arcs.
+
+mod moves;
+
+pub use moves::*;

@@ -1,1 +1,5 @@
-//! plan
+//! Moves to profiles: how speed runs along each move.
+
+mod profile;
+
+pub use profile::*;
