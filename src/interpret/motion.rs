@@ -375,7 +375,8 @@ fn path_length(element: &Move) -> (f64, bool) {
             return (length, linear);
         }
     }
-    (along([EXTRUDER; 3]) / 3.0_f64.sqrt(), true)
+    let extruded = (element.end[EXTRUDER] - element.start[EXTRUDER]).abs();
+    (if element.moving.contains(EXTRUDER) { extruded } else { 0.0 }, true)
 }
 
 fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {

@@ -1,18 +1,8 @@
 //! What a run is asked to do.
 
-use crate::machine::AxisValues;
+pub use crate::interpret::Start;
 
 use super::row::Certificate;
-
-/// Where the axes stand when the program begins.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Start {
-    /// At these machine coordinates (mm or degrees); 0 by default.
-    At(AxisValues),
-    /// Nowhere known: each axis' first move is priced at its full speed and
-    /// acceleration.
-    Unknown,
-}
 
 /// How a program is read and judged.
 #[derive(Debug, Clone, PartialEq)]
