@@ -8,6 +8,7 @@
 //! plain sum; where not, only motoring axes count towards the peak and the
 //! energy, and only regenerating ones towards the regenerative peak.
 
+mod assess;
 mod axis;
 mod demand;
 mod independent;
@@ -16,5 +17,6 @@ mod model;
 mod robust;
 mod straight;
 
+pub use assess::{Assessment, Assessor, Certificate};
 pub use demand::{Demand, Want};
 pub use model::PowerModel;
