@@ -124,3 +124,33 @@ fn describe_unknown(text: &[u8], shown: &str) -> (&'static str, String, &'static
         ),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::syntax::Program;
+
+    #[test]
+    fn show() {
+        for text in [
+            "G1 X10 GOTO 5",
+            "G1 N20 X1",
+            "G1 /2 X1",
+            "G1 %",
+            "G1 X5 \u{e9}1",
+            "G1 X Y2",
+            "G1 X1.2.3",
+            "X(",
+            "G1 X#1 Y2",
+            "o100 sub (main)",
+            "G1 X1 (feed",
+        ] {
+            let p = Program::parse(text.as_bytes());
+            println!(
+                "{}",
+                p.lines[0].block.issues[0]
+                    .diagnostic(12, text.as_bytes())
+                    .render("part.ngc", false)
+            );
+        }
+    }
+}
