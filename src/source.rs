@@ -14,7 +14,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// The span from `start` to before `end`, both in bytes.
+    /// The span from `start` to before `end`, in bytes of a line, which is
+    /// shorter than 4 GiB.
     #[must_use]
     pub fn new(start: usize, end: usize) -> Self {
         Self {
