@@ -213,7 +213,7 @@ impl<'m> Solver<'m> {
         Some(self.model.demand(&slow, &cruise, Want::PEAKS).load_ratio)
     }
 
-    fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {
+    pub(super) fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {
         let Some(feed) = change.feed.filter(|_| case.mv.kind != MoveKind::Rapid) else { return Ok(()) };
         let limits = &self.machine.limits;
         let floor_mm_s = limits.min_feed_mm_s.max(limits.min_feed_ratio * case.assessment.speed_mm_s);
