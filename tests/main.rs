@@ -1,1 +1,5 @@
 //! Tests.
+
+mod plan;
+mod power;
+mod rig;

@@ -8,12 +8,16 @@
 //! plain sum; where not, only motoring axes count towards the peak and the
 //! energy, and only regenerating ones towards the regenerative peak.
 
+mod arc;
 mod axis;
+mod circle;
 mod demand;
 mod independent;
 mod interval;
 mod model;
+mod quadrature;
 mod robust;
+mod search;
 mod straight;
 
 pub use demand::{Demand, Want};
