@@ -1,3 +1,6 @@
 //! Tests.
 
 mod syntax;
+mod plan;
+mod power;
+mod rig;

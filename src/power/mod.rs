@@ -9,12 +9,16 @@
 //! energy, and only regenerating ones towards the regenerative peak.
 
 mod assess;
+mod arc;
 mod axis;
+mod circle;
 mod demand;
 mod independent;
 mod interval;
 mod model;
+mod quadrature;
 mod robust;
+mod search;
 mod straight;
 
 pub use assess::{Assessment, Assessor, Certificate};
