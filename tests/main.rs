@@ -4,3 +4,4 @@ mod syntax;
 mod plan;
 mod power;
 mod rig;
+mod machine;

@@ -63,7 +63,8 @@ impl Change {
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
             for axis in machine.axis_set.iter() {
-                changed.accel_mm_s2[axis] = knob_accel(machine, knob.unit, axis, values[axis], permit.mm_per_unit);
+                changed.accel_mm_s2[axis] =
+                    knob_accel(machine, knob.unit, axis, values[axis], permit.mm_per_unit);
             }
         }
         changed
@@ -85,20 +86,50 @@ pub(super) fn feed_unit(machine: &Machine, mv: &Move, permit: &Permit) -> f64 {
 }
 
 /// Acceleration limit in mm/s² (degrees/s²) that a knob's value means.
-pub(super) fn knob_accel(machine: &Machine, unit: KnobUnit, axis: usize, value: f64, mm_per_unit: f64) -> f64 {
-    let Some(data) = &machine.axes[axis] else { return 0.0 };
+pub(super) fn knob_accel(
+    machine: &Machine,
+    unit: KnobUnit,
+    axis: usize,
+    value: f64,
+    mm_per_unit: f64,
+) -> f64 {
+    let Some(data) = &machine.axes[axis] else {
+        return 0.0;
+    };
     match unit {
         KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
-        KnobUnit::PerSecondSquared => value * if data.kind == AxisKind::Linear { mm_per_unit } else { 1.0 },
+        KnobUnit::PerSecondSquared => {
+            value
+                * if data.kind == AxisKind::Linear {
+                    mm_per_unit
+                } else {
+                    1.0
+                }
+        }
     }
 }
 
 /// The value of a knob that means this acceleration limit.
-pub(super) fn knob_value(machine: &Machine, unit: KnobUnit, axis: usize, accel: f64, mm_per_unit: f64) -> f64 {
-    let Some(data) = &machine.axes[axis] else { return 0.0 };
+pub(super) fn knob_value(
+    machine: &Machine,
+    unit: KnobUnit,
+    axis: usize,
+    accel: f64,
+    mm_per_unit: f64,
+) -> f64 {
+    let Some(data) = &machine.axes[axis] else {
+        return 0.0;
+    };
     match unit {
         KnobUnit::Percent => accel / data.accel_mm_s2 * 100.0,
-        KnobUnit::PerSecondSquared => accel / if data.kind == AxisKind::Linear { mm_per_unit } else { 1.0 },
+        KnobUnit::PerSecondSquared => {
+            accel
+                / if data.kind == AxisKind::Linear {
+                    mm_per_unit
+                } else {
+                    1.0
+                }
+        }
     }
 }
 
@@ -127,7 +158,11 @@ pub(super) fn round_to_step(value: f64, step: f64) -> f64 {
 fn round_down(value: f64, per_one: f64) -> f64 {
     let whole = (value * per_one).floor();
     let rounded = whole / per_one;
-    if rounded <= value { rounded } else { (whole - 1.0) / per_one }
+    if rounded <= value {
+        rounded
+    } else {
+        (whole - 1.0) / per_one
+    }
 }
 
 #[cfg(test)]

@@ -10,9 +10,18 @@ use crate::plan::{Caps, SpeedBound, speed_bound};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// The limits of the preset for exactly the axes that start together.
-pub(super) fn preset(solver: &Solver<'_>, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+pub(super) fn preset(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    levers: Levers,
+) -> Result<Change, Obstacle> {
     let axes = AxisSet(case.mv.moving.0 | case.mv.unknown_start.0);
-    let Some(preset) = solver.machine.presets.iter().find(|preset| preset.axes == axes) else {
+    let Some(preset) = solver
+        .machine
+        .presets
+        .iter()
+        .find(|preset| preset.axes == axes)
+    else {
         return Err(Obstacle::new(
             "no-preset",
             format!("the machine has no preset for the axes {axes}"),
@@ -24,7 +33,10 @@ pub(super) fn preset(solver: &Solver<'_>, case: Case<'_>, levers: Levers) -> Res
         let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
         let bound = speed_bound(solver.machine, case.mv, solver.largest, Caps::default());
         let speeds = axis_speeds(&bound);
-        let share = axes.iter().map(|axis| preset.speed_mm_s[axis] / speeds[axis]).fold(1.0, f64::min);
+        let share = axes
+            .iter()
+            .map(|axis| preset.speed_mm_s[axis] / speeds[axis])
+            .fold(1.0, f64::min);
         if share < 1.0 {
             scale_speed(solver, case, lever, share, &mut change)?;
         }
@@ -36,7 +48,9 @@ pub(super) fn preset(solver: &Solver<'_>, case: Case<'_>, levers: Levers) -> Res
             accel[axis] = accel[axis].min(preset.accel_mm_s2[axis]);
         }
         if accel != case.mv.accel_mm_s2 {
-            let values = solver.knob_values(knob, &accel, case.permit).ok_or_else(|| no_lever("acceleration"))?;
+            let values = solver
+                .knob_values(knob, &accel, case.permit)
+                .ok_or_else(|| no_lever("acceleration"))?;
             change.accel = Some((knob, values));
         }
     }
@@ -55,9 +69,14 @@ pub(super) fn squared_ratio(
     if case.mv.kind == MoveKind::Rapid {
         // Nominal is the rapid speed of each axis, not its share of the path.
         for axis in case.mv.moving.iter() {
-            let rapid = solver.machine.axes[axis].map_or(0.0, |data| data.rapid_mm_s) * solver.largest.rapid;
+            let rapid = solver.machine.axes[axis].map_or(0.0, |data| data.rapid_mm_s)
+                * solver.largest.rapid;
             for side in [&mut bound.positive[axis], &mut bound.negative[axis]] {
-                *side = if *side > 0.0 { rapid * case.mv.rapid_factor } else { 0.0 };
+                *side = if *side > 0.0 {
+                    rapid * case.mv.rapid_factor
+                } else {
+                    0.0
+                };
             }
         }
     }
@@ -67,7 +86,9 @@ pub(super) fn squared_ratio(
     let mut change = Change::default();
     if strategy == Strategy::Accel {
         let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
-        return solver.accel_change(case, knob, factor, &change).ok_or_else(|| no_lever("acceleration"));
+        return solver
+            .accel_change(case, knob, factor, &change)
+            .ok_or_else(|| no_lever("acceleration"));
     }
     let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
     scale_speed(solver, case, lever, factor, &mut change)?;
@@ -83,10 +104,19 @@ fn scale_speed(
     change: &mut Change,
 ) -> Result<(), Obstacle> {
     if let SpeedLever::RapidPercent(knob) = lever {
-        let step = solver.machine.controller.knobs.get(knob).map_or(1.0, |knob| knob.step);
+        let step = solver
+            .machine
+            .controller
+            .knobs
+            .get(knob)
+            .map_or(1.0, |knob| knob.step);
         let percent = round_to_step(case.mv.rapid_factor * share * 100.0, step);
         change.rapid_percent = (percent > 0.0).then_some((knob, percent));
-        return if percent > 0.0 { Ok(()) } else { Err(no_lever("speed")) };
+        return if percent > 0.0 {
+            Ok(())
+        } else {
+            Err(no_lever("speed"))
+        };
     }
     let unit = feed_unit(solver.machine, case.mv, case.permit);
     change.as_feed = lever == SpeedLever::AsFeed;

@@ -36,8 +36,16 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    pub(super) fn new(rule: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { rule, message: message.into(), help: help.into() }
+    pub(super) fn new(
+        rule: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self {
+            rule,
+            message: message.into(),
+            help: help.into(),
+        }
     }
 }
 
@@ -53,7 +61,11 @@ pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize>
 
 /// The knob for the speed of rapids.
 fn rapid_knob(machine: &Machine) -> Option<usize> {
-    machine.controller.knobs.iter().position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
+    machine
+        .controller
+        .knobs
+        .iter()
+        .position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
 }
 
 /// What may be used to bring `mv` down.
@@ -63,7 +75,10 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     }
     if mv.kind != MoveKind::Rapid {
         let speed = (how.allow_feed && permit.feed_word).then_some(SpeedLever::FeedWord);
-        return Levers { speed, accel: accel_knob(machine, KnobTarget::FeedAccel) };
+        return Levers {
+            speed,
+            accel: accel_knob(machine, KnobTarget::FeedAccel),
+        };
     }
     let speed = match rapid_knob(machine) {
         Some(knob) => Some(SpeedLever::RapidPercent(knob)),
@@ -71,7 +86,10 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     };
     // A rapid written as a feed is under the knobs of feeds, which differ.
     let accel = accel_knob(machine, KnobTarget::RapidAccel);
-    Levers { speed, accel: accel.filter(|_| speed != Some(SpeedLever::AsFeed)) }
+    Levers {
+        speed,
+        accel: accel.filter(|_| speed != Some(SpeedLever::AsFeed)),
+    }
 }
 
 /// Whether G1 runs the same path as this G0, no faster.
@@ -81,5 +99,8 @@ fn rapid_as_feed(machine: &Machine, mv: &Move, permit: &Permit) -> bool {
         && permit.as_feed
         && permit.feed_word
         && mv.unknown_start.is_empty()
-        && mv.moving.iter().all(|axis| permit.feed_accel_mm_s2[axis] <= mv.accel_mm_s2[axis])
+        && mv
+            .moving
+            .iter()
+            .all(|axis| permit.feed_accel_mm_s2[axis] <= mv.accel_mm_s2[axis])
 }

@@ -48,7 +48,10 @@ impl<'m> Limiter<'m> {
     /// A limiter for a machine.
     #[must_use]
     pub fn new(machine: &'m Machine, how: LimitOptions) -> Self {
-        Self { solver: Solver::new(machine, how), slots: VecDeque::new() }
+        Self {
+            solver: Solver::new(machine, how),
+            slots: VecDeque::new(),
+        }
     }
 
     /// Takes the next move; `joined`: the controller may run into it from the
@@ -113,8 +116,14 @@ impl<'m> Limiter<'m> {
             return Outcome::default();
         }
         match self.solver.solve(mv, assessment, permit) {
-            Ok(change) => Outcome { change, obstacle: None },
-            Err(obstacle) => Outcome { change: Change::default(), obstacle: Some(obstacle) },
+            Ok(change) => Outcome {
+                change,
+                obstacle: None,
+            },
+            Err(obstacle) => Outcome {
+                change: Change::default(),
+                obstacle: Some(obstacle),
+            },
         }
     }
 }

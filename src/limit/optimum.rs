@@ -16,12 +16,21 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 const LOWEST: f64 = 0.01;
 
 /// The fastest pair of speed and acceleration that fits.
-pub(super) fn best_pair(solver: &Solver<'_>, case: Case<'_>, speed: SpeedLever, accel: usize) -> Option<Change> {
+pub(super) fn best_pair(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    speed: SpeedLever,
+    accel: usize,
+) -> Option<Change> {
     let none = Change::default();
     let time = |change: &Change| {
         let changed = change.apply(solver.machine, case.mv, case.permit);
         let (plan, load) = solver.planned(&changed);
-        if load <= 1.0 + 1e-9 { plan.duration_s } else { f64::INFINITY }
+        if load <= 1.0 + 1e-9 {
+            plan.duration_s
+        } else {
+            f64::INFINITY
+        }
     };
     let pair = |factor: f64| {
         let with = solver.accel_change(case, accel, factor, &none)?;
@@ -30,7 +39,9 @@ pub(super) fn best_pair(solver: &Solver<'_>, case: Case<'_>, speed: SpeedLever, 
     let time_of = |factor: f64| pair(factor).map_or(f64::INFINITY, |change| time(&change));
 
     let by_accel = solver.accel(case, accel, &none);
-    let mut low = by_accel.and_then(|change| share(case, solver, &change)).unwrap_or(LOWEST);
+    let mut low = by_accel
+        .and_then(|change| share(case, solver, &change))
+        .unwrap_or(LOWEST);
     let mut high = 1.0;
     let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
     let (mut time_left, mut time_right) = (time_of(left), time_of(right));
@@ -47,7 +58,10 @@ pub(super) fn best_pair(solver: &Solver<'_>, case: Case<'_>, speed: SpeedLever, 
     }
     // Fewer words are better where they cost no time.
     let single = [by_accel, solver.speed(case, speed, &none)];
-    let best_single = single.into_iter().flatten().min_by(|a, b| time(a).total_cmp(&time(b)));
+    let best_single = single
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| time(a).total_cmp(&time(b)));
     let both = pair(f64::midpoint(low, high));
     match (best_single, both) {
         (Some(single), Some(both)) if time(&both) < time(&single) * (1.0 - 1e-6) => Some(both),

@@ -30,7 +30,11 @@ pub(super) fn largest(top: f64, load_top: f64, mut load: impl FnMut(f64) -> f64)
         let secant = low + (high - low) * (-below / (above - below));
         // Every fourth step halves, so that the bracket shrinks for any curve.
         let inside = secant.is_finite() && secant > low && secant < high && round % 4 != 3;
-        let x = if inside { secant } else { f64::midpoint(low, high) };
+        let x = if inside {
+            secant
+        } else {
+            f64::midpoint(low, high)
+        };
         let excess = load(x) - 1.0;
         if excess <= 0.0 {
             low = x;

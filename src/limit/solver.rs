@@ -37,18 +37,37 @@ impl<'m> Solver<'m> {
     #[must_use]
     pub fn new(machine: &'m Machine, how: LimitOptions) -> Self {
         let limits = &machine.limits;
-        let largest = Overrides { feed: limits.feed_override_max, rapid: limits.rapid_override_max };
-        Self { machine, model: PowerModel::new(machine), largest, how }
+        let largest = Overrides {
+            feed: limits.feed_override_max,
+            rapid: limits.rapid_override_max,
+        };
+        Self {
+            machine,
+            model: PowerModel::new(machine),
+            largest,
+            how,
+        }
     }
 
     /// The change that makes a move fit which does not.
     ///
     /// # Errors
     /// What stands in the way.
-    pub fn solve(&self, mv: &Move, assessment: &Assessment, permit: &Permit) -> Result<Change, Obstacle> {
-        let case = Case { mv, assessment, permit };
+    pub fn solve(
+        &self,
+        mv: &Move,
+        assessment: &Assessment,
+        permit: &Permit,
+    ) -> Result<Change, Obstacle> {
+        let case = Case {
+            mv,
+            assessment,
+            permit,
+        };
         let levers = levers(self.machine, self.how, mv, permit);
-        if mv.kind == MoveKind::Dwell || assessment.top_speed_mm_s == 0.0 && mv.unknown_start.is_empty() {
+        if mv.kind == MoveKind::Dwell
+            || assessment.top_speed_mm_s == 0.0 && mv.unknown_start.is_empty()
+        {
             return Err(Obstacle::new(
                 "base-load",
                 "base load, switched loads and holding the axes alone exceed the limit",
@@ -74,14 +93,19 @@ impl<'m> Solver<'m> {
         }
         Err(Obstacle::new(
             "not-enough",
-            format!("the values of this strategy leave the block at {:.1} % of the limit", load * 100.0),
+            format!(
+                "the values of this strategy leave the block at {:.1} % of the limit",
+                load * 100.0
+            ),
             "use --strategy optimal --law exact",
         ))
     }
 
     /// Load ratio of a move at the largest overrides.
     pub(super) fn load(&self, mv: &Move) -> f64 {
-        self.model.demand(mv, &plan(self.machine, mv, self.largest), Want::PEAKS).load_ratio
+        self.model
+            .demand(mv, &plan(self.machine, mv, self.largest), Want::PEAKS)
+            .load_ratio
     }
 
     /// Plan and load of a move.
@@ -93,13 +117,17 @@ impl<'m> Solver<'m> {
 
     pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
-        self.speed(case, lever, &Change::default()).ok_or_else(|| too_much(case))
+        self.speed(case, lever, &Change::default())
+            .ok_or_else(|| too_much(case))
     }
 
     /// The highest speed that fits, on top of what `with` changes already.
     pub(super) fn speed(&self, case: Case<'_>, lever: SpeedLever, with: &Change) -> Option<Change> {
         let Case { mv, permit, .. } = case;
-        let mut trial = Change { as_feed: lever == SpeedLever::AsFeed, ..*with };
+        let mut trial = Change {
+            as_feed: lever == SpeedLever::AsFeed,
+            ..*with
+        };
         let base = trial.apply(self.machine, mv, permit);
         let mut moved = base.clone();
         let mut load_at = |lever: SpeedLever, value: f64| {
@@ -115,7 +143,11 @@ impl<'m> Solver<'m> {
             _ => base.feed_mm_s.min(1e6),
         };
         let load_top = load_at(lever, top);
-        let value = if load_top <= 1.0 { top } else { largest(top, load_top, |value| load_at(lever, value))? };
+        let value = if load_top <= 1.0 {
+            top
+        } else {
+            largest(top, load_top, |value| load_at(lever, value))?
+        };
         match lever {
             SpeedLever::RapidPercent(knob) => {
                 let step = self.machine.controller.knobs.get(knob)?.step;
@@ -134,7 +166,11 @@ impl<'m> Solver<'m> {
         let unit = feed_unit(self.machine, case.mv, case.permit);
         let mut feed = round_feed_down(speed_mm_s / self.largest.feed * SECONDS_PER_MINUTE / unit);
         for _ in 0..RETRIES {
-            let rounded = Change { feed: Some(feed), ..*trial }.apply(self.machine, case.mv, case.permit);
+            let rounded = Change {
+                feed: Some(feed),
+                ..*trial
+            }
+            .apply(self.machine, case.mv, case.permit);
             if feed > 0.0 && feed.is_finite() && self.load(&rounded) <= 1.0 {
                 return Some(feed);
             }
@@ -148,11 +184,15 @@ impl<'m> Solver<'m> {
         if let Some(load) = self.cruise_load(case.mv).filter(|load| *load > 1.0) {
             return Err(Obstacle::new(
                 "friction-alone",
-                format!("friction alone takes {:.1} % of the limit at the wanted speed", load * 100.0),
+                format!(
+                    "friction alone takes {:.1} % of the limit at the wanted speed",
+                    load * 100.0
+                ),
                 "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
             ));
         }
-        self.accel(case, knob, &Change::default()).ok_or_else(|| too_much(case))
+        self.accel(case, knob, &Change::default())
+            .ok_or_else(|| too_much(case))
     }
 
     /// The highest acceleration that fits, on top of what `with` changes.
@@ -164,24 +204,48 @@ impl<'m> Solver<'m> {
             self.load(&moved)
         };
         let load_top = load_at(1.0);
-        let factor = if load_top <= 1.0 { 1.0 } else { largest(1.0, load_top, load_at)? };
+        let factor = if load_top <= 1.0 {
+            1.0
+        } else {
+            largest(1.0, load_top, load_at)?
+        };
         self.accel_change(case, knob, factor, with)
     }
 
     /// Acceleration knobs at `factor` of what is in force, rounded down;
     /// `None` when the knob does not go that low.
-    pub(super) fn accel_change(&self, case: Case<'_>, knob: usize, factor: f64, with: &Change) -> Option<Change> {
+    pub(super) fn accel_change(
+        &self,
+        case: Case<'_>,
+        knob: usize,
+        factor: f64,
+        with: &Change,
+    ) -> Option<Change> {
         let values: AxisValues = std::array::from_fn(|axis| factor * case.mv.accel_mm_s2[axis]);
         let rounded = self.knob_values(knob, &values, case.permit)?;
-        Some(Change { accel: Some((knob, rounded)), ..*with })
+        Some(Change {
+            accel: Some((knob, rounded)),
+            ..*with
+        })
     }
 
     /// Values of a knob for these acceleration limits, rounded down.
-    pub(super) fn knob_values(&self, knob: usize, accel_mm_s2: &AxisValues, permit: &Permit) -> Option<AxisValues> {
+    pub(super) fn knob_values(
+        &self,
+        knob: usize,
+        accel_mm_s2: &AxisValues,
+        permit: &Permit,
+    ) -> Option<AxisValues> {
         let data = self.machine.controller.knobs.get(knob)?;
         let mut values = [0.0; crate::machine::AXES];
         for axis in self.machine.axis_set.iter() {
-            let value = knob_value(self.machine, data.unit, axis, accel_mm_s2[axis], permit.mm_per_unit);
+            let value = knob_value(
+                self.machine,
+                data.unit,
+                axis,
+                accel_mm_s2[axis],
+                permit.mm_per_unit,
+            );
             // A value that is a step already must not fall by rounding.
             values[axis] = round_to_step(value * (1.0 + 1e-12), data.step);
             if values[axis] < data.min || values[axis] <= 0.0 {
@@ -193,9 +257,10 @@ impl<'m> Solver<'m> {
 
     fn optimal(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         match levers {
-            Levers { speed: Some(speed), accel: Some(accel) } => {
-                optimum::best_pair(self, case, speed, accel).ok_or_else(|| too_much(case))
-            }
+            Levers {
+                speed: Some(speed),
+                accel: Some(accel),
+            } => optimum::best_pair(self, case, speed, accel).ok_or_else(|| too_much(case)),
             Levers { speed: Some(_), .. } => self.by_speed(case, levers),
             Levers { accel: Some(_), .. } => self.by_accel(case, levers),
             _ => Err(self.no_speed_lever(case)),
@@ -208,15 +273,21 @@ impl<'m> Solver<'m> {
         // So slow a start that the ramps need next to nothing.
         slow.accel_mm_s2 = slow.accel_mm_s2.map(|accel| accel * 1e-9);
         let planned = plan(self.machine, mv, self.largest);
-        let crate::plan::Trajectory::Path(_) = planned.trajectory else { return None };
+        let crate::plan::Trajectory::Path(_) = planned.trajectory else {
+            return None;
+        };
         let cruise = crate::plan::Plan::cruise(planned.speed_limit_mm_s, mv.length_mm);
         Some(self.model.demand(&slow, &cruise, Want::PEAKS).load_ratio)
     }
 
     pub(super) fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {
-        let Some(feed) = change.feed.filter(|_| case.mv.kind != MoveKind::Rapid) else { return Ok(()) };
+        let Some(feed) = change.feed.filter(|_| case.mv.kind != MoveKind::Rapid) else {
+            return Ok(());
+        };
         let limits = &self.machine.limits;
-        let floor_mm_s = limits.min_feed_mm_s.max(limits.min_feed_ratio * case.assessment.speed_mm_s);
+        let floor_mm_s = limits
+            .min_feed_mm_s
+            .max(limits.min_feed_ratio * case.assessment.speed_mm_s);
         let per_minute = SECONDS_PER_MINUTE / feed_unit(self.machine, case.mv, case.permit);
         let floor = floor_mm_s * per_minute;
         if feed >= floor * (1.0 - 1e-12) {
@@ -232,22 +303,47 @@ impl<'m> Solver<'m> {
     fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
         let Case { mv, permit, .. } = case;
         if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word {
-            return Obstacle::new("untouchable", format!("the block may not be changed: {}", permit.reason), "change it by hand");
+            return Obstacle::new(
+                "untouchable",
+                format!("the block may not be changed: {}", permit.reason),
+                "change it by hand",
+            );
         }
         if mv.kind != MoveKind::Rapid {
-            let allowed = Self { how: LimitOptions { allow_feed: true, ..self.how }, model: self.model.clone(), ..*self };
-            let help = match allowed.speed(case, SpeedLever::FeedWord, &Change::default()).and_then(|it| it.feed) {
+            let allowed = Self {
+                how: LimitOptions {
+                    allow_feed: true,
+                    ..self.how
+                },
+                model: self.model.clone(),
+                ..*self
+            };
+            let help = match allowed
+                .speed(case, SpeedLever::FeedWord, &Change::default())
+                .and_then(|it| it.feed)
+            {
                 Some(feed) => format!("it fits at F{feed}: --allow feed permits that"),
                 None => "--allow feed permits lower feeds".to_owned(),
             };
-            return Obstacle::new("feed-not-allowed", "cutting feeds are not changed without permission", help);
+            return Obstacle::new(
+                "feed-not-allowed",
+                "cutting feeds are not changed without permission",
+                help,
+            );
         }
         let message = if permit.reason.is_empty() {
-            format!("the controller `{}` has no word that lowers this rapid", self.machine.controller.name)
+            format!(
+                "the controller `{}` has no word that lowers this rapid",
+                self.machine.controller.name
+            )
         } else {
             format!("the rapid may not be written as a feed: {}", permit.reason)
         };
-        Obstacle::new("no-knob", message, "write the move as a feed by hand, or lower the rapid speed of the machine")
+        Obstacle::new(
+            "no-knob",
+            message,
+            "write the move as a feed by hand, or lower the rapid speed of the machine",
+        )
     }
 
     fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
@@ -255,7 +351,10 @@ impl<'m> Solver<'m> {
             let message = format!("the block may not be changed: {}", case.permit.reason);
             return Obstacle::new("untouchable", message, "change it by hand");
         }
-        let message = format!("the controller `{}` has no word for this acceleration", self.machine.controller.name);
+        let message = format!(
+            "the controller `{}` has no word for this acceleration",
+            self.machine.controller.name
+        );
         Obstacle::new("no-knob", message, "use --strategy optimal or speed")
     }
 }
@@ -263,7 +362,10 @@ impl<'m> Solver<'m> {
 fn too_much(case: Case<'_>) -> Obstacle {
     Obstacle::new(
         "no-solution",
-        format!("no value of the permitted words brings {:.0} W down to the limit", case.assessment.demand.peak_w),
+        format!(
+            "no value of the permitted words brings {:.0} W down to the limit",
+            case.assessment.demand.peak_w
+        ),
         "base load and friction leave too little: a larger converter, or another strategy",
     )
 }

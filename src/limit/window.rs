@@ -22,7 +22,10 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
     if load(solver, slots, &range) <= 1.0 + 1e-9 {
         return;
     }
-    let found: Vec<Levers> = range.clone().map(|index| slot_levers(solver, &slots[index])).collect();
+    let found: Vec<Levers> = range
+        .clone()
+        .map(|index| slot_levers(solver, &slots[index]))
+        .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());
     let done = match solver.how.strategy {
@@ -34,7 +37,11 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
     };
     if !done {
         let slot = &mut slots[center];
-        let case = Case { mv: &slot.mv, assessment: &slot.assessment, permit: &slot.permit };
+        let case = Case {
+            mv: &slot.mv,
+            assessment: &slot.assessment,
+            permit: &slot.permit,
+        };
         slot.outcome.obstacle = Some(obstacle(solver, case));
     }
 }
@@ -42,8 +49,16 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
 /// Indices of the move and of the neighbours that it is joined to.
 fn range(slots: &VecDeque<Slot>, center: usize) -> std::ops::Range<usize> {
     let first = center.saturating_sub(1);
-    let start = if center > 0 && slots[first].joined { first } else { center };
-    let end = if slots[center].joined && center + 1 < slots.len() { center + 2 } else { center + 1 };
+    let start = if center > 0 && slots[first].joined {
+        first
+    } else {
+        center
+    };
+    let end = if slots[center].joined && center + 1 < slots.len() {
+        center + 2
+    } else {
+        center + 1
+    };
     start..end
 }
 
@@ -53,11 +68,15 @@ fn slot_levers(solver: &Solver<'_>, slot: &Slot) -> Levers {
 
 /// Blended moves are lowered by F, also a rapid written as a feed.
 fn speed_lever(levers: Levers) -> Option<SpeedLever> {
-    levers.speed.filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_)))
+    levers
+        .speed
+        .filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_)))
 }
 
 /// Largest speeds and accelerations over a window.
-fn envelope<'a>(parts: impl Iterator<Item = (SpeedBound, &'a AxisValues)>) -> (SpeedBound, AxisValues) {
+fn envelope<'a>(
+    parts: impl Iterator<Item = (SpeedBound, &'a AxisValues)>,
+) -> (SpeedBound, AxisValues) {
     let mut bound = SpeedBound::default();
     let mut accel = [0.0_f64; AXES];
     for (part, part_accel) in parts {
@@ -70,12 +89,22 @@ fn envelope<'a>(parts: impl Iterator<Item = (SpeedBound, &'a AxisValues)>) -> (S
 }
 
 fn own_bound(solver: &Solver<'_>, slot: &Slot) -> SpeedBound {
-    speed_bound(solver.machine, &slot.changed, solver.largest, Caps::default())
+    speed_bound(
+        solver.machine,
+        &slot.changed,
+        solver.largest,
+        Caps::default(),
+    )
 }
 
 /// Load ratio of the window; of several sets of switched loads the largest.
 fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &std::ops::Range<usize>) -> f64 {
-    let parts = range.clone().map(|index| (own_bound(solver, &slots[index]), &slots[index].changed.accel_mm_s2));
+    let parts = range.clone().map(|index| {
+        (
+            own_bound(solver, &slots[index]),
+            &slots[index].changed.accel_mm_s2,
+        )
+    });
     let (bound, accel) = envelope(parts);
     window_load(solver, slots, range, &bound, &accel)
 }
@@ -87,7 +116,15 @@ fn window_load(
     bound: &SpeedBound,
     accel: &AxisValues,
 ) -> f64 {
-    range.clone().map(|index| solver.model.robust(&slots[index].mv, bound, accel).load_ratio).fold(0.0, f64::max)
+    range
+        .clone()
+        .map(|index| {
+            solver
+                .model
+                .robust(&slots[index].mv, bound, accel)
+                .load_ratio
+        })
+        .fold(0.0, f64::max)
 }
 
 /// Lowers the axis speeds of the window to a common cap.
@@ -97,18 +134,42 @@ fn lower_speed(
     range: &std::ops::Range<usize>,
     found: &[Levers],
 ) -> bool {
-    let bounds: Vec<SpeedBound> = range.clone().map(|index| own_bound(solver, &slots[index])).collect();
-    let accels: Vec<AxisValues> = range.clone().map(|index| slots[index].changed.accel_mm_s2).collect();
-    let adjustable: Vec<bool> = found.iter().map(|levers| speed_lever(*levers).is_some()).collect();
+    let bounds: Vec<SpeedBound> = range
+        .clone()
+        .map(|index| own_bound(solver, &slots[index]))
+        .collect();
+    let accels: Vec<AxisValues> = range
+        .clone()
+        .map(|index| slots[index].changed.accel_mm_s2)
+        .collect();
+    let adjustable: Vec<bool> = found
+        .iter()
+        .map(|levers| speed_lever(*levers).is_some())
+        .collect();
     let (top, accel) = envelope(bounds.iter().copied().zip(accels.iter()));
     let factors = |cap: f64| -> Vec<f64> {
-        bounds.iter().zip(&adjustable).map(|(bound, adjustable)| if *adjustable { factor(bound, &top, cap) } else { 1.0 }).collect()
+        bounds
+            .iter()
+            .zip(&adjustable)
+            .map(|(bound, adjustable)| {
+                if *adjustable {
+                    factor(bound, &top, cap)
+                } else {
+                    1.0
+                }
+            })
+            .collect()
     };
     let load_at = |cap: f64| {
-        let scaled = bounds.iter().zip(factors(cap)).map(|(bound, factor)| (scale(bound, factor), &accel));
+        let scaled = bounds
+            .iter()
+            .zip(factors(cap))
+            .map(|(bound, factor)| (scale(bound, factor), &accel));
         window_load(solver, slots, range, &envelope(scaled).0, &accel)
     };
-    let Some(cap) = largest(1.0, load_at(1.0), load_at) else { return false };
+    let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
+        return false;
+    };
     for ((index, factor), levers) in range.clone().zip(factors(cap)).zip(found) {
         if factor < 1.0
             && let Some(lever) = speed_lever(*levers)
@@ -148,13 +209,21 @@ fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f
         slot.changed.feed_mm_s.min(1e6) * solver.largest.feed
     };
     let unit = feed_unit(solver.machine, &slot.mv, &slot.permit);
-    let feed = round_feed_down(speed_mm_s * factor / solver.largest.feed * SECONDS_PER_MINUTE / unit);
+    let feed =
+        round_feed_down(speed_mm_s * factor / solver.largest.feed * SECONDS_PER_MINUTE / unit);
     if !(feed > 0.0 && feed.is_finite()) {
         return false;
     }
-    let change =
-        Change { feed: Some(feed), as_feed: lever == SpeedLever::AsFeed, ..slot.outcome.change };
-    let case = Case { mv: &slot.mv, assessment: &slot.assessment, permit: &slot.permit };
+    let change = Change {
+        feed: Some(feed),
+        as_feed: lever == SpeedLever::AsFeed,
+        ..slot.outcome.change
+    };
+    let case = Case {
+        mv: &slot.mv,
+        assessment: &slot.assessment,
+        permit: &slot.permit,
+    };
     if let Err(obstacle) = solver.respect_floor(case, &change) {
         slot.outcome.obstacle = Some(obstacle);
         return false;
@@ -171,9 +240,17 @@ fn lower_accel(
     range: &std::ops::Range<usize>,
     found: &[Levers],
 ) -> bool {
-    let parts = range.clone().map(|index| (own_bound(solver, &slots[index]), &slots[index].changed.accel_mm_s2));
+    let parts = range.clone().map(|index| {
+        (
+            own_bound(solver, &slots[index]),
+            &slots[index].changed.accel_mm_s2,
+        )
+    });
     let (bound, top) = envelope(parts);
-    let accels: Vec<AxisValues> = range.clone().map(|index| slots[index].changed.accel_mm_s2).collect();
+    let accels: Vec<AxisValues> = range
+        .clone()
+        .map(|index| slots[index].changed.accel_mm_s2)
+        .collect();
     let lowered = |cap: f64| -> Vec<AxisValues> {
         accels
             .iter()
@@ -189,7 +266,9 @@ fn lower_accel(
         let (_, accel) = envelope(accels.iter().map(|accel| (SpeedBound::default(), accel)));
         window_load(solver, slots, range, &bound, &accel)
     };
-    let Some(cap) = largest(1.0, load_at(1.0), load_at) else { return false };
+    let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
+        return false;
+    };
     for ((index, accel), levers) in range.clone().zip(lowered(cap)).zip(found) {
         if let Some(knob) = levers.accel
             && accel != slots[index].changed.accel_mm_s2
@@ -202,17 +281,33 @@ fn lower_accel(
 }
 
 fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValues) -> bool {
-    let Some(values) = solver.knob_values(knob, accel, &slot.permit) else { return false };
+    let Some(values) = solver.knob_values(knob, accel, &slot.permit) else {
+        return false;
+    };
     slot.outcome.change.accel = Some((knob, values));
-    slot.changed = slot.outcome.change.apply(solver.machine, &slot.mv, &slot.permit);
-    let unit = solver.machine.controller.knobs.get(knob).map(|knob| knob.unit);
-    debug_assert!(solver.machine.axis_set.iter().all(|axis| unit.is_some_and(|unit| knob_accel(
-        solver.machine,
-        unit,
-        axis,
-        values[axis],
-        slot.permit.mm_per_unit
-    ) <= accel[axis] * (1.0 + 1e-9))));
+    slot.changed = slot
+        .outcome
+        .change
+        .apply(solver.machine, &slot.mv, &slot.permit);
+    let unit = solver
+        .machine
+        .controller
+        .knobs
+        .get(knob)
+        .map(|knob| knob.unit);
+    debug_assert!(
+        solver
+            .machine
+            .axis_set
+            .iter()
+            .all(|axis| unit.is_some_and(|unit| knob_accel(
+                solver.machine,
+                unit,
+                axis,
+                values[axis],
+                slot.permit.mm_per_unit
+            ) <= accel[axis] * (1.0 + 1e-9)))
+    );
     true
 }
 
@@ -224,8 +319,12 @@ fn faster_of_both(
     found: &[Levers],
     by_speed: bool,
 ) -> bool {
-    let before: Vec<_> = range.clone().map(|index| (slots[index].changed.clone(), slots[index].outcome.clone())).collect();
-    let restore = |slots: &mut VecDeque<Slot>, states: &[(crate::interpret::Move, super::Outcome)]| {
+    let before: Vec<_> = range
+        .clone()
+        .map(|index| (slots[index].changed.clone(), slots[index].outcome.clone()))
+        .collect();
+    let restore = |slots: &mut VecDeque<Slot>,
+                   states: &[(crate::interpret::Move, super::Outcome)]| {
         for (index, (changed, outcome)) in range.clone().zip(states) {
             slots[index].changed.clone_from(changed);
             slots[index].outcome.clone_from(outcome);
@@ -235,8 +334,15 @@ fn faster_of_both(
     if !by_speed {
         return accel_done;
     }
-    let accel_time = if accel_done { time(solver, slots, range) } else { f64::INFINITY };
-    let accel_state: Vec<_> = range.clone().map(|index| (slots[index].changed.clone(), slots[index].outcome.clone())).collect();
+    let accel_time = if accel_done {
+        time(solver, slots, range)
+    } else {
+        f64::INFINITY
+    };
+    let accel_state: Vec<_> = range
+        .clone()
+        .map(|index| (slots[index].changed.clone(), slots[index].outcome.clone()))
+        .collect();
     restore(slots, &before);
     let speed_done = lower_speed(solver, slots, range, found);
     if speed_done && time(solver, slots, range) < accel_time {
@@ -248,7 +354,10 @@ fn faster_of_both(
 
 /// Time of the window's moves with a stop at each, s.
 fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &std::ops::Range<usize>) -> f64 {
-    range.clone().map(|index| plan(solver.machine, &slots[index].changed, solver.largest).duration_s).sum()
+    range
+        .clone()
+        .map(|index| plan(solver.machine, &slots[index].changed, solver.largest).duration_s)
+        .sum()
 }
 
 /// Why a blended move could not be brought down.

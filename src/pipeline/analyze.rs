@@ -21,14 +21,20 @@ pub fn analyze<R: Read + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
-    let want = if rows.is_some() { Want::ALL } else { Want::PEAKS };
+    let want = if rows.is_some() {
+        Want::ALL
+    } else {
+        Want::PEAKS
+    };
     let mut assessor = Assessor::new(machine, options.certificate, want);
     let mut tally = Tally::new(machine, options, rows);
     while let Some(line) = front.next_line()? {
         for step in line.steps {
             if let Step::Move(mv) = step {
                 assessor.want.floor_w = tally.floor_w();
-                assessor.push(mv, line.text, &mut |mv, assessment, text| tally.take(mv, assessment, text));
+                assessor.push(mv, line.text, &mut |mv, assessment, text| {
+                    tally.take(mv, assessment, text)
+                });
             }
         }
         tally.check()?;

@@ -46,23 +46,48 @@ impl<'m, R: Read> Front<'m, R> {
         }
     }
 
+    /// The state behind the last line.
+    pub(super) fn interpreter(&self) -> &Interpreter<'m> {
+        &self.interpreter
+    }
+
     /// Reads and executes the next line.
     pub(super) fn next_line(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
-        let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else { return Ok(None) };
+        let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else {
+            return Ok(None);
+        };
         self.lines = number;
         scan_line(text, number == 1, &mut self.block);
         self.steps.clear();
-        let facts = self.interpreter.execute(number, text, &self.block, &mut self.steps, &mut self.diagnostics);
+        let facts = self.interpreter.execute(
+            number,
+            text,
+            &self.block,
+            &mut self.steps,
+            &mut self.diagnostics,
+        );
         self.executed += u64::from(facts.executed);
-        let Self { block, steps, interpreter, .. } = self;
-        Ok(Some(Line { text, block, steps, facts, interpreter }))
+        let Self {
+            block,
+            steps,
+            interpreter,
+            ..
+        } = self;
+        Ok(Some(Line {
+            text,
+            block,
+            steps,
+            facts,
+            interpreter,
+        }))
     }
 
     /// The warnings and notes of a run without errors.
     pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Failure> {
         if self.executed == 0 && self.diagnostics.errors == 0 {
             let message = "there is no program in this file: no block does anything";
-            self.diagnostics.push(Diagnostic::error("no-program", message).help("give a part program"));
+            self.diagnostics
+                .push(Diagnostic::error("no-program", message).help("give a part program"));
         }
         refuse_on_errors(self.diagnostics)
     }
@@ -72,15 +97,26 @@ impl<'m, R: Read> Front<'m, R> {
 fn refuse_on_errors(diagnostics: Diagnostics) -> Result<Vec<Diagnostic>, Failure> {
     let more = diagnostics.more();
     if diagnostics.errors > 0 {
-        return Err(Failure::Refused { diagnostics: diagnostics.list, more });
+        return Err(Failure::Refused {
+            diagnostics: diagnostics.list,
+            more,
+        });
     }
-    debug_assert!(diagnostics.list.iter().all(|diagnostic| diagnostic.severity != Severity::Error));
+    debug_assert!(
+        diagnostics
+            .list
+            .iter()
+            .all(|diagnostic| diagnostic.severity != Severity::Error)
+    );
     Ok(diagnostics.list)
 }
 
 fn source_failure(error: SourceError) -> Failure {
     match error {
         SourceError::Io(error) => Failure::Input(error),
-        other => Failure::Refused { diagnostics: vec![Diagnostic::error("not-a-program", other.to_string())], more: 0 },
+        other => Failure::Refused {
+            diagnostics: vec![Diagnostic::error("not-a-program", other.to_string())],
+            more: 0,
+        },
     }
 }

@@ -1,21 +1,22 @@
 //! From bytes to figures, and from bytes to a certified program.
 
 mod analyze;
+mod certify;
 mod front;
+mod limiting;
 mod options;
 mod row;
 mod summary;
 mod tally;
-
-use std::io::{Read, Write};
+mod writer;
 
 pub use analyze::{analyze, moves};
+pub use limiting::limit;
 pub use options::{Law, LimitOptions, Options, Start, Strategy};
 pub use row::{Certificate, Row, RowSink};
 pub use summary::{LimitSummary, Summary, Unfit};
 
 use crate::diagnostic::Diagnostic;
-use crate::machine::Machine;
 
 /// Why a run came to no result.
 #[derive(Debug, thiserror::Error)]
@@ -39,24 +40,3 @@ pub enum Failure {
     #[error("{0}")]
     Unsuitable(String),
 }
-
-/// Reads a program, writes one that fits to `output`, and certifies it.
-///
-/// `output` is a spool: its contents may be delivered only when the result
-/// says `certified`.
-///
-/// # Errors
-/// See [`Failure`]. A program that cannot be made to fit is no error: see
-/// [`LimitSummary::certified`].
-pub fn limit<R: Read + Send, W: Write + Send>(
-    input: R,
-    machine: &Machine,
-    options: &Options,
-    how: LimitOptions,
-    output: W,
-    rows: Option<&mut dyn RowSink>,
-) -> Result<LimitSummary, Failure> {
-    let _ = (input, machine, options, how, output, rows);
-    Ok(LimitSummary::default())
-}
-

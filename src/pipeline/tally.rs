@@ -26,24 +26,50 @@ pub(super) struct Tally<'m, 'r> {
 }
 
 impl<'m, 'r> Tally<'m, 'r> {
-    pub(super) fn new(machine: &'m Machine, options: &Options, rows: Option<&'r mut (dyn RowSink + 'r)>) -> Self {
+    pub(super) fn new(
+        machine: &'m Machine,
+        options: &Options,
+        rows: Option<&'r mut (dyn RowSink + 'r)>,
+    ) -> Self {
         let model = PowerModel::new(machine);
         // Only the largest peak is wanted of a single converter without rows.
         let exact = rows.is_some() || machine.converters.len() > 1;
         let smallest_limit_w = model.limit_w(0);
-        let summary = Summary { certificate: options.certificate, ..Summary::default() };
-        Self { machine, model, rows, summary, energy_j: 0.0, failed: None, smallest_limit_w, exact }
+        let summary = Summary {
+            certificate: options.certificate,
+            ..Summary::default()
+        };
+        Self {
+            machine,
+            model,
+            rows,
+            summary,
+            energy_j: 0.0,
+            failed: None,
+            smallest_limit_w,
+            exact,
+        }
     }
 
     /// Peaks below this are not wanted exactly, W.
     pub(super) fn floor_w(&self) -> f64 {
-        if self.exact { f64::NEG_INFINITY } else { self.summary.peak_w.min(self.smallest_limit_w) }
+        if self.exact {
+            f64::NEG_INFINITY
+        } else {
+            self.summary.peak_w.min(self.smallest_limit_w)
+        }
     }
 
     /// Takes the next judged move.
     pub(super) fn take(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
         if self.rows.is_some() {
-            let row = row(self.machine, &self.model, mv, assessment, self.summary.duration_s);
+            let row = row(
+                self.machine,
+                &self.model,
+                mv,
+                assessment,
+                self.summary.duration_s,
+            );
             self.write(&row);
         }
         self.add(mv, assessment, text);
@@ -88,13 +114,17 @@ impl<'m, 'r> Tally<'m, 'r> {
         self.summary.unfit_count += 1;
         let listed = self.summary.unfit.len() < Summary::KEPT;
         let worst = &self.summary.worst;
-        let among_worst = worst.len() < WORST || worst.last().is_some_and(|last| overload > last.overload);
+        let among_worst =
+            worst.len() < WORST || worst.last().is_some_and(|last| overload > last.overload);
         if !listed && !among_worst {
             return;
         }
         let unfit = unfit(&self.model, mv, assessment, text);
         if among_worst {
-            let at = self.summary.worst.partition_point(|other| other.overload >= overload);
+            let at = self
+                .summary
+                .worst
+                .partition_point(|other| other.overload >= overload);
             self.summary.worst.insert(at, unfit.clone());
             self.summary.worst.truncate(WORST);
         }
@@ -105,7 +135,9 @@ impl<'m, 'r> Tally<'m, 'r> {
 
     /// The error of the rows, if there was one.
     pub(super) fn check(&mut self) -> Result<(), Failure> {
-        self.failed.take().map_or(Ok(()), |error| Err(Failure::Output(error)))
+        self.failed
+            .take()
+            .map_or(Ok(()), |error| Err(Failure::Output(error)))
     }
 
     /// Time so far in s.
@@ -158,7 +190,10 @@ pub(super) fn row(
         regen_after_w: None,
         certificate: assessment.certificate,
         regen_limit_w: model.regen_limit_w(demand.converter),
-        converter: machine.converters.get(demand.converter).map_or_else(String::new, |it| it.name.clone()),
+        converter: machine
+            .converters
+            .get(demand.converter)
+            .map_or_else(String::new, |it| it.name.clone()),
     }
 }
 
@@ -185,13 +220,16 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
     let percent = |factor: f64| factor * 100.0;
     let limits = &machine.limits;
     let mut conditions = vec![match summary.certificate {
-        Some(Certificate::Robust) => "robust: blended moves hold for any look-ahead, blending and filtering that \
+        Some(Certificate::Robust) => {
+            "robust: blended moves hold for any look-ahead, blending and filtering that \
              keeps each axis inside its own limits; times are those with a stop at each block"
-            .to_owned(),
+                .to_owned()
+        }
         _ => "planned: every block ends at rest (exact stop)".to_owned(),
     }];
     if machine.path.mode == Some(PathMode::ExactStop) {
-        conditions.push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());
+        conditions
+            .push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());
     }
     conditions.push(format!(
         "overrides at most: feed {} %, rapid {} %, spindle {} %",
@@ -199,14 +237,28 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         percent(limits.rapid_override_max),
         percent(limits.spindle_override_max)
     ));
-    conditions.push(format!("margin {} % of the converter's power", percent(limits.margin)));
+    conditions.push(format!(
+        "margin {} % of the converter's power",
+        percent(limits.margin)
+    ));
     conditions.push(match options.start {
         Start::Unknown => "start position unknown".to_owned(),
-        Start::At(at) if at.iter().all(|value| *value == 0.0) => "start position 0 for every axis".to_owned(),
+        Start::At(at) if at.iter().all(|value| *value == 0.0) => {
+            "start position 0 for every axis".to_owned()
+        }
         Start::At(_) => "start position as given".to_owned(),
     });
-    conditions.push(if options.block_delete { "blocks with / are skipped" } else { "blocks with / are executed" }.to_owned());
-    conditions.push("cutting forces are not counted; emergency stop and feed hold are outside".to_owned());
+    conditions.push(
+        if options.block_delete {
+            "blocks with / are skipped"
+        } else {
+            "blocks with / are executed"
+        }
+        .to_owned(),
+    );
+    conditions.push(
+        "cutting forces are not counted; emergency stop and feed hold are outside".to_owned(),
+    );
     if !machine.unchecked.is_empty() {
         conditions.push(format!("not checked yet: {}", machine.unchecked.join(", ")));
     }

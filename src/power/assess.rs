@@ -31,7 +31,6 @@ impl Certificate {
     }
 }
 
-
 /// What is known of a move once it is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
@@ -50,6 +49,8 @@ pub struct Assessment {
     /// The move may run into or out of a neighbour without a stop: its peaks
     /// depend on both.
     pub blended: bool,
+    /// The controller may run into it from its predecessor without a stop.
+    pub joined: bool,
 }
 
 /// Judges the moves of one program.
@@ -91,11 +92,25 @@ impl<'m> Assessor<'m> {
     /// Judges by `requested`, or by what the controller profile models.
     #[must_use]
     pub fn new(machine: &'m Machine, requested: Option<Certificate>, want: Want) -> Self {
-        let largest =
-            Overrides { feed: machine.limits.feed_override_max, rapid: machine.limits.rapid_override_max };
-        let nominal = Overrides { feed: largest.feed.min(1.0), rapid: largest.rapid.min(1.0) };
+        let largest = Overrides {
+            feed: machine.limits.feed_override_max,
+            rapid: machine.limits.rapid_override_max,
+        };
+        let nominal = Overrides {
+            feed: largest.feed.min(1.0),
+            rapid: largest.rapid.min(1.0),
+        };
         let model = PowerModel::new(machine);
-        Self { machine, model, largest, nominal, requested, want, held: None, needs_robust: false }
+        Self {
+            machine,
+            model,
+            largest,
+            nominal,
+            requested,
+            want,
+            held: None,
+            needs_robust: false,
+        }
     }
 
     /// The certificate that was asked for.
@@ -106,9 +121,18 @@ impl<'m> Assessor<'m> {
 
     /// Takes the next move with the text of its line, and hands on what can be
     /// judged now.
-    pub fn push(&mut self, mv: &Move, text: &[u8], sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        let joined = self.held.as_ref().is_some_and(|held| self.joins(&held.mv, mv));
+    pub fn push(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let joined = self
+            .held
+            .as_ref()
+            .is_some_and(|held| self.joins(&held.mv, mv));
         let mut assessment = self.alone(mv);
+        assessment.joined = joined;
         let may_blend = assessment.blended || joined;
         if !may_blend {
             self.release(None, sink);
@@ -126,8 +150,15 @@ impl<'m> Assessor<'m> {
         let mut text_buffer = self.release(joined.then_some((&own_bound, &mv.accel_mm_s2)), sink);
         text_buffer.clear();
         text_buffer.extend_from_slice(text);
-        self.held =
-            Some(Held { mv: mv.clone(), text: text_buffer, assessment, bound, accel_mm_s2, own_bound, joined });
+        self.held = Some(Held {
+            mv: mv.clone(),
+            text: text_buffer,
+            assessment,
+            bound,
+            accel_mm_s2,
+            own_bound,
+            joined,
+        });
     }
 
     /// Hands on what was waiting, at the end of the program.
@@ -142,7 +173,9 @@ impl<'m> Assessor<'m> {
         next: Option<(&SpeedBound, &AxisValues)>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) -> Vec<u8> {
-        let Some(mut held) = self.held.take() else { return Vec::new() };
+        let Some(mut held) = self.held.take() else {
+            return Vec::new();
+        };
         if let Some((bound, accel_mm_s2)) = next {
             held.bound.include(bound);
             include_accel(&mut held.accel_mm_s2, accel_mm_s2);
@@ -183,8 +216,13 @@ impl<'m> Assessor<'m> {
             accel_mm_s2: peak_plan.accel_mm_s2,
             top_speed_mm_s: peak_plan.top_speed_mm_s,
             demand,
-            certificate: if unknown { Certificate::Robust } else { Certificate::Planned },
+            certificate: if unknown {
+                Certificate::Robust
+            } else {
+                Certificate::Planned
+            },
             blended: self.may_blend(mv),
+            joined: false,
         }
     }
 

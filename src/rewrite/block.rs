@@ -53,7 +53,10 @@ impl<'m> Rewriter<'m> {
     pub fn new(machine: &'m Machine) -> Self {
         Self {
             machine,
-            written: Written { motion: Motion::None, feed: None },
+            written: Written {
+                motion: Motion::None,
+                feed: None,
+            },
             turned: Vec::new(),
             line_end: b"\n".to_vec(),
             edits: Vec::new(),
@@ -70,7 +73,8 @@ impl<'m> Rewriter<'m> {
             self.line_end = end.to_vec();
         }
         let facts = view.facts;
-        let looked_at = facts.boundary || facts.turns_knob || view.block.tape || view.block.delete_level > 0;
+        let looked_at =
+            facts.boundary || facts.turns_knob || view.block.tape || view.block.delete_level > 0;
         if looked_at {
             self.restore(view.before, view.knobs, out);
         }
@@ -115,7 +119,10 @@ impl<'m> Rewriter<'m> {
         if let Some(word) = facts.motion_word {
             self.written.motion = view.after.motion;
             if view.change.as_feed {
-                self.edits.push(Edit::replace(word.number, with_digit(word.number.of(view.text), b'1')));
+                self.edits.push(Edit::replace(
+                    word.number,
+                    with_digit(word.number.of(view.text), b'1'),
+                ));
                 self.written.motion = Motion::Linear;
             }
             return;
@@ -123,7 +130,11 @@ impl<'m> Rewriter<'m> {
         if !facts.uses_motion {
             return;
         }
-        let wanted = if view.change.as_feed { Motion::Linear } else { view.after.motion };
+        let wanted = if view.change.as_feed {
+            Motion::Linear
+        } else {
+            view.after.motion
+        };
         if wanted == self.written.motion {
             return;
         }
@@ -140,7 +151,10 @@ impl<'m> Rewriter<'m> {
         let facts = view.facts;
         let original = view.after.feed_value();
         let wanted = match view.change.feed {
-            Some(value) => Some(FeedValue { value, mm_per_unit: view.after.mm_per_unit }),
+            Some(value) => Some(FeedValue {
+                value,
+                mm_per_unit: view.after.mm_per_unit,
+            }),
             None => original,
         };
         if let Some(word) = facts.feed_word {
@@ -154,7 +168,11 @@ impl<'m> Rewriter<'m> {
         }
         if view.after.feed.is_none() && view.change.feed.is_none() {
             // G93, G94 and G95 forget the feed of another meaning.
-            self.written.feed = if view.after.per_minute { self.written.feed } else { None };
+            self.written.feed = if view.after.per_minute {
+                self.written.feed
+            } else {
+                None
+            };
             return;
         }
         let counts = facts.uses_motion && (facts.uses_feed || view.change.as_feed);
@@ -162,7 +180,10 @@ impl<'m> Rewriter<'m> {
             return;
         }
         let number = match (view.change.feed, &view.after.feed) {
-            (Some(value), feed) => decimal(value, feed.as_ref().is_some_and(|feed| has_point(&feed.text))),
+            (Some(value), feed) => decimal(
+                value,
+                feed.as_ref().is_some_and(|feed| has_point(&feed.text)),
+            ),
             (None, Some(feed)) => feed_again(feed, view.after.mm_per_unit),
             (None, None) => return,
         };
@@ -205,20 +226,34 @@ impl<'m> Rewriter<'m> {
 
     /// Whether a knob acts on the moves of a block.
     fn concerns(&self, knob: usize, view: &BlockView<'_>) -> bool {
-        self.machine.controller.knobs.get(knob).is_some_and(|knob| match knob.target {
-            KnobTarget::FeedAccel => view.feeds,
-            KnobTarget::RapidAccel | KnobTarget::RapidSpeed => view.rapids,
-            KnobTarget::Accel => true,
-        })
+        self.machine
+            .controller
+            .knobs
+            .get(knob)
+            .is_some_and(|knob| match knob.target {
+                KnobTarget::FeedAccel => view.feeds,
+                KnobTarget::RapidAccel | KnobTarget::RapidSpeed => view.rapids,
+                KnobTarget::Accel => true,
+            })
     }
 
     /// Gives a knob the value that the original has in force.
-    fn restore_knob(&mut self, knob: usize, knobs: Option<&KnobState>, mm_per_unit: f64, out: &mut Vec<u8>) {
+    fn restore_knob(
+        &mut self,
+        knob: usize,
+        knobs: Option<&KnobState>,
+        mm_per_unit: f64,
+        out: &mut Vec<u8>,
+    ) {
         self.turned.retain(|(turned, _)| *turned != knob);
-        let (Some(state), Some(data)) = (knobs, self.machine.controller.knobs.get(knob)) else { return };
+        let (Some(state), Some(data)) = (knobs, self.machine.controller.knobs.get(knob)) else {
+            return;
+        };
         let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
-            let Some(own) = &self.machine.axes[axis] else { continue };
+            let Some(own) = &self.machine.axes[axis] else {
+                continue;
+            };
             let accel = match data.target {
                 KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
                 _ => state.feed_accel_mm_s2[axis],
@@ -243,12 +278,22 @@ impl<'m> Rewriter<'m> {
         }
         let mut words = Vec::new();
         if self.written.motion != original.motion {
-            words.extend(original.motion.digit().map(|digit| format!("G{}", digit as char)));
+            words.extend(
+                original
+                    .motion
+                    .digit()
+                    .map(|digit| format!("G{}", digit as char)),
+            );
             self.written.motion = original.motion;
         }
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute {
-            words.extend(original.feed.as_ref().map(|feed| format!("F{}", feed_again(feed, original.mm_per_unit))));
+            words.extend(
+                original
+                    .feed
+                    .as_ref()
+                    .map(|feed| format!("F{}", feed_again(feed, original.mm_per_unit))),
+            );
             if feed.is_some() {
                 self.written.feed = feed;
             }

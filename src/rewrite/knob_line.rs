@@ -11,8 +11,12 @@ pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Opt
     let first = values[axes.next()?];
     let uniform = axes.all(|axis| values[axis] == first);
     match &knob.argument {
-        KnobArgument::Assign if uniform => Some(format!("{} = {}", code(knob), decimal(first, false))),
-        KnobArgument::Assign => by_axis(machine, knob).and_then(|index| words(machine, index, values)),
+        KnobArgument::Assign if uniform => {
+            Some(format!("{} = {}", code(knob), decimal(first, false)))
+        }
+        KnobArgument::Assign => {
+            by_axis(machine, knob).and_then(|index| words(machine, index, values))
+        }
         KnobArgument::Axes => {
             let mut text = code(knob);
             for axis in machine.axis_set.iter() {
@@ -29,7 +33,10 @@ pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Opt
 /// The knob of the same target that takes a value for each axis.
 fn by_axis(machine: &Machine, like: &Knob) -> Option<usize> {
     machine.controller.knobs.iter().position(|knob| {
-        knob.verified && knob.target == like.target && knob.unit == like.unit && knob.argument == KnobArgument::Axes
+        knob.verified
+            && knob.target == like.target
+            && knob.unit == like.unit
+            && knob.argument == KnobArgument::Axes
     })
 }
 

@@ -15,9 +15,16 @@ pub(super) struct Style {
 impl Style {
     /// The style of a block; blanks where it has too few words to tell.
     pub(super) fn of(text: &[u8], block: &Block) -> Self {
-        let first = block.number.iter().chain(&block.words).map(|word| word.span).next();
+        let first = block
+            .number
+            .iter()
+            .chain(&block.words)
+            .map(|word| word.span)
+            .next();
         let start = first.map_or(0, |span| span.start as usize);
-        let words = text.get(start..block.words_end as usize).unwrap_or_default();
+        let words = text
+            .get(start..block.words_end as usize)
+            .unwrap_or_default();
         let single = block.words.len() + usize::from(block.number.is_some()) < 2;
         Self {
             spaced: single || words.iter().any(|byte| matches!(byte, b' ' | b'\t')),
@@ -27,7 +34,11 @@ impl Style {
 
     /// A letter in the style of the block.
     pub(super) fn letter(self, letter: u8) -> u8 {
-        if self.lower { letter.to_ascii_lowercase() } else { letter }
+        if self.lower {
+            letter.to_ascii_lowercase()
+        } else {
+            letter
+        }
     }
 }
 
@@ -49,19 +60,34 @@ pub(super) fn has_point(text: &[u8]) -> bool {
 /// The text that puts a feed back in force under another or the same unit.
 pub(super) fn feed_again(feed: &Feed, mm_per_unit: f64) -> String {
     if feed.mm_per_unit == mm_per_unit && !feed.text.is_empty() {
-        return feed.text.iter().map(|byte| char::from(*byte)).filter(|c| !c.is_whitespace()).collect();
+        return feed
+            .text
+            .iter()
+            .map(|byte| char::from(*byte))
+            .filter(|c| !c.is_whitespace())
+            .collect();
     }
     let value = feed.value * feed.mm_per_unit / mm_per_unit;
     // Down in the ninth digit: a feed never goes up.
-    let scale = libm::pow(10.0, (8.0 - libm::floor(libm::log10(value))).clamp(0.0, 15.0)).round();
+    let scale = libm::pow(
+        10.0,
+        (8.0 - libm::floor(libm::log10(value))).clamp(0.0, 15.0),
+    )
+    .round();
     decimal((value * scale).floor() / scale, has_point(&feed.text))
 }
 
 /// A number like `0`, `00` or `0.` with its last digit before the point set.
 pub(super) fn with_digit(number: &[u8], digit: u8) -> Vec<u8> {
     let mut text = number.to_vec();
-    let whole = text.iter().position(|byte| *byte == b'.').unwrap_or(text.len());
-    match text.get_mut(..whole).and_then(|digits| digits.iter_mut().rev().find(|byte| byte.is_ascii_digit())) {
+    let whole = text
+        .iter()
+        .position(|byte| *byte == b'.')
+        .unwrap_or(text.len());
+    match text
+        .get_mut(..whole)
+        .and_then(|digits| digits.iter_mut().rev().find(|byte| byte.is_ascii_digit()))
+    {
         Some(last) => *last = digit,
         None => text.insert(whole, digit),
     }
@@ -92,7 +118,11 @@ mod tests {
 
     #[test]
     fn a_feed_comes_back_as_it_was_written() {
-        let feed = Feed { value: 1000.0, mm_per_unit: 1.0, text: b"1000.".iter().copied().collect() };
+        let feed = Feed {
+            value: 1000.0,
+            mm_per_unit: 1.0,
+            text: b"1000.".iter().copied().collect(),
+        };
         assert_eq!(feed_again(&feed, 1.0), "1000.");
         assert_eq!(feed_again(&feed, 25.4), "39.3700787");
     }

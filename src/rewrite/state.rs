@@ -29,7 +29,10 @@ impl Mark {
 
     /// The feed as value and unit.
     pub(super) fn feed_value(&self) -> Option<FeedValue> {
-        self.feed.as_ref().map(|feed| FeedValue { value: feed.value, mm_per_unit: feed.mm_per_unit })
+        self.feed.as_ref().map(|feed| FeedValue {
+            value: feed.value,
+            mm_per_unit: feed.mm_per_unit,
+        })
     }
 }
 
