@@ -51,7 +51,8 @@ pub(super) fn from_center(ends: &Ends, center: [f64; 2]) -> Result<Arc, ArcFault
         return Err(ArcFault::NoRadius);
     }
     let difference = (start_mm - end_mm).abs();
-    let allowed = RADIUS_TOLERANCE_MM[usize::from(ends.inch)].max(RADIUS_TOLERANCE * start_mm.max(end_mm));
+    let allowed =
+        RADIUS_TOLERANCE_MM[usize::from(ends.inch)].max(RADIUS_TOLERANCE * start_mm.max(end_mm));
     if difference > RADIUS_DIFFERENCE_MAX_MM || difference > allowed {
         return Err(ArcFault::RadiiDiffer { start_mm, end_mm });
     }
@@ -67,13 +68,20 @@ pub(super) fn from_radius(ends: &Ends, r: f64) -> Result<Arc, ArcFault> {
         return Err(ArcFault::NoChord);
     }
     if radius == 0.0 || half - radius > RADIUS_TOLERANCE_MM[usize::from(ends.inch)] {
-        return Err(ArcFault::RadiusTooSmall { radius_mm: radius, half_chord_mm: half });
+        return Err(ArcFault::RadiusTooSmall {
+            radius_mm: radius,
+            half_chord_mm: half,
+        });
     }
     let radius = radius.max(half);
     let height = ((radius - half) * (radius + half)).sqrt();
     // The short way round has its centre to the left of the chord for a
     // counter-clockwise arc, to the right for a clockwise one.
-    let side = if ends.clockwise == (r > 0.0) { -1.0 } else { 1.0 };
+    let side = if ends.clockwise == (r > 0.0) {
+        -1.0
+    } else {
+        1.0
+    };
     let normal = [-chord[1] / (2.0 * half), chord[0] / (2.0 * half)];
     let center = [
         ends.start[0] + chord[0] / 2.0 + side * height * normal[0],
@@ -97,7 +105,13 @@ fn arc(ends: &Ends, center: [f64; 2], radius_mm: f64, from: [f64; 2], to: [f64; 
     }
     turn += (ends.turns - 1.0) * TAU;
     let sweep_rad = if ends.clockwise { -turn } else { turn };
-    Arc { plane: ends.plane, center, radius_mm, start_angle_rad, sweep_rad }
+    Arc {
+        plane: ends.plane,
+        center,
+        radius_mm,
+        start_angle_rad,
+        sweep_rad,
+    }
 }
 
 #[cfg(test)]
@@ -106,7 +120,14 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn ends(start: [f64; 2], end: [f64; 2], clockwise: bool) -> Ends {
-        Ends { plane: [0, 1], start, end, clockwise, turns: 1.0, inch: false }
+        Ends {
+            plane: [0, 1],
+            start,
+            end,
+            clockwise,
+            turns: 1.0,
+            inch: false,
+        }
     }
 
     #[test]
@@ -120,7 +141,8 @@ mod tests {
     #[test]
     fn same_end_is_a_full_circle() {
         for clockwise in [false, true] {
-            let circle = from_center(&ends([10.0, 0.0], [10.0, 0.0], clockwise), [0.0, 0.0]).unwrap();
+            let circle =
+                from_center(&ends([10.0, 0.0], [10.0, 0.0], clockwise), [0.0, 0.0]).unwrap();
             assert_eq!(circle.sweep_rad.abs(), TAU);
             assert_eq!(circle.sweep_rad < 0.0, clockwise);
         }
@@ -147,12 +169,18 @@ mod tests {
 
     #[test]
     fn faults() {
-        assert_eq!(from_center(&ends([0.0, 0.0], [1.0, 0.0], true), [0.0, 0.0]), Err(ArcFault::NoRadius));
+        assert_eq!(
+            from_center(&ends([0.0, 0.0], [1.0, 0.0], true), [0.0, 0.0]),
+            Err(ArcFault::NoRadius)
+        );
         assert!(matches!(
             from_center(&ends([10.0, 0.0], [0.0, 10.1], true), [0.0, 0.0]),
             Err(ArcFault::RadiiDiffer { .. })
         ));
-        assert_eq!(from_radius(&ends([1.0, 0.0], [1.0, 0.0], true), 5.0), Err(ArcFault::NoChord));
+        assert_eq!(
+            from_radius(&ends([1.0, 0.0], [1.0, 0.0], true), 5.0),
+            Err(ArcFault::NoChord)
+        );
         assert!(matches!(
             from_radius(&ends([0.0, 0.0], [10.0, 0.0], true), 4.9),
             Err(ArcFault::RadiusTooSmall { .. })

@@ -73,7 +73,9 @@ impl GCode {
             Self::PathMode => 9,
             Self::Dwell => 10,
             Self::MachineCoordinates => 11,
-            Self::Reference | Self::SetOffset | Self::ClearOffset { .. } | Self::RestoreOffset => 12,
+            Self::Reference | Self::SetOffset | Self::ClearOffset { .. } | Self::RestoreOffset => {
+                12
+            }
             Self::Ignored => 13,
         }
     }
@@ -83,7 +85,8 @@ impl GCode {
 pub(super) fn code_number(value: f64) -> Option<u16> {
     let tenfold = value * 10.0;
     let rounded = tenfold.round();
-    ((tenfold - rounded).abs() < 1e-6 && (0.0..=65_000.0).contains(&rounded)).then_some(rounded as u16)
+    ((tenfold - rounded).abs() < 1e-6 && (0.0..=65_000.0).contains(&rounded))
+        .then_some(rounded as u16)
 }
 
 /// The G word with this number × 10, if it is known to every family.
@@ -99,7 +102,9 @@ pub(super) fn g_code(number: u16) -> Option<GCode> {
         170 => GCode::Plane([0, 1, 2]),
         180 => GCode::Plane([2, 0, 1]),
         190 => GCode::Plane([1, 2, 0]),
-        200 => GCode::Units { mm_per_unit: crate::units::MM_PER_INCH },
+        200 => GCode::Units {
+            mm_per_unit: crate::units::MM_PER_INCH,
+        },
         210 => GCode::Units { mm_per_unit: 1.0 },
         280 | 300 => GCode::Reference,
         400 => GCode::CompensationOff,

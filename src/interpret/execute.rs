@@ -74,11 +74,18 @@ pub(super) struct Run<'a, 'l> {
 
 impl Run<'_, '_> {
     fn act(&mut self, kind: ActionKind, value: f64) {
-        self.steps.push(Step::Action(Action { line: self.line, kind, value }));
+        self.steps.push(Step::Action(Action {
+            line: self.line,
+            kind,
+            value,
+        }));
     }
 
     pub(super) fn whole(&self) -> Span {
-        Span { start: 0, end: self.block.text_end }
+        Span {
+            start: 0,
+            end: self.block.text_end,
+        }
     }
 }
 
@@ -99,7 +106,10 @@ impl<'m> Interpreter<'m> {
             ended: false,
             has_program_number: false,
         };
-        Self { control, words: Words::new() }
+        Self {
+            control,
+            words: Words::new(),
+        }
     }
 
     /// The modal state after the last block.
@@ -130,7 +140,11 @@ impl<'m> Interpreter<'m> {
         steps: &mut Vec<Step>,
         diagnostics: &mut Diagnostics,
     ) -> Facts {
-        let mut report = Report { diagnostics, line, text };
+        let mut report = Report {
+            diagnostics,
+            line,
+            text,
+        };
         if self.control.passes_over(block, &mut report) {
             return Facts::default();
         }
@@ -142,8 +156,18 @@ impl<'m> Interpreter<'m> {
         }
         let before = steps.len();
         let errors = report.diagnostics.errors;
-        let facts = Facts { executed: true, ..Facts::default() };
-        let mut run = Run { line, block, words: &mut self.words, facts, steps, report };
+        let facts = Facts {
+            executed: true,
+            ..Facts::default()
+        };
+        let mut run = Run {
+            line,
+            block,
+            words: &mut self.words,
+            facts,
+            steps,
+            report,
+        };
         self.control.run(&mut run);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
@@ -155,10 +179,17 @@ impl<'m> Interpreter<'m> {
 impl Control<'_> {
     /// Whether the block is deleted, a tape mark, or behind the end.
     fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
-        let all = Span { start: 0, end: block.text_end };
+        let all = Span {
+            start: 0,
+            end: block.text_end,
+        };
         if self.ended {
             if !block.tape && !(block.words.is_empty() && block.issues.is_empty()) {
-                report.note_once("behind-the-end", "what follows the end of the program is not executed", all);
+                report.note_once(
+                    "behind-the-end",
+                    "what follows the end of the program is not executed",
+                    all,
+                );
             }
             return true;
         }
@@ -171,7 +202,11 @@ impl Control<'_> {
             return false;
         }
         if !self.machine.controller.language.block_delete {
-            report.note_once("no-block-delete", "this controller executes blocks that begin with `/`", all);
+            report.note_once(
+                "no-block-delete",
+                "this controller executes blocks that begin with `/`",
+                all,
+            );
             return false;
         }
         self.block_delete
@@ -179,7 +214,8 @@ impl Control<'_> {
 
     fn run(&mut self, run: &mut Run<'_, '_>) {
         self.begun = true;
-        run.words.fill(run.block, &self.machine.controller, &mut run.report);
+        run.words
+            .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.block.words.iter().any(|word| word.letter == b'*');
         self.program_number(run);
         let dwell_s = self.dwell_time(run);
@@ -206,7 +242,11 @@ impl Control<'_> {
         let span = run.words.span(b'O', run.block);
         if self.has_program_number {
             run.report
-                .error("several-programs", "a second program number: several programs in one file", span)
+                .error(
+                    "several-programs",
+                    "a second program number: several programs in one file",
+                    span,
+                )
                 .help("give one program at a time; subprograms are not supported");
         }
         self.has_program_number = true;
@@ -230,9 +270,13 @@ impl Control<'_> {
         if run.words.take(b'F').is_none() {
             return;
         }
-        let Some(word) = run.words.word(b'F', run.block) else { return };
+        let Some(word) = run.words.word(b'F', run.block) else {
+            return;
+        };
         if word.value < 0.0 {
-            run.report.error("negative-feed", "the feed is negative", word.span).help("write a positive F");
+            run.report
+                .error("negative-feed", "the feed is negative", word.span)
+                .help("write a positive F");
             return;
         }
         let mut mm_per_unit = self.modal.mm_per_unit;
@@ -246,12 +290,24 @@ impl Control<'_> {
         let text = word.number.of(run.report.text);
         run.facts.feed_word = Some(word);
         run.facts.feed_mm_per_unit = mm_per_unit;
-        let kept = if text.len() > Feed::TEXT_MAX { &[] } else { text };
-        self.modal.feed = Some(Feed { value: word.value, mm_per_unit, text: kept.iter().copied().collect() });
+        let kept = if text.len() > Feed::TEXT_MAX {
+            &[]
+        } else {
+            text
+        };
+        self.modal.feed = Some(Feed {
+            value: word.value,
+            mm_per_unit,
+            text: kept.iter().copied().collect(),
+        });
     }
 
     fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
-        let other = run.words.m.iter().any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other));
+        let other = run
+            .words
+            .m
+            .iter()
+            .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other));
         if let Some(value) = run.words.take(b'S')
             && !other
         {
@@ -279,14 +335,21 @@ impl Control<'_> {
     fn m_kind(&self, number: u16) -> Option<ActionKind> {
         let value = f64::from(number) / 10.0;
         let word = (b'M', value);
-        let is_load = || self.machine.loads.iter().any(|load| load.on == word || load.off.contains(&word));
+        let is_load = || {
+            self.machine
+                .loads
+                .iter()
+                .any(|load| load.on == word || load.off.contains(&word))
+        };
         match number {
             0 | 10 | 600 => Some(ActionKind::Stop),
             20 | 300 => Some(ActionKind::End),
             30 | 40 | 50 => Some(ActionKind::Spindle),
             60 => Some(ActionKind::ToolChange),
             70 | 80 | 90 => Some(ActionKind::Coolant),
-            _ if self.machine.controller.language.ignored_m.contains(&number) || is_load() => Some(ActionKind::Other),
+            _ if self.machine.controller.language.ignored_m.contains(&number) || is_load() => {
+                Some(ActionKind::Other)
+            }
             _ => None,
         }
     }
@@ -296,12 +359,19 @@ impl Control<'_> {
             let (number, span) = run.words.m[index];
             let value = f64::from(number) / 10.0;
             self.switch_loads(value);
-            if matches!(number, 820 | 830) && self.machine.controller.language.family == Family::Marlin {
+            if matches!(number, 820 | 830)
+                && self.machine.controller.language.family == Family::Marlin
+            {
                 self.modal.extruder_absolute = number == 820;
                 continue;
             }
             let Some(kind) = self.m_kind(number) else {
-                run.report.refused_m(Word { letter: b'M', value, span, number: span });
+                run.report.refused_m(Word {
+                    letter: b'M',
+                    value,
+                    span,
+                    number: span,
+                });
                 continue;
             };
             match kind {
@@ -310,7 +380,10 @@ impl Control<'_> {
                 ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,
                 _ => {}
             }
-            run.facts.boundary |= matches!(kind, ActionKind::Stop | ActionKind::End | ActionKind::ToolChange);
+            run.facts.boundary |= matches!(
+                kind,
+                ActionKind::Stop | ActionKind::End | ActionKind::ToolChange
+            );
             if !matches!(kind, ActionKind::Stop | ActionKind::End) {
                 run.act(kind, value);
             }
@@ -352,7 +425,12 @@ impl Control<'_> {
                 GCode::MachineCoordinates => run.facts.machine_coordinates = true,
                 GCode::Motion(motion) => {
                     self.modal.motion = motion;
-                    run.facts.motion_word = run.block.words.iter().copied().find(|word| word.span == span);
+                    run.facts.motion_word = run
+                        .block
+                        .words
+                        .iter()
+                        .copied()
+                        .find(|word| word.span == span);
                 }
                 GCode::WorkOffset(offset) if offset > 1 => {
                     let message = "without a parameter file all work offsets are taken as 0";
@@ -378,7 +456,9 @@ impl Control<'_> {
     fn turn_knobs(&mut self, run: &mut Run<'_, '_>) {
         for index in 0..run.words.knobs.len() {
             let (which, assigned, span) = run.words.knobs[index];
-            let Some(knob) = self.machine.controller.knobs.get(which) else { continue };
+            let Some(knob) = self.machine.controller.knobs.get(which) else {
+                continue;
+            };
             run.facts.turns_knob = true;
             let unit = self.modal.mm_per_unit;
             let mut turned = false;
@@ -399,7 +479,9 @@ impl Control<'_> {
                 }
                 (KnobArgument::Path(letters), None) => {
                     for letter in letters {
-                        let Some(value) = run.words.take(*letter) else { continue };
+                        let Some(value) = run.words.take(*letter) else {
+                            continue;
+                        };
                         fine &= valid(value);
                         self.knobs.turn_path(*letter, value, unit);
                         turned = true;
@@ -410,7 +492,11 @@ impl Control<'_> {
             if !turned || !fine {
                 let code = format!("{}{}", knob.code.0 as char, f64::from(knob.code.1) / 10.0);
                 run.report
-                    .error("knob-value", format!("{code} needs values above 0 in the form that its profile states"), span)
+                    .error(
+                        "knob-value",
+                        format!("{code} needs values above 0 in the form that its profile states"),
+                        span,
+                    )
                     .help("see `argument` of this word in the controller profile");
             }
         }
@@ -432,13 +518,24 @@ impl Control<'_> {
             Some(time) if (0.0..=1e9).contains(&time) => return seconds,
             Some(_) => {
                 let message = "the time of G4 is negative or beyond reason";
-                run.report.error("dwell-time", message, span).help("write a time from 0 to 1e9 s");
+                run.report
+                    .error("dwell-time", message, span)
+                    .help("write a time from 0 to 1e9 s");
             }
             None if language.family == Family::Marlin => return Some(0.0),
             None => {
-                let letters: Vec<_> = language.dwell.iter().map(|(letter, _)| char::from(*letter).to_string()).collect();
-                let help = format!("this controller takes the time from {}", letters.join(" or "));
-                run.report.error("dwell-time", "G4 without a time", span).help(help);
+                let letters: Vec<_> = language
+                    .dwell
+                    .iter()
+                    .map(|(letter, _)| char::from(*letter).to_string())
+                    .collect();
+                let help = format!(
+                    "this controller takes the time from {}",
+                    letters.join(" or ")
+                );
+                run.report
+                    .error("dwell-time", "G4 without a time", span)
+                    .help(help);
             }
         }
         None
@@ -456,7 +553,9 @@ impl Control<'_> {
             run.words.take(letter);
             let span = run.words.span(letter, run.block);
             let message = format!("nothing in this block uses the {} word", letter as char);
-            run.report.error("unused-word", message, span).help("take it out, or write the word that it belongs to");
+            run.report
+                .error("unused-word", message, span)
+                .help("take it out, or write the word that it belongs to");
         }
     }
 

@@ -20,7 +20,8 @@ impl KnobState {
     /// The machine's own limits.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        let accel = std::array::from_fn(|axis| machine.axes[axis].map_or(0.0, |axis| axis.accel_mm_s2));
+        let accel =
+            std::array::from_fn(|axis| machine.axes[axis].map_or(0.0, |axis| axis.accel_mm_s2));
         Self {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
@@ -41,14 +42,23 @@ impl KnobState {
 
     /// Turns a knob for one axis, or for all (`None`); `mm_per_unit` is the
     /// program's unit of length.
-    pub(super) fn turn(&mut self, machine: &Machine, knob: &Knob, axis: Option<usize>, value: f64, mm_per_unit: f64) {
+    pub(super) fn turn(
+        &mut self,
+        machine: &Machine,
+        knob: &Knob,
+        axis: Option<usize>,
+        value: f64,
+        mm_per_unit: f64,
+    ) {
         if knob.target == KnobTarget::RapidSpeed {
             self.rapid_factor = value / 100.0;
             return;
         }
         let which = axis.map_or(0..AXES, |axis| axis..axis + 1);
         for axis in which {
-            let Some(data) = &machine.axes[axis] else { continue };
+            let Some(data) = &machine.axes[axis] else {
+                continue;
+            };
             let accel = match knob.unit {
                 KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
                 KnobUnit::PerSecondSquared => value * if axis < 3 { mm_per_unit } else { 1.0 },

@@ -42,7 +42,11 @@ impl Control<'_> {
             Motion::None => {
                 let span = run.whole();
                 run.report
-                    .error("no-motion-word", "axis words without a motion word in force", span)
+                    .error(
+                        "no-motion-word",
+                        "axis words without a motion word in force",
+                        span,
+                    )
                     .help("write G0, G1, G2 or G3 in this block or before");
             }
             Motion::Rapid | Motion::Linear => self.straight(run),
@@ -79,7 +83,12 @@ impl Control<'_> {
 
     /// Reads the axis words into `end`, machine coordinates. Returns the axes
     /// whose start is not known; `None` when something was wrong.
-    fn targets(&self, run: &mut Run<'_, '_>, machine_coordinates: bool, end: &mut AxisValues) -> Option<AxisSet> {
+    fn targets(
+        &self,
+        run: &mut Run<'_, '_>,
+        machine_coordinates: bool,
+        end: &mut AxisValues,
+    ) -> Option<AxisSet> {
         let mut unknown = AxisSet::default();
         let mut fine = true;
         let words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
@@ -89,15 +98,25 @@ impl Control<'_> {
             let Some(data) = &self.machine.axes[axis] else {
                 let span = run.words.span(letter, run.block);
                 let message = format!("the machine has no {} axis", letter as char);
-                run.report.error("no-such-axis", message, span).help(format!(
-                    "choose a machine with it, or describe it in the machine file: [axes.{}]",
-                    letter as char
-                ));
+                run.report
+                    .error("no-such-axis", message, span)
+                    .help(format!(
+                        "choose a machine with it, or describe it in the machine file: [axes.{}]",
+                        letter as char
+                    ));
                 fine = false;
                 continue;
             };
-            let value = if data.kind == AxisKind::Linear { value * self.modal.mm_per_unit } else { value };
-            let absolute = if axis == EXTRUDER { self.modal.extruder_absolute } else { self.modal.absolute };
+            let value = if data.kind == AxisKind::Linear {
+                value * self.modal.mm_per_unit
+            } else {
+                value
+            };
+            let absolute = if axis == EXTRUDER {
+                self.modal.extruder_absolute
+            } else {
+                self.modal.absolute
+            };
             end[axis] = if machine_coordinates {
                 value
             } else if absolute {
@@ -110,7 +129,9 @@ impl Control<'_> {
             }
             if end[axis].abs() > POSITION_MAX_MM {
                 let span = run.words.span(letter, run.block);
-                run.report.error("position-range", "the position is beyond any machine", span).help("check the number");
+                run.report
+                    .error("position-range", "the position is beyond any machine", span)
+                    .help("check the number");
                 fine = false;
             }
         }
@@ -118,10 +139,20 @@ impl Control<'_> {
     }
 
     fn straight(&mut self, run: &mut Run<'_, '_>) {
-        let rapid = self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
-        let mut element = self.move_from_here(run, if rapid { MoveKind::Rapid } else { MoveKind::Feed });
+        let rapid =
+            self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
+        let mut element = self.move_from_here(
+            run,
+            if rapid {
+                MoveKind::Rapid
+            } else {
+                MoveKind::Feed
+            },
+        );
         let machine_coordinates = run.facts.machine_coordinates;
-        let Some(unknown) = self.targets(run, machine_coordinates, &mut element.end) else { return };
+        let Some(unknown) = self.targets(run, machine_coordinates, &mut element.end) else {
+            return;
+        };
         element.unknown_start = unknown;
         self.finish(run, element);
     }
@@ -140,9 +171,12 @@ impl Control<'_> {
         }
         let (length_mm, linear) = path_length(&element);
         element.length_mm = length_mm;
-        element.path_accel_mm_s2 = self.knobs.path_accel_mm_s2[usize::from(!element.moving.contains(EXTRUDER))];
+        element.path_accel_mm_s2 =
+            self.knobs.path_accel_mm_s2[usize::from(!element.moving.contains(EXTRUDER))];
         if element.kind != MoveKind::Rapid {
-            let Some(feed_mm_s) = self.feed_speed(run, length_mm, linear) else { return };
+            let Some(feed_mm_s) = self.feed_speed(run, length_mm, linear) else {
+                return;
+            };
             element.feed_mm_s = feed_mm_s;
         }
         self.position.at = element.end;
@@ -156,7 +190,9 @@ impl Control<'_> {
         let feed = match &self.modal.feed {
             Some(feed) if feed.value > 0.0 => feed,
             Some(_) => {
-                run.report.error("no-feed", "a feed move with F0", span).help("write the feed: F…");
+                run.report
+                    .error("no-feed", "a feed move with F0", span)
+                    .help("write the feed: F…");
                 return None;
             }
             None if self.machine.controller.language.family == Family::Marlin => {
@@ -174,12 +210,18 @@ impl Control<'_> {
         if self.feed_mode_is(FeedMode::InverseTime) {
             if run.facts.feed_word.is_none() {
                 let help = "under G93 every block needs its own F";
-                run.report.error("no-feed", "a feed move without F under G93", span).help(help);
+                run.report
+                    .error("no-feed", "a feed move without F under G93", span)
+                    .help(help);
                 return None;
             }
             return Some(length_mm * feed.value / SECONDS_PER_MINUTE);
         }
-        let per_unit = if linear { feed.linear_mm_s() } else { feed.rotary_deg_s() };
+        let per_unit = if linear {
+            feed.linear_mm_s()
+        } else {
+            feed.rotary_deg_s()
+        };
         if self.feed_mode_is(FeedMode::PerMinute) {
             return Some(per_unit);
         }
@@ -187,7 +229,11 @@ impl Control<'_> {
             return Some(per_unit * self.modal.spindle_rpm);
         }
         run.report
-            .error("no-spindle-speed", "a feed per revolution, but no spindle speed is in force", span)
+            .error(
+                "no-spindle-speed",
+                "a feed per revolution, but no spindle speed is in force",
+                span,
+            )
             .help("write S before the first move under G95");
         None
     }
@@ -197,33 +243,53 @@ impl Control<'_> {
         let mut element = self.move_from_here(run, MoveKind::Arc);
         let whole = run.whole();
         if run.facts.machine_coordinates {
-            run.report.error("arc-in-g53", "G53 with an arc", whole).help("G53 goes with G0 and G1 only");
+            run.report
+                .error("arc-in-g53", "G53 with an arc", whole)
+                .help("G53 goes with G0 and G1 only");
         }
-        let Some(unknown) = self.targets(run, false, &mut element.end) else { return };
+        let Some(unknown) = self.targets(run, false, &mut element.end) else {
+            return;
+        };
         let [first, second, normal] = self.modal.plane;
         let touched = self.position.unknown;
         if !unknown.is_empty() || touched.contains(first) || touched.contains(second) {
             run.report
-                .error("arc-from-unknown", "an arc from a position that is not known", whole)
+                .error(
+                    "arc-from-unknown",
+                    "an arc from a position that is not known",
+                    whole,
+                )
                 .help("move the axes to a known position first, or give --start X0,Y0,Z0");
         }
         for axis in [first, second] {
             if self.machine.axes[axis].is_none_or(|data| data.kind != AxisKind::Linear) {
                 let letter = ALL_AXES[axis].letter() as char;
-                let message = format!("an arc needs the linear axis {letter}, which the machine does not have");
-                run.report.error("no-such-axis", message, whole).help("choose the plane with G17, G18 or G19");
+                let message = format!(
+                    "an arc needs the linear axis {letter}, which the machine does not have"
+                );
+                run.report
+                    .error("no-such-axis", message, whole)
+                    .help("choose the plane with G17, G18 or G19");
             }
         }
         let turns = run.words.take(b'P').unwrap_or(1.0);
         if turns < 1.0 || turns.fract() != 0.0 || turns > 1e6 {
             let span = run.words.span(b'P', run.block);
-            run.report.error("arc-turns", "P of an arc must be a whole number from 1", span).help("write the number of turns");
+            run.report
+                .error(
+                    "arc-turns",
+                    "P of an arc must be a whole number from 1",
+                    span,
+                )
+                .help("write the number of turns");
         }
         let stray = b"IJK"[normal];
         if run.words.take(stray).is_some_and(|value| value != 0.0) {
             let span = run.words.span(stray, run.block);
             let message = format!("{} does not belong to an arc in this plane", stray as char);
-            run.report.error("arc-center", message, span).help("choose the plane with G17, G18 or G19");
+            run.report
+                .error("arc-center", message, span)
+                .help("choose the plane with G17, G18 or G19");
         }
         if run.report.diagnostics.errors != errors {
             return;
@@ -247,7 +313,11 @@ impl Control<'_> {
     }
 
     /// Geometry by R, or by I J K; `None` when it was reported.
-    fn arc_geometry(&self, run: &mut Run<'_, '_>, ends: &Ends) -> Option<Result<super::moves::Arc, ArcFault>> {
+    fn arc_geometry(
+        &self,
+        run: &mut Run<'_, '_>,
+        ends: &Ends,
+    ) -> Option<Result<super::moves::Arc, ArcFault>> {
         let unit = self.modal.mm_per_unit;
         let letters = [b"IJK"[ends.plane[0]], b"IJK"[ends.plane[1]]];
         let offsets = letters.map(|letter| run.words.take(letter));
@@ -255,14 +325,21 @@ impl Control<'_> {
         if let Some(radius) = run.words.take(b'R') {
             if offsets.iter().any(Option::is_some) {
                 let message = "an arc with R and with a centre";
-                run.report.error("arc-center", message, whole).help("keep one of them");
+                run.report
+                    .error("arc-center", message, whole)
+                    .help("keep one of them");
                 return None;
             }
             return Some(arc::from_radius(ends, radius * unit));
         }
         if offsets == [None, None] {
-            let message = format!("an arc without a centre ({} {}) or R", letters[0] as char, letters[1] as char);
-            run.report.error("arc-center", message, whole).help("write the centre or the radius");
+            let message = format!(
+                "an arc without a centre ({} {}) or R",
+                letters[0] as char, letters[1] as char
+            );
+            run.report
+                .error("arc-center", message, whole)
+                .help("write the centre or the radius");
             return None;
         }
         let mut center = ends.start;
@@ -272,8 +349,13 @@ impl Control<'_> {
             } else if let Some(value) = offset {
                 center[index] = self.position.absolute(ends.plane[index], value * unit);
             } else {
-                let message = format!("under G90.1 an arc needs {} and {}", letters[0] as char, letters[1] as char);
-                run.report.error("arc-center", message, whole).help("write both");
+                let message = format!(
+                    "under G90.1 an arc needs {} and {}",
+                    letters[0] as char, letters[1] as char
+                );
+                run.report
+                    .error("arc-center", message, whole)
+                    .help("write both");
                 return None;
             }
         }
@@ -301,7 +383,9 @@ impl Control<'_> {
             named = self.machine.axis_set;
         } else {
             let mut via = self.move_from_here(run, MoveKind::Rapid);
-            let Some(unknown) = self.targets(run, false, &mut via.end) else { return };
+            let Some(unknown) = self.targets(run, false, &mut via.end) else {
+                return;
+            };
             via.unknown_start = unknown;
             self.finish(run, via);
         }
@@ -319,10 +403,17 @@ impl Control<'_> {
         let mut words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
         if words.is_empty() {
             if self.machine.controller.language.family != Family::Marlin {
-                run.report.error("offset-axes", "G92 without axes", span).help("name the axes, as in G92 X0");
+                run.report
+                    .error("offset-axes", "G92 without axes", span)
+                    .help("name the axes, as in G92 X0");
                 return;
             }
-            words = self.machine.axis_set.iter().map(|axis| (axis, 0.0)).collect();
+            words = self
+                .machine
+                .axis_set
+                .iter()
+                .map(|axis| (axis, 0.0))
+                .collect();
         }
         for (axis, value) in words {
             let letter = ALL_AXES[axis].letter();
@@ -330,18 +421,30 @@ impl Control<'_> {
             let at = run.words.span(letter, run.block);
             let Some(data) = &self.machine.axes[axis] else {
                 let message = format!("the machine has no {} axis", letter as char);
-                run.report.error("no-such-axis", message, at).help("describe it in the machine file, or take it out");
+                run.report
+                    .error("no-such-axis", message, at)
+                    .help("describe it in the machine file, or take it out");
                 continue;
             };
             if self.position.unknown.contains(axis) {
                 run.report
-                    .error("offset-from-unknown", "G92 for an axis whose position is not known", at)
+                    .error(
+                        "offset-from-unknown",
+                        "G92 for an axis whose position is not known",
+                        at,
+                    )
                     .help("give --start, or move the axis to a known position first");
                 continue;
             }
-            let value = if data.kind == AxisKind::Linear { value * self.modal.mm_per_unit } else { value };
+            let value = if data.kind == AxisKind::Linear {
+                value * self.modal.mm_per_unit
+            } else {
+                value
+            };
             if value.abs() > POSITION_MAX_MM {
-                run.report.error("position-range", "the position is beyond any machine", at).help("check the number");
+                run.report
+                    .error("position-range", "the position is beyond any machine", at)
+                    .help("check the number");
                 continue;
             }
             self.position.set_offset(axis, value);
@@ -366,7 +469,11 @@ fn path_length(element: &Move) -> (f64, bool) {
     if let Some(arc) = &element.arc {
         let in_plane = arc.radius_mm * arc.sweep_rad.abs();
         let normal = 3 - arc.plane[0] - arc.plane[1];
-        let rise = if element.moving.contains(normal) { element.end[normal] - element.start[normal] } else { 0.0 };
+        let rise = if element.moving.contains(normal) {
+            element.end[normal] - element.start[normal]
+        } else {
+            0.0
+        };
         return ((in_plane * in_plane + rise * rise).sqrt(), true);
     }
     for (axes, linear) in [([0, 1, 2], true), ([6, 7, 8], true), ([3, 4, 5], false)] {
@@ -376,20 +483,38 @@ fn path_length(element: &Move) -> (f64, bool) {
         }
     }
     let extruded = (element.end[EXTRUDER] - element.start[EXTRUDER]).abs();
-    (if element.moving.contains(EXTRUDER) { extruded } else { 0.0 }, true)
+    (
+        if element.moving.contains(EXTRUDER) {
+            extruded
+        } else {
+            0.0
+        },
+        true,
+    )
 }
 
 fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {
     let (rule, message, help) = match fault {
-        ArcFault::NoRadius => ("arc-center", "the arc has no radius: start or end is its centre".to_owned(), "check I, J and K"),
+        ArcFault::NoRadius => (
+            "arc-center",
+            "the arc has no radius: start or end is its centre".to_owned(),
+            "check I, J and K",
+        ),
         ArcFault::RadiiDiffer { start_mm, end_mm } => (
             "arc-radius",
-            format!("the arc's end is not on its circle: radius {start_mm:.4} mm at the start, {end_mm:.4} mm at the end"),
+            format!(
+                "the arc's end is not on its circle: radius {start_mm:.4} mm at the start, {end_mm:.4} mm at the end"
+            ),
             "check the end point and the centre; a G90.1/G91.1 mix-up looks like this",
         ),
-        ArcFault::RadiusTooSmall { radius_mm, half_chord_mm } => (
+        ArcFault::RadiusTooSmall {
+            radius_mm,
+            half_chord_mm,
+        } => (
             "arc-radius",
-            format!("R {radius_mm:.4} mm cannot reach the end: half the distance is {half_chord_mm:.4} mm"),
+            format!(
+                "R {radius_mm:.4} mm cannot reach the end: half the distance is {half_chord_mm:.4} mm"
+            ),
             "write a larger R, or check the end point",
         ),
         ArcFault::NoChord => (

@@ -33,7 +33,12 @@ impl Position {
             Start::At(at) => (at, AxisSet::default()),
             Start::Unknown => ([0.0; AXES], AxisSet((1 << AXES) - 1)),
         };
-        Self { at, unknown, offset: [0.0; AXES], stored: [0.0; AXES] }
+        Self {
+            at,
+            unknown,
+            offset: [0.0; AXES],
+            stored: [0.0; AXES],
+        }
     }
 
     /// Machine coordinate of an absolute program coordinate.

@@ -57,7 +57,12 @@ pub(super) struct Report<'a, 'l> {
 
 impl Report<'_, '_> {
     /// Reports an error at `span`.
-    pub(super) fn error(&mut self, rule: &'static str, message: impl Into<String>, span: Span) -> Finding<'_> {
+    pub(super) fn error(
+        &mut self,
+        rule: &'static str,
+        message: impl Into<String>,
+        span: Span,
+    ) -> Finding<'_> {
         let diagnostic = Diagnostic::error(rule, message).at(self.line, span, self.text);
         Finding(self.diagnostics.push(diagnostic))
     }
@@ -85,9 +90,15 @@ impl Report<'_, '_> {
     fn refused(&mut self, letter: u8, word: Word, name: &str) {
         let code = format!("{}{}", letter as char, word.value);
         let (rule, message) = if name == "a word" {
-            ("unknown-code", format!("{code} is not known to this controller profile"))
+            (
+                "unknown-code",
+                format!("{code} is not known to this controller profile"),
+            )
         } else {
-            ("unsupported-code", format!("{code} is {name}, which gwatt does not support"))
+            (
+                "unsupported-code",
+                format!("{code} is {name}, which gwatt does not support"),
+            )
         };
         let help = if letter == b'M' {
             "if it moves no axis, list it under `ignored_m` in the controller profile"

@@ -26,8 +26,16 @@ pub(super) const fn bit(letter: u8) -> u32 {
 }
 
 /// Letters that name axes.
-pub(super) const AXIS_LETTERS: u32 =
-    bit(b'X') | bit(b'Y') | bit(b'Z') | bit(b'A') | bit(b'B') | bit(b'C') | bit(b'U') | bit(b'V') | bit(b'W') | bit(b'E');
+pub(super) const AXIS_LETTERS: u32 = bit(b'X')
+    | bit(b'Y')
+    | bit(b'Z')
+    | bit(b'A')
+    | bit(b'B')
+    | bit(b'C')
+    | bit(b'U')
+    | bit(b'V')
+    | bit(b'W')
+    | bit(b'E');
 
 /// The index of the axis that a letter names.
 pub(super) fn axis_of(letter: u8) -> Option<usize> {
@@ -70,7 +78,12 @@ impl Words {
     }
 
     /// Sorts the words of `block`. What is wrong is reported.
-    pub(super) fn fill(&mut self, block: &Block, controller: &Controller, report: &mut Report<'_, '_>) {
+    pub(super) fn fill(
+        &mut self,
+        block: &Block,
+        controller: &Controller,
+        report: &mut Report<'_, '_>,
+    ) {
         self.present = 0;
         self.groups = 0;
         self.g.clear();
@@ -82,10 +95,15 @@ impl Words {
                 b'G' | b'M' => {
                     let number = code_number(word.value);
                     let knob = number.and_then(|number| {
-                        controller.knobs.iter().position(|knob| knob.code == (word.letter, number))
+                        controller
+                            .knobs
+                            .iter()
+                            .position(|knob| knob.code == (word.letter, number))
                     });
                     if let Some(knob) = knob {
-                        let assigned = words.next_if(|(_, next)| next.letter == b'=').map(|(_, next)| next.value);
+                        let assigned = words
+                            .next_if(|(_, next)| next.letter == b'=')
+                            .map(|(_, next)| next.value);
                         self.add_knob(knob, assigned, *word, report);
                     } else if word.letter == b'G' {
                         self.add_g(*word, controller, report);
@@ -96,14 +114,24 @@ impl Words {
                 b'A'..=b'Z' => self.add(index, *word, report),
                 b'*' if block.number.is_some() => {}
                 _ => {
-                    report.error("unknown-word", format!("`{}` has no meaning here", word.letter as char), word.span);
+                    report.error(
+                        "unknown-word",
+                        format!("`{}` has no meaning here", word.letter as char),
+                        word.span,
+                    );
                 }
             }
         }
         self.unused = self.present;
     }
 
-    fn add_knob(&mut self, knob: usize, assigned: Option<f64>, word: Word, report: &mut Report<'_, '_>) {
+    fn add_knob(
+        &mut self,
+        knob: usize,
+        assigned: Option<f64>,
+        word: Word,
+        report: &mut Report<'_, '_>,
+    ) {
         if self.knobs.try_push((knob, assigned, word.span)).is_err() {
             report.error("too-many-words", "too many words in a block", word.span);
         }
@@ -114,7 +142,9 @@ impl Words {
         let slot = usize::from(word.letter - b'A');
         if self.present & mask != 0 {
             let message = format!("the block has two {} words", word.letter as char);
-            report.error("word-twice", message, word.span).help("write each letter once in a block");
+            report
+                .error("word-twice", message, word.span)
+                .help("write each letter once in a block");
             return;
         }
         self.present |= mask;
@@ -124,7 +154,13 @@ impl Words {
 
     fn add_g(&mut self, word: Word, controller: &Controller, report: &mut Report<'_, '_>) {
         let known = code_number(word.value).and_then(|number| {
-            let ignored = || controller.language.ignored_g.contains(&number).then_some(GCode::Ignored);
+            let ignored = || {
+                controller
+                    .language
+                    .ignored_g
+                    .contains(&number)
+                    .then_some(GCode::Ignored)
+            };
             g_code(number).or_else(ignored).map(|code| (code, number))
         });
         let Some((code, number)) = known else {
@@ -133,23 +169,39 @@ impl Words {
         };
         if self.groups & code.group() != 0 && code != GCode::Ignored {
             report
-                .error("modal-group-twice", "two G words of one modal group in a block", word.span)
+                .error(
+                    "modal-group-twice",
+                    "two G words of one modal group in a block",
+                    word.span,
+                )
                 .help("keep the one that is meant, or write two blocks");
             return;
         }
         self.groups |= code.group();
         if self.g.try_push((code, number, word.span)).is_err() {
-            report.error("too-many-words", "more than 16 G words in a block", word.span);
+            report.error(
+                "too-many-words",
+                "more than 16 G words in a block",
+                word.span,
+            );
         }
     }
 
     fn add_m(&mut self, word: Word, report: &mut Report<'_, '_>) {
         let Some(number) = code_number(word.value) else {
-            report.error("unknown-code", format!("M{} is not a valid word", word.value), word.span);
+            report.error(
+                "unknown-code",
+                format!("M{} is not a valid word", word.value),
+                word.span,
+            );
             return;
         };
         if self.m.try_push((number, word.span)).is_err() {
-            report.error("too-many-words", "more than 16 M words in a block", word.span);
+            report.error(
+                "too-many-words",
+                "more than 16 M words in a block",
+                word.span,
+            );
         }
     }
 
@@ -160,7 +212,8 @@ impl Words {
 
     /// Value of a letter's word, without using it.
     pub(super) fn value(&self, letter: u8) -> Option<f64> {
-        self.has(letter).then(|| self.values[usize::from(letter - b'A')])
+        self.has(letter)
+            .then(|| self.values[usize::from(letter - b'A')])
     }
 
     /// Value of a letter's word if no other code has used it; it is used now.
@@ -172,20 +225,34 @@ impl Words {
 
     /// The letter's word in its block.
     pub(super) fn word(&self, letter: u8, block: &Block) -> Option<Word> {
-        self.has(letter).then(|| block.words.get(usize::from(self.index[usize::from(letter - b'A')])).copied())?
+        self.has(letter).then(|| {
+            block
+                .words
+                .get(usize::from(self.index[usize::from(letter - b'A')]))
+                .copied()
+        })?
     }
 
     /// Where the letter's word stands.
     pub(super) fn span(&self, letter: u8, block: &Block) -> Span {
-        self.word(letter, block).map_or(Span { start: 0, end: block.text_end }, |word| word.span)
+        self.word(letter, block).map_or(
+            Span {
+                start: 0,
+                end: block.text_end,
+            },
+            |word| word.span,
+        )
     }
 
     /// Axis letters that no code has used, with values.
     pub(super) fn axes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        crate::machine::ALL_AXES.into_iter().filter_map(|axis: AxisId| {
-            let letter = axis.letter();
-            (self.unused & bit(letter) != 0).then(|| (axis as usize, self.values[usize::from(letter - b'A')]))
-        })
+        crate::machine::ALL_AXES
+            .into_iter()
+            .filter_map(|axis: AxisId| {
+                let letter = axis.letter();
+                (self.unused & bit(letter) != 0)
+                    .then(|| (axis as usize, self.values[usize::from(letter - b'A')]))
+            })
     }
 
     /// True when an axis letter is left.
