@@ -1,0 +1,3 @@
+//! Machine files and controller profiles, from the outside.
+
+mod builtin;
