@@ -1,5 +1,6 @@
 //! Two machines over the same programs.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use serde::Serialize;
@@ -105,14 +106,12 @@ fn listed(comparison: &Comparison) -> String {
     let mut text = String::new();
     for change in &comparison.changes {
         let verb = if change.begins { "begins" } else { "ceases" };
-        text.push_str(&format!(
-            "{}: line {} {verb} to fit\n",
-            comparison.program, change.line
-        ));
+        let program = &comparison.program;
+        let _ = writeln!(text, "{program}: line {} {verb} to fit", change.line);
     }
     let more = comparison.begin + comparison.cease - comparison.changes.len() as u64;
     if more > 0 {
-        text.push_str(&format!("{}: and {more} more\n", comparison.program));
+        let _ = writeln!(text, "{}: and {more} more", comparison.program);
     }
     text
 }

@@ -25,12 +25,14 @@ impl<W: Write> CsvRows<W> {
         Ok(Self { out })
     }
 
-    /// Writes what is still held back.
+    /// Writes what is still held back and gives the writer below back.
     ///
     /// # Errors
     /// Those of the writer below.
-    pub fn finish(mut self) -> io::Result<()> {
-        self.out.flush()
+    pub fn finish(self) -> io::Result<W> {
+        self.out
+            .into_inner()
+            .map_err(csv::IntoInnerError::into_error)
     }
 }
 

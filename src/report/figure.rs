@@ -53,7 +53,7 @@ fn round_to_digits(value: f64, digits: i32) -> f64 {
     // One too small at most: then one digit more is kept.
     let exponent = libm::floor(libm::log10(value.abs())) as i32;
     let scale = digits - 1 - exponent;
-    if scale > EXACT_POWERS || scale < -EXACT_POWERS {
+    if scale.abs() > EXACT_POWERS {
         return value;
     }
     if scale >= 0 {
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn figures_have_ten_digits_and_no_noise() {
         assert_eq!(json(0.1 + 0.2), "0.3");
-        assert_eq!(json(1234.567_890_123_4), "1234.56789");
+        assert_eq!(json(1_234.567_890_123_4), "1234.56789");
         assert_eq!(json(2.0 / 3.0), "0.6666666667");
         assert_eq!(json(-36000.0), "-36000");
         assert_eq!(json(-0.0), "0");

@@ -1,4 +1,4 @@
-//! Results as JUnit XML: one test case a program. Without times of day or
+//! Results as `JUnit` XML: one test case a program. Without times of day or
 //! random identifiers, so that the same programs give the same file.
 
 use std::io::{self, Write};

@@ -22,12 +22,16 @@ pub fn write_move(
     axes: AxisSet,
     mut out: impl Write,
 ) -> io::Result<()> {
-    serde_json::to_writer(&mut out, &Line::new(mv, seconds, axes))?;
+    serde_json::to_writer(&mut out, &MoveLine::new(mv, seconds, axes))?;
     out.write_all(b"\n")
 }
 
 #[derive(Serialize)]
-struct Line<'a> {
+#[allow(
+    clippy::struct_field_names,
+    reason = "`line` is the name in the output"
+)]
+struct MoveLine<'a> {
     line: u64,
     kind: &'static str,
     start: Coordinates<'a>,
@@ -42,7 +46,7 @@ struct Line<'a> {
     seconds: Option<Figure>,
 }
 
-impl<'a> Line<'a> {
+impl<'a> MoveLine<'a> {
     fn new(mv: &'a Move, seconds: Option<f64>, axes: AxisSet) -> Self {
         let has_feed = matches!(mv.kind, MoveKind::Feed | MoveKind::Arc);
         Self {

@@ -265,7 +265,8 @@ mod tests {
 
     #[test]
     fn both_ways_show_the_same_edit() -> io::Result<()> {
-        let old: String = (0..40).map(|n| format!("G1 X{n}\n")).collect();
+        let old: Vec<String> = (0..40).map(|n| format!("G1 X{n}\n")).collect();
+        let old = old.concat();
         let new = old
             .replace("X7\n", "X7 F50\n")
             .replace("X8\n", "F100\nG1 X8\n")

@@ -1,7 +1,8 @@
 //! Quantities for people: three digits and the unit that suits.
 
-const SECONDS_PER_HOUR: u64 = 3600;
-const SECONDS_PER_MINUTE: u64 = 60;
+use crate::units::SECONDS_PER_MINUTE;
+
+const SECONDS_PER_HOUR: f64 = 3600.0;
 
 /// Power such as `2.31 kW` or `850 W`.
 #[must_use]
@@ -45,10 +46,12 @@ pub fn duration(seconds: f64) -> String {
     if seconds < 59.95 {
         return format!("{} s", three_digits(seconds));
     }
-    let whole = seconds.round() as u64;
-    let (hours, rest) = (whole / SECONDS_PER_HOUR, whole % SECONDS_PER_HOUR);
-    let (minutes, seconds) = (rest / SECONDS_PER_MINUTE, rest % SECONDS_PER_MINUTE);
-    if hours > 0 {
+    let whole = seconds.round();
+    let hours = (whole / SECONDS_PER_HOUR).floor();
+    let rest = whole - hours * SECONDS_PER_HOUR;
+    let minutes = (rest / SECONDS_PER_MINUTE).floor();
+    let seconds = rest - minutes * SECONDS_PER_MINUTE;
+    if hours > 0.0 {
         format!("{hours} h {minutes} min {seconds} s")
     } else {
         format!("{minutes} min {seconds} s")

@@ -1,6 +1,7 @@
 //! Results as SARIF 2.1.0, for code scanning.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use serde_sarif::sarif::{
@@ -105,7 +106,9 @@ fn unfit_finding(program: &str, unfit: &Unfit) -> Finding {
         message.push_str("; ");
         message.push_str(&unfit.help);
     }
-    let region = Region::builder().start_line(unfit.line as i64).build();
+    let region = Region::builder()
+        .start_line(unfit.line.cast_signed())
+        .build();
     let place = location(program, Some(region));
     finding(rule, ResultLevel::Error, message, place)
 }
@@ -124,7 +127,7 @@ fn diagnostic_finding(program: &str, diagnostic: &Diagnostic) -> Finding {
     let region = (diagnostic.line > 0).then(|| {
         let column = i64::from(diagnostic.column.max(1));
         Region::builder()
-            .start_line(diagnostic.line as i64)
+            .start_line(diagnostic.line.cast_signed())
             .start_column(column)
             .end_column(column + i64::from(diagnostic.span.len().max(1)))
             .build()
@@ -162,7 +165,9 @@ fn uri(path: &str) -> String {
                 uri.push(byte as char);
             }
             b'\\' if cfg!(windows) => uri.push('/'),
-            _ => uri.push_str(&format!("%{byte:02X}")),
+            _ => {
+                let _ = write!(uri, "%{byte:02X}");
+            }
         }
     }
     uri

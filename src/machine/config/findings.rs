@@ -6,9 +6,6 @@ use std::ops::Range;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::Span;
 
-/// Longer lines are cut in diagnostics.
-const MAX_LINE: usize = 400;
-
 /// Findings in one file, in the order in which they were made.
 #[derive(Debug)]
 pub(crate) struct Findings<'a> {
@@ -108,13 +105,15 @@ pub(crate) fn diagnostic(
         message,
         help,
         line: 0,
+        column: 0,
         span: Span::default(),
         text: Vec::new(),
+        text_offset: 0,
     }
 }
 
 /// Adds line, span and text; an empty span at the start means the whole file.
-fn locate(text: &str, span: &Range<usize>, mut diagnostic: Diagnostic) -> Diagnostic {
+fn locate(text: &str, span: &Range<usize>, diagnostic: Diagnostic) -> Diagnostic {
     if *span == (0..0) {
         return diagnostic;
     }
@@ -127,17 +126,7 @@ fn locate(text: &str, span: &Range<usize>, mut diagnostic: Diagnostic) -> Diagno
         .map_or(0, |i| i + 1);
     let rest = &bytes[line_start..];
     let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
-    let line = rest[..length]
-        .strip_suffix(b"\r")
-        .unwrap_or(&rest[..length]);
-    let line = &line[..line.len().min(MAX_LINE)];
-    let first = (start - line_start).min(line.len());
-    let last = span.end.saturating_sub(line_start).clamp(first, line.len());
-    diagnostic.line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
-    diagnostic.span = Span {
-        start: first as u32,
-        end: last as u32,
-    };
-    diagnostic.text = line.to_vec();
-    diagnostic
+    let line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
+    let last = span.end.saturating_sub(line_start);
+    diagnostic.at(line, Span::new(start - line_start, last), &rest[..length])
 }
