@@ -63,27 +63,25 @@ fn machine(text: &str) -> Machine {
 
 /// Diagnostics as text: what is said, and the line with the place marked.
 fn render(list: &[Diagnostic]) -> String {
-    let mut out = String::new();
-    for d in list {
-        let kind = match d.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-            Severity::Note => "note",
-        };
-        out += &format!("line {}, {kind} {}: {}", d.line, d.rule, d.message);
-        if let Some(help) = &d.help {
-            out += &format!(" / {help}");
-        }
-        out.push('\n');
-        if d.line > 0 {
-            let line = String::from_utf8_lossy(&d.text);
-            let width = (d.span.end - d.span.start).max(1) as usize;
-            let caret = "^".repeat(width);
-            out += &format!(
-                "  | {line}\n  | {}{caret}\n",
-                " ".repeat(d.span.start as usize)
-            );
-        }
+    list.iter().map(render_one).collect()
+}
+
+fn render_one(d: &Diagnostic) -> String {
+    let kind = match d.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Note => "note",
+    };
+    let help = d
+        .help
+        .as_ref()
+        .map_or_else(String::new, |help| format!(" / {help}"));
+    let said = format!("line {}, {kind} {}: {}{help}\n", d.line, d.rule, d.message);
+    if d.line == 0 {
+        return said;
     }
-    out
+    let line = String::from_utf8_lossy(&d.text);
+    let indent = " ".repeat(d.span.start as usize);
+    let caret = "^".repeat((d.span.end - d.span.start).max(1) as usize);
+    format!("{said}  | {line}\n  | {indent}{caret}\n")
 }

@@ -57,11 +57,11 @@ fn rapids_of_the_example_do_not_fit_and_feeds_do() {
         ("N102 G1", peak([400.0, 0.0, 400.0], FEED)),
         ("N103 G0", peak([-350.0, 50.0, 0.0], FREE)),
     ];
-    let table: String = blocks
+    let lines: Vec<String> = blocks
         .iter()
-        .map(|(n, p)| format!("{n} {p:.0} W\n"))
+        .map(|(n, p)| format!("{n} {p:.0} W"))
         .collect();
-    insta::assert_snapshot!(table, @r"
+    insta::assert_snapshot!(lines.join("\n"), @r"
     N99 G0 1949 W
     N100 G1 16 W
     N101 G0 6001 W
@@ -115,7 +115,9 @@ fn presets_cover_what_the_example_needs() {
     let (machine, _) = Machine::load("three-axis").unwrap();
     let set = |axes: &[usize]| {
         let mut set = AxisSet::default();
-        axes.iter().for_each(|&axis| set.insert(axis));
+        for &axis in axes {
+            set.insert(axis);
+        }
         set
     };
     for axes in [set(&[0, 1, 2]), set(&[0, 1])] {

@@ -120,7 +120,7 @@ fn lower_case_axis() {
 
 #[test]
 fn empty_file() {
-    assert_snapshot!(findings(&String::new()), @r"
+    assert_snapshot!(findings(""), @r"
     line 0, error machine-missing: `schema` is missing in the file / Version of this format: 1
     line 0, error machine-missing: `name` is missing in the file / What reports call the machine
     line 0, error machine-missing: `controller` is missing in the file / A built-in controller profile, or a profile file relative to this file
@@ -184,7 +184,7 @@ fn missing_inertia() {
 
 #[test]
 fn no_axes() {
-    assert_snapshot!(findings(&"schema = 1\nname = \"t\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 1000\n[axes]\n".to_owned()), @r"
+    assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 1000\n[axes]\n"), @r"
     line 6, error machine-missing: the machine has no axes
       | [axes]
       | ^^^^^^
@@ -484,7 +484,7 @@ fn table_for_number() {
 
 #[test]
 fn number_for_table() {
-    assert_snapshot!(findings(&"schema = 1\nname = \"t\"\ncontroller = \"iso\"\nconverter = 3\naxes = 4\n".to_owned()), @r"
+    assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"iso\"\nconverter = 3\naxes = 4\n"), @r"
     line 4, error machine-type: `converter` must be a table, not a number
       | converter = 3
       |             ^
@@ -769,7 +769,7 @@ fn controller_file_missing() {
 
 #[test]
 fn many_at_once() {
-    assert_snapshot!(findings(&"schema = 1\nname = \"t\"\ncontroller = \"isso\"\n[converter]\npeak_power_w = -1\n[axes.X]\nrapid_mm_mim = 1000\naccel_mm_s2 = \"a\"\n[limits]\nmargin = 2\n".to_owned()), @r#"
+    assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"isso\"\n[converter]\npeak_power_w = -1\n[axes.X]\nrapid_mm_mim = 1000\naccel_mm_s2 = \"a\"\n[limits]\nmargin = 2\n"), @r#"
     line 3, error machine-controller: no built-in controller profile and no file is named "isso" / did you mean "iso"? built in: iso, linuxcnc, grbl, isg, marlin
       | controller = "isso"
       |              ^^^^^^
