@@ -1,1 +1,14 @@
-//! plan
+//! Moves to profiles: how speed runs along each move.
+//!
+//! Every block ends at rest (exact stop): a trapezoid or a triangle under the
+//! limits that feed, axes and arcs set.
+
+mod arc;
+mod bound;
+mod limits;
+mod profile;
+mod trajectory;
+
+pub use bound::{SpeedBound, speed_bound};
+pub use profile::{Phase, PhaseKind, Profile, State};
+pub use trajectory::{Caps, Overrides, Plan, Trajectory, UnknownMotion, plan, plan_with};

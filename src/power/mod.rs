@@ -1,1 +1,26 @@
-//! power
+//! Plans to power: what each move asks of the converters, SI.
+//!
+//! Input: the machine, moves and their plans. Output: [`Demand`], the peaks
+//! drawn and fed back, and the energy.
+//!
+//! The power of converter c is its base load, the switched loads and the sum
+//! over its axes (see `axis`). Where it credits regeneration the sum is the
+//! plain sum; where not, only motoring axes count towards the peak and the
+//! energy, and only regenerating ones towards the regenerative peak.
+
+mod assess;
+mod arc;
+mod axis;
+mod circle;
+mod demand;
+mod independent;
+mod interval;
+mod model;
+mod quadrature;
+mod robust;
+mod search;
+mod straight;
+
+pub use assess::{Assessment, Assessor, Certificate};
+pub use demand::{Demand, Want};
+pub use model::PowerModel;

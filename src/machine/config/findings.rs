@@ -126,19 +126,17 @@ pub(crate) fn diagnostic(
     message: String,
     help: Option<String>,
 ) -> Diagnostic {
-    Diagnostic {
-        severity,
-        rule,
-        message,
-        help,
-        line: 0,
-        span: Span::default(),
-        text: Vec::new(),
-    }
+    let mut diagnostic = match severity {
+        Severity::Error => Diagnostic::error(rule, message),
+        Severity::Warning => Diagnostic::warning(rule, message),
+        Severity::Note => Diagnostic::note(rule, message),
+    };
+    diagnostic.help = help;
+    diagnostic
 }
 
 /// Adds line, span and text; an empty span at the start means the whole file.
-pub(crate) fn locate(bytes: &[u8], span: &Range<usize>, mut diagnostic: Diagnostic) -> Diagnostic {
+pub(crate) fn locate(bytes: &[u8], span: &Range<usize>, diagnostic: Diagnostic) -> Diagnostic {
     if *span == (0..0) {
         return diagnostic;
     }
@@ -156,11 +154,6 @@ pub(crate) fn locate(bytes: &[u8], span: &Range<usize>, mut diagnostic: Diagnost
     let line = &line[..line.len().min(MAX_LINE)];
     let first = (start - line_start).min(line.len());
     let last = span.end.saturating_sub(line_start).clamp(first, line.len());
-    diagnostic.line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
-    diagnostic.span = Span {
-        start: first as u32,
-        end: last as u32,
-    };
-    diagnostic.text = line.to_vec();
-    diagnostic
+    let number = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
+    diagnostic.at(number, Span::new(first, last), line)
 }

@@ -1,0 +1,149 @@
+//! What a program does: moves and actions, in machine coordinates.
+
+use crate::machine::{AxisSet, AxisValues, PathMode};
+
+/// What a program block does, in the order in which it does it.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "moves are the common case and live in reused buffers"
+)]
+pub enum Step {
+    /// A path element or a dwell.
+    Move(Move),
+    /// Something that moves no axis.
+    Action(Action),
+}
+
+/// The kind of a move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MoveKind {
+    /// Rapid traverse.
+    Rapid,
+    /// A straight move at a feed.
+    Feed,
+    /// An arc or a helix at a feed.
+    Arc,
+    /// Waiting.
+    Dwell,
+}
+
+impl MoveKind {
+    /// The name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rapid => "rapid",
+            Self::Feed => "feed",
+            Self::Arc => "arc",
+            Self::Dwell => "dwell",
+        }
+    }
+}
+
+/// How F is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FeedMode {
+    /// G94: length per minute.
+    PerMinute,
+    /// G93: 1/F minutes for the block.
+    InverseTime,
+    /// G95: length per spindle revolution.
+    PerRevolution,
+}
+
+/// A path element, or a dwell. Positions in mm or degrees, machine coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Move {
+    /// Line in the program, from 1.
+    pub line: u64,
+    /// Block number without N, if there is one.
+    pub number: Option<f64>,
+    /// What it is.
+    pub kind: MoveKind,
+    /// Where it starts.
+    pub start: AxisValues,
+    /// Where it ends.
+    pub end: AxisValues,
+    /// Axes that really move; for an arc both axes of its plane.
+    pub moving: AxisSet,
+    /// Axes that are commanded but whose start is not known (`--start unknown`);
+    /// their values in `start` mean nothing.
+    pub unknown_start: AxisSet,
+    /// Geometry of an arc.
+    pub arc: Option<Arc>,
+    /// Path length in mm, or in degrees where only rotary axes move: the length
+    /// that F speaks for. Of a rapid likewise. 0 for a dwell.
+    pub length_mm: f64,
+    /// Path speed that F asks for in mm/s (or degrees/s), at 100 % override;
+    /// infinite for rapids.
+    pub feed_mm_s: f64,
+    /// How F was meant.
+    pub feed_mode: FeedMode,
+    /// Acceleration limits of the axes in force, after knobs.
+    pub accel_mm_s2: AxisValues,
+    /// Acceleration limit along the path in force; infinite without one.
+    pub path_accel_mm_s2: f64,
+    /// Share of the rapid speed in force, (0, 1].
+    pub rapid_factor: f64,
+    /// Duration of a dwell in s.
+    pub dwell_s: f64,
+    /// Switched loads that draw power during the move: bit i for `machine.loads[i]`.
+    pub loads: u32,
+    /// What happens at the end of this move.
+    pub path_mode: PathMode,
+}
+
+/// An arc or a helix.
+///
+/// In its plane the path is `center + radius·(cos θ, sin θ)` with θ from
+/// `start_angle_rad` over `sweep_rad` (positive: counter-clockwise, seen from
+/// the third axis); the other axes move in proportion to θ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// Axes of the plane, first and second (XY, ZX or YZ).
+    pub plane: [usize; 2],
+    /// Centre in the plane, machine coordinates, mm.
+    pub center: [f64; 2],
+    /// Radius in mm; the smaller one where start and end differ a little.
+    pub radius_mm: f64,
+    /// Angle of the start.
+    pub start_angle_rad: f64,
+    /// Signed angle from start to end, full turns included.
+    pub sweep_rad: f64,
+}
+
+/// Something a program does without moving an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Action {
+    /// Line in the program, from 1.
+    pub line: u64,
+    /// What happens.
+    pub kind: ActionKind,
+    /// Its number: the speed of `Spindle`, the tool of `ToolChange`, the M
+    /// number of the others.
+    pub value: f64,
+}
+
+/// The kinds of actions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ActionKind {
+    /// S: the speed is set.
+    SpindleSpeed,
+    /// M3, M4, M5.
+    Spindle,
+    /// T: a tool is chosen.
+    ToolSelect,
+    /// M6.
+    ToolChange,
+    /// M7, M8, M9.
+    Coolant,
+    /// M0, M1, M60.
+    Stop,
+    /// M2, M30.
+    End,
+    /// Another M word.
+    Other,
+    /// G61, G61.1, G64 (value 61, 61.1, 64).
+    PathMode,
+}

@@ -1,0 +1,128 @@
+//! Arcs and helices: which directions they meet and how fast they may run.
+//!
+//! Input: an arc of a move. Output: the range of each plane axis' tangent over
+//! the sweep, and the path limits under the controller's [`ArcRule`].
+//!
+//! With θ along the arc the plane axes have the tangents `τ = σ·(−sin θ, cos θ)`
+//! (σ the sense of the sweep). Of a path of length L the plane sees the share
+//! `ρ = r·|sweep|/L`; the rest belongs to the axes that follow in proportion.
+
+use super::limits::{self, PathLimits};
+use super::trajectory::Caps;
+use crate::interpret::{Arc, Move};
+use crate::machine::{ArcRule, AxisKind, Machine};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// Share of the acceleration limit that LinuxCNC 2.9 gives to turning: √3/2,
+/// which leaves one half for speeding up.
+const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
+
+/// Smallest and largest tangent component of one axis over a sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TangentRange {
+    /// At most 0 unless the axis only moves in + direction.
+    pub min: f64,
+    /// At least 0 unless the axis only moves in − direction.
+    pub max: f64,
+}
+
+impl TangentRange {
+    /// The largest size.
+    fn largest(self) -> f64 {
+        self.max.max(-self.min)
+    }
+}
+
+/// The tangents of the first and the second axis of the plane.
+pub(super) fn tangent_ranges(arc: &Arc) -> [TangentRange; 2] {
+    let sense = if arc.sweep_rad < 0.0 { -1.0 } else { 1.0 };
+    let (sin0, cos0) = libm::sincos(arc.start_angle_rad);
+    let (sin1, cos1) = libm::sincos(arc.start_angle_rad + arc.sweep_rad);
+    // A sinusoid has an extreme inside wherever its derivative changes sign.
+    let first = range(arc, [-sense * sin0, -sense * sin1], [-cos0, -cos1]);
+    let second = range(arc, [sense * cos0, sense * cos1], [-sin0, -sin1]);
+    [first, second]
+}
+
+/// Range of a unit sinusoid from its values at both ends and its derivatives
+/// in the sense of the sweep.
+fn range(arc: &Arc, value: [f64; 2], slope: [f64; 2]) -> TangentRange {
+    let (mut min, mut max) = (value[0].min(value[1]), value[0].max(value[1]));
+    let sweep = arc.sweep_rad.abs();
+    if sweep >= 2.0 * PI {
+        return TangentRange {
+            min: -1.0,
+            max: 1.0,
+        };
+    }
+    let same_sign = slope[0] * slope[1] > 0.0;
+    // Same slopes at both ends: no extreme inside within half a turn, one of
+    // each kind beyond it. Opposite slopes: the one that the first leads to.
+    if same_sign && sweep > PI {
+        (min, max) = (-1.0, 1.0);
+    } else if !same_sign {
+        let rises = if slope[0] == 0.0 {
+            slope[1] < 0.0
+        } else {
+            slope[0] > 0.0
+        };
+        if rises {
+            max = 1.0;
+        } else {
+            min = -1.0;
+        }
+    }
+    TangentRange { min, max }
+}
+
+/// Share of the path that runs in the plane, per unit of path.
+pub(super) fn plane_share(mv: &Move, arc: &Arc) -> f64 {
+    arc.radius_mm * arc.sweep_rad.abs() / mv.length_mm
+}
+
+/// What the axes and the arc rule permit.
+pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> PathLimits {
+    let share = plane_share(mv, arc);
+    let ranges = tangent_ranges(arc);
+    let mut limits = PathLimits {
+        speed_mm_s: f64::INFINITY,
+        accel_mm_s2: f64::INFINITY,
+    };
+    let mut plane_accel = f64::INFINITY;
+    let mut linear_accel = f64::INFINITY;
+    for (axis, limit) in limits::moving(machine, mv) {
+        let accel = limits::accel(mv, axis, caps);
+        if limit.kind == AxisKind::Linear {
+            linear_accel = linear_accel.min(accel);
+        }
+        match arc.plane.iter().position(|&plane| plane == axis) {
+            Some(i) => {
+                plane_accel = plane_accel.min(accel);
+                let speed = limit.rapid_mm_s / (share * ranges[i].largest());
+                limits.speed_mm_s = limits.speed_mm_s.min(speed);
+            }
+            None => limits.take(mv, axis, limit.rapid_mm_s, accel),
+        }
+    }
+    let radius = arc.radius_mm;
+    let (turning, speeding_up) = match machine.controller.planner.arc_rule {
+        ArcRule::Shared => {
+            let half = linear_accel.min(plane_accel) * FRAC_1_SQRT_2;
+            ((half * radius).sqrt() / share, half)
+        }
+        ArcRule::LinuxCnc => linuxcnc(plane_accel, radius, share, limits.speed_mm_s),
+    };
+    PathLimits {
+        speed_mm_s: limits.speed_mm_s.min(turning),
+        accel_mm_s2: limits.accel_mm_s2.min(speeding_up),
+    }
+}
+
+/// LinuxCNC 2.9: path speed for turning, and tangential acceleration at the
+/// largest speed that axes and turning permit, whatever F asks for.
+fn linuxcnc(a: f64, radius: f64, share: f64, axis_speed: f64) -> (f64, f64) {
+    let turning = (LINUXCNC_NORMAL_SHARE * a * radius).sqrt() / share;
+    let v = axis_speed.min(turning) * share;
+    let normal_share = (v * v / (radius * a)).min(LINUXCNC_NORMAL_SHARE);
+    (turning, a * (1.0 - normal_share * normal_share).sqrt())
+}

@@ -1,0 +1,119 @@
+//! Bounds of the axes' speeds that hold however a controller blends.
+//!
+//! Input: machine, move, overrides and caps. Output: a [`SpeedBound`], the
+//! largest speed of each axis in each direction that the feed allows. It is
+//! not lowered where a short move never reaches its speed, since blending may
+//! carry the speed through.
+
+use super::arc::{plane_share, tangent_ranges};
+use super::limits::{PathLimits, moving, rapid_factor};
+use super::trajectory::{Caps, Overrides};
+use crate::interpret::{FeedMode, Move, MoveKind};
+use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
+
+/// Largest speed of each axis, mm/s or degrees/s, not negative.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SpeedBound {
+    /// In + direction.
+    pub positive: AxisValues,
+    /// In − direction.
+    pub negative: AxisValues,
+}
+
+impl SpeedBound {
+    /// Raises each bound to that of `other`: a block and its neighbours.
+    pub fn include(&mut self, other: &Self) {
+        for axis in 0..AXES {
+            self.positive[axis] = self.positive[axis].max(other.positive[axis]);
+            self.negative[axis] = self.negative[axis].max(other.negative[axis]);
+        }
+    }
+
+    /// Raises the bound in the direction of a signed speed.
+    fn raise(&mut self, axis: usize, speed: f64) {
+        if speed > 0.0 {
+            self.positive[axis] = self.positive[axis].max(speed);
+        } else {
+            self.negative[axis] = self.negative[axis].max(-speed);
+        }
+    }
+}
+
+/// The largest speeds that the feed and the axes allow in a move.
+#[must_use]
+pub fn speed_bound(machine: &Machine, mv: &Move, overrides: Overrides, caps: Caps) -> SpeedBound {
+    let mut bound = SpeedBound::default();
+    if mv.kind == MoveKind::Dwell {
+        return bound;
+    }
+    if !mv.unknown_start.is_empty() {
+        return unknown(machine, mv, overrides, &caps);
+    }
+    if mv.length_mm <= 0.0 {
+        return bound;
+    }
+    let v = PathLimits::of(machine, mv, overrides, &caps).speed_mm_s;
+    let independent = mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent;
+    for (axis, _) in moving(machine, mv) {
+        let distance = mv.end[axis] - mv.start[axis];
+        let speed = if independent {
+            PathLimits::of_rapid_axis(machine, mv, axis, overrides, &caps).speed_mm_s
+        } else {
+            v * (distance.abs() / mv.length_mm)
+        };
+        if distance != 0.0 && !in_plane(mv, axis) {
+            bound.raise(axis, speed.copysign(distance));
+        }
+    }
+    if let Some(arc) = &mv.arc {
+        let v = v * plane_share(mv, arc);
+        for (axis, range) in arc.plane.into_iter().zip(tangent_ranges(arc)) {
+            bound.raise(axis, v * range.max.max(0.0));
+            bound.raise(axis, v * range.min.min(0.0));
+        }
+    }
+    bound
+}
+
+/// True for the plane axes of an arc.
+fn in_plane(mv: &Move, axis: usize) -> bool {
+    mv.arc.is_some_and(|arc| arc.plane.contains(&axis))
+}
+
+/// Both directions at what the axis and F allow: from an unknown start neither
+/// the direction of the path nor its length is known.
+fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> SpeedBound {
+    let mut bound = SpeedBound::default();
+    let commanded = AxisSet(mv.moving.0 | mv.unknown_start.0);
+    let factor = rapid_factor(mv, overrides, caps);
+    let feed = match mv.kind {
+        MoveKind::Rapid => caps.speed_mm_s,
+        _ => (mv.feed_mm_s * overrides.feed).min(caps.speed_mm_s),
+    };
+    for axis in commanded.iter() {
+        let Some(limit) = machine.axes.get(axis).and_then(Option::as_ref) else {
+            continue;
+        };
+        let mut speed = limit.rapid_mm_s * factor;
+        if mv.feed_mode != FeedMode::InverseTime && feed_speaks_for(axis, commanded) {
+            speed = speed.min(feed);
+        }
+        bound.positive[axis] = speed;
+        bound.negative[axis] = speed;
+    }
+    bound
+}
+
+/// Whether no axis of a path can exceed the feed: X, Y, Z always, others only
+/// when their kind moves alone, since F speaks for X, Y, Z where these move
+/// and the others have to keep up.
+fn feed_speaks_for(axis: usize, commanded: AxisSet) -> bool {
+    const XYZ: u16 = 0b00_0000_0111;
+    const ABC: u16 = 0b00_0011_1000;
+    const UVW: u16 = 0b01_1100_0000;
+    const E: u16 = 0b10_0000_0000;
+    1_u16 << axis & XYZ != 0
+        || [ABC, UVW, E]
+            .into_iter()
+            .any(|group| commanded.0 & !group == 0)
+}

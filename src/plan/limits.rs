@@ -1,0 +1,126 @@
+//! Limits: how fast a move's path may run and how hard it may speed up.
+//!
+//! Input: machine, move, overrides and caps. Output: [`PathLimits`]. On a
+//! straight path with direction `u` (change of an axis per unit of path)
+//! `v ≤ v_n/|u_n|` and `a ≤ a_n/|u_n|` for each axis n.
+
+use super::arc;
+use super::trajectory::{Caps, Overrides};
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{Axis, Machine};
+
+/// Speed in mm/s and acceleration in mm/s² that a path permits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PathLimits {
+    /// Along the path.
+    pub speed_mm_s: f64,
+    /// Along the path.
+    pub accel_mm_s2: f64,
+}
+
+impl PathLimits {
+    /// The limits of a move's path.
+    #[inline]
+    pub fn of(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> Self {
+        let axes = match &mv.arc {
+            Some(arc) => arc::limits(machine, mv, arc, caps),
+            None => straight(machine, mv, overrides, caps),
+        };
+        let feed = match mv.kind {
+            MoveKind::Rapid => f64::INFINITY,
+            _ => mv.feed_mm_s * overrides.feed,
+        };
+        let path_accel = mv.path_accel_mm_s2 * caps.accel_factor;
+        Self {
+            speed_mm_s: feed.min(caps.speed_mm_s).min(axes.speed_mm_s).min(f64::MAX),
+            accel_mm_s2: path_accel
+                .min(caps.path_accel_mm_s2)
+                .min(axes.accel_mm_s2)
+                .min(f64::MAX),
+        }
+    }
+
+    /// The limits of one axis of an independent rapid.
+    pub fn of_rapid_axis(
+        machine: &Machine,
+        mv: &Move,
+        axis: usize,
+        overrides: Overrides,
+        caps: &Caps,
+    ) -> Self {
+        let share = (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm;
+        let capped = if caps.speed_mm_s < f64::INFINITY {
+            caps.speed_mm_s * share
+        } else {
+            f64::INFINITY
+        };
+        let rapid = machine.axes[axis].as_ref().map_or(f64::MAX, |limit| {
+            limit.rapid_mm_s * rapid_factor(mv, overrides, caps)
+        });
+        Self {
+            speed_mm_s: rapid.min(capped),
+            accel_mm_s2: accel(mv, axis, caps).min(f64::MAX),
+        }
+    }
+
+    /// False where speed or acceleration is 0 and the move would never end.
+    #[inline]
+    pub fn permit_motion(self) -> bool {
+        self.speed_mm_s > 0.0 && self.accel_mm_s2 > 0.0
+    }
+}
+
+/// Acceleration limit of an axis in force, mm/s².
+#[inline]
+pub(super) fn accel(mv: &Move, axis: usize, caps: &Caps) -> f64 {
+    caps.accel_mm_s2.as_ref().unwrap_or(&mv.accel_mm_s2)[axis] * caps.accel_factor
+}
+
+/// Share of the rapid speed that a rapid runs at; feeds are capped by the
+/// whole rapid speed.
+#[inline]
+pub(super) fn rapid_factor(mv: &Move, overrides: Overrides, caps: &Caps) -> f64 {
+    match mv.kind {
+        MoveKind::Rapid => mv.rapid_factor * overrides.rapid * caps.rapid_factor,
+        _ => 1.0,
+    }
+}
+
+/// What the axes permit on a straight path.
+#[inline]
+fn straight(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> PathLimits {
+    let factor = rapid_factor(mv, overrides, caps);
+    let mut limits = PathLimits {
+        speed_mm_s: f64::INFINITY,
+        accel_mm_s2: f64::INFINITY,
+    };
+    for (axis, limit) in moving(machine, mv) {
+        limits.take(mv, axis, limit.rapid_mm_s * factor, accel(mv, axis, caps));
+    }
+    limits
+}
+
+impl PathLimits {
+    /// Lowers the limits to what an axis permits that moves in proportion to
+    /// the path.
+    #[inline]
+    pub fn take(&mut self, mv: &Move, axis: usize, speed: f64, accel: f64) {
+        let distance = (mv.end[axis] - mv.start[axis]).abs();
+        if distance > 0.0 {
+            let path_per_axis = mv.length_mm / distance;
+            self.speed_mm_s = self.speed_mm_s.min(speed * path_per_axis);
+            self.accel_mm_s2 = self.accel_mm_s2.min(accel * path_per_axis);
+        }
+    }
+}
+
+/// The axes that move, by index.
+#[inline]
+pub(super) fn moving<'a>(
+    machine: &'a Machine,
+    mv: &Move,
+) -> impl Iterator<Item = (usize, &'a Axis)> + use<'a> {
+    mv.moving
+        .iter()
+        .filter_map(|axis| Some((axis, machine.axes.get(axis)?.as_ref()?)))
+}

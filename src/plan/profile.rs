@@ -1,0 +1,189 @@
+//! Profiles: speed along a path as a list of phases.
+//!
+//! Input: a length and the limits of speed and acceleration. Output: phases,
+//! each with one law of motion, that run the length from rest to rest.
+//!
+//! ```text
+//!  v │   ┌────────┐        Fast enough a path is a trapezoid, T = L/v + v/a;
+//!    │  /          \       a short one is a triangle, T = 2·√(L/a), whose
+//!    │ /            \      top speed is √(a·L).
+//!    └─────────────────→ t
+//! ```
+
+use arrayvec::ArrayVec;
+
+/// What a phase keeps constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PhaseKind {
+    /// Acceleration (0 for a cruise).
+    ConstantAcceleration,
+}
+
+/// A piece of a profile. Along the path, mm (or degrees) and s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase {
+    /// What it keeps constant.
+    pub kind: PhaseKind,
+    /// How long it lasts in s.
+    pub duration_s: f64,
+    /// Path position at its start in mm.
+    pub position_mm: f64,
+    /// Speed at its start in mm/s.
+    pub velocity_mm_s: f64,
+    /// Speed at its end in mm/s: stored, so that a stop is exactly 0.
+    pub end_velocity_mm_s: f64,
+    /// Acceleration at its start in mm/s², signed.
+    pub accel_mm_s2: f64,
+}
+
+/// Where a profile is at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct State {
+    /// Path position in mm.
+    pub position_mm: f64,
+    /// Speed in mm/s.
+    pub velocity_mm_s: f64,
+    /// Acceleration in mm/s².
+    pub accel_mm_s2: f64,
+}
+
+impl Phase {
+    /// The state `t` seconds after the phase began; `t` within the phase.
+    #[must_use]
+    pub fn state_at(&self, t: f64) -> State {
+        let (v, a) = (self.velocity_mm_s, self.accel_mm_s2);
+        match self.kind {
+            PhaseKind::ConstantAcceleration => State {
+                position_mm: self.position_mm + (v + 0.5 * a * t) * t,
+                velocity_mm_s: (v + a * t).max(0.0),
+                accel_mm_s2: a,
+            },
+        }
+    }
+
+    /// Path length of the phase in mm.
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        match self.kind {
+            PhaseKind::ConstantAcceleration => {
+                0.5 * (self.velocity_mm_s + self.end_velocity_mm_s) * self.duration_s
+            }
+        }
+    }
+}
+
+/// The speed along one path, from rest to rest: at most seven phases.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Profile {
+    /// The phases in order of time.
+    pub phases: ArrayVec<Phase, 7>,
+}
+
+impl Profile {
+    /// The fastest profile from rest to rest over `length` (mm) with a speed
+    /// of at most `speed` (mm/s) and accelerations of at most `accel` (mm/s²).
+    /// All three must be positive.
+    #[must_use]
+    #[inline]
+    pub fn trapezoid(length: f64, speed: f64, accel: f64) -> Self {
+        let (v, a) = (speed, accel);
+        let triangle_top = (a * length).sqrt();
+        let mut phases = ArrayVec::new();
+        if v < triangle_top {
+            let ramp_s = v / a;
+            let ramp_mm = 0.5 * v * ramp_s;
+            let cruise_s = (length / v - ramp_s).max(0.0);
+            phases.push(Phase::constant(ramp_s, 0.0, 0.0, v, a));
+            phases.push(Phase::constant(cruise_s, ramp_mm, v, v, 0.0));
+            phases.push(Phase::constant(ramp_s, length - ramp_mm, v, 0.0, -a));
+        } else {
+            let ramp_s = (length / a).sqrt();
+            phases.push(Phase::constant(ramp_s, 0.0, 0.0, triangle_top, a));
+            phases.push(Phase::constant(ramp_s, 0.5 * length, triangle_top, 0.0, -a));
+        }
+        Self { phases }
+    }
+
+    /// How long it lasts in s.
+    #[must_use]
+    #[inline]
+    pub fn duration_s(&self) -> f64 {
+        self.phases.iter().map(|phase| phase.duration_s).sum()
+    }
+
+    /// How far it goes in mm.
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        self.phases.iter().map(Phase::length_mm).sum()
+    }
+
+    /// The largest speed in mm/s.
+    #[must_use]
+    #[inline]
+    pub fn top_speed_mm_s(&self) -> f64 {
+        self.phases.iter().fold(0.0, |top, phase| {
+            f64::max(top, phase.velocity_mm_s.max(phase.end_velocity_mm_s))
+        })
+    }
+
+    /// The state `t` seconds after the start; before and after the profile,
+    /// its first and last instant. `None` without phases.
+    #[must_use]
+    pub fn state_at(&self, t: f64) -> Option<State> {
+        let mut rest = t.max(0.0);
+        let last = self.phases.len().checked_sub(1)?;
+        for (i, phase) in self.phases.iter().enumerate() {
+            if rest <= phase.duration_s || i == last {
+                return Some(phase.state_at(rest.min(phase.duration_s)));
+            }
+            rest -= phase.duration_s;
+        }
+        None
+    }
+}
+
+impl Phase {
+    /// A phase of constant acceleration `a` from speed `v0` to `v1`.
+    #[inline]
+    fn constant(duration_s: f64, position_mm: f64, v0: f64, v1: f64, a: f64) -> Self {
+        Self {
+            kind: PhaseKind::ConstantAcceleration,
+            duration_s,
+            position_mm,
+            velocity_mm_s: v0,
+            end_velocity_mm_s: v1,
+            accel_mm_s2: a,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_path_is_a_trapezoid() {
+        let profile = Profile::trapezoid(100.0, 50.0, 500.0);
+        assert_eq!(profile.phases.len(), 3);
+        assert!((profile.duration_s() - 2.1).abs() < 1e-12);
+        assert!((profile.length_mm() - 100.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_short_path_is_a_triangle() {
+        let profile = Profile::trapezoid(5.0, 100.0, 500.0);
+        assert_eq!(profile.top_speed_mm_s(), 50.0);
+        assert!((profile.duration_s() - 0.2).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_state_runs_from_rest_to_rest() {
+        let profile = Profile::trapezoid(100.0, 50.0, 500.0);
+        let state = |t| profile.state_at(t).unwrap_or_default();
+        assert_eq!(state(-1.0).position_mm, 0.0);
+        assert!((state(1.05).position_mm - 50.0).abs() < 1e-9);
+        assert_eq!(state(1.05).velocity_mm_s, 50.0);
+        assert!((state(9.0).position_mm - 100.0).abs() < 1e-9);
+        assert!(state(9.0).velocity_mm_s.abs() < 1e-9);
+    }
+}

@@ -1,0 +1,228 @@
+//! Plans: one move, its trajectory and the figures that describe it.
+//!
+//! Input: the machine, a move, the overrides, and caps that try lower limits.
+//! Output: a [`Plan`]. Nothing is allocated, save for independent rapids and
+//! for moves from an unknown start.
+
+use super::bound::{SpeedBound, speed_bound};
+use super::limits::{self, PathLimits};
+use super::profile::{Phase, PhaseKind, Profile};
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{AxisValues, Machine, RapidPath};
+
+/// Override switches as factors; 1 is 100 %.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overrides {
+    /// Of feeds.
+    pub feed: f64,
+    /// Of rapids.
+    pub rapid: f64,
+}
+
+impl Default for Overrides {
+    fn default() -> Self {
+        Self {
+            feed: 1.0,
+            rapid: 1.0,
+        }
+    }
+}
+
+/// Lower limits to try on a move without touching it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Caps {
+    /// Path speed that is really run, after overrides, in mm/s; infinite: no
+    /// cap. On independent rapids each axis gets its share of it.
+    pub speed_mm_s: f64,
+    /// All accelerations, those of the axes and that along the path, times this.
+    pub accel_factor: f64,
+    /// Acceleration limits that replace the move's.
+    pub accel_mm_s2: Option<AxisValues>,
+    /// Acceleration along the path in mm/s²; infinite: no cap.
+    pub path_accel_mm_s2: f64,
+    /// Rapid speeds times this.
+    pub rapid_factor: f64,
+}
+
+impl Default for Caps {
+    fn default() -> Self {
+        Self {
+            speed_mm_s: f64::INFINITY,
+            accel_factor: 1.0,
+            accel_mm_s2: None,
+            path_accel_mm_s2: f64::INFINITY,
+            rapid_factor: 1.0,
+        }
+    }
+}
+
+/// How a move runs in time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Trajectory {
+    /// No axis moves.
+    Rest,
+    /// All axes follow one path.
+    Path(Profile),
+    /// Each axis runs its own profile, all starting together: axis index and
+    /// profile, over the unsigned distance of the axis.
+    Axes(Vec<(usize, Profile)>),
+    /// Where the move starts is not known; only bounds are.
+    Unknown(Box<UnknownMotion>),
+}
+
+/// What is known of a move from an unknown start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnknownMotion {
+    /// Largest speeds of the axes.
+    pub bound: SpeedBound,
+    /// Acceleration limits of the axes in force, mm/s².
+    pub accel_mm_s2: AxisValues,
+}
+
+/// A planned move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// How it runs.
+    pub trajectory: Trajectory,
+    /// How long it lasts in s.
+    pub duration_s: f64,
+    /// Path speed permitted by feed, override, axes, arc rule and caps in
+    /// mm/s; 0 at rest. For independent rapids: of a straight path.
+    pub speed_limit_mm_s: f64,
+    /// Path acceleration in mm/s²; 0 at rest. For independent rapids: of a
+    /// straight path.
+    pub accel_mm_s2: f64,
+    /// Path speed reached in mm/s. For independent rapids: the largest speed
+    /// of an axis.
+    pub top_speed_mm_s: f64,
+}
+
+impl Plan {
+    /// A plan that moves nothing for `duration_s` seconds.
+    #[must_use]
+    #[inline]
+    pub fn rest(duration_s: f64) -> Self {
+        Self {
+            trajectory: Trajectory::Rest,
+            duration_s,
+            speed_limit_mm_s: 0.0,
+            accel_mm_s2: 0.0,
+            top_speed_mm_s: 0.0,
+        }
+    }
+
+    /// A cruise alone: what remains of a long move without its ramps.
+    #[must_use]
+    pub fn cruise(speed_mm_s: f64, length_mm: f64) -> Self {
+        let mut profile = Profile::default();
+        profile.phases.push(Phase {
+            kind: PhaseKind::ConstantAcceleration,
+            duration_s: length_mm / speed_mm_s,
+            position_mm: 0.0,
+            velocity_mm_s: speed_mm_s,
+            end_velocity_mm_s: speed_mm_s,
+            accel_mm_s2: 0.0,
+        });
+        Self {
+            trajectory: Trajectory::Path(profile),
+            duration_s: length_mm / speed_mm_s,
+            speed_limit_mm_s: speed_mm_s,
+            accel_mm_s2: 0.0,
+            top_speed_mm_s: speed_mm_s,
+        }
+    }
+}
+
+/// Plans a move from rest to rest.
+#[must_use]
+#[inline]
+pub fn plan(machine: &Machine, mv: &Move, overrides: Overrides) -> Plan {
+    plan_with(machine, mv, overrides, Caps::default())
+}
+
+/// Plans a move from rest to rest under lower limits.
+///
+/// A speed of 0 (an override of 0) gives a rest of infinite duration.
+#[must_use]
+pub fn plan_with(machine: &Machine, mv: &Move, overrides: Overrides, caps: Caps) -> Plan {
+    if mv.kind == MoveKind::Dwell {
+        return Plan::rest(mv.dwell_s);
+    }
+    if !mv.unknown_start.is_empty() {
+        return unknown(machine, mv, overrides, &caps);
+    }
+    if mv.length_mm <= 0.0 {
+        return Plan::rest(0.0);
+    }
+    let limits = PathLimits::of(machine, mv, overrides, &caps);
+    if !limits.permit_motion() {
+        return Plan::rest(f64::INFINITY);
+    }
+    if mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent {
+        return independent(machine, mv, overrides, &caps, limits);
+    }
+    path(mv.length_mm, limits)
+}
+
+/// All axes on one path of `length` mm.
+#[inline]
+fn path(length: f64, limits: PathLimits) -> Plan {
+    let profile = Profile::trapezoid(length, limits.speed_mm_s, limits.accel_mm_s2);
+    Plan {
+        duration_s: profile.duration_s(),
+        speed_limit_mm_s: limits.speed_mm_s,
+        accel_mm_s2: limits.accel_mm_s2,
+        top_speed_mm_s: profile.top_speed_mm_s(),
+        trajectory: Trajectory::Path(profile),
+    }
+}
+
+/// Each axis for itself at its own speed and acceleration; the slowest one
+/// sets the duration. A limit along the path does not bind axes that follow
+/// none.
+fn independent(
+    machine: &Machine,
+    mv: &Move,
+    overrides: Overrides,
+    caps: &Caps,
+    path: PathLimits,
+) -> Plan {
+    let mut plan = Plan {
+        trajectory: Trajectory::Rest,
+        duration_s: 0.0,
+        speed_limit_mm_s: path.speed_mm_s,
+        accel_mm_s2: path.accel_mm_s2,
+        top_speed_mm_s: 0.0,
+    };
+    let mut axes = Vec::with_capacity(mv.moving.0.count_ones() as usize);
+    for axis in mv.moving.iter() {
+        let distance = (mv.end[axis] - mv.start[axis]).abs();
+        let limits = PathLimits::of_rapid_axis(machine, mv, axis, overrides, caps);
+        if distance > 0.0 {
+            let profile = Profile::trapezoid(distance, limits.speed_mm_s, limits.accel_mm_s2);
+            plan.duration_s = plan.duration_s.max(profile.duration_s());
+            plan.top_speed_mm_s = plan.top_speed_mm_s.max(profile.top_speed_mm_s());
+            axes.push((axis, profile));
+        }
+    }
+    if !axes.is_empty() {
+        plan.trajectory = Trajectory::Axes(axes);
+    }
+    plan
+}
+
+/// A move from an unknown start: the time of its known part, and bounds.
+fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> Plan {
+    let motion = UnknownMotion {
+        bound: speed_bound(machine, mv, overrides, *caps),
+        accel_mm_s2: std::array::from_fn(|axis| limits::accel(mv, axis, caps)),
+    };
+    let limits = PathLimits::of(machine, mv, overrides, caps);
+    let mut plan = if mv.length_mm > 0.0 && limits.permit_motion() {
+        path(mv.length_mm, limits)
+    } else {
+        Plan::rest(0.0)
+    };
+    plan.trajectory = Trajectory::Unknown(Box::new(motion));
+    plan
+}

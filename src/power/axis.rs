@@ -1,0 +1,134 @@
+//! One axis: from speed and acceleration to electrical power, SI.
+//!
+//! Input: an [`Axis`] of the machine. Output: [`AxisPower`], whose formulas are
+//!
+//! ```text
+//! F  = m·a + b·v + Fc·sign(v) + Fg        force (or torque)
+//! p  = v·F                                mechanical power
+//! el = p/η where p > 0, else p·η; + R·F²  electrical power
+//! ```
+//!
+//! At rest an axis holds its weight: `F = Fg`, `el = R·Fg²`.
+
+use crate::machine::Axis;
+
+/// Which reading of the model is meant: what the command says, or its least
+/// favourable outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// The command itself: for energy.
+    Nominal,
+    /// Motoring peaks: acceleration exceeds the command while speed grows.
+    Motor,
+    /// Regenerative peaks: braking exceeds the command, friction is warm.
+    Regen,
+}
+
+/// The coefficients of one axis, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct AxisPower {
+    /// Metres per mm, or radians per degree.
+    pub si_per_unit: f64,
+    /// Mass m in kg, or inertia.
+    pub mass: f64,
+    /// Viscous friction b.
+    pub viscous: f64,
+    /// Coulomb friction Fc.
+    pub coulomb: f64,
+    /// Weight Fg.
+    pub gravity: f64,
+    /// Efficiency η.
+    pub efficiency: f64,
+    /// 1/η.
+    pub inverse_efficiency: f64,
+    /// Copper loss R.
+    pub copper: f64,
+    /// Factors of acceleration while speed grows: nominal, motor, regen.
+    growing: [f64; 3],
+    /// Factors of acceleration while braking.
+    braking: [f64; 3],
+    /// Factors of friction.
+    friction: [f64; 3],
+}
+
+impl AxisPower {
+    /// An axis that does not exist.
+    pub const ABSENT: Self = Self {
+        si_per_unit: 0.0,
+        mass: 0.0,
+        viscous: 0.0,
+        coulomb: 0.0,
+        gravity: 0.0,
+        efficiency: 1.0,
+        inverse_efficiency: 1.0,
+        copper: 0.0,
+        growing: [1.0; 3],
+        braking: [1.0; 3],
+        friction: [1.0; 3],
+    };
+
+    /// Takes over the data of an axis.
+    pub fn new(axis: &Axis) -> Self {
+        Self {
+            si_per_unit: axis.si_per_unit,
+            mass: axis.mass_kg,
+            viscous: axis.viscous_n_s_m,
+            coulomb: axis.coulomb_n,
+            gravity: axis.gravity_n,
+            efficiency: axis.efficiency,
+            inverse_efficiency: 1.0 / axis.efficiency,
+            copper: axis.copper_w_n2,
+            growing: [1.0, axis.servo_factor_motor, 1.0],
+            braking: [1.0, 1.0, axis.servo_factor_regen],
+            friction: [1.0, 1.0, axis.friction_min_ratio],
+        }
+    }
+
+    /// True when power is not linear in speed.
+    pub fn is_curved(&self) -> bool {
+        self.viscous != 0.0 || self.copper != 0.0
+    }
+
+    /// True when the peaks are not those of the command.
+    pub fn has_factors(&self) -> bool {
+        [self.growing, self.braking, self.friction] != [[1.0; 3]; 3]
+    }
+
+    /// Factor by which acceleration exceeds the command.
+    #[inline]
+    pub fn accel_factor(&self, side: Side, growing: bool) -> f64 {
+        if growing {
+            self.growing[side as usize]
+        } else {
+            self.braking[side as usize]
+        }
+    }
+
+    /// Factor of friction.
+    #[inline]
+    pub fn friction_factor(&self, side: Side) -> f64 {
+        self.friction[side as usize]
+    }
+
+    /// Electrical power without copper loss of mechanical power `p`.
+    #[inline]
+    pub fn converted(&self, p: f64) -> f64 {
+        if p > 0.0 {
+            p * self.inverse_efficiency
+        } else {
+            p * self.efficiency
+        }
+    }
+
+    /// Electrical power at speed `v` and force `f`.
+    #[inline]
+    pub fn electrical(&self, v: f64, f: f64) -> f64 {
+        self.converted(v * f) + self.copper * f * f
+    }
+
+    /// Power lost while holding the weight, W.
+    #[inline]
+    pub fn holding_w(&self) -> f64 {
+        self.copper * self.gravity * self.gravity
+    }
+}

@@ -1,0 +1,113 @@
+//! What a move asks of its converters.
+
+/// What is wanted of an evaluation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Want {
+    /// Whether the energy is wanted.
+    pub energy: bool,
+    /// A motoring peak below this need not be exact, in W: anything up to it
+    /// may be returned. −∞ for an exact peak.
+    pub floor_w: f64,
+}
+
+impl Want {
+    /// Exact peaks, no energy.
+    pub const PEAKS: Self = Self {
+        energy: false,
+        floor_w: f64::NEG_INFINITY,
+    };
+    /// Exact peaks and the energy.
+    pub const ALL: Self = Self {
+        energy: true,
+        floor_w: f64::NEG_INFINITY,
+    };
+}
+
+/// What a move asks of its converters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Demand {
+    /// Largest power drawn in W, base load included; of converter `converter`.
+    pub peak_w: f64,
+    /// Largest power fed back in W, not negative; of converter `converter`.
+    pub regen_w: f64,
+    /// Energy drawn in J, of all converters; fed-back energy is subtracted
+    /// only where a converter credits it. 0 if it was not wanted.
+    pub energy_j: f64,
+    /// The converter that comes closest to its limits.
+    pub converter: usize,
+    /// The largest of peak by limit and regenerative peak by limit over all
+    /// converters: above 1 the move does not fit.
+    pub load_ratio: f64,
+}
+
+impl Demand {
+    /// Nothing asked yet; each converter is added to it.
+    pub(super) const NONE: Self = Self {
+        peak_w: 0.0,
+        regen_w: 0.0,
+        energy_j: 0.0,
+        converter: 0,
+        load_ratio: f64::NEG_INFINITY,
+    };
+}
+
+/// Peaks and energy of one converter while they are being found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Totals {
+    /// What is drawn besides the moving axes, W.
+    pub idle_w: f64,
+    /// Largest power so far in W.
+    pub peak_w: f64,
+    /// Largest power fed back so far in W.
+    pub regen_w: f64,
+    /// Energy so far in J.
+    pub energy_j: f64,
+}
+
+impl Totals {
+    /// A converter at rest that draws `power_w` for `duration_s`.
+    #[inline]
+    pub fn at_rest(power_w: f64, duration_s: f64, want: Want) -> Self {
+        let mut totals = Self::new(power_w);
+        if want.energy && power_w != 0.0 {
+            totals.energy_j = power_w * duration_s;
+        }
+        totals
+    }
+
+    /// A converter at rest, without its energy.
+    #[inline]
+    pub fn new(idle_w: f64) -> Self {
+        Self {
+            idle_w,
+            peak_w: idle_w,
+            regen_w: 0.0,
+            energy_j: 0.0,
+        }
+    }
+
+    /// Raises the motoring peak.
+    #[inline]
+    pub fn raise_peak(&mut self, power_w: f64) {
+        self.peak_w = larger(self.peak_w, power_w);
+    }
+
+    /// Raises the regenerative peak.
+    #[inline]
+    pub fn raise_regen(&mut self, power_w: f64) {
+        self.regen_w = larger(self.regen_w, power_w);
+    }
+}
+
+/// The larger of two values. Where overflow has made one of them undefined the
+/// result is infinite: never too low.
+#[inline]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a >= b {
+        a
+    } else if b > a {
+        b
+    } else {
+        f64::INFINITY
+    }
+}

@@ -1,0 +1,126 @@
+//! Demand of independent rapids: each axis runs its own ramp.
+//!
+//! Input: the profile of each axis, all starting together. Output: the
+//! [`Totals`] of one converter. The instants at which any axis switches are
+//! merged; between two of them every acceleration is constant.
+
+use super::demand::{Totals, Want};
+use super::interval::{Interval, Ramp};
+use super::model::{ConverterPower, PowerModel};
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisSet};
+use crate::plan::{Phase, Profile};
+use arrayvec::ArrayVec;
+
+/// Switching instants of all axes: seven phases each.
+const INSTANTS: usize = 7 * AXES;
+
+/// The converter's share of an independent rapid.
+pub(super) fn totals(
+    model: &PowerModel,
+    converter: &ConverterPower,
+    mv: &Move,
+    profiles: &[(usize, Profile)],
+    idle_w: f64,
+    want: Want,
+) -> Totals {
+    let mut instants = ArrayVec::<f64, INSTANTS>::new();
+    let mut duration_s = 0.0_f64;
+    for (axis, profile) in profiles {
+        duration_s = duration_s.max(profile.duration_s());
+        if converter.axes.contains(*axis) {
+            let mut end = 0.0;
+            for phase in &profile.phases {
+                end += phase.duration_s;
+                // More axes than exist cannot come from `plan`.
+                instants.try_push(end).ok();
+            }
+        }
+    }
+    instants.sort_unstable_by(f64::total_cmp);
+    let mut totals = Totals::at_rest(idle_w, duration_s, want);
+    let mut start = 0.0;
+    for end in instants {
+        if end > start {
+            let ramps = ramps(model, converter, mv, profiles, start, end);
+            Interval {
+                credit_regen: converter.credit_regen,
+                curved: converter.curved.0 & mv.moving.0 != 0,
+                idle_w,
+                ramps: &ramps,
+                duration_s: end - start,
+            }
+            .evaluate(want, &mut totals);
+            start = end;
+        }
+    }
+    if want.energy {
+        // Axes that hold their weight while those of other converters run on.
+        let rest_s = duration_s - start;
+        let arrived = AxisSet(converter.holding.0 & mv.moving.0);
+        if rest_s > 0.0 {
+            totals.energy_j += rest_s * holding_w(model, arrived);
+        }
+    }
+    totals
+}
+
+/// The ramp of each axis of the converter between two switching instants.
+fn ramps<'a>(
+    model: &'a PowerModel,
+    converter: &ConverterPower,
+    mv: &Move,
+    profiles: &[(usize, Profile)],
+    start: f64,
+    end: f64,
+) -> ArrayVec<Ramp<'a>, AXES> {
+    profiles
+        .iter()
+        .filter(|(axis, _)| converter.axes.contains(*axis))
+        .take(AXES)
+        .map(|(axis, profile)| {
+            let power = &model.axes[*axis];
+            let unit = power.si_per_unit.copysign(mv.end[*axis] - mv.start[*axis]);
+            let (v0, v1, a) = motion(profile, start, end);
+            Ramp {
+                axis: power,
+                start: unit * v0,
+                end: unit * v1,
+                accel: unit * a,
+            }
+        })
+        .collect()
+}
+
+/// Speeds at both instants, and the acceleration between them; all 0 once the
+/// axis has arrived. No switching instant lies between the two.
+fn motion(profile: &Profile, start: f64, end: f64) -> (f64, f64, f64) {
+    let middle = 0.5 * (start + end);
+    let mut from = 0.0;
+    for phase in &profile.phases {
+        let to = from + phase.duration_s;
+        if middle < to {
+            return (
+                speed(phase, (start - from).max(0.0)),
+                speed(phase, end - from),
+                phase.accel_mm_s2,
+            );
+        }
+        from = to;
+    }
+    (0.0, 0.0, 0.0)
+}
+
+/// Speed `t` seconds into a phase; exactly its end speed at the end.
+fn speed(phase: &Phase, t: f64) -> f64 {
+    if t >= phase.duration_s {
+        phase.end_velocity_mm_s
+    } else {
+        phase.state_at(t).velocity_mm_s
+    }
+}
+
+/// What the axes draw while they hold their weight, W.
+fn holding_w(model: &PowerModel, axes: AxisSet) -> f64 {
+    axes.iter().map(|axis| model.axes[axis].holding_w()).sum()
+}

@@ -1,0 +1,193 @@
+//! The power model: a machine's coefficients, and the demand of a move.
+//!
+//! Input: a [`Machine`] once, then moves with their plans. Output: [`Demand`].
+
+use super::axis::AxisPower;
+use super::demand::{Demand, Totals, Want};
+use super::{arc, independent, straight};
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisSet, Machine};
+use crate::plan::{Plan, Trajectory};
+
+/// How far a ratio may exceed 1 by rounding alone.
+const FIT_TOLERANCE: f64 = 1e-9;
+
+/// The coefficients of a machine, for [`PowerModel::demand`].
+#[derive(Debug, Clone)]
+pub struct PowerModel {
+    /// Axes by index; axes that the machine has not are all zero.
+    pub(super) axes: [AxisPower; AXES],
+    /// The converters, in the machine's order.
+    pub(super) converters: Vec<ConverterPower>,
+}
+
+/// The coefficients of one converter.
+#[derive(Debug, Clone)]
+pub(super) struct ConverterPower {
+    /// The axes it feeds.
+    pub axes: AxisSet,
+    /// Of these, axes whose power is not linear in speed.
+    pub curved: AxisSet,
+    /// Of these, axes whose peaks are not those of the command.
+    pub factored: AxisSet,
+    /// Of these, axes that draw power while they hold their weight.
+    pub holding: AxisSet,
+    /// Whether fed-back power feeds the other axes.
+    pub credit_regen: bool,
+    /// What is drawn at all times in W.
+    base_w: f64,
+    /// Switched loads: bit in `Move::loads`, W.
+    loads: Vec<(u32, f64)>,
+    /// Largest power in W, margin taken off.
+    limit_w: f64,
+    /// Largest power that may be fed back in W, margin taken off.
+    regen_limit_w: Option<f64>,
+}
+
+impl PowerModel {
+    /// Takes over the data of a machine.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        let axes = std::array::from_fn(|i| {
+            machine.axes[i]
+                .as_ref()
+                .map_or(AxisPower::ABSENT, AxisPower::new)
+        });
+        let converters = (0..machine.converters.len())
+            .map(|index| ConverterPower::new(machine, index, &axes))
+            .collect();
+        Self { axes, converters }
+    }
+
+    /// Largest power of a converter in W, margin taken off; infinite for a
+    /// converter that does not exist.
+    #[must_use]
+    pub fn limit_w(&self, converter: usize) -> f64 {
+        self.converters
+            .get(converter)
+            .map_or(f64::INFINITY, |converter| converter.limit_w)
+    }
+
+    /// Largest power that may be fed into a converter in W, margin taken off.
+    #[must_use]
+    pub fn regen_limit_w(&self, converter: usize) -> Option<f64> {
+        self.converters.get(converter)?.regen_limit_w
+    }
+
+    /// Whether every converter stays within its limits.
+    #[must_use]
+    #[inline]
+    pub fn fits(&self, demand: &Demand) -> bool {
+        demand.load_ratio <= 1.0 + FIT_TOLERANCE
+    }
+
+    /// The peaks, and if wanted the energy, of a planned move.
+    ///
+    /// A move from an unknown start gets its robust bound; its energy is that
+    /// of the axes at rest.
+    #[must_use]
+    pub fn demand(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
+        let mut demand = Demand::NONE;
+        for (index, converter) in self.converters.iter().enumerate() {
+            let active = AxisSet(mv.moving.0 & converter.axes.0);
+            let totals = match &plan.trajectory {
+                Trajectory::Path(profile) => {
+                    let idle_w = converter.idle_w(mv, &self.axes, active);
+                    match &mv.arc {
+                        Some(arc) => arc::totals(self, converter, mv, arc, profile, idle_w, want),
+                        None => straight::totals(self, converter, mv, profile, idle_w, want),
+                    }
+                }
+                Trajectory::Axes(profiles) => {
+                    let idle_w = converter.idle_w(mv, &self.axes, active);
+                    independent::totals(self, converter, mv, profiles, idle_w, want)
+                }
+                Trajectory::Rest => {
+                    let idle_w = converter.idle_w(mv, &self.axes, AxisSet::default());
+                    Totals::at_rest(idle_w, plan.duration_s, want)
+                }
+                Trajectory::Unknown(motion) => {
+                    let idle_w = converter.idle_w(mv, &self.axes, AxisSet::default());
+                    let mut totals =
+                        self.robust_totals(converter, mv, &motion.bound, &motion.accel_mm_s2);
+                    totals.energy_j = Totals::at_rest(idle_w, plan.duration_s, want).energy_j;
+                    totals
+                }
+            };
+            demand.add(index, converter, totals);
+        }
+        demand
+    }
+}
+
+impl ConverterPower {
+    /// Takes over the data of converter `index`.
+    fn new(machine: &Machine, index: usize, axes: &[AxisPower; AXES]) -> Self {
+        let converter = &machine.converters[index];
+        let share = 1.0 - machine.limits.margin;
+        let fed = AxisSet(converter.axes.0 & machine.axis_set.0);
+        let select = |test: fn(&AxisPower) -> bool| {
+            let mut set = AxisSet::default();
+            fed.iter()
+                .filter(|&axis| test(&axes[axis]))
+                .for_each(|axis| set.insert(axis));
+            set
+        };
+        Self {
+            axes: fed,
+            curved: select(AxisPower::is_curved),
+            factored: select(AxisPower::has_factors),
+            holding: select(|axis| axis.holding_w() > 0.0),
+            credit_regen: converter.credit_regen,
+            base_w: converter.base_load_w,
+            loads: machine
+                .loads
+                .iter()
+                .take(u32::BITS as usize)
+                .enumerate()
+                .filter(|(_, load)| load.converter == index)
+                .map(|(bit, load)| (1 << bit, load.power_w))
+                .collect(),
+            limit_w: share * converter.peak_power_w,
+            regen_limit_w: converter.regen_power_w.map(|power| share * power),
+        }
+    }
+
+    /// What is drawn besides the axes in `active`: base load, switched loads
+    /// and what the other axes lose while they hold their weight, in W.
+    #[inline]
+    pub fn idle_w(&self, mv: &Move, axes: &[AxisPower; AXES], active: AxisSet) -> f64 {
+        let mut power = self.base_w;
+        if mv.loads != 0 {
+            for &(bit, power_w) in &self.loads {
+                if mv.loads & bit != 0 {
+                    power += power_w;
+                }
+            }
+        }
+        for axis in AxisSet(self.holding.0 & !active.0).iter() {
+            power += axes[axis].holding_w();
+        }
+        power
+    }
+}
+
+impl Demand {
+    /// Adds what one converter is asked; the one closest to its limits is
+    /// the one that is reported.
+    #[inline]
+    pub(super) fn add(&mut self, index: usize, converter: &ConverterPower, totals: Totals) {
+        let regen_ratio = match converter.regen_limit_w {
+            Some(limit) if totals.regen_w > 0.0 => totals.regen_w / limit,
+            _ => 0.0,
+        };
+        let ratio = (totals.peak_w / converter.limit_w).max(regen_ratio);
+        if ratio > self.load_ratio {
+            self.load_ratio = ratio;
+            self.converter = index;
+            self.peak_w = totals.peak_w;
+            self.regen_w = totals.regen_w;
+        }
+        self.energy_j += totals.energy_j;
+    }
+}

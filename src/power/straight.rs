@@ -1,0 +1,153 @@
+//! Demand of a straight path on which all axes start and arrive together.
+//!
+//! Input: a move and its profile. Output: the [`Totals`] of one converter.
+//!
+//! With direction `u` every axis has `v_n = u_n·v` and `a_n = u_n·a`, so
+//!
+//! ```text
+//! p_n = v·c_n,   c_n = m_n·u_n²·a + Fc_n·|u_n| + Fg_n·u_n
+//! ```
+//!
+//! and without viscous friction and copper loss `c_n` is constant in a phase:
+//! power is linear in v, its extremes are at the ends of the phases and the
+//! energy is `c_n` times the length of the phase. Otherwise the phases go to
+//! [`interval`](super::interval).
+
+use super::axis::{AxisPower, Side};
+use super::demand::{Totals, Want};
+use super::interval::{Interval, Ramp};
+use super::model::{ConverterPower, PowerModel};
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisSet};
+use crate::plan::{Phase, Profile};
+use arrayvec::ArrayVec;
+
+/// One axis that moves: its coefficients per unit of path.
+struct Share<'a> {
+    axis: &'a AxisPower,
+    /// Signed SI motion of the axis per mm of path, `u`.
+    direction: f64,
+    /// `m·u²`.
+    mass: f64,
+    /// `Fc·|u|`.
+    friction: f64,
+    /// `Fg·u`.
+    gravity: f64,
+}
+
+/// The converter's share of a move that follows a straight path.
+pub(super) fn totals(
+    model: &PowerModel,
+    converter: &ConverterPower,
+    mv: &Move,
+    profile: &Profile,
+    idle_w: f64,
+    want: Want,
+) -> Totals {
+    let active = AxisSet(mv.moving.0 & converter.axes.0);
+    let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
+    let mut shares = ArrayVec::<Share<'_>, AXES>::new();
+    let per_length = 1.0 / mv.length_mm;
+    for axis in active.iter() {
+        let power = &model.axes[axis];
+        let direction = (mv.end[axis] - mv.start[axis]) * power.si_per_unit * per_length;
+        shares.push(Share {
+            axis: power,
+            direction,
+            mass: power.mass * direction * direction,
+            friction: power.coulomb * direction.abs(),
+            gravity: power.gravity * direction,
+        });
+    }
+    let factored = active.0 & converter.factored.0 != 0;
+    if active.0 & converter.curved.0 == 0 {
+        for phase in &profile.phases {
+            linear_phase(converter, &shares, phase, factored, want, &mut totals);
+        }
+    } else {
+        for phase in &profile.phases {
+            let ramps: ArrayVec<Ramp<'_>, AXES> = shares
+                .iter()
+                .map(|share| Ramp {
+                    axis: share.axis,
+                    start: share.direction * phase.velocity_mm_s,
+                    end: share.direction * phase.end_velocity_mm_s,
+                    accel: share.direction * phase.accel_mm_s2,
+                })
+                .collect();
+            Interval {
+                credit_regen: converter.credit_regen,
+                curved: true,
+                idle_w,
+                ramps: &ramps,
+                duration_s: phase.duration_s,
+            }
+            .evaluate(want, &mut totals);
+        }
+    }
+    totals
+}
+
+/// Sums over the axes per unit of speed: what is drawn and what is fed back.
+#[derive(Clone, Copy)]
+struct Slope {
+    motoring: f64,
+    regenerating: f64,
+}
+
+/// A phase in which power is linear in speed.
+#[inline]
+fn linear_phase(
+    converter: &ConverterPower,
+    shares: &[Share<'_>],
+    phase: &Phase,
+    factored: bool,
+    want: Want,
+    totals: &mut Totals,
+) {
+    let slope_of = |side| slope(shares, phase.accel_mm_s2, side);
+    let nominal = slope_of(Side::Nominal);
+    let (motor, regen) = if factored {
+        (slope_of(Side::Motor), slope_of(Side::Regen))
+    } else {
+        (nominal, nominal)
+    };
+    let idle_w = totals.idle_w;
+    let (v0, v1) = (phase.velocity_mm_s, phase.end_velocity_mm_s);
+    if converter.credit_regen {
+        for v in [v0, v1] {
+            totals.raise_peak(idle_w + v * (motor.motoring - motor.regenerating));
+            totals.raise_regen(v * (regen.regenerating - regen.motoring) - idle_w);
+        }
+    } else {
+        let v = v0.max(v1);
+        totals.raise_peak(idle_w + v * motor.motoring);
+        totals.raise_regen(v * regen.regenerating);
+    }
+    if want.energy {
+        let credited = if converter.credit_regen {
+            nominal.regenerating
+        } else {
+            0.0
+        };
+        totals.energy_j += phase.length_mm() * (nominal.motoring - credited);
+    }
+}
+
+/// The sums at path acceleration `a` (mm/s²).
+#[inline]
+fn slope(shares: &[Share<'_>], a: f64, side: Side) -> Slope {
+    let mut slope = Slope {
+        motoring: 0.0,
+        regenerating: 0.0,
+    };
+    for share in shares {
+        let a = a * share.axis.accel_factor(side, a > 0.0);
+        let friction = share.friction * share.axis.friction_factor(side);
+        let p = share.mass * a + friction + share.gravity;
+        let electrical = share.axis.converted(p);
+        slope.motoring += electrical.max(0.0);
+        slope.regenerating += (-electrical).max(0.0);
+    }
+    slope
+}
