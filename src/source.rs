@@ -14,7 +14,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// The span from `start` to before `end`, both in bytes.
+    /// The span from `start` to before `end`, in bytes of a line, which is
+    /// shorter than 4 GiB.
     #[must_use]
     pub fn new(start: usize, end: usize) -> Self {
         Self {
@@ -111,11 +112,13 @@ pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// A line without its line end, and the line end.
 #[must_use]
 pub fn split_line_end(line: &[u8]) -> (&[u8], &[u8]) {
-    let length = match line {
-        [text @ .., b'\r', b'\n'] | [text @ .., b'\n' | b'\r'] => text.len(),
-        text => text.len(),
+    let end = match line {
+        [.., b'\r', b'\n'] => 2,
+        [.., b'\n' | b'\r'] => 1,
+        _ => 0,
     };
-    line.split_at_checked(length).unwrap_or((line, &[]))
+    line.split_at_checked(line.len() - end)
+        .unwrap_or((line, &[]))
 }
 
 /// Lines out of a stream, one at a time, in a buffer that is used again.
@@ -238,5 +241,107 @@ impl<R: Read> LineReader<R> {
         self.end += count;
         self.at_end = count == 0;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives each part in a read of its own, then nothing.
+    struct Parts(std::vec::IntoIter<Vec<u8>>);
+
+    impl Read for Parts {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            let Some(part) = self.0.next() else {
+                return Ok(0);
+            };
+            buffer[..part.len()].copy_from_slice(&part);
+            Ok(part.len())
+        }
+    }
+
+    fn parts(parts: &[&str]) -> LineReader<Parts> {
+        let parts: Vec<Vec<u8>> = parts.iter().map(|part| part.as_bytes().to_vec()).collect();
+        LineReader::new(Parts(parts.into_iter()))
+    }
+
+    fn all(reader: &mut LineReader<impl Read>) -> Vec<String> {
+        let mut lines = Vec::new();
+        while let Some((_, line)) = reader.next_line().unwrap() {
+            lines.push(String::from_utf8(line.to_vec()).unwrap());
+        }
+        lines
+    }
+
+    #[test]
+    fn line_ends_may_be_mixed() {
+        let lines = all(&mut parts(&["a\nb\rc\r\n\n\r\r\nlast"]));
+        assert_eq!(lines, ["a\n", "b\r", "c\r\n", "\n", "\r", "\r\n", "last"]);
+    }
+
+    #[test]
+    fn a_line_end_in_two_reads_is_one() {
+        assert_eq!(
+            all(&mut parts(&["a\r", "\nb\r", "c\r"])),
+            ["a\r\n", "b\r", "c\r"]
+        );
+    }
+
+    #[test]
+    fn an_empty_stream_has_no_lines() {
+        assert!(all(&mut parts(&[])).is_empty());
+    }
+
+    #[test]
+    fn a_nul_is_refused_where_it_stands() {
+        let mut reader = parts(&["a\nb", "\0\nc\n"]);
+        assert!(matches!(reader.next_line(), Ok(Some((1, b"a\n")))));
+        for _ in 0..2 {
+            let error = reader.next_line().unwrap_err();
+            assert!(matches!(error, SourceError::Binary { line: 2 }));
+        }
+    }
+
+    #[test]
+    fn the_longest_line_is_read_and_a_longer_one_refused() {
+        let mut text = vec![b'x'; MAX_LINE_BYTES - 1];
+        text.push(b'\n');
+        let mut reader = LineReader::new(text.as_slice());
+        assert!(reader.next_line().is_ok_and(|line| line.is_some()));
+        text.insert(0, b'x');
+        let with_end = LineReader::new(text.as_slice()).next_line().map(drop);
+        assert!(matches!(
+            with_end,
+            Err(SourceError::LineTooLong { line: 1 })
+        ));
+        text.pop();
+        text.push(b'x');
+        let without = LineReader::new(text.as_slice()).next_line().map(drop);
+        assert!(matches!(without, Err(SourceError::LineTooLong { line: 1 })));
+    }
+
+    #[test]
+    fn line_ends_are_taken_off_once() {
+        let cases: [(&[u8], &[u8]); 5] = [
+            (b"a\r\n", b"\r\n"),
+            (b"a\n", b"\n"),
+            (b"a\r", b"\r"),
+            (b"a", b""),
+            (b"\n", b"\n"),
+        ];
+        for (line, end) in cases {
+            let (text, found) = split_line_end(line);
+            assert_eq!(found, end);
+            assert_eq!([text, found].concat(), line);
+        }
+        assert_eq!(split_line_end(b"a\n\r").0, b"a\n");
+    }
+
+    #[test]
+    fn a_span_outside_its_line_covers_nothing() {
+        assert_eq!(Span::new(1, 3).of(b"abcd"), b"bc");
+        assert_eq!(Span::new(1, 9).of(b"abcd"), b"");
+        assert_eq!(Span { start: 3, end: 1 }.of(b"abcd"), b"");
     }
 }

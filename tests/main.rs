@@ -1,2 +1,7 @@
 //! Tests.
+
+mod syntax;
+mod plan;
+mod power;
+mod rig;
 mod machine;

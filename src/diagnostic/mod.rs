@@ -80,7 +80,8 @@ impl Diagnostic {
     }
 
     /// Ties the finding to `span` of the line with number `line` from 1;
-    /// `text` is the whole line, with or without its line end.
+    /// `text` is the whole line, with or without its line end. A span that
+    /// leaves the text is cut to it.
     #[must_use]
     pub fn at(mut self, line: u64, span: Span, text: &[u8]) -> Self {
         let (text, _) = split_line_end(text);

@@ -57,6 +57,8 @@ pub(super) struct Shown {
     pub(super) text: String,
     /// Bytes of `text` under which the carets stand.
     pub(super) marked: Range<usize>,
+    /// True when `text` does not begin with the line.
+    pub(super) cut_before: bool,
 }
 
 impl Shown {
@@ -85,6 +87,7 @@ impl Shown {
         let mut shown = Self {
             text: String::new(),
             marked: 0..0,
+            cut_before: from > 0,
         };
         if from > 0 {
             shown.text.push('…');

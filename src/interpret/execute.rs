@@ -347,11 +347,20 @@ impl Control<'_> {
             30 | 40 | 50 => Some(ActionKind::Spindle),
             60 => Some(ActionKind::ToolChange),
             70 | 80 | 90 => Some(ActionKind::Coolant),
-            _ if self.machine.controller.language.ignored_m.contains(&number) || is_load() => {
-                Some(ActionKind::Other)
-            }
+            _ if self.is_ignored(number) || is_load() => Some(ActionKind::Other),
             _ => None,
         }
+    }
+
+    /// Whether the profile says that an M word (number × 10) moves no axis.
+    fn is_ignored(&self, number: u16) -> bool {
+        number.is_multiple_of(10)
+            && self
+                .machine
+                .controller
+                .language
+                .ignored_m
+                .contains(&(number / 10))
     }
 
     fn m_words(&mut self, run: &mut Run<'_, '_>) {

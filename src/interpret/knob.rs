@@ -1,6 +1,6 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
-use crate::machine::{AXES, AxisValues, Knob, KnobTarget, KnobUnit, Machine};
+use crate::machine::{AXES, AxisKind, AxisValues, Knob, KnobTarget, KnobUnit, Machine};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +61,14 @@ impl KnobState {
             };
             let accel = match knob.unit {
                 KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
-                KnobUnit::PerSecondSquared => value * if axis < 3 { mm_per_unit } else { 1.0 },
+                KnobUnit::PerSecondSquared => {
+                    value
+                        * if data.kind == AxisKind::Linear {
+                            mm_per_unit
+                        } else {
+                            1.0
+                        }
+                }
             };
             if knob.target != KnobTarget::RapidAccel {
                 self.feed_accel_mm_s2[axis] = accel;

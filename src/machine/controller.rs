@@ -92,6 +92,19 @@ pub struct Planner {
     pub rapid: RapidPath,
     /// How acceleration is shared on arcs.
     pub arc_rule: ArcRule,
+    /// What happens at the ends of rapids in a mode that blends.
+    pub rapid_joint: RapidJoint,
+}
+
+/// Whether rapids are blended with their neighbours where the path mode blends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RapidJoint {
+    /// A rapid starts from rest and ends at rest.
+    Stop,
+    /// Rapids blend among each other; between rapid and feed there is a stop.
+    Rapids,
+    /// Rapids blend like any other move.
+    All,
 }
 
 /// How acceleration is shared between turning and speeding up on an arc.

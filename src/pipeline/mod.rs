@@ -1,18 +1,22 @@
 //! From bytes to figures, and from bytes to a certified program.
 
+mod analyze;
+mod certify;
+mod front;
+mod limiting;
 mod options;
 mod row;
 mod summary;
+mod tally;
+mod writer;
 
-use std::io::{Read, Write};
-
+pub use analyze::{analyze, moves};
+pub use limiting::limit;
 pub use options::{Law, LimitOptions, Options, Start, Strategy};
 pub use row::{Certificate, Row, RowSink};
 pub use summary::{LimitSummary, Summary, Unfit};
 
 use crate::diagnostic::Diagnostic;
-use crate::interpret::Move;
-use crate::machine::Machine;
 
 /// Why a run came to no result.
 #[derive(Debug, thiserror::Error)]
@@ -35,53 +39,4 @@ pub enum Failure {
     /// What is asked for cannot be done with this machine: usage.
     #[error("{0}")]
     Unsuitable(String),
-}
-
-/// Reads a program and gives its figures; with `rows`, every move too.
-///
-/// # Errors
-/// See [`Failure`].
-pub fn analyze<R: Read + Send>(
-    input: R,
-    machine: &Machine,
-    options: &Options,
-    rows: Option<&mut dyn RowSink>,
-) -> Result<Summary, Failure> {
-    let _ = (input, machine, options, rows);
-    Ok(Summary::default())
-}
-
-/// Reads a program, writes one that fits to `output`, and certifies it.
-///
-/// `output` is a spool: its contents may be delivered only when the result
-/// says `certified`.
-///
-/// # Errors
-/// See [`Failure`]. A program that cannot be made to fit is no error: see
-/// [`LimitSummary::certified`].
-pub fn limit<R: Read + Send, W: Write + Send>(
-    input: R,
-    machine: &Machine,
-    options: &Options,
-    how: LimitOptions,
-    output: W,
-    rows: Option<&mut dyn RowSink>,
-) -> Result<LimitSummary, Failure> {
-    let _ = (input, machine, options, how, output, rows);
-    Ok(LimitSummary::default())
-}
-
-/// Reads a program and hands over every commanded move with its duration in s
-/// (`None` where it cannot be known: the start is not).
-///
-/// # Errors
-/// See [`Failure`]; an error of `each` becomes [`Failure::Output`].
-pub fn moves<R: Read + Send>(
-    input: R,
-    machine: &Machine,
-    options: &Options,
-    each: &mut dyn FnMut(&Move, Option<f64>) -> std::io::Result<()>,
-) -> Result<Vec<Diagnostic>, Failure> {
-    let _ = (input, machine, options, each);
-    Ok(Vec::new())
 }

@@ -3,6 +3,7 @@
 pub use crate::interpret::Start;
 
 use super::row::Certificate;
+pub use crate::limit::{Law, LimitOptions, Strategy};
 
 /// How a program is read and judged.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,37 +28,4 @@ impl Default for Options {
             threads: 1,
         }
     }
-}
-
-/// How power is brought down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Strategy {
-    /// The machine's presets for combinations of axes.
-    Preset,
-    /// Speed alone.
-    Speed,
-    /// Acceleration alone.
-    Accel,
-    /// The shortest time with the words that the controller has.
-    Optimal,
-}
-
-/// How far the ratio V = limit/peak lowers speed or acceleration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
-    /// Solved for the real block.
-    Exact,
-    /// V² on the nominal values of the commanded axes.
-    Patent,
-}
-
-/// What `limit` is asked to do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LimitOptions {
-    /// How power is brought down.
-    pub strategy: Strategy,
-    /// How far.
-    pub law: Law,
-    /// Whether cutting feeds may be lowered.
-    pub allow_feed: bool,
 }

@@ -4,27 +4,7 @@ use std::io;
 
 use crate::interpret::MoveKind;
 use crate::machine::AxisSet;
-
-/// Which bound a figure rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Certificate {
-    /// The planner that the controller profile models.
-    Planned,
-    /// Any look-ahead, blending and filtering that keeps each axis inside its
-    /// own limits.
-    Robust,
-}
-
-impl Certificate {
-    /// The name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Planned => "planned",
-            Self::Robust => "robust",
-        }
-    }
-}
+pub use crate::power::Certificate;
 
 /// One move in program order. Reports print it in the order of the fields; a
 /// value that is not known or does not apply is `None` and printed as blank.

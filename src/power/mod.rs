@@ -8,13 +8,19 @@
 //! plain sum; where not, only motoring axes count towards the peak and the
 //! energy, and only regenerating ones towards the regenerative peak.
 
+mod assess;
+mod arc;
 mod axis;
+mod circle;
 mod demand;
 mod independent;
 mod interval;
 mod model;
+mod quadrature;
 mod robust;
+mod search;
 mod straight;
 
+pub use assess::{Assessment, Assessor, Certificate};
 pub use demand::{Demand, Want};
 pub use model::PowerModel;

@@ -4,7 +4,7 @@
 
 use super::axis::AxisPower;
 use super::demand::{Demand, Totals, Want};
-use super::{independent, straight};
+use super::{arc, independent, straight};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet, Machine};
 use crate::plan::{Plan, Trajectory};
@@ -93,7 +93,10 @@ impl PowerModel {
             let totals = match &plan.trajectory {
                 Trajectory::Path(profile) => {
                     let idle_w = converter.idle_w(mv, &self.axes, active);
-                    straight::totals(self, converter, mv, profile, idle_w, want)
+                    match &mv.arc {
+                        Some(arc) => arc::totals(self, converter, mv, arc, profile, idle_w, want),
+                        None => straight::totals(self, converter, mv, profile, idle_w, want),
+                    }
                 }
                 Trajectory::Axes(profiles) => {
                     let idle_w = converter.idle_w(mv, &self.axes, active);

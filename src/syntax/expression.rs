@@ -102,7 +102,7 @@ fn angle(input: &[u8]) -> Parsed<'_, &[u8]> {
 /// `[…]` to the matching bracket; without one, to the end of the text.
 fn brackets(input: &[u8]) -> Parsed<'_, &[u8]> {
     let mut depth = 0_usize;
-    let length = input.iter().position(|byte| {
+    let end = input.iter().position(|byte| {
         match byte {
             b'[' => depth += 1,
             b']' => depth = depth.saturating_sub(1),
@@ -110,7 +110,8 @@ fn brackets(input: &[u8]) -> Parsed<'_, &[u8]> {
         }
         depth == 0
     });
-    match length.map_or(Some((input, &[][..])), |at| input.split_at_checked(at + 1)) {
+    let length = end.map_or(input.len(), |end| end + 1);
+    match input.split_at_checked(length) {
         Some((text @ [b'[', ..], rest)) => Ok((rest, text)),
         _ => fail().parse(input),
     }

@@ -31,6 +31,9 @@ const POWERS_OF_TEN: [f64; 23] = [
 const MAX_DIGITS: usize = 19;
 
 /// Reads a line of plain words; `None` when it holds anything else.
+///
+/// What makes an O word flow, a keyword or a bracket, is no plain word, so O
+/// needs no care here.
 fn scan_words(line: &[u8], block: &mut Block) -> Option<()> {
     block.clear();
     let (text, _) = split_line_end(line);
@@ -44,8 +47,6 @@ fn scan_words(line: &[u8], block: &mut Block) -> Option<()> {
             b' ' | b'\t' => at += 1,
             b'(' => at += memchr(b')', text.get(at..)?)? + 1,
             b';' => break,
-            // O may begin flow; that is for the grammar to tell.
-            b'O' | b'o' => return None,
             _ if token::is_letter(byte) => {
                 let word = scan_word(text, at, byte)?;
                 at = word.span.end as usize;

@@ -110,6 +110,9 @@ pub(crate) struct PlannerTable {
     pub(crate) rapid: Option<RapidName>,
     /// How acceleration is shared on arcs; default shared.
     pub(crate) arc_rule: Option<ArcRuleName>,
+    /// What happens at the ends of rapids where the path mode blends; default
+    /// "all", which is the safe one.
+    pub(crate) rapid_joint: Option<RapidJointName>,
     /// Whether a rapid may be written as a feed to lower its speed; default none.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
 }
@@ -120,6 +123,18 @@ pub(crate) struct PlannerTable {
 pub(crate) enum ArcRuleName {
     Shared,
     LinuxCnc,
+}
+
+/// Whether rapids are blended with their neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RapidJointName {
+    /// A rapid starts from rest and ends at rest.
+    Stop,
+    /// Rapids blend among each other, not with feeds.
+    Rapids,
+    /// Rapids blend like any other move.
+    All,
 }
 
 /// How a rapid's speed can be lowered besides the knobs.

@@ -6,6 +6,9 @@ use std::ops::Range;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::Span;
 
+/// Longer lines are cut in diagnostics.
+const MAX_LINE: usize = 400;
+
 /// Findings in one file, in the order in which they were made.
 #[derive(Debug)]
 pub(crate) struct Findings<'a> {
@@ -99,17 +102,13 @@ pub(crate) fn diagnostic(
     message: String,
     help: Option<String>,
 ) -> Diagnostic {
-    Diagnostic {
-        severity,
-        rule,
-        message,
-        help,
-        line: 0,
-        column: 0,
-        span: Span::default(),
-        text: Vec::new(),
-        text_offset: 0,
-    }
+    let mut diagnostic = match severity {
+        Severity::Error => Diagnostic::error(rule, message),
+        Severity::Warning => Diagnostic::warning(rule, message),
+        Severity::Note => Diagnostic::note(rule, message),
+    };
+    diagnostic.help = help;
+    diagnostic
 }
 
 /// Adds line, span and text; an empty span at the start means the whole file.
@@ -126,7 +125,12 @@ fn locate(text: &str, span: &Range<usize>, diagnostic: Diagnostic) -> Diagnostic
         .map_or(0, |i| i + 1);
     let rest = &bytes[line_start..];
     let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
-    let line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
-    let last = span.end.saturating_sub(line_start);
-    diagnostic.at(line, Span::new(start - line_start, last), &rest[..length])
+    let line = rest[..length]
+        .strip_suffix(b"\r")
+        .unwrap_or(&rest[..length]);
+    let line = &line[..line.len().min(MAX_LINE)];
+    let first = (start - line_start).min(line.len());
+    let last = span.end.saturating_sub(line_start).clamp(first, line.len());
+    let number = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
+    diagnostic.at(number, Span::new(first, last), line)
 }

@@ -3,7 +3,7 @@
 use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
     ArcRuleName, ArgumentName, ControllerFile, DistanceName, FamilyName, KnobTable, LanguageTable,
-    PlannerTable, RapidKnobName, TargetName, UnitName, UnitsName,
+    PlannerTable, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::value::At;
@@ -11,7 +11,7 @@ use super::word;
 use crate::machine::axis::AxisId;
 use crate::machine::controller::{
     ArcRule, Controller, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language, Planner,
-    RapidKnob, RapidPath,
+    RapidJoint, RapidKnob, RapidPath,
 };
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
@@ -114,6 +114,11 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
         arc_rule: match table.arc_rule {
             Some(ArcRuleName::LinuxCnc) => ArcRule::LinuxCnc,
             Some(ArcRuleName::Shared) | None => ArcRule::Shared,
+        },
+        rapid_joint: match table.rapid_joint {
+            Some(RapidJointName::Stop) => RapidJoint::Stop,
+            Some(RapidJointName::Rapids) => RapidJoint::Rapids,
+            Some(RapidJointName::All) | None => RapidJoint::All,
         },
     })
 }

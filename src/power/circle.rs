@@ -1,0 +1,153 @@
+//! One axis on an arc or a helix: its motion, and bounds of its power.
+//!
+//! Input: speed ω and acceleration α of the angle (or of the path, for an axis
+//! that follows in proportion). Output: speed and acceleration of the axis,
+//! SI, and bounds that hold for any angle up to a speed.
+//!
+//! A plane axis is `x = R·cos q` with `q' = ω`, `q'' = α` constant, hence
+//!
+//! ```text
+//! x'  = −R·ω·sin q              x''   = −R·(α·sin q + ω²·cos q)
+//! x'·x'' = R²·ω·(α·sin² q + ω²·sin q·cos q)
+//! ```
+//!
+//! and each bound below is the amplitude of the sinusoids of such a derivative.
+
+use super::axis::AxisPower;
+
+/// How an axis follows the arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Shape {
+    /// First axis of the plane, radius in SI.
+    Cosine(f64),
+    /// Second axis of the plane, radius in SI.
+    Sine(f64),
+    /// In proportion to the path: signed SI motion per mm.
+    Line(f64),
+}
+
+/// An axis on an arc.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ArcAxis<'a> {
+    /// Its coefficients.
+    pub axis: &'a AxisPower,
+    /// How it follows.
+    pub shape: Shape,
+}
+
+/// Motion along the arc at one instant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Motion {
+    /// Path speed, mm/s, and acceleration, mm/s².
+    pub v: f64,
+    /// See `v`.
+    pub a: f64,
+    /// Angular speed, rad/s, not negative, and acceleration, rad/s².
+    pub omega: f64,
+    /// See `omega`.
+    pub alpha: f64,
+    /// Sine and cosine of the angle, the sine with the sign of the sweep's sense.
+    pub sin: f64,
+    /// See `sin`.
+    pub cos: f64,
+    /// Sense of the sweep, ±1.
+    pub sense: f64,
+}
+
+impl ArcAxis<'_> {
+    /// Speed and acceleration of the axis, SI.
+    #[inline]
+    pub fn motion(&self, m: &Motion) -> (f64, f64) {
+        let square = m.omega * m.omega;
+        match self.shape {
+            Shape::Cosine(r) => (
+                -r * m.sense * m.omega * m.sin,
+                -r * (m.sense * m.alpha * m.sin + square * m.cos),
+            ),
+            Shape::Sine(r) => (
+                r * m.sense * m.omega * m.cos,
+                r * (m.sense * m.alpha * m.cos - square * m.sin),
+            ),
+            Shape::Line(direction) => (direction * m.v, direction * m.a),
+        }
+    }
+
+    /// Bound of `|d²/dt²|` of any smooth branch of the electrical power,
+    /// conversion left out, while speeds are at most those of `m`: of `v·F`
+    /// and of `R·F²`. `factor` is how far acceleration may exceed the command.
+    pub fn curvature(&self, m: &Motion, factor: f64) -> (f64, f64) {
+        let axis = self.axis;
+        let mass = axis.mass * factor;
+        let constant = axis.coulomb + axis.gravity.abs();
+        let (w, alpha) = (m.omega, m.alpha.abs());
+        match self.shape {
+            Shape::Line(direction) => {
+                let accel = direction * m.a;
+                let slope = axis.viscous * accel;
+                (
+                    2.0 * (slope * accel).abs(),
+                    2.0 * axis.copper * slope * slope,
+                )
+            }
+            Shape::Cosine(r) | Shape::Sine(r) => {
+                let (w2, a2) = (w * w, alpha * alpha);
+                let w4 = w2 * w2;
+                // Amplitudes of x', x'', x''', x''''.
+                let x1 = r * w;
+                let x2 = r * (a2 + w4).sqrt();
+                let x3 = r * w * (9.0 * a2 + w4).sqrt();
+                let inertial = amplitude(36.0 * w2 * alpha, f64::max(24.0 * a2, 8.0 * w4));
+                let viscous = 2.0 * a2 + amplitude(10.0 * w2 * alpha, f64::max(2.0 * a2, 4.0 * w4));
+                let mechanical = mass * r * r * w * 0.25 * inertial
+                    + axis.viscous * r * r * 0.5 * viscous
+                    + constant * x3;
+                if axis.copper == 0.0 {
+                    return (mechanical, 0.0);
+                }
+                let x4 = r * amplitude(3.0 * a2 + w4, 6.0 * alpha * w2);
+                let force = mass * x2 + axis.viscous * x1 + constant;
+                let slope = mass * x3 + axis.viscous * x2;
+                let bend = mass * x4 + axis.viscous * x3;
+                (
+                    mechanical,
+                    axis.copper * 2.0 * (slope * slope + force * bend),
+                )
+            }
+        }
+    }
+
+    /// Upper bounds of the power drawn (W) and fed back at speeds up to those
+    /// of `m`, whatever the angle; `factors` for drawing and feeding back.
+    pub fn envelope(&self, m: &Motion, factors: [f64; 2]) -> [f64; 2] {
+        let axis = self.axis;
+        let (speed, accel, drawn, fed_back) = match self.shape {
+            Shape::Line(direction) => {
+                let inertial = direction * direction * m.v * m.a;
+                let speed = (direction * m.v).abs();
+                let accel = (direction * m.a).abs();
+                (speed, accel, inertial.max(0.0), (-inertial).max(0.0))
+            }
+            Shape::Cosine(r) | Shape::Sine(r) => {
+                let w2 = m.omega * m.omega;
+                let swing = amplitude(m.alpha, w2);
+                let half = 0.5 * r * r * m.omega;
+                let (drawn, fed_back) = (half * (swing + m.alpha), half * (swing - m.alpha));
+                (r * m.omega, r * swing, drawn, fed_back)
+            }
+        };
+        let constant = axis.coulomb + axis.gravity.abs();
+        let force = axis.mass * accel * factors[0] + axis.viscous * speed + constant;
+        let resisting = speed * (constant + axis.viscous * speed);
+        [
+            (axis.mass * drawn * factors[0] + resisting) * axis.inverse_efficiency
+                + axis.copper * force * force,
+            (axis.mass * fed_back * factors[1] + speed * axis.gravity.abs()) * axis.efficiency,
+        ]
+    }
+}
+
+/// Amplitude of `a·cos + b·sin`.
+#[inline]
+fn amplitude(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}

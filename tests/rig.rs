@@ -1,0 +1,411 @@
+//! Machines and moves for the tests of plan and power, and a reference that
+//! evaluates the power of a plan at one instant by the book.
+
+use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
+use gwatt::machine::{
+    AXES, ArcRule, Axis, AxisKind, AxisSet, Controller, Converter, Family, Language, Limits,
+    Machine, Path, PathMode, Planner, RapidKnob, RapidPath,
+};
+use gwatt::plan::{Phase, Plan, Trajectory};
+use proptest::prelude::*;
+
+/// A linear axis of 100 kg, 500 mm/s and 5 m/s² without any loss.
+pub(crate) fn axis() -> Axis {
+    Axis {
+        kind: AxisKind::Linear,
+        rapid_mm_s: 500.0,
+        accel_mm_s2: 5000.0,
+        jerk_mm_s3: 0.0,
+        mass_kg: 100.0,
+        coulomb_n: 0.0,
+        viscous_n_s_m: 0.0,
+        gravity_n: 0.0,
+        efficiency: 1.0,
+        copper_w_n2: 0.0,
+        servo_factor_motor: 1.0,
+        servo_factor_regen: 1.0,
+        friction_min_ratio: 1.0,
+        si_per_unit: 1e-3,
+    }
+}
+
+/// A machine of the given axes (X, Y, …) on one converter of 1 kW.
+pub(crate) fn machine(axes: &[Axis]) -> Machine {
+    let mut slots = [None; AXES];
+    let mut axis_set = AxisSet::default();
+    for (i, axis) in axes.iter().enumerate() {
+        slots[i] = Some(*axis);
+        axis_set.insert(i);
+    }
+    Machine {
+        name: "rig".into(),
+        controller: controller(),
+        axes: slots,
+        axis_set,
+        converters: vec![Converter {
+            name: String::new(),
+            axes: axis_set,
+            peak_power_w: 1000.0,
+            regen_power_w: Some(500.0),
+            base_load_w: 0.0,
+            credit_regen: false,
+        }],
+        path: Path {
+            mode: None,
+            rapid: RapidPath::Linear,
+        },
+        spindle: None,
+        loads: Vec::new(),
+        presets: Vec::new(),
+        limits: Limits {
+            margin: 0.0,
+            feed_override_max: 1.0,
+            rapid_override_max: 1.0,
+            spindle_override_max: 1.0,
+            min_feed_mm_s: 0.0,
+            min_feed_ratio: 0.0,
+        },
+        unchecked: Vec::new(),
+    }
+}
+
+fn controller() -> Controller {
+    Controller {
+        name: "rig".into(),
+        description: String::new(),
+        language: Language {
+            family: Family::Iso,
+            dwell: Vec::new(),
+            metric: true,
+            absolute: true,
+            arc_absolute: false,
+            g61: PathMode::ExactStop,
+            g61_1: PathMode::ExactStop,
+            g64: PathMode::LookAhead,
+            power_on_mode: PathMode::ExactStop,
+            rapid_uses_feed: false,
+            ignored_g: Vec::new(),
+            ignored_m: Vec::new(),
+            block_delete: true,
+        },
+        planner: Planner {
+            rapid: RapidPath::Linear,
+            arc_rule: ArcRule::Shared,
+            rapid_joint: gwatt::machine::RapidJoint::Stop,
+        },
+        knobs: Vec::new(),
+        rapid_knob: RapidKnob::None,
+    }
+}
+
+/// A straight move by `delta` from 0; `feed` infinite for a rapid.
+pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
+    let mut end = [0.0; AXES];
+    let mut moving = AxisSet::default();
+    for (i, d) in delta.iter().enumerate() {
+        end[i] = *d;
+        if *d != 0.0 {
+            moving.insert(i);
+        }
+    }
+    Move {
+        line: 1,
+        number: None,
+        kind: if feed.is_finite() {
+            MoveKind::Feed
+        } else {
+            MoveKind::Rapid
+        },
+        start: [0.0; AXES],
+        end,
+        moving,
+        unknown_start: AxisSet::default(),
+        arc: None,
+        length_mm: delta.iter().map(|d| d * d).sum::<f64>().sqrt(),
+        feed_mm_s: feed,
+        feed_mode: FeedMode::PerMinute,
+        accel_mm_s2: std::array::from_fn(|i| machine.axes[i].map_or(0.0, |a| a.accel_mm_s2)),
+        path_accel_mm_s2: f64::INFINITY,
+        rapid_factor: 1.0,
+        dwell_s: 0.0,
+        loads: 0,
+        path_mode: PathMode::ExactStop,
+    }
+}
+
+/// A dwell.
+pub(crate) fn dwell(machine: &Machine, seconds: f64) -> Move {
+    let mut mv = straight(machine, &[], 1.0);
+    mv.kind = MoveKind::Dwell;
+    mv.dwell_s = seconds;
+    mv
+}
+
+/// An arc about 0 in the plane of two axes; a third axis moves by `lift`.
+pub(crate) fn arc(
+    machine: &Machine,
+    plane: [usize; 2],
+    radius: f64,
+    angles: [f64; 2],
+    lift: f64,
+    feed: f64,
+) -> Move {
+    let [start, sweep] = angles;
+    let mut mv = straight(machine, &[], feed);
+    mv.kind = MoveKind::Arc;
+    let third = 3 - plane[0] - plane[1];
+    mv.moving = AxisSet(1 << plane[0] | 1 << plane[1] | u16::from(lift != 0.0) << third);
+    mv.start[plane[0]] = radius * libm::cos(start);
+    mv.start[plane[1]] = radius * libm::sin(start);
+    mv.end[plane[0]] = radius * libm::cos(start + sweep);
+    mv.end[plane[1]] = radius * libm::sin(start + sweep);
+    mv.end[third] = lift;
+    mv.length_mm = libm::hypot(radius * sweep, lift);
+    mv.arc = Some(Arc {
+        plane,
+        center: [0.0; 2],
+        radius_mm: radius,
+        start_angle_rad: start,
+        sweep_rad: sweep,
+    });
+    mv
+}
+
+/// How the reference reads the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Reading {
+    Nominal,
+    Motor,
+    Regen,
+}
+
+/// Speed and acceleration of an axis on a path, in its own unit.
+fn on_path(mv: &Move, axis: usize, phase: &Phase, t: f64) -> (f64, f64) {
+    let s = phase.state_at(t);
+    if let Some(arc) = mv.arc {
+        if let Some(which) = arc.plane.iter().position(|&p| p == axis) {
+            let turn = arc.sweep_rad / mv.length_mm;
+            let angle = arc.start_angle_rad + turn * s.position_mm;
+            let (sin, cos) = libm::sincos(angle);
+            let (tangent, normal) = [(-sin, -cos), (cos, -sin)][which];
+            let r = arc.radius_mm;
+            let (w, alpha) = (turn * s.velocity_mm_s, turn * s.accel_mm_s2);
+            return (r * w * tangent, r * (alpha * tangent + w * w * normal));
+        }
+    }
+    let u = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+    (u * s.velocity_mm_s, u * s.accel_mm_s2)
+}
+
+/// Power of the first converter at one instant of a path: what counts as
+/// drawn and as fed back. `sign_t` is an instant nearby that tells the
+/// direction of an axis that is just at rest.
+fn power_on_path(
+    machine: &Machine,
+    mv: &Move,
+    phase: &Phase,
+    t: f64,
+    sign_t: f64,
+    reading: Reading,
+) -> (f64, f64) {
+    let converter = &machine.converters[0];
+    let mut powers = vec![];
+    for (i, axis) in machine.axes.iter().enumerate() {
+        let Some(axis) = axis else { continue };
+        if !mv.moving.contains(i) {
+            powers.push(axis.copper_w_n2 * axis.gravity_n * axis.gravity_n);
+            continue;
+        }
+        let k = axis.si_per_unit;
+        let (v, a) = on_path(mv, i, phase, t);
+        let (v, a) = (v * k, a * k);
+        let direction = if v == 0.0 {
+            on_path(mv, i, phase, sign_t).0.signum()
+        } else {
+            v.signum()
+        };
+        let (factor, friction) = match reading {
+            Reading::Nominal => (1.0, 1.0),
+            Reading::Motor if a * direction > 0.0 => (axis.servo_factor_motor, 1.0),
+            Reading::Motor => (1.0, 1.0),
+            Reading::Regen if a * direction > 0.0 => (1.0, axis.friction_min_ratio),
+            Reading::Regen => (axis.servo_factor_regen, axis.friction_min_ratio),
+        };
+        let force = axis.mass_kg * a * factor
+            + friction * (axis.viscous_n_s_m * v + axis.coulomb_n * direction)
+            + axis.gravity_n;
+        let p = v * force;
+        let converted = if p > 0.0 {
+            p / axis.efficiency
+        } else {
+            p * axis.efficiency
+        };
+        powers.push(converted + axis.copper_w_n2 * force * force);
+    }
+    let base = converter.base_load_w;
+    if converter.credit_regen {
+        let sum = base + powers.iter().sum::<f64>();
+        (sum, -sum)
+    } else {
+        (
+            base + powers.iter().map(|p| p.max(0.0)).sum::<f64>(),
+            powers.iter().map(|p| (-p).max(0.0)).sum::<f64>(),
+        )
+    }
+}
+
+/// Peaks and energy of a path by dense sampling and local refinement: a lower
+/// bound of the peaks.
+pub(crate) struct Sampled {
+    pub peak_w: f64,
+    pub regen_w: f64,
+    pub energy_j: f64,
+}
+
+/// Samples a planned path with `n` intervals a phase.
+pub(crate) fn sample(machine: &Machine, mv: &Move, plan: &Plan, n: u32) -> Sampled {
+    let Trajectory::Path(profile) = &plan.trajectory else {
+        panic!("the reference samples paths only");
+    };
+    let mut found = Sampled {
+        peak_w: 0.0,
+        regen_w: 0.0,
+        energy_j: 0.0,
+    };
+    for phase in &profile.phases {
+        let h = phase.duration_s / f64::from(n);
+        let drawn = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Motor).0;
+        let fed = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Regen).1;
+        let energy = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Nominal).0;
+        let (mut best_drawn, mut best_fed) = ((f64::NEG_INFINITY, 0), (f64::NEG_INFINITY, 0));
+        for i in 0..n {
+            let from = f64::from(i) * h;
+            let middle = from + 0.5 * h;
+            let value = |f: &dyn Fn(f64, f64) -> f64| {
+                f(from, middle)
+                    .max(f(middle, middle))
+                    .max(f(from + h, middle))
+            };
+            for (f, best) in [
+                (&drawn as &dyn Fn(f64, f64) -> f64, &mut best_drawn),
+                (&fed, &mut best_fed),
+            ] {
+                let value = value(f);
+                if value > best.0 {
+                    *best = (value, i);
+                }
+            }
+            let ends = energy(from, middle) + energy(from + h, middle);
+            found.energy_j += h * (ends + 4.0 * energy(middle, middle)) / 6.0;
+        }
+        found.peak_w = found.peak_w.max(refine(&drawn, best_drawn, h, n));
+        found.regen_w = found.regen_w.max(refine(&fed, best_fed, h, n));
+    }
+    found
+}
+
+/// Refines a sampled maximum by a finer grid around it, several times.
+fn refine(f: &dyn Fn(f64, f64) -> f64, best: (f64, u32), h: f64, n: u32) -> f64 {
+    let (mut value, index) = best;
+    let (mut centre, mut half) = ((f64::from(index) + 0.5) * h, 1.5 * h);
+    let end = f64::from(n) * h;
+    for _ in 0..6 {
+        let mut next = centre;
+        for i in -20..=20 {
+            let t = (centre + half * f64::from(i) / 20.0).clamp(0.0, end);
+            let at = f(t, t);
+            if at > value {
+                (value, next) = (at, t);
+            }
+        }
+        (centre, half) = (next, half / 10.0);
+    }
+    value
+}
+
+/// Axes with everything: mass, friction, weight, losses and servo factors.
+pub(crate) fn any_axis() -> impl Strategy<Value = Axis> {
+    (
+        (50.0..900.0_f64, 500.0..9000.0_f64, 1.0..800.0_f64),
+        prop_oneof![Just(0.0), 0.0..700.0_f64],
+        prop_oneof![Just(0.0), 0.0..900.0_f64],
+        prop_oneof![Just(0.0), -900.0..900.0_f64],
+        prop_oneof![Just(1.0), 0.6..1.0_f64],
+        prop_oneof![Just(0.0), 1e-6..1e-4_f64],
+        prop_oneof![
+            Just((1.0, 1.0, 1.0)),
+            (1.0..1.4_f64, 1.0..1.4_f64, 0.4..1.0_f64)
+        ],
+    )
+        .prop_map(
+            |((rapid, accel, mass), coulomb, viscous, gravity, efficiency, copper, factors)| Axis {
+                rapid_mm_s: rapid,
+                accel_mm_s2: accel,
+                mass_kg: mass,
+                coulomb_n: coulomb,
+                viscous_n_s_m: viscous,
+                gravity_n: gravity,
+                efficiency,
+                copper_w_n2: copper,
+                servo_factor_motor: factors.0,
+                servo_factor_regen: factors.1,
+                friction_min_ratio: factors.2,
+                ..axis()
+            },
+        )
+}
+
+/// Machines of three such axes.
+pub(crate) fn any_machine() -> impl Strategy<Value = Machine> {
+    (
+        [any_axis(), any_axis(), any_axis()],
+        prop_oneof![Just(0.0), 0.0..500.0_f64],
+        any::<bool>(),
+        any::<bool>(),
+    )
+        .prop_map(|(axes, base, credit, linuxcnc)| {
+            let mut machine = machine(&axes);
+            machine.converters[0].base_load_w = base;
+            machine.converters[0].credit_regen = credit;
+            if linuxcnc {
+                machine.controller.planner.arc_rule = ArcRule::LinuxCnc;
+            }
+            machine
+        })
+}
+
+/// Straight paths in any direction, short and long, slow and fast.
+pub(crate) fn any_delta() -> impl Strategy<Value = [f64; 3]> {
+    (
+        [-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64],
+        prop_oneof![Just(0.01), Just(1.0), Just(300.0)],
+    )
+        .prop_map(|(delta, scale)| delta.map(|d| d * scale))
+        .prop_filter("a path has a length", |delta| {
+            delta.iter().any(|d| d.abs() > 1e-6)
+        })
+}
+
+/// Feeds, rapids among them.
+pub(crate) fn any_feed() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(f64::INFINITY), 1.0..400.0_f64]
+}
+
+/// Geometry of an arc: plane, radius, start and sweep, lift, feed.
+pub(crate) type ArcShape = ([usize; 2], f64, [f64; 2], f64, f64);
+
+/// Arcs and helices in all planes, both senses, up to some turns.
+pub(crate) fn any_arc() -> impl Strategy<Value = ArcShape> {
+    (
+        prop_oneof![Just([0, 1]), Just([2, 0]), Just([1, 2])],
+        prop_oneof![0.2..5.0_f64, 5.0..300.0_f64],
+        -4.0..4.0_f64,
+        prop_oneof![-1.0..1.0_f64, -7.0..7.0_f64, 20.0..60.0_f64],
+        prop_oneof![Just(0.0), -30.0..30.0_f64],
+        1.0..400.0_f64,
+    )
+        .prop_map(|(plane, radius, start, sweep, lift, feed)| {
+            let sweep = if sweep.abs() < 1e-3 { 0.5 } else { sweep };
+            (plane, radius, [start, sweep], lift, feed)
+        })
+}
