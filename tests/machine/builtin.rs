@@ -64,6 +64,39 @@ fn every_profile_loads_without_a_warning() {
     assert_eq!(builtin_controller("none"), None);
 }
 
+/// Coulomb friction, no viscous: a preset speed is right if all its axes fit
+/// at that speed and at full acceleration, whatever the direction.
+#[test]
+fn every_speed_preset_fits() {
+    for file in builtin::machines() {
+        let (machine, _) = Machine::load(file.name).unwrap();
+        let converter = &machine.converters[0];
+        let switched: f64 = machine.loads.iter().map(|load| load.power_w).sum();
+        let limit = converter.peak_power_w * (1.0 - machine.limits.margin)
+            - converter.base_load_w
+            - switched;
+        for preset in &machine.presets {
+            let power: f64 = preset
+                .axes
+                .iter()
+                .map(|n| {
+                    let axis = machine.axes[n].unwrap();
+                    let force = axis.mass_kg * axis.accel_mm_s2 * axis.si_per_unit
+                        + axis.coulomb_n
+                        + axis.gravity_n.max(0.0);
+                    preset.speed_mm_s[n] * axis.si_per_unit * force / axis.efficiency
+                })
+                .sum();
+            assert!(
+                power <= limit && power > 0.9 * limit,
+                "{} {}: {power:.0} W of {limit:.0} W",
+                file.name,
+                preset.axes
+            );
+        }
+    }
+}
+
 #[test]
 fn the_default_machine_is_converted_to_the_load_side() {
     let (machine, _) = Machine::load("three-axis").unwrap();

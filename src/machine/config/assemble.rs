@@ -2,14 +2,13 @@
 
 use super::findings::Findings;
 use super::machine_file::{
-    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, PresetTable, RapidName,
-    SpindleTable,
+    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName, SpindleTable,
 };
-use super::value::{At, Num, PerAxis, Positive};
-use super::{axis, converter, plausible, unchecked, word};
-use crate::machine::axis::{AXES, Axis, AxisSet, AxisValues};
-use crate::machine::controller::{Controller, PathMode, RapidPath};
-use crate::machine::model::{Converter, Limits, Load, Machine, Path, Preset, Spindle};
+use super::value::{At, Num};
+use super::{axis, converter, plausible, preset, unchecked, word};
+use crate::machine::axis::{AXES, Axis, AxisSet};
+use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
+use crate::machine::model::{Converter, Limits, Load, Machine, Path, Spindle};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Share of the peak power that is kept free if the file does not say.
@@ -20,16 +19,23 @@ const DEFAULT_MARGIN: f64 = 0.1;
 pub(crate) fn machine(
     findings: &mut Findings<'_>,
     file: &MachineFile,
-    controller: Controller,
+    mut controller: Controller,
 ) -> Option<Machine> {
+    let path = path(file.path.as_ref().map(|table| &table.value), &controller);
+    if path.rapid == RapidPath::Independent {
+        // A feed is straight: written as one, such a rapid would take another path.
+        controller.rapid_knob = RapidKnob::None;
+    }
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();
+    let mut complete = true;
     for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
         axes[id as usize] = axis::axis(findings, id, table);
         axis_set.insert(id as usize);
+        complete &= axes[id as usize].is_some();
     }
     if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
-        && !findings.has_errors()
+        && !findings.refused_in("axes")
     {
         findings.error(
             "machine-missing",
@@ -48,9 +54,9 @@ pub(crate) fn machine(
         .flatten()
         .filter_map(|table| load(findings, table, &converters))
         .collect();
-    Some(Machine {
+    let machine = Machine {
         name: file.name.as_ref()?.value.clone(),
-        path: path(file.path.as_ref().map(|table| &table.value), &controller),
+        path,
         controller,
         axes,
         axis_set,
@@ -60,10 +66,12 @@ pub(crate) fn machine(
             .as_ref()
             .and_then(|table| spindle(findings, &table.value)),
         loads,
-        presets: presets(findings, file, &axes, axis_set),
+        presets: preset::presets(findings, file, &axes, axis_set),
         limits,
         unchecked: unchecked::list(file),
-    })
+    };
+    // With an axis left out the machine would look weaker than it is.
+    complete.then_some(machine)
 }
 
 /// Path mode of its name.
@@ -177,109 +185,6 @@ fn load(
         power_w: power_w.as_ref()?.value,
         converter,
     })
-}
-
-fn presets(
-    findings: &mut Findings<'_>,
-    file: &MachineFile,
-    axes: &[Option<Axis>; AXES],
-    machine_axes: AxisSet,
-) -> Vec<Preset> {
-    let mut list: Vec<Preset> = Vec::new();
-    for table in file.preset.iter().flatten() {
-        let Some(letters) = &table.value.axes else {
-            continue;
-        };
-        let mut set = AxisSet::default();
-        for letter in &letters.value {
-            let axis = letter.value.axis();
-            let name = axis.letter() as char;
-            if !machine_axes.contains(axis as usize) {
-                let message = format!("the machine has no axis {name}");
-                findings.error("machine-preset", &letter.span, message, None);
-            } else if set.contains(axis as usize) {
-                let message = format!("axis {name} is named twice");
-                findings.error("machine-preset", &letter.span, message, None);
-            }
-            set.insert(axis as usize);
-        }
-        if set.is_empty() {
-            findings.error(
-                "machine-preset",
-                &letters.span,
-                "a preset without axes",
-                None,
-            );
-        } else if list.iter().any(|other| other.axes == set) {
-            let message = format!("a second preset for the axes {set}");
-            let help = Some("keep one of the two".to_owned());
-            findings.error("machine-preset", &letters.span, message, help);
-        }
-        list.push(preset(findings, table, set, axes));
-    }
-    list
-}
-
-fn preset(
-    findings: &mut Findings<'_>,
-    table: &At<PresetTable>,
-    set: AxisSet,
-    axes: &[Option<Axis>; AXES],
-) -> Preset {
-    let PresetTable {
-        speed_mm_min,
-        accel_mm_s2,
-        ..
-    } = &table.value;
-    let speed_mm_s = values(findings, speed_mm_min.as_ref(), set, |axis| {
-        axes[axis].map(|axis| axis.rapid_mm_s * SECONDS_PER_MINUTE)
-    })
-    .map(|speed| speed / SECONDS_PER_MINUTE);
-    let accel = values(findings, accel_mm_s2.as_ref(), set, |axis| {
-        axes[axis].map(|axis| axis.accel_mm_s2)
-    });
-    let has = |values: &AxisValues| values.iter().any(|value| value.is_finite());
-    let preset = Preset {
-        axes: set,
-        has_speed: has(&speed_mm_s),
-        has_accel: has(&accel),
-        speed_mm_s,
-        accel_mm_s2: accel,
-    };
-    if !preset.has_speed && !preset.has_accel && !findings.has_errors() {
-        let help = Some("give `speed_mm_min` or `accel_mm_s2`".to_owned());
-        findings.error(
-            "machine-preset",
-            &table.span,
-            "a preset that limits nothing",
-            help,
-        );
-    }
-    preset
-}
-
-/// Values by axis, infinite where none is given; `limit` is the axis' own.
-fn values(
-    findings: &mut Findings<'_>,
-    given: Option<&PerAxis<Positive>>,
-    set: AxisSet,
-    limit: impl Fn(usize) -> Option<f64>,
-) -> AxisValues {
-    let mut values = [f64::INFINITY; AXES];
-    for (axis, number) in given.iter().flat_map(|given| given.iter()) {
-        let name = axis.letter() as char;
-        if !set.contains(axis as usize) {
-            let message = format!("axis {name} is not in this preset's `axes`");
-            findings.error("machine-preset", &number.span, message, None);
-        } else if let Some(limit) = limit(axis as usize)
-            && number.value > limit * (1.0 + 1e-9)
-        {
-            let message = format!("above the limit of axis {name}, {limit:.0}: it has no effect");
-            findings.warning("machine-preset", &number.span, message, None);
-        }
-        values[axis as usize] = number.value;
-    }
-    values
 }
 
 fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {

@@ -12,6 +12,7 @@ use std::ops::Range;
 use super::findings::Findings;
 use super::machine_file::{AxisTable, KindName};
 use super::plausible;
+use super::quantity::{Quantities, form};
 use super::value::{At, Num};
 use crate::machine::axis::{Axis, AxisId, AxisKind};
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
@@ -21,7 +22,7 @@ pub(crate) fn axis(findings: &mut Findings<'_>, id: AxisId, table: &At<AxisTable
     let kind = kind(id, &table.value);
     let builder = Builder {
         letter: id.letter() as char,
-        header: table.span.clone(),
+        quantities: Quantities::new(id.letter() as char, table.span.clone()),
         kind,
     };
     builder.only_fields_of_kind(findings, &table.value);
@@ -51,32 +52,10 @@ fn value<B>(number: Option<&Num<B>>, default: f64) -> f64 {
     number.map_or(default, |number| number.value)
 }
 
-/// A quantity in the form in which it was given.
-struct Given {
-    key: &'static str,
-    value: f64,
-    span: Range<usize>,
-}
-
-/// A form of a quantity: its key, its value if given, and the factor to the
-/// load side; without a factor this form needs a lead.
-struct Form {
-    key: &'static str,
-    number: Option<At<f64>>,
-    factor: Option<f64>,
-}
-
-fn form<B>(key: &'static str, number: Option<&Num<B>>, factor: impl Into<Option<f64>>) -> Form {
-    Form {
-        key,
-        number: number.map(Num::at),
-        factor: factor.into(),
-    }
-}
-
+/// The axis that is being made.
 struct Builder {
     letter: char,
-    header: Range<usize>,
+    quantities: Quantities,
     kind: AxisKind,
 }
 
@@ -87,12 +66,13 @@ impl Builder {
         if lead_mm.is_none()
             && let Some(gear) = &table.gear_ratio
         {
-            self.needs_lead(findings, "gear_ratio", &gear.span);
+            self.quantities
+                .needs_lead(findings, "gear_ratio", &gear.span);
         }
         let rad_per_m = lead_mm.map(|lead| TAU * gear / (lead * M_PER_MM));
         let squared = rad_per_m.map(|k| k * k);
         let mm_s_per_rpm = lead_mm.map(|lead| lead / SECONDS_PER_MINUTE / gear);
-        let rapid = self.required(
+        let rapid = self.quantities.required(
             findings,
             "a rapid speed",
             [
@@ -104,13 +84,13 @@ impl Builder {
                 form("max_speed_rpm", table.max_speed_rpm.as_ref(), mm_s_per_rpm),
             ],
         );
-        let accel = self.acceleration(
+        let accel = self.quantities.acceleration(
             findings,
             form("accel_mm_s2", table.accel_mm_s2.as_ref(), 1.0),
-            table,
+            table.accel_time_s.as_ref(),
             rapid.as_ref(),
         );
-        let mass = self.required(
+        let mass = self.quantities.required(
             findings,
             "a mass or an inertia",
             [
@@ -118,28 +98,28 @@ impl Builder {
                 form("inertia_kg_m2", table.inertia_kg_m2.as_ref(), squared),
             ],
         );
-        let coulomb_n = self.optional(
+        let coulomb_n = self.quantities.optional(
             findings,
             [
                 form("coulomb_n", table.coulomb_n.as_ref(), 1.0),
                 form("friction_nm", table.friction_nm.as_ref(), rad_per_m),
             ],
         );
-        let viscous_n_s_m = self.optional(
+        let viscous_n_s_m = self.quantities.optional(
             findings,
             [
                 form("viscous_n_s_m", table.viscous_n_s_m.as_ref(), 1.0),
                 form("viscous_nm_s_rad", table.viscous_nm_s_rad.as_ref(), squared),
             ],
         );
-        let gravity_n = self.optional(
+        let gravity_n = self.quantities.optional(
             findings,
             [
                 form("gravity_n", table.gravity_n.as_ref(), 1.0),
                 form("gravity_nm", table.gravity_nm.as_ref(), rad_per_m),
             ],
         );
-        let copper_w_n2 = self.optional(
+        let copper_w_n2 = self.quantities.optional(
             findings,
             [
                 form("copper_w_n2", table.copper_w_n2.as_ref(), 1.0),
@@ -150,8 +130,9 @@ impl Builder {
                 ),
             ],
         );
+        warn_unused_lead(findings, table);
         let (rapid, accel, mass) = (rapid?, accel?, mass?);
-        plausible::linear(findings, table, accel.as_ref(), mass.as_ref());
+        plausible::linear(findings, table, &accel, &mass);
         Some(Axis {
             rapid_mm_s: rapid.value,
             accel_mm_s2: accel.value,
@@ -169,7 +150,7 @@ impl Builder {
     fn rotary(&self, findings: &mut Findings<'_>, table: &AxisTable) -> Option<Axis> {
         let gear = value(table.gear_ratio.as_ref(), 1.0);
         let squared = gear * gear;
-        let rapid = self.required(
+        let rapid = self.quantities.required(
             findings,
             "a rapid speed",
             [
@@ -185,22 +166,22 @@ impl Builder {
                 ),
             ],
         );
-        let accel = self.acceleration(
+        let accel = self.quantities.acceleration(
             findings,
             form("accel_deg_s2", table.accel_deg_s2.as_ref(), 1.0),
-            table,
+            table.accel_time_s.as_ref(),
             rapid.as_ref(),
         );
-        let inertia = self.required(
+        let inertia = self.quantities.required(
             findings,
             "an inertia",
             [form("inertia_kg_m2", table.inertia_kg_m2.as_ref(), squared)],
         );
-        let coulomb_n = self.optional(
+        let coulomb_n = self.quantities.optional(
             findings,
             [form("friction_nm", table.friction_nm.as_ref(), gear)],
         );
-        let viscous_n_s_m = self.optional(
+        let viscous_n_s_m = self.quantities.optional(
             findings,
             [form(
                 "viscous_nm_s_rad",
@@ -208,11 +189,11 @@ impl Builder {
                 squared,
             )],
         );
-        let gravity_n = self.optional(
+        let gravity_n = self.quantities.optional(
             findings,
             [form("gravity_nm", table.gravity_nm.as_ref(), gear)],
         );
-        let copper_w_n2 = self.optional(
+        let copper_w_n2 = self.quantities.optional(
             findings,
             [
                 form("copper_w_nm2", table.copper_w_nm2.as_ref(), squared.recip()),
@@ -220,7 +201,7 @@ impl Builder {
             ],
         );
         let (rapid, accel, inertia) = (rapid?, accel?, inertia?);
-        plausible::rotary(findings, table, accel.as_ref(), inertia.as_ref());
+        plausible::rotary(findings, table, &accel, &inertia);
         Some(Axis {
             rapid_mm_s: rapid.value,
             accel_mm_s2: accel.value,
@@ -253,116 +234,6 @@ impl Builder {
             friction_min_ratio: 1.0,
             si_per_unit: 1.0,
         }
-    }
-
-    /// Acceleration as given, or the rapid speed by the time to reach it.
-    fn acceleration(
-        &self,
-        findings: &mut Findings<'_>,
-        direct: Form,
-        table: &AxisTable,
-        rapid: Option<&Given>,
-    ) -> Option<Given> {
-        let time = table.accel_time_s.as_ref();
-        // Without a speed, which is reported already, any factor will do.
-        let speed = rapid.map_or(1.0, |rapid| rapid.value);
-        let inverse = time.map(|time| At {
-            value: time.value.recip(),
-            span: time.span.clone(),
-        });
-        let by_time = Form {
-            key: "accel_time_s",
-            number: inverse,
-            factor: Some(speed),
-        };
-        self.required(findings, "an acceleration", [direct, by_time])
-    }
-
-    /// The load-side value of a quantity that must be given, in one form.
-    fn required<const N: usize>(
-        &self,
-        findings: &mut Findings<'_>,
-        what: &str,
-        forms: [Form; N],
-    ) -> Option<Given> {
-        let keys = forms.each_ref().map(|form| form.key);
-        let given = self.one(findings, forms);
-        if let Ok(None) = &given {
-            let letter = self.letter;
-            let refused = keys
-                .iter()
-                .any(|key| findings.is_refused(&format!("axes.{letter}.{key}")));
-            if !refused {
-                let help = format!("give {}", keys.map(|key| format!("`{key}`")).join(" or "));
-                let message = format!("axis {letter} needs {what}");
-                findings.error("machine-missing", &self.header, message, Some(help));
-            }
-        }
-        let given = given.ok().flatten()?;
-        if given.value.is_finite() && given.value > 0.0 {
-            return Some(given);
-        }
-        // A value that was out of range is reported already.
-        if !findings.has_errors() {
-            let message = format!("`{}` is too large or too small to compute with", given.key);
-            findings.error("machine-range", &given.span, message, None);
-        }
-        None
-    }
-
-    /// The load-side value of a quantity, 0 if it is not given.
-    fn optional<const N: usize>(&self, findings: &mut Findings<'_>, forms: [Form; N]) -> f64 {
-        let Ok(Some(given)) = self.one(findings, forms) else {
-            return 0.0;
-        };
-        if !given.value.is_finite() {
-            let message = format!("`{}` is too large to compute with", given.key);
-            findings.error("machine-range", &given.span, message, None);
-        }
-        given.value
-    }
-
-    /// The one form that is given; an error if there are two.
-    fn one<const N: usize>(
-        &self,
-        findings: &mut Findings<'_>,
-        forms: [Form; N],
-    ) -> Result<Option<Given>, ()> {
-        let mut found: Option<Given> = None;
-        for form in forms {
-            let Some(number) = form.number else { continue };
-            if let Some(first) = &found {
-                let message = format!(
-                    "`{}` and `{}` give the same quantity of axis {}",
-                    first.key, form.key, self.letter
-                );
-                let help = Some("keep one of the two".to_owned());
-                findings.error("machine-twice", &number.span, message, help);
-                return Err(());
-            }
-            let Some(factor) = form.factor else {
-                self.needs_lead(findings, form.key, &number.span);
-                return Err(());
-            };
-            found = Some(Given {
-                key: form.key,
-                value: number.value * factor,
-                span: number.span,
-            });
-        }
-        Ok(found)
-    }
-
-    fn needs_lead(&self, findings: &mut Findings<'_>, key: &str, span: &Range<usize>) {
-        if findings.is_refused(&format!("axes.{}.lead_mm", self.letter)) {
-            return;
-        }
-        let message = format!(
-            "`{key}` is at the motor, but axis {} has no `lead_mm`",
-            self.letter
-        );
-        let help = Some("give the screw's `lead_mm`, or the quantity at the load".to_owned());
-        findings.error("machine-missing", span, message, help);
     }
 
     /// Reports fields of the other kind.
@@ -420,13 +291,16 @@ impl Builder {
     }
 }
 
-impl Given {
-    /// Key, value and place, for plausibility checks.
-    fn as_ref(&self) -> plausible::Given<'_> {
-        plausible::Given {
-            key: self.key,
-            value: self.value,
-            span: &self.span,
-        }
+/// A lead matters only if something is given at the motor.
+fn warn_unused_lead(findings: &mut Findings<'_>, table: &AxisTable) {
+    let at_motor = table.max_speed_rpm.is_some()
+        || table.inertia_kg_m2.is_some()
+        || table.friction_nm.is_some()
+        || table.viscous_nm_s_rad.is_some()
+        || table.gravity_nm.is_some()
+        || table.copper_w_nm2.is_some();
+    if let Some(lead) = table.lead_mm.as_ref().filter(|_| !at_motor) {
+        let message = "`lead_mm` has no effect: nothing is given at the motor";
+        findings.warning("machine-unit", &lead.span, message, None);
     }
 }

@@ -47,7 +47,7 @@ pub(crate) fn converters(
         .map(|axis| (ALL_AXES[axis].letter() as char).to_string())
         .collect();
     if let Some(last) = tables.0.last().filter(|_| !forgotten.is_empty())
-        && !findings.is_refused("converter")
+        && !findings.refused_in("converter")
         && !tables
             .0
             .iter()

@@ -8,6 +8,8 @@ use crate::source::Span;
 
 /// Longer lines are cut in diagnostics.
 const MAX_LINE: usize = 400;
+/// More findings of one severity help nobody, and cost time.
+const MAX_FINDINGS: usize = 100;
 
 /// Findings in one file, in the order in which they were made.
 #[derive(Debug)]
@@ -36,10 +38,27 @@ impl<'a> Findings<'a> {
 
     /// True when the value at `path`, or one that it is part of, was refused.
     pub(crate) fn is_refused(&self, path: &str) -> bool {
-        self.refused.iter().any(|refused| {
-            path.strip_prefix(refused.as_str())
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        })
+        let mut end = path.len();
+        loop {
+            if self.refused.contains(&path[..end]) {
+                return true;
+            }
+            let Some(dot) = path[..end].rfind('.') else {
+                return false;
+            };
+            end = dot;
+        }
+    }
+
+    /// True when the value at `path`, or one inside it, was refused.
+    pub(crate) fn refused_in(&self, path: &str) -> bool {
+        let inside = format!("{path}.");
+        self.is_refused(path)
+            || self
+                .refused
+                .range(inside.clone()..)
+                .next()
+                .is_some_and(|refused| refused.starts_with(&inside))
     }
 
     /// A mistake: the file is refused.
@@ -88,7 +107,12 @@ impl<'a> Findings<'a> {
         message: String,
         help: Option<String>,
     ) {
-        let diagnostic = locate(self.text, span, diagnostic(severity, rule, message, help));
+        let same = self.list.iter().filter(|d| d.severity == severity);
+        if same.count() >= MAX_FINDINGS {
+            return;
+        }
+        let diagnostic = diagnostic(severity, rule, message, help);
+        let diagnostic = locate(self.text.as_bytes(), span, diagnostic);
         if !self.list.contains(&diagnostic) {
             self.list.push(diagnostic);
         }
@@ -112,11 +136,10 @@ pub(crate) fn diagnostic(
 }
 
 /// Adds line, span and text; an empty span at the start means the whole file.
-fn locate(text: &str, span: &Range<usize>, diagnostic: Diagnostic) -> Diagnostic {
+pub(crate) fn locate(bytes: &[u8], span: &Range<usize>, diagnostic: Diagnostic) -> Diagnostic {
     if *span == (0..0) {
         return diagnostic;
     }
-    let bytes = text.as_bytes();
     let start = span.start.min(bytes.len());
     let before = &bytes[..start];
     let line_start = before

@@ -30,8 +30,9 @@ pub(crate) fn type_name(name: &str) -> &'static str {
 }
 
 /// What stands there, in plain words.
-pub(crate) fn found_name(value: &DeValue<'_>) -> &'static str {
+pub(crate) fn found_name(expected: &str, value: &DeValue<'_>) -> &'static str {
     match value {
+        DeValue::Float(_) if expected == "integer" => "one with a decimal point",
         DeValue::Table(_) => "a table",
         DeValue::Array(_) => "a list",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",
@@ -47,6 +48,7 @@ pub(crate) fn wrong_type(expected: &str, found: &DeValue<'_>) -> Option<String> 
         ("number" | "integer", DeValue::String(text)) if text.trim().parse::<f64>().is_ok() => {
             Some(format!("write it without quotes: {}", text.trim()))
         }
+        ("array", DeValue::Table(_)) => Some("write its header in double brackets".to_owned()),
         ("array", DeValue::String(text)) => Some(format!("write it as a list: [\"{text}\"]")),
         ("string", DeValue::Integer(_) | DeValue::Float(_) | DeValue::Boolean(_)) => {
             Some("write it in quotes".to_owned())
@@ -113,13 +115,13 @@ pub(crate) fn alternatives(words: &[&str]) -> String {
     }
 }
 
-/// The keys of a table, for a message.
+/// The keys of a table, for a message; a long list helps nobody.
 pub(crate) fn keys(known: &serde_json::Map<String, Value>) -> String {
-    known
-        .keys()
-        .map(String::as_str)
-        .collect::<Vec<_>>()
-        .join(", ")
+    if known.len() > 16 {
+        return "`gwatt machine schema` lists the keys".to_owned();
+    }
+    let names: Vec<&str> = known.keys().map(String::as_str).collect();
+    format!("known here: {}", names.join(", "))
 }
 
 /// The table of the file in which a key is known.

@@ -173,10 +173,9 @@ fn read(path: &Path, name: &str, what: &str, builtins: &[Builtin]) -> Result<Str
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let good = &error.as_bytes()[..at];
-        let line = memchr::memchr_iter(b'\n', good).count() + 1;
         let help = Some("save the file as UTF-8".to_owned());
-        refuse(format!("{shown} is not UTF-8: line {line}"), help)
+        let refused = refuse(format!("{shown} is not UTF-8"), help);
+        findings::locate(error.as_bytes(), &(at..at + 1), refused)
     })
 }
 
@@ -233,10 +232,15 @@ fn not_empty(findings: &mut Findings<'_>, key: &str, text: Option<&At<String>>) 
     }
 }
 
-fn finish<T>(value: Option<T>, findings: Findings<'_>) -> Loaded<T> {
-    let has_errors = findings.has_errors();
+fn finish<T>(value: Option<T>, mut findings: Findings<'_>) -> Loaded<T> {
     match value {
-        Some(value) if !has_errors => Ok((value, findings.into_list())),
-        _ => Err(findings.into_list()),
+        Some(value) if !findings.has_errors() => Ok((value, findings.into_list())),
+        value => {
+            if value.is_none() && !findings.has_errors() {
+                // Not known to occur: never refuse without a reason.
+                findings.error("machine-file", &(0..0), "the file is not complete", None);
+            }
+            Err(findings.into_list())
+        }
     }
 }

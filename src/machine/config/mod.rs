@@ -2,7 +2,7 @@
 //!
 //! Text → tree (`document`) → checked against the schema (`structure`) →
 //! structs (`machine_file`, `controller_file`) → `Machine`, `Controller`
-//! (`assemble`, `axis`, `converter`, `profile`). All mistakes of a file are
+//! (`assemble`, `axis`, `converter`, `preset`, `profile`). All mistakes of a file are
 //! collected on the way, each with its line.
 
 mod assemble;
@@ -15,7 +15,9 @@ mod hints;
 mod load;
 mod machine_file;
 mod plausible;
+mod preset;
 mod profile;
+mod quantity;
 mod schema;
 mod structure;
 mod unchecked;

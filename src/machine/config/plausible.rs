@@ -4,17 +4,10 @@ use std::ops::Range;
 
 use super::findings::Findings;
 use super::machine_file::{AxisTable, ConverterTable, OverrideTable};
+use super::quantity::Given;
 use super::value::Num;
 
 const RULE: &str = "machine-unit";
-
-/// A load-side value and the key that gave it.
-#[derive(Clone, Copy)]
-pub(crate) struct Given<'a> {
-    pub(crate) key: &'static str,
-    pub(crate) value: f64,
-    pub(crate) span: &'a Range<usize>,
-}
 
 /// What a value is usually, and what it looks like when it is outside.
 struct Usual {
@@ -149,27 +142,28 @@ const ROTARY_INERTIA: Usual = Usual {
 };
 
 /// Checks a linear axis.
-pub(crate) fn linear(
-    findings: &mut Findings<'_>,
-    table: &AxisTable,
-    accel: Given<'_>,
-    mass: Given<'_>,
-) {
+pub(crate) fn linear(findings: &mut Findings<'_>, table: &AxisTable, accel: &Given, mass: &Given) {
     fields(findings, table);
-    check(findings, &LINEAR_ACCEL, &accel);
-    check(findings, &LINEAR_MASS, &mass);
+    check(findings, &LINEAR_ACCEL, accel.key, accel.value, &accel.span);
+    check(findings, &LINEAR_MASS, mass.key, mass.value, &mass.span);
 }
 
 /// Checks a rotary axis.
 pub(crate) fn rotary(
     findings: &mut Findings<'_>,
     table: &AxisTable,
-    accel: Given<'_>,
-    inertia: Given<'_>,
+    accel: &Given,
+    inertia: &Given,
 ) {
     fields(findings, table);
-    check(findings, &ROTARY_ACCEL, &accel);
-    check(findings, &ROTARY_INERTIA, &inertia);
+    check(findings, &ROTARY_ACCEL, accel.key, accel.value, &accel.span);
+    check(
+        findings,
+        &ROTARY_INERTIA,
+        inertia.key,
+        inertia.value,
+        &inertia.span,
+    );
 }
 
 /// Checks a converter.
@@ -215,37 +209,35 @@ fn fields(findings: &mut Findings<'_>, table: &AxisTable) {
 fn field<B>(findings: &mut Findings<'_>, key: &'static str, number: Option<&Num<B>>) {
     let usual = FIELDS.iter().find(|usual| usual.key == key);
     if let (Some(usual), Some(number)) = (usual, number) {
-        let given = Given {
-            key,
-            value: number.value,
-            span: &number.span,
-        };
-        check(findings, usual, &given);
+        check(findings, usual, key, number.value, &number.span);
     }
 }
 
-fn check(findings: &mut Findings<'_>, usual: &Usual, given: &Given<'_>) {
-    let (size, doubt) = if given.value < usual.low {
+fn check(findings: &mut Findings<'_>, usual: &Usual, key: &str, value: f64, span: &Range<usize>) {
+    if value <= 0.0 {
+        // Out of range: reported already.
+        return;
+    }
+    let (size, doubt) = if value < usual.low {
         ("small", usual.if_below)
-    } else if given.value > usual.high {
+    } else if value > usual.high {
         ("large", usual.if_above)
     } else {
         return;
     };
-    // A converted value is named with its quantity, a written one is not.
-    let quantity = match given.key {
-        "inertia_kg_m2" | "accel_time_s" if usual.key != given.key => {
-            format!("a {} of ", usual.key)
-        }
-        _ => String::new(),
+    // A converted value is named with its quantity.
+    let quantity = match key {
+        "accel_time_s" if usual.unit != "s" => "an acceleration of ",
+        "inertia_kg_m2" if usual.unit == "kg" => "a mass of ",
+        _ => "",
     };
-    let number = round(given.value);
+    let number = round(value);
     let space = if usual.unit.is_empty() { "" } else { " " };
     let message = format!(
-        "`{}`: {quantity}{number}{space}{} is unusually {size}",
-        given.key, usual.unit
+        "`{key}`: {quantity}{number}{space}{} is unusually {size}",
+        usual.unit
     );
-    findings.warning(RULE, given.span, message, Some(doubt.to_owned()));
+    findings.warning(RULE, span, message, Some(doubt.to_owned()));
 }
 
 /// Four digits: a converted value has many.

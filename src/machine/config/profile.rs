@@ -195,7 +195,7 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
                 }
                 list.push(letter);
             }
-            if list.is_empty() && !findings.has_errors() {
+            if list.is_empty() && !findings.refused_in("knob") {
                 let message = "argument = \"path\" needs `letters`";
                 let help = Some("such as letters = [\"P\", \"T\"]".to_owned());
                 findings.error("machine-missing", &argument.span, message, help);

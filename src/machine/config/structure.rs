@@ -102,7 +102,7 @@ impl<'a, 'f> Structure<'a, 'f> {
                 let message = format!(
                     "`{name}` must be {}, not {}",
                     hints::type_name(expected.unwrap_or("")),
-                    hints::found_name(found)
+                    hints::found_name(expected.unwrap_or(""), found)
                 );
                 let help = hints::wrong_type(expected.unwrap_or(""), found);
                 self.findings.error("machine-type", &span, message, help);
@@ -209,8 +209,15 @@ impl<'a, 'f> Structure<'a, 'f> {
     ) {
         if known.len() == 10 && known.contains_key("X") {
             let message = format!("`{name}` is not an axis letter");
-            let help = Some(format!("an axis is {AXIS_KEYS}"));
-            self.findings.error("machine-axis", span, message, help);
+            let upper = name.to_uppercase();
+            let help = if known.contains_key(&upper) {
+                self.findings.refuse(join(path, &upper));
+                format!("in upper case: `{upper}`")
+            } else {
+                format!("an axis is {AXIS_KEYS}")
+            };
+            self.findings
+                .error("machine-axis", span, message, Some(help));
             return;
         }
         let message = format!("unknown key `{name}`");
@@ -218,7 +225,7 @@ impl<'a, 'f> Structure<'a, 'f> {
         let help = close
             .map(|close| format!("did you mean `{close}`?"))
             .or_else(|| hints::elsewhere(name, self.root))
-            .or_else(|| Some(format!("known here: {}", hints::keys(known))));
+            .or_else(|| Some(hints::keys(known)));
         if let Some(close) = close {
             // The key that was meant is not reported as missing too.
             self.findings.refuse(join(path, close));
