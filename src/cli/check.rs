@@ -39,7 +39,7 @@ pub enum Format {
     Json,
     /// SARIF 2.1.0, for code scanning
     Sarif,
-    /// JUnit XML, one test case a program
+    /// XML as `JUnit` writes it, one test case a program
     Junit,
     /// Annotations of a GitHub workflow
     Github,

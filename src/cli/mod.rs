@@ -39,7 +39,7 @@ gwatt works with a model. It protects nothing: the drives' own limits stay on.";
 #[derive(Debug, Parser)]
 #[command(name = "gwatt", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Cli {
-    /// When to use colours; NO_COLOR is respected
+    /// When to use colours; `NO_COLOR` is respected
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = ColorChoice::Auto)]
     pub color: ColorChoice,
     /// What to do.

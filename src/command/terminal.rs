@@ -44,6 +44,7 @@ impl Terminal {
     }
 
     /// Text that has its line end.
+    #[allow(clippy::unused_self, reason = "the terminal is what writes")]
     pub fn text(self, text: &str) {
         let _ = io::stderr().write_all(text.as_bytes());
     }
