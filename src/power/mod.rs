@@ -9,6 +9,7 @@
 //! energy, and only regenerating ones towards the regenerative peak.
 
 mod arc;
+mod arc_piece;
 mod axis;
 mod circle;
 mod demand;
