@@ -4,21 +4,9 @@ use arrayvec::ArrayVec;
 
 use super::code::{GCode, code_number, g_code};
 use super::report::Report;
-use crate::machine::{AXES, AxisId, Controller};
+use crate::machine::{AxisId, Controller};
 use crate::source::Span;
 use crate::syntax::{Block, Word};
-
-/// Axis index of each letter, 255 for none.
-const AXIS_OF_LETTER: [u8; 256] = {
-    let mut table = [255; 256];
-    let letters = *b"XYZABCUVWE";
-    let mut axis = 0;
-    while axis < AXES {
-        table[letters[axis] as usize] = axis as u8;
-        axis += 1;
-    }
-    table
-};
 
 /// Bit of a letter in the masks of this module.
 pub(super) const fn bit(letter: u8) -> u32 {
@@ -36,12 +24,6 @@ pub(super) const AXIS_LETTERS: u32 = bit(b'X')
     | bit(b'V')
     | bit(b'W')
     | bit(b'E');
-
-/// The index of the axis that a letter names.
-pub(super) fn axis_of(letter: u8) -> Option<usize> {
-    let axis = AXIS_OF_LETTER[usize::from(letter)];
-    (axis != 255).then_some(usize::from(axis))
-}
 
 /// The words of a block by letter. A buffer, filled again for each block.
 #[derive(Debug)]
@@ -208,12 +190,6 @@ impl Words {
     /// Whether the letter stands in the block.
     pub(super) fn has(&self, letter: u8) -> bool {
         self.present & bit(letter) != 0
-    }
-
-    /// Value of a letter's word, without using it.
-    pub(super) fn value(&self, letter: u8) -> Option<f64> {
-        self.has(letter)
-            .then(|| self.values[usize::from(letter - b'A')])
     }
 
     /// Value of a letter's word if no other code has used it; it is used now.
