@@ -42,6 +42,8 @@ pub struct Rewriter<'m> {
     /// Knobs that differ from the original, with their values.
     turned: Vec<(usize, AxisValues)>,
     line_end: Vec<u8>,
+    /// The last line that was written has an end.
+    complete: bool,
     edits: Vec<Edit>,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
@@ -59,6 +61,7 @@ impl<'m> Rewriter<'m> {
             },
             turned: Vec::new(),
             line_end: b"\n".to_vec(),
+            complete: true,
             edits: Vec::new(),
             edited_lines: 0,
         }
@@ -69,6 +72,7 @@ impl<'m> Rewriter<'m> {
     #[must_use]
     pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         let (_, end) = split_line_end(view.text);
+        self.complete = !end.is_empty();
         if !end.is_empty() && end != self.line_end {
             self.line_end = end.to_vec();
         }
@@ -99,13 +103,12 @@ impl<'m> Rewriter<'m> {
 
     /// Puts the state right at the end of a program that has no end word.
     pub fn finish(&mut self, last: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
-        let complete = out.is_empty() || matches!(out.last(), Some(b'\n' | b'\r'));
         let mut lines = Vec::new();
         self.restore(last, knobs, &mut lines);
         if lines.is_empty() {
             return;
         }
-        if !complete {
+        if !self.complete {
             // The last line has no end: the new one takes over that habit.
             out.extend_from_slice(&self.line_end);
             lines.truncate(lines.len() - self.line_end.len());
