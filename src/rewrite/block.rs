@@ -313,8 +313,10 @@ impl<'m> Rewriter<'m> {
     }
 }
 
-/// Takes the rounding of a division off: ten digits.
+/// Takes the rounding of a division off: twelve digits.
 fn tidy(value: f64) -> f64 {
-    let rounded = (value * 1e7).round() / 1e7;
+    let decimals = 11.0 - libm::floor(libm::log10(value));
+    let scale = libm::pow(10.0, decimals.clamp(0.0, 18.0)).round();
+    let rounded = (value * scale).round() / scale;
     if rounded.is_finite() { rounded } else { value }
 }
