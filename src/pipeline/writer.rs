@@ -175,7 +175,10 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 outcomes,
                 ..
             } = self;
-            assessor.want.floor_w = tally.floor_w();
+            // Rows need every peak exactly.
+            if !assessor.want.energy {
+                assessor.want.floor_w = tally.floor_w();
+            }
             assessor.push(mv, line.text, &mut |mv, assessment, text| {
                 judged(mv, assessment, text, tally, limiter, flights, outcomes);
             });
