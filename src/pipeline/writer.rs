@@ -69,6 +69,8 @@ pub(super) struct Writer<'m, R, W> {
     outcomes: Vec<Outcome>,
     /// Path mode of the last move that was read.
     mode: PathMode,
+    /// Millimetres in a program unit behind the last block that was read.
+    mm_per_unit: f64,
     /// The original's state behind the last block that was written.
     mark: Mark,
     knobs: Option<KnobState>,
@@ -91,6 +93,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             mark: Mark::of(front.interpreter().modal()),
             knobs: knobs(machine, front.interpreter().knobs()),
             mode: front.interpreter().modal().path_mode,
+            mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
             assessor: Assessor::new(machine, options.certificate, want),
@@ -158,9 +161,14 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             None => Entry::new(&line, self.machine),
         };
         let number = self.first + self.entries.len() as u64;
+        let before = Before {
+            mode: self.mode,
+            mm_per_unit: self.mm_per_unit,
+        };
+        self.mm_per_unit = line.interpreter.modal().mm_per_unit;
         for step in &entry.steps {
             let Step::Move(mv) = step else { continue };
-            let permit = permit(&line, self.machine, mv, self.mode);
+            let permit = permit(&line, self.machine, mv, before);
             self.mode = mv.path_mode;
             self.flights.push_back(Flight {
                 entry: number,
@@ -389,12 +397,20 @@ fn knobs(machine: &Machine, state: &KnobState) -> Option<KnobState> {
     (!machine.controller.knobs.is_empty()).then(|| state.clone())
 }
 
-/// What may be changed about the block of a move; `mode` is the path mode of
-/// the move before it.
-fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, mode: PathMode) -> Permit {
+/// What held before a block.
+#[derive(Clone, Copy)]
+struct Before {
+    /// Path mode of the move before it.
+    mode: PathMode,
+    /// Millimetres in a program unit.
+    mm_per_unit: f64,
+}
+
+/// What may be changed about the block of a move.
+fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, before: Before) -> Permit {
     let facts = &line.facts;
     let modal = line.interpreter.modal();
-    let stops = mv.path_mode == PathMode::ExactStop && mode == PathMode::ExactStop;
+    let stops = mv.path_mode == PathMode::ExactStop && before.mode == PathMode::ExactStop;
     let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
     let checks = [
         (facts.checksum, "it carries a checksum"),
@@ -407,6 +423,7 @@ fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, mode: PathMode) -> 
             "it stops, changes the tool or ends the program",
         ),
         (facts.turns_knob, "it sets limits itself"),
+        (facts.dwell_takes_feed, "an F in it would be its dwell"),
         (
             modal.feed_mode == FeedMode::InverseTime,
             "its feed is an inverse time (G93)",
@@ -422,10 +439,11 @@ fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, mode: PathMode) -> 
     let first = checks.iter().position(|(applies, _)| *applies);
     Permit {
         edit: first.is_none_or(|first| first > 3),
-        feed_word: first.is_none_or(|first| first > 5),
+        feed_word: first.is_none_or(|first| first > 6),
         as_feed: first.is_none(),
         reason: first.map_or("", |first| checks[first].1),
-        mm_per_unit: modal.mm_per_unit,
+        mm_per_unit: facts.feed_mm_per_unit,
+        knob_mm_per_unit: before.mm_per_unit,
         feed_before: modal.feed.as_ref().map(|feed| feed.value),
         feed_accel_mm_s2: line.interpreter.knobs().feed_accel_mm_s2,
     }

@@ -77,8 +77,13 @@ impl<'m> Rewriter<'m> {
             self.line_end = end.to_vec();
         }
         let facts = view.facts;
-        let looked_at =
-            facts.boundary || facts.turns_knob || view.block.tape || view.block.delete_level > 0;
+        // Nothing can be put back inside a block that takes no further word.
+        let sealed = facts.checksum || facts.dwell_takes_feed;
+        let looked_at = facts.boundary
+            || facts.turns_knob
+            || sealed
+            || view.block.tape
+            || view.block.delete_level > 0;
         if looked_at {
             self.restore(view.before, view.knobs, out);
         }
@@ -156,7 +161,7 @@ impl<'m> Rewriter<'m> {
         let wanted = match view.change.feed {
             Some(value) => Some(FeedValue {
                 value,
-                mm_per_unit: view.after.mm_per_unit,
+                mm_per_unit: facts.feed_mm_per_unit,
             }),
             None => original,
         };
@@ -187,7 +192,7 @@ impl<'m> Rewriter<'m> {
                 value,
                 feed.as_ref().is_some_and(|feed| has_point(&feed.text)),
             ),
-            (None, Some(feed)) => feed_again(feed, view.after.mm_per_unit),
+            (None, Some(feed)) => feed_again(feed, facts.feed_mm_per_unit),
             (None, None) => return,
         };
         let mut text = Vec::with_capacity(number.len() + 2);
