@@ -33,8 +33,24 @@ pub(super) struct Slot {
     pub(super) assessment: Assessment,
     pub(super) permit: Permit,
     pub(super) outcome: Outcome,
-    /// The controller may run from this move into the next.
+    /// The controller may run from this move into the next one that moves.
     pub(super) joined: bool,
+    /// It has no length and is passed on the way to the next.
+    pub(super) rider: bool,
+}
+
+impl Slot {
+    fn new(mv: &Move, assessment: &Assessment, permit: &Permit) -> Self {
+        Self {
+            mv: mv.clone(),
+            changed: mv.clone(),
+            assessment: *assessment,
+            permit: *permit,
+            outcome: Outcome::default(),
+            joined: false,
+            rider: false,
+        }
+    }
 }
 
 /// Decides for the moves of one program.
@@ -65,50 +81,51 @@ impl<'m> Limiter<'m> {
         sink: &mut impl FnMut(&Outcome),
     ) {
         if !assessment.blended {
-            self.settle(false, sink);
             let outcome = self.alone(mv, assessment, permit);
+            if joined && !self.slots.is_empty() {
+                let mut slot = Slot::new(mv, assessment, permit);
+                slot.outcome = outcome;
+                slot.rider = true;
+                self.slots.push_back(slot);
+                return;
+            }
+            self.settle(sink);
             sink(&outcome);
             return;
         }
-        let slot = Slot {
-            mv: mv.clone(),
-            changed: mv.clone(),
-            assessment: *assessment,
-            permit: *permit,
-            outcome: Outcome::default(),
-            joined: false,
-        };
-        if let Some(last) = self.slots.back_mut() {
-            last.joined = joined;
-        }
-        self.slots.push_back(slot);
-        if self.slots.len() >= 2 {
-            let center = self.slots.len() - 2;
+        let previous = self.last_moving();
+        self.slots.push_back(Slot::new(mv, assessment, permit));
+        let mut needed = self.slots.len() - 1;
+        if let Some(center) = previous {
+            self.slots[center].joined = joined;
             window::settle(&self.solver, &mut self.slots, center);
-        }
-        let keep = if joined { 2 } else { 1 };
-        while self.slots.len() > keep {
-            if let Some(slot) = self.slots.pop_front() {
-                sink(&slot.outcome);
+            if joined {
+                needed = center;
             }
+        }
+        for slot in self.slots.drain(..needed) {
+            sink(&slot.outcome);
         }
     }
 
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Outcome)) {
-        self.settle(false, sink);
+        self.settle(sink);
     }
 
     /// Decides what is waiting; nothing that follows is joined to it.
-    fn settle(&mut self, joined: bool, sink: &mut impl FnMut(&Outcome)) {
-        if let Some(last) = self.slots.back_mut() {
-            last.joined = joined;
-            let center = self.slots.len() - 1;
+    fn settle(&mut self, sink: &mut impl FnMut(&Outcome)) {
+        if let Some(center) = self.last_moving() {
+            self.slots[center].joined = false;
             window::settle(&self.solver, &mut self.slots, center);
         }
         for slot in self.slots.drain(..) {
             sink(&slot.outcome);
         }
+    }
+
+    fn last_moving(&self) -> Option<usize> {
+        self.slots.iter().rposition(|slot| !slot.rider)
     }
 
     fn alone(&self, mv: &Move, assessment: &Assessment, permit: &Permit) -> Outcome {
