@@ -425,6 +425,10 @@ fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, before: Before) -> 
         (facts.turns_knob, "it sets limits itself"),
         (facts.dwell_takes_feed, "an F in it would be its dwell"),
         (
+            modal.feed.is_none() && matches!(mv.kind, MoveKind::Feed | MoveKind::Arc),
+            "no F is in force that could be put back",
+        ),
+        (
             modal.feed_mode == FeedMode::InverseTime,
             "its feed is an inverse time (G93)",
         ),
@@ -439,7 +443,7 @@ fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, before: Before) -> 
     let first = checks.iter().position(|(applies, _)| *applies);
     Permit {
         edit: first.is_none_or(|first| first > 3),
-        feed_word: first.is_none_or(|first| first > 6),
+        feed_word: first.is_none_or(|first| first > 7),
         as_feed: first.is_none(),
         reason: first.map_or("", |first| checks[first].1),
         mm_per_unit: facts.feed_mm_per_unit,
