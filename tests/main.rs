@@ -4,4 +4,5 @@ mod syntax;
 mod plan;
 mod power;
 mod rig;
+mod limit;
 mod machine;
