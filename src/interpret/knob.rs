@@ -33,7 +33,11 @@ impl KnobState {
 
     /// Acceleration limits of moves of this kind, mm/s².
     pub(super) fn accel(&self, kind: MoveKind) -> &AxisValues {
-        if kind == MoveKind::Rapid { &self.rapid_accel_mm_s2 } else { &self.feed_accel_mm_s2 }
+        if kind == MoveKind::Rapid {
+            &self.rapid_accel_mm_s2
+        } else {
+            &self.feed_accel_mm_s2
+        }
     }
 
     /// Sets the limit along the path; `letter` says for which moves.

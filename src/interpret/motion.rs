@@ -136,7 +136,11 @@ impl Control<'_> {
     fn straight(&mut self, run: &mut Run<'_, '_>) {
         let rapid =
             self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
-        let kind = if rapid { MoveKind::Rapid } else { MoveKind::Feed };
+        let kind = if rapid {
+            MoveKind::Rapid
+        } else {
+            MoveKind::Feed
+        };
         let mut end = self.position.at;
         let machine_coordinates = run.facts.machine_coordinates;
         if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
@@ -168,7 +172,9 @@ impl Control<'_> {
         let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
         let mut feed_mm_s = f64::INFINITY;
         if kind != MoveKind::Rapid {
-            let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else { return };
+            let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else {
+                return;
+            };
             feed_mm_s = speed_mm_s;
         }
         let extrudes = moving.contains(EXTRUDER);
@@ -321,11 +327,7 @@ impl Control<'_> {
     }
 
     /// Geometry by R, or by I J K; `None` when it was reported.
-    fn arc_geometry(
-        &self,
-        run: &mut Run<'_, '_>,
-        ends: &Ends,
-    ) -> Option<Result<Arc, ArcFault>> {
+    fn arc_geometry(&self, run: &mut Run<'_, '_>, ends: &Ends) -> Option<Result<Arc, ArcFault>> {
         let unit = self.modal.mm_per_unit;
         let letters = [b"IJK"[ends.plane[0]], b"IJK"[ends.plane[1]]];
         let offsets = letters.map(|letter| run.words.take(letter));
@@ -466,7 +468,13 @@ fn path_length(
     moving: AxisSet,
     arc: Option<&Arc>,
 ) -> (f64, bool) {
-    let distance = |axis: usize| if moving.contains(axis) { end[axis] - start[axis] } else { 0.0 };
+    let distance = |axis: usize| {
+        if moving.contains(axis) {
+            end[axis] - start[axis]
+        } else {
+            0.0
+        }
+    };
     if let Some(arc) = arc {
         let in_plane = arc.radius_mm * arc.sweep_rad.abs();
         let rise = distance(3 - arc.plane[0] - arc.plane[1]);

@@ -223,7 +223,10 @@ impl Words {
     /// Axis letters that no code has used, with values.
     #[inline]
     pub(super) fn axes(&self) -> Axes<'_> {
-        Axes { letters: self.unused & AXIS_LETTERS, values: &self.values }
+        Axes {
+            letters: self.unused & AXIS_LETTERS,
+            values: &self.values,
+        }
     }
 
     /// True when an axis letter is left.

@@ -21,17 +21,12 @@ pub fn analyze<R: Read + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
-    let want = if rows.is_some() {
-        Want::ALL
-    } else {
-        Want::PEAKS
-    };
-    let mut assessor = Assessor::new(machine, options.certificate, want);
+    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL);
     let mut tally = Tally::new(machine, options, rows);
     while let Some(line) = front.next_line()? {
         for step in line.steps {
             if let Step::Move(mv) = step {
-                assessor.want.floor_w = tally.floor_w();
+                assessor.want = tally.want();
                 assessor.push(mv, line.text, &mut |mv, assessment, text| {
                     tally.take(mv, assessment, text)
                 });

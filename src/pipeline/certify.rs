@@ -109,17 +109,12 @@ impl<'m, 'r> Certifier<'m, 'r> {
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
-        let want = if rows.is_some() {
-            Want::ALL
-        } else {
-            Want::PEAKS
-        };
         Self {
             machine,
             model: PowerModel::new(machine),
             interpreter: Interpreter::new(machine, options.start, options.block_delete),
             diagnostics: Diagnostics::default(),
-            assessor: Assessor::new(machine, options.certificate, want),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL),
             tally: Tally::new(machine, options, rows),
             block: Block::default(),
             steps: Vec::new(),
@@ -161,7 +156,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                             reasons.push(original.mv.line, "changed-motion", message, BUG, text);
                         }
                         pending.push_back(original);
-                        assessor.want.floor_w = tally.floor_w();
+                        assessor.want = tally.want();
                         assessor.push(mv, text, &mut |mv, assessment, text| {
                             if let Some(original) = pending.pop_front() {
                                 compare(model, &original, mv, assessment, text, reasons);

@@ -10,7 +10,6 @@ use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, RowSink, Strategy, Summary};
 use crate::limit::Law;
 use crate::machine::{KnobArgument, KnobTarget, Machine};
-use crate::power::Want;
 
 /// Pieces that may wait for the certifier.
 const BATCHES: usize = 2;
@@ -32,13 +31,9 @@ pub fn limit<R: Read + Send, W: Write + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
-    let want = if rows.is_some() {
-        Want::ALL
-    } else {
-        Want::PEAKS
-    };
+    let exact = rows.is_some();
     let mut certifier = Certifier::new(machine, options, rows);
-    let writer = Writer::new(input, machine, options, how, want, output);
+    let writer = Writer::new(input, machine, options, how, exact, output);
     let (written, certified) = if options.threads > 1 {
         side_by_side(writer, certifier)?
     } else {

@@ -5,7 +5,7 @@ use std::io;
 use super::{Certificate, Failure, Options, Row, RowSink, Start, Summary, Unfit};
 use crate::interpret::Move;
 use crate::machine::{AxisSet, Machine, PathMode};
-use crate::power::{Assessment, PowerModel};
+use crate::power::{Assessment, PowerModel, Want};
 use crate::source::split_line_end;
 
 /// The worst moves that a summary keeps.
@@ -21,8 +21,6 @@ pub(super) struct Tally<'m, 'r> {
     summary: Summary,
     energy_j: f64,
     failed: Option<io::Error>,
-    smallest_limit_w: f64,
-    exact: bool,
 }
 
 impl<'m, 'r> Tally<'m, 'r> {
@@ -32,9 +30,6 @@ impl<'m, 'r> Tally<'m, 'r> {
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
         let model = PowerModel::new(machine);
-        // Only the largest peak is wanted of a single converter without rows.
-        let exact = rows.is_some() || machine.converters.len() > 1;
-        let smallest_limit_w = model.limit_w(0);
         let summary = Summary {
             certificate: options.certificate,
             ..Summary::default()
@@ -46,17 +41,23 @@ impl<'m, 'r> Tally<'m, 'r> {
             summary,
             energy_j: 0.0,
             failed: None,
-            smallest_limit_w,
-            exact,
         }
     }
 
-    /// Peaks below this are not wanted exactly, W.
-    pub(super) fn floor_w(&self) -> f64 {
-        if self.exact {
-            f64::NEG_INFINITY
-        } else {
-            self.summary.peak_w.min(self.smallest_limit_w)
+    /// What is wanted of the next move: peaks below those found so far need
+    /// not be exact where no row shows them.
+    pub(super) fn want(&self) -> Want {
+        if self.rows.is_some() {
+            return Want::ALL;
+        }
+        if self.machine.converters.len() > 1 {
+            return Want::PEAKS;
+        }
+        let regen_limit_w = self.model.regen_limit_w(0).unwrap_or(f64::INFINITY);
+        Want {
+            energy: false,
+            floor_w: self.summary.peak_w.min(self.model.limit_w(0)),
+            regen_floor_w: self.summary.regen_w.min(regen_limit_w),
         }
     }
 

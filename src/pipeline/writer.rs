@@ -74,6 +74,8 @@ pub(super) struct Writer<'m, R, W> {
     knobs: Option<KnobState>,
     batch: Batch,
     reasons: Reasons,
+    /// Every figure is wanted exactly: there are rows.
+    exact: bool,
 }
 
 impl<'m, R: Read, W: Write> Writer<'m, R, W> {
@@ -82,7 +84,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         machine: &'m Machine,
         options: &Options,
         how: LimitOptions,
-        want: Want,
+        exact: bool,
         output: W,
     ) -> Self {
         let front = Front::new(input, machine, options);
@@ -93,7 +95,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             mode: front.interpreter().modal().path_mode,
             front,
             output,
-            assessor: Assessor::new(machine, options.certificate, want),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL),
             limiter: Limiter::new(machine, how),
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
@@ -104,6 +106,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             outcomes: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
+            exact,
         }
     }
 
@@ -173,9 +176,10 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 tally,
                 flights,
                 outcomes,
+                exact,
                 ..
             } = self;
-            assessor.want.floor_w = tally.floor_w();
+            assessor.want = if *exact { Want::ALL } else { tally.want() };
             assessor.push(mv, line.text, &mut |mv, assessment, text| {
                 judged(mv, assessment, text, tally, limiter, flights, outcomes);
             });

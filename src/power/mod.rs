@@ -12,6 +12,7 @@ mod assess;
 mod arc;
 mod arc_piece;
 mod axis;
+mod ceiling;
 mod circle;
 mod demand;
 mod independent;
