@@ -77,7 +77,7 @@ fn worst(summary: &Summary) -> String {
     let rows: Vec<[String; 5]> = summary.worst.iter().map(unfit_row).collect();
     let mut text = aligned(&rows, "  ");
     if summary.unfit_count > summary.worst.len() as u64 {
-        let more = moves(summary.unfit_count - summary.worst.len() as u64);
+        let more = summary.unfit_count - summary.worst.len() as u64;
         let _ = writeln!(text, "  and {more} more: see `gwatt report`");
     }
     text
