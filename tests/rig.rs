@@ -277,50 +277,55 @@ pub(crate) fn sample(machine: &Machine, mv: &Move, plan: &Plan, n: u32) -> Sampl
         let drawn = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Motor).0;
         let fed = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Regen).1;
         let energy = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Nominal).0;
-        let (mut best_drawn, mut best_fed) = ((f64::NEG_INFINITY, 0), (f64::NEG_INFINITY, 0));
+        let mut cells = [vec![], vec![]];
         for i in 0..n {
             let from = f64::from(i) * h;
             let middle = from + 0.5 * h;
-            let value = |f: &dyn Fn(f64, f64) -> f64| {
-                f(from, middle)
-                    .max(f(middle, middle))
-                    .max(f(from + h, middle))
-            };
-            for (f, best) in [
-                (&drawn as &dyn Fn(f64, f64) -> f64, &mut best_drawn),
-                (&fed, &mut best_fed),
-            ] {
-                let value = value(f);
-                if value > best.0 {
-                    *best = (value, i);
-                }
+            for (which, cell) in cells.iter_mut().enumerate() {
+                let f = |t| {
+                    if which == 0 {
+                        drawn(t, middle)
+                    } else {
+                        fed(t, middle)
+                    }
+                };
+                cell.push(f(from).max(f(middle)).max(f(from + h)));
             }
             let ends = energy(from, middle) + energy(from + h, middle);
             found.energy_j += h * (ends + 4.0 * energy(middle, middle)) / 6.0;
         }
-        found.peak_w = found.peak_w.max(refine(&drawn, best_drawn, h, n));
-        found.regen_w = found.regen_w.max(refine(&fed, best_fed, h, n));
+        found.peak_w = found.peak_w.max(refine(&drawn, &cells[0], h));
+        found.regen_w = found.regen_w.max(refine(&fed, &cells[1], h));
     }
     found
 }
 
-/// Refines a sampled maximum by a finer grid around it, several times.
-fn refine(f: &dyn Fn(f64, f64) -> f64, best: (f64, u32), h: f64, n: u32) -> f64 {
-    let (mut value, index) = best;
-    let (mut centre, mut half) = ((f64::from(index) + 0.5) * h, 1.5 * h);
-    let end = f64::from(n) * h;
-    for _ in 0..6 {
-        let mut next = centre;
-        for i in -20..=20 {
-            let t = (centre + half * f64::from(i) / 20.0).clamp(0.0, end);
-            let at = f(t, t);
-            if at > value {
-                (value, next) = (at, t);
-            }
+/// Refines each sampled maximum that comes close to the largest by finer and
+/// finer grids around it.
+fn refine(f: &dyn Fn(f64, f64) -> f64, cells: &[f64], h: f64) -> f64 {
+    let mut largest = cells.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let close = largest - 0.02 * largest.abs();
+    let end = cells.len() as f64 * h;
+    for (i, &cell) in cells.iter().enumerate() {
+        let neighbours = [i.saturating_sub(1), (i + 1).min(cells.len() - 1)];
+        if cell < close || neighbours.iter().any(|&other| cells[other] > cell) {
+            continue;
         }
-        (centre, half) = (next, half / 10.0);
+        let (mut value, mut centre, mut half) = (cell, (i as f64 + 0.5) * h, 1.5 * h);
+        for _ in 0..6 {
+            let mut next = centre;
+            for step in -10..=10 {
+                let t = (centre + half * f64::from(step) / 10.0).clamp(0.0, end);
+                let at = f(t, t);
+                if at > value {
+                    (value, next) = (at, t);
+                }
+            }
+            (centre, half) = (next, half / 5.0);
+        }
+        largest = largest.max(value);
     }
-    value
+    largest
 }
 
 /// Axes with everything: mass, friction, weight, losses and servo factors.

@@ -84,9 +84,11 @@ impl GCode {
 /// Number × 10 of a word; `None` for numbers that no code has.
 pub(super) fn code_number(value: f64) -> Option<u16> {
     let tenfold = value * 10.0;
-    let rounded = tenfold.round();
-    ((tenfold - rounded).abs() < 1e-6 && (0.0..=65_000.0).contains(&rounded))
-        .then_some(rounded as u16)
+    if !(-1e-6..=65_000.0).contains(&tenfold) {
+        return None;
+    }
+    let number = (tenfold + 0.5) as u16;
+    ((tenfold - f64::from(number)).abs() < 1e-6).then_some(number)
 }
 
 /// The G word with this number × 10, if it is known to every family.

@@ -5,7 +5,7 @@
 use super::code::{GCode, Motion, path_mode};
 use super::knob::KnobState;
 use super::modal::{Feed, Modal};
-use super::moves::{Action, ActionKind, FeedMode, MoveKind, Step};
+use super::moves::{Action, ActionKind, FeedMode, Step};
 use super::position::{Position, Start};
 use super::report::{Diagnostics, Report};
 use super::words::Words;
@@ -224,9 +224,7 @@ impl Control<'_> {
         self.speed_and_tool(run);
         self.m_words(run);
         if let Some(dwell_s) = dwell_s {
-            let mut dwell = self.move_from_here(run, MoveKind::Dwell);
-            dwell.dwell_s = dwell_s;
-            run.steps.push(Step::Move(dwell));
+            self.dwell(run, dwell_s);
         }
         self.settings(run);
         self.turn_knobs(run);

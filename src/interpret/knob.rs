@@ -1,5 +1,6 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
+use super::moves::MoveKind;
 use crate::machine::{AXES, AxisKind, AxisValues, Knob, KnobTarget, KnobUnit, Machine};
 
 /// Limits in force after the knobs that a program has turned.
@@ -28,6 +29,11 @@ impl KnobState {
             path_accel_mm_s2: [f64::INFINITY; 2],
             rapid_factor: 1.0,
         }
+    }
+
+    /// Acceleration limits of moves of this kind, mm/s².
+    pub(super) fn accel(&self, kind: MoveKind) -> &AxisValues {
+        if kind == MoveKind::Rapid { &self.rapid_accel_mm_s2 } else { &self.feed_accel_mm_s2 }
     }
 
     /// Sets the limit along the path; `letter` says for which moves.

@@ -5,8 +5,8 @@ use arrayvec::ArrayVec;
 use super::arc::{self, ArcFault, Ends};
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
-use super::moves::{FeedMode, Move, MoveKind, Step};
-use super::words::bit;
+use super::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{ALL_AXES, AXES, AxisKind, AxisSet, AxisValues, Family};
 use crate::source::Span;
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
@@ -54,12 +54,12 @@ impl Control<'_> {
         }
     }
 
-    /// A move that begins and ends where the axes stand.
-    pub(super) fn move_from_here(&self, run: &Run<'_, '_>, kind: MoveKind) -> Move {
-        Move {
+    /// A dwell where the axes stand.
+    pub(super) fn dwell(&self, run: &mut Run<'_, '_>, dwell_s: f64) {
+        run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),
-            kind,
+            kind: MoveKind::Dwell,
             start: self.position.at,
             end: self.position.at,
             moving: AxisSet::default(),
@@ -68,17 +68,13 @@ impl Control<'_> {
             length_mm: 0.0,
             feed_mm_s: f64::INFINITY,
             feed_mode: self.modal.feed_mode,
-            accel_mm_s2: if kind == MoveKind::Rapid {
-                self.knobs.rapid_accel_mm_s2
-            } else {
-                self.knobs.feed_accel_mm_s2
-            },
+            accel_mm_s2: self.knobs.feed_accel_mm_s2,
             path_accel_mm_s2: f64::INFINITY,
             rapid_factor: self.knobs.rapid_factor,
-            dwell_s: 0.0,
+            dwell_s,
             loads: self.loads,
             path_mode: self.modal.path_mode,
-        }
+        }));
     }
 
     /// Reads the axis words into `end`, machine coordinates. Returns the axes
@@ -91,10 +87,8 @@ impl Control<'_> {
     ) -> Option<AxisSet> {
         let mut unknown = AxisSet::default();
         let mut fine = true;
-        let words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
-        for (axis, value) in words {
+        for (axis, value) in run.words.axes() {
             let letter = ALL_AXES[axis].letter();
-            run.words.take(letter);
             let Some(data) = &self.machine.axes[axis] else {
                 let span = run.words.span(letter, run.block);
                 let message = format!("the machine has no {} axis", letter as char);
@@ -135,53 +129,70 @@ impl Control<'_> {
                 fine = false;
             }
         }
+        run.words.unused &= !AXIS_LETTERS;
         fine.then_some(unknown)
     }
 
     fn straight(&mut self, run: &mut Run<'_, '_>) {
         let rapid =
             self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
-        let mut element = self.move_from_here(
-            run,
-            if rapid {
-                MoveKind::Rapid
-            } else {
-                MoveKind::Feed
-            },
-        );
+        let kind = if rapid { MoveKind::Rapid } else { MoveKind::Feed };
+        let mut end = self.position.at;
         let machine_coordinates = run.facts.machine_coordinates;
-        let Some(unknown) = self.targets(run, machine_coordinates, &mut element.end) else {
-            return;
-        };
-        element.unknown_start = unknown;
-        self.finish(run, element);
+        if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
+            self.go(run, kind, &end, unknown, None);
+        }
     }
 
-    /// Computes what follows from the end points, and moves there.
-    fn finish(&mut self, run: &mut Run<'_, '_>, mut element: Move) {
+    /// Moves to `end`: a straight line, or `arc`.
+    fn go(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        end: &AxisValues,
+        unknown_start: AxisSet,
+        arc: Option<Arc>,
+    ) {
+        let start = &self.position.at;
+        let mut moving = AxisSet::default();
         for axis in self.machine.axis_set.iter() {
-            let moves = (element.end[axis] - element.start[axis]).abs() > STANDSTILL_MM;
-            if moves && !element.unknown_start.contains(axis) {
-                element.moving.insert(axis);
+            if (end[axis] - start[axis]).abs() > STANDSTILL_MM {
+                moving.insert(axis);
             }
         }
-        if let Some(arc) = &element.arc {
-            element.moving.insert(arc.plane[0]);
-            element.moving.insert(arc.plane[1]);
+        moving.0 &= !unknown_start.0;
+        if let Some(arc) = &arc {
+            moving.insert(arc.plane[0]);
+            moving.insert(arc.plane[1]);
         }
-        let (length_mm, linear) = path_length(&element);
-        element.length_mm = length_mm;
-        element.path_accel_mm_s2 =
-            self.knobs.path_accel_mm_s2[usize::from(!element.moving.contains(EXTRUDER))];
-        if element.kind != MoveKind::Rapid {
-            let Some(feed_mm_s) = self.feed_speed(run, length_mm, linear) else {
-                return;
-            };
-            element.feed_mm_s = feed_mm_s;
+        let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
+        let mut feed_mm_s = f64::INFINITY;
+        if kind != MoveKind::Rapid {
+            let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else { return };
+            feed_mm_s = speed_mm_s;
         }
-        self.position.at = element.end;
-        self.position.unknown.0 &= !element.unknown_start.0;
-        run.steps.push(Step::Move(element));
+        let extrudes = moving.contains(EXTRUDER);
+        run.steps.push(Step::Move(Move {
+            line: run.line,
+            number: run.block.number.map(|word| word.value),
+            kind,
+            start: self.position.at,
+            end: *end,
+            moving,
+            unknown_start,
+            arc,
+            length_mm,
+            feed_mm_s,
+            feed_mode: self.modal.feed_mode,
+            accel_mm_s2: *self.knobs.accel(kind),
+            path_accel_mm_s2: self.knobs.path_accel_mm_s2[usize::from(!extrudes)],
+            rapid_factor: self.knobs.rapid_factor,
+            dwell_s: 0.0,
+            loads: self.loads,
+            path_mode: self.modal.path_mode,
+        }));
+        self.position.at = *end;
+        self.position.unknown.0 &= !unknown_start.0;
     }
 
     /// The path speed that F asks for, mm/s; reports an F that is missing.
@@ -240,14 +251,14 @@ impl Control<'_> {
 
     fn arc(&mut self, run: &mut Run<'_, '_>) {
         let errors = run.report.diagnostics.errors;
-        let mut element = self.move_from_here(run, MoveKind::Arc);
+        let mut end = self.position.at;
         let whole = run.whole();
         if run.facts.machine_coordinates {
             run.report
                 .error("arc-in-g53", "G53 with an arc", whole)
                 .help("G53 goes with G0 and G1 only");
         }
-        let Some(unknown) = self.targets(run, false, &mut element.end) else {
+        let Some(unknown) = self.targets(run, false, &mut end) else {
             return;
         };
         let [first, second, normal] = self.modal.plane;
@@ -296,17 +307,14 @@ impl Control<'_> {
         }
         let ends = Ends {
             plane: [first, second],
-            start: [element.start[first], element.start[second]],
-            end: [element.end[first], element.end[second]],
+            start: [self.position.at[first], self.position.at[second]],
+            end: [end[first], end[second]],
             clockwise: self.modal.motion == Motion::ArcCw,
             turns,
             inch: self.modal.mm_per_unit == MM_PER_INCH,
         };
         match self.arc_geometry(run, &ends) {
-            Some(Ok(arc)) => {
-                element.arc = Some(arc);
-                self.finish(run, element);
-            }
+            Some(Ok(arc)) => self.go(run, MoveKind::Arc, &end, unknown, Some(arc)),
             Some(Err(fault)) => report_fault(fault, run, whole),
             None => {}
         }
@@ -317,7 +325,7 @@ impl Control<'_> {
         &self,
         run: &mut Run<'_, '_>,
         ends: &Ends,
-    ) -> Option<Result<super::moves::Arc, ArcFault>> {
+    ) -> Option<Result<Arc, ArcFault>> {
         let unit = self.modal.mm_per_unit;
         let letters = [b"IJK"[ends.plane[0]], b"IJK"[ends.plane[1]]];
         let offsets = letters.map(|letter| run.words.take(letter));
@@ -382,21 +390,18 @@ impl Control<'_> {
             }
             named = self.machine.axis_set;
         } else {
-            let mut via = self.move_from_here(run, MoveKind::Rapid);
-            let Some(unknown) = self.targets(run, false, &mut via.end) else {
+            let mut via = self.position.at;
+            let Some(unknown) = self.targets(run, false, &mut via) else {
                 return;
             };
-            via.unknown_start = unknown;
-            self.finish(run, via);
+            self.go(run, MoveKind::Rapid, &via, unknown, None);
         }
-        let mut home = self.move_from_here(run, MoveKind::Rapid);
+        let mut home = self.position.at;
         for axis in named.iter() {
-            home.end[axis] = 0.0;
-            if self.position.unknown.contains(axis) {
-                home.unknown_start.insert(axis);
-            }
+            home[axis] = 0.0;
         }
-        self.finish(run, home);
+        let unknown = AxisSet(named.0 & self.position.unknown.0);
+        self.go(run, MoveKind::Rapid, &home, unknown, None);
     }
 
     fn set_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
@@ -455,42 +460,26 @@ impl Control<'_> {
 /// Length of the path that F speaks for, and whether that is a length of
 /// linear axes: XYZ if any of them moves, else UVW, else the rotary axes, else
 /// the extruder (RS274/NGC, "Feed Rate").
-fn path_length(element: &Move) -> (f64, bool) {
-    let along = |axes: [usize; 3]| {
-        let mut sum = 0.0;
-        for axis in axes {
-            if element.moving.contains(axis) {
-                let distance = element.end[axis] - element.start[axis];
-                sum += distance * distance;
-            }
-        }
-        sum.sqrt()
-    };
-    if let Some(arc) = &element.arc {
+fn path_length(
+    start: &AxisValues,
+    end: &AxisValues,
+    moving: AxisSet,
+    arc: Option<&Arc>,
+) -> (f64, bool) {
+    let distance = |axis: usize| if moving.contains(axis) { end[axis] - start[axis] } else { 0.0 };
+    if let Some(arc) = arc {
         let in_plane = arc.radius_mm * arc.sweep_rad.abs();
-        let normal = 3 - arc.plane[0] - arc.plane[1];
-        let rise = if element.moving.contains(normal) {
-            element.end[normal] - element.start[normal]
-        } else {
-            0.0
-        };
+        let rise = distance(3 - arc.plane[0] - arc.plane[1]);
         return ((in_plane * in_plane + rise * rise).sqrt(), true);
     }
     for (axes, linear) in [([0, 1, 2], true), ([6, 7, 8], true), ([3, 4, 5], false)] {
-        let length = along(axes);
+        let [x, y, z] = axes.map(distance);
+        let length = (x * x + y * y + z * z).sqrt();
         if length > 0.0 {
             return (length, linear);
         }
     }
-    let extruded = (element.end[EXTRUDER] - element.start[EXTRUDER]).abs();
-    (
-        if element.moving.contains(EXTRUDER) {
-            extruded
-        } else {
-            0.0
-        },
-        true,
-    )
+    (distance(EXTRUDER).abs(), true)
 }
 
 fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {

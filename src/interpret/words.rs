@@ -4,21 +4,9 @@ use arrayvec::ArrayVec;
 
 use super::code::{GCode, code_number, g_code};
 use super::report::Report;
-use crate::machine::{AXES, AxisId, Controller};
+use crate::machine::Controller;
 use crate::source::Span;
 use crate::syntax::{Block, Word};
-
-/// Axis index of each letter, 255 for none.
-const AXIS_OF_LETTER: [u8; 256] = {
-    let mut table = [255; 256];
-    let letters = *b"XYZABCUVWE";
-    let mut axis = 0;
-    while axis < AXES {
-        table[letters[axis] as usize] = axis as u8;
-        axis += 1;
-    }
-    table
-};
 
 /// Bit of a letter in the masks of this module.
 pub(super) const fn bit(letter: u8) -> u32 {
@@ -36,12 +24,6 @@ pub(super) const AXIS_LETTERS: u32 = bit(b'X')
     | bit(b'V')
     | bit(b'W')
     | bit(b'E');
-
-/// The index of the axis that a letter names.
-pub(super) fn axis_of(letter: u8) -> Option<usize> {
-    let axis = AXIS_OF_LETTER[usize::from(letter)];
-    (axis != 255).then_some(usize::from(axis))
-}
 
 /// The words of a block by letter. A buffer, filled again for each block.
 #[derive(Debug)]
@@ -210,12 +192,6 @@ impl Words {
         self.present & bit(letter) != 0
     }
 
-    /// Value of a letter's word, without using it.
-    pub(super) fn value(&self, letter: u8) -> Option<f64> {
-        self.has(letter)
-            .then(|| self.values[usize::from(letter - b'A')])
-    }
-
     /// Value of a letter's word if no other code has used it; it is used now.
     pub(super) fn take(&mut self, letter: u8) -> Option<f64> {
         let free = self.unused & bit(letter) != 0;
@@ -245,14 +221,9 @@ impl Words {
     }
 
     /// Axis letters that no code has used, with values.
-    pub(super) fn axes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        crate::machine::ALL_AXES
-            .into_iter()
-            .filter_map(|axis: AxisId| {
-                let letter = axis.letter();
-                (self.unused & bit(letter) != 0)
-                    .then(|| (axis as usize, self.values[usize::from(letter - b'A')]))
-            })
+    #[inline]
+    pub(super) fn axes(&self) -> Axes<'_> {
+        Axes { letters: self.unused & AXIS_LETTERS, values: &self.values }
     }
 
     /// True when an axis letter is left.
@@ -260,3 +231,35 @@ impl Words {
         self.unused & AXIS_LETTERS != 0
     }
 }
+
+/// Axes and values of the axis words of a block.
+pub(super) struct Axes<'a> {
+    letters: u32,
+    values: &'a [f64; 26],
+}
+
+impl Iterator for Axes<'_> {
+    type Item = (usize, f64);
+
+    #[inline]
+    fn next(&mut self) -> Option<(usize, f64)> {
+        if self.letters == 0 {
+            return None;
+        }
+        let letter = self.letters.trailing_zeros() as usize;
+        self.letters &= self.letters - 1;
+        Some((usize::from(AXIS_OF_LETTER[letter]), self.values[letter]))
+    }
+}
+
+/// Axis index of each letter from A; letters that name no axis are not asked.
+const AXIS_OF_LETTER: [u8; 26] = {
+    let mut table = [0; 26];
+    let letters = *b"XYZABCUVWE";
+    let mut axis = 0;
+    while axis < letters.len() {
+        table[(letters[axis] - b'A') as usize] = axis as u8;
+        axis += 1;
+    }
+    table
+};

@@ -140,11 +140,6 @@ impl<'m, 'r> Tally<'m, 'r> {
             .map_or(Ok(()), |error| Err(Failure::Output(error)))
     }
 
-    /// Time so far in s.
-    pub(super) fn duration_s(&self) -> f64 {
-        self.summary.duration_s
-    }
-
     /// The figures; lines, notes and conditions are still to be filled in.
     pub(super) fn finish(self) -> Summary {
         let mut summary = self.summary;

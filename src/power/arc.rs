@@ -9,12 +9,13 @@
 //! from the fast end of the phase, so that the slow ones fall below what has
 //! been found. A cruise repeats after one turn.
 
+use super::arc_piece::Piece;
 use super::axis::{AxisPower, Side};
 use super::circle::{ArcAxis, Motion, Shape};
 use super::demand::{Totals, Want};
 use super::model::{ConverterPower, PowerModel};
 use super::quadrature::integral;
-use super::search::{Bounded, Search};
+use super::search::Search;
 use crate::interpret::{Arc, Move};
 use crate::machine::{AXES, AxisSet};
 use crate::plan::{Phase, Profile};
@@ -57,10 +58,14 @@ pub(super) fn totals(
 }
 
 /// The axes of a converter on an arc.
-struct Circle<'a> {
-    axes: ArrayVec<ArcAxis<'a>, AXES>,
-    credit_regen: bool,
-    idle_w: f64,
+pub(super) struct Circle<'a> {
+    /// Those that move.
+    pub axes: ArrayVec<ArcAxis<'a>, AXES>,
+    /// Whether fed-back power feeds the other axes.
+    pub credit_regen: bool,
+    /// What is drawn besides the axes, W.
+    pub idle_w: f64,
+    /// Angle at the start of the move, rad.
     start_angle: f64,
     /// Sense of the sweep, ±1.
     sense: f64,
@@ -102,7 +107,7 @@ impl<'a> Circle<'a> {
 
     /// Motion `t` seconds into a phase.
     #[inline]
-    fn motion(&self, phase: &Phase, t: f64) -> Motion {
+    pub fn motion(&self, phase: &Phase, t: f64) -> Motion {
         let state = phase.state_at(t);
         let angle = self.start_angle + self.sense * self.angle_per_mm * state.position_mm;
         let (sin, cos) = libm::sincos(angle);
@@ -197,7 +202,7 @@ impl<'a> Circle<'a> {
     }
 
     /// Direction of each axis at an instant at which none of them turns back.
-    fn signs(&self, phase: &Phase, t: f64) -> [f64; AXES] {
+    pub fn signs(&self, phase: &Phase, t: f64) -> [f64; AXES] {
         let motion = self.motion(phase, t);
         let mut signs = [0.0; AXES];
         for (sign, axis) in signs.iter_mut().zip(&self.axes) {
@@ -211,7 +216,7 @@ impl<'a> Circle<'a> {
     fn nominal(&self, signs: &[f64; AXES], m: &Motion) -> f64 {
         let mut sum = 0.0;
         for (axis, sign) in self.axes.iter().zip(signs) {
-            let (v, a) = axis.motion(m);
+            let (v, a) = axis.motion_towards(*sign, m);
             let power = axis.axis;
             let force = power.mass * a + power.viscous * v + power.coulomb * sign + power.gravity;
             let electrical = power.electrical(v, force);
@@ -326,148 +331,5 @@ impl Iterator for Pieces<'_> {
             }
         }
         None
-    }
-}
-
-/// One piece of a phase, seen from one side.
-struct Piece<'a> {
-    circle: &'a Circle<'a>,
-    phase: &'a Phase,
-    side: Side,
-    signs: [f64; AXES],
-    /// Bound of the second derivative of each axis' power, divided by 8.
-    bend: [f64; AXES],
-}
-
-/// Power of each axis at one instant. Fed-back power that is credited is the
-/// smaller of two smooth functions, any other power counts as the first.
-#[derive(Clone)]
-struct Sample {
-    t: f64,
-    value: f64,
-    first: [f64; AXES],
-    second: [f64; AXES],
-}
-
-impl<'a> Piece<'a> {
-    fn new(
-        circle: &'a Circle<'a>,
-        phase: &'a Phase,
-        side: Side,
-        (from, to): (f64, f64),
-        fastest: &Motion,
-    ) -> Self {
-        let mut bend = [0.0; AXES];
-        for (bend, arc_axis) in bend.iter_mut().zip(&circle.axes) {
-            let axis = arc_axis.axis;
-            let factor = axis
-                .accel_factor(side, true)
-                .max(axis.accel_factor(side, false));
-            let (mechanical, copper) = arc_axis.curvature(fastest, factor);
-            let conversion = match side {
-                Side::Regen if !circle.credit_regen => axis.efficiency,
-                _ => axis.inverse_efficiency,
-            };
-            *bend = 0.125 * (mechanical * conversion + copper);
-        }
-        Self {
-            circle,
-            phase,
-            side,
-            signs: circle.signs(phase, 0.5 * (from + to)),
-            bend,
-        }
-    }
-
-    /// The largest of an axis' power over what its acceleration may be: the
-    /// command, or the command exceeded. For fed-back power with both
-    /// conversions.
-    fn axis_power(&self, index: usize, m: &Motion) -> [f64; 2] {
-        let arc_axis = &self.circle.axes[index];
-        let axis = arc_axis.axis;
-        let (v, a) = arc_axis.motion(m);
-        let friction = axis.friction_factor(self.side);
-        let steady =
-            friction * (axis.viscous * v + axis.coulomb * self.signs[index]) + axis.gravity;
-        let power = |factor: f64| {
-            let force = axis.mass * a * factor + steady;
-            let (p, copper) = (v * force, axis.copper * force * force);
-            match self.side {
-                Side::Regen => [
-                    -p * axis.efficiency - copper,
-                    -p * axis.inverse_efficiency - copper,
-                ],
-                _ => [axis.converted(p) + copper; 2],
-            }
-        };
-        // Only one of the factors is not 1: exceeding counts where it is worse.
-        let exceeding = axis.accel_factor(self.side, self.side == Side::Motor);
-        let nominal = power(1.0);
-        if exceeding == 1.0 {
-            return nominal;
-        }
-        let exceeded = power(exceeding);
-        [nominal[0].max(exceeded[0]), nominal[1].max(exceeded[1])]
-    }
-
-    /// What all axes together start from, W.
-    fn base(&self) -> f64 {
-        match self.side {
-            Side::Regen if self.circle.credit_regen => -self.circle.idle_w,
-            Side::Regen => 0.0,
-            _ => self.circle.idle_w,
-        }
-    }
-}
-
-impl Bounded for Piece<'_> {
-    type Sample = Sample;
-
-    fn sample(&self, t: f64) -> Sample {
-        let motion = self.circle.motion(self.phase, t);
-        let mut sample = Sample {
-            t,
-            value: self.base(),
-            first: [0.0; AXES],
-            second: [0.0; AXES],
-        };
-        for index in 0..self.circle.axes.len() {
-            let [first, second] = self.axis_power(index, &motion);
-            (sample.first[index], sample.second[index]) = (first, second);
-            sample.value += if self.circle.credit_regen {
-                first.min(second)
-            } else {
-                first.max(0.0)
-            };
-        }
-        sample
-    }
-
-    fn value(&self, sample: &Sample) -> (f64, f64) {
-        (sample.t, sample.value)
-    }
-
-    fn bound(&self, from: &Sample, to: &Sample) -> f64 {
-        let h = to.t - from.t;
-        let (mut start, mut end, mut bend) = (self.base(), self.base(), 0.0);
-        for (index, axis_bend) in self.bend[..self.circle.axes.len()].iter().enumerate() {
-            let first = (from.first[index], to.first[index]);
-            let second = (from.second[index], to.second[index]);
-            let axis_bend = axis_bend * h * h;
-            let (f0, f1) = if first.0 + first.1 <= second.0 + second.1 {
-                first
-            } else {
-                second
-            };
-            if self.circle.credit_regen {
-                (start, end, bend) = (start + f0, end + f1, bend + axis_bend);
-            } else if first.0.max(first.1) + axis_bend > 0.0 {
-                // An axis that stays below 0 all along does not count.
-                start += first.0.max(0.0);
-                end += first.1.max(0.0);
-                bend += axis_bend;
-            }
-        }
-        start.max(end) + bend
     }
 }

@@ -72,6 +72,32 @@ impl ArcAxis<'_> {
         }
     }
 
+    /// `motion` between two turning points, where the axis moves in the
+    /// direction `sign`: at a turning point rounding must not let it move back
+    /// with the friction of the other direction.
+    #[inline]
+    pub fn motion_towards(&self, sign: f64, m: &Motion) -> (f64, f64) {
+        let (v, a) = self.motion(m);
+        if v * sign < 0.0 { (0.0, a) } else { (v, a) }
+    }
+
+    /// Bounds of the rates at which acceleration (SI) and force change while
+    /// speeds are at most those of `m`.
+    pub fn slopes(&self, m: &Motion, factor: f64) -> (f64, f64) {
+        match self.shape {
+            Shape::Line(direction) => (0.0, self.axis.viscous * (direction * m.a).abs()),
+            Shape::Cosine(r) | Shape::Sine(r) => {
+                let square = m.omega * m.omega;
+                let jerk = r * m.omega * amplitude(3.0 * m.alpha, square);
+                let accel = r * amplitude(m.alpha, square);
+                (
+                    jerk,
+                    self.axis.mass * factor * jerk + self.axis.viscous * accel,
+                )
+            }
+        }
+    }
+
     /// Bound of `|d²/dt²|` of any smooth branch of the electrical power,
     /// conversion left out, while speeds are at most those of `m`: of `v·F`
     /// and of `R·F²`. `factor` is how far acceleration may exceed the command.

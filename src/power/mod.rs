@@ -10,6 +10,7 @@
 
 mod assess;
 mod arc;
+mod arc_piece;
 mod axis;
 mod circle;
 mod demand;

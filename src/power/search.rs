@@ -15,7 +15,7 @@ use arrayvec::ArrayVec;
 const TOLERANCE: f64 = 2e-7;
 /// Tolerance relative to the scale of the function, where the value is tiny
 /// against its terms.
-const SCALE_SHARE: f64 = 1e-3;
+const SCALE_SHARE: f64 = 1e-4;
 /// Samples in one attempt; then the tolerance grows.
 const BUDGET: u32 = 1500;
 /// Growth of the tolerance from one attempt to the next.

@@ -68,10 +68,10 @@ pub(super) fn feed_again(feed: &Feed, mm_per_unit: f64) -> String {
             .collect();
     }
     let value = feed.value * feed.mm_per_unit / mm_per_unit;
-    // Down in the ninth digit: a feed never goes up.
+    // Down in the twelfth digit: a feed never goes up.
     let scale = libm::pow(
         10.0,
-        (8.0 - libm::floor(libm::log10(value))).clamp(0.0, 15.0),
+        (11.0 - libm::floor(libm::log10(value))).clamp(0.0, 15.0),
     )
     .round();
     decimal((value * scale).floor() / scale, has_point(&feed.text))
@@ -124,6 +124,6 @@ mod tests {
             text: b"1000.".iter().copied().collect(),
         };
         assert_eq!(feed_again(&feed, 1.0), "1000.");
-        assert_eq!(feed_again(&feed, 25.4), "39.3700787");
+        assert_eq!(feed_again(&feed, 25.4), "39.3700787401");
     }
 }

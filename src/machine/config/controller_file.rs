@@ -129,11 +129,8 @@ pub(crate) enum ArcRuleName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum RapidJointName {
-    // A rapid starts from rest and ends at rest.
     Stop,
-    // Rapids blend among each other, not with feeds.
     Rapids,
-    // Rapids blend like any other move.
     All,
 }
 

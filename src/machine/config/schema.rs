@@ -27,6 +27,7 @@ fn of<T: JsonSchema>() -> Value {
         .into_root_schema_for::<T>()
         .to_value();
     remove_null(&mut schema);
+    list_words(&mut schema);
     schema
 }
 
@@ -59,6 +60,28 @@ fn remove_null(schema: &mut Value) {
             map.values_mut().for_each(remove_null);
         }
         Value::Array(list) => list.iter_mut().for_each(remove_null),
+        _ => {}
+    }
+}
+
+/// Words with a description each come as a list of constants: beside them,
+/// the plain list of words that the structure check looks for.
+fn list_words(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            let words: Option<Vec<Value>> =
+                map.get("oneOf").and_then(Value::as_array).map(|list| {
+                    list.iter()
+                        .filter_map(|word| word.get("const").cloned())
+                        .collect()
+                });
+            if let Some(words) = words.filter(|words| !words.is_empty()) {
+                map.entry("type").or_insert_with(|| "string".into());
+                map.entry("enum").or_insert_with(|| words.into());
+            }
+            map.values_mut().for_each(list_words);
+        }
+        Value::Array(list) => list.iter_mut().for_each(list_words),
         _ => {}
     }
 }

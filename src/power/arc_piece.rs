@@ -1,0 +1,205 @@
+//! A piece of an arc on which no axis turns back, as a function to maximise.
+//!
+//! Input: a phase of an arc between two quadrants, and the side that is asked
+//! for. Output: samples of the power, and upper bounds between two samples for
+//! `search`.
+
+use super::arc::Circle;
+use super::axis::Side;
+use super::circle::Motion;
+use super::search::Bounded;
+use crate::machine::AXES;
+use crate::plan::Phase;
+use arrayvec::ArrayVec;
+
+/// One piece of a phase, seen from one side.
+pub(super) struct Piece<'a> {
+    circle: &'a Circle<'a>,
+    phase: &'a Phase,
+    side: Side,
+    /// What all axes together start from, W.
+    base_w: f64,
+    axes: ArrayVec<AxisBounds, AXES>,
+}
+
+/// What holds for one axis on the whole piece.
+struct AxisBounds {
+    /// Direction of motion.
+    sign: f64,
+    /// Second derivative of power, divided by 8.
+    bend: f64,
+    /// Rate of acceleration, divided by 2.
+    jerk: f64,
+    /// Rate of force, divided by 2.
+    force_slope: f64,
+}
+
+/// Power at one instant.
+#[derive(Clone)]
+pub(super) struct Sample {
+    t: f64,
+    value: f64,
+    axes: ArrayVec<AxisSample, AXES>,
+}
+
+/// Power of one axis at one instant: drawn (motor side) or fed back.
+#[derive(Clone, Copy)]
+struct AxisSample {
+    /// The power. Of fed-back power, that of regenerating.
+    first: f64,
+    /// Of fed-back power, as if motoring: the smaller one is true.
+    second: f64,
+    /// How much more it would be with the other factor of acceleration.
+    excess: f64,
+    /// Acceleration in the direction of motion.
+    accel: f64,
+    /// Force in the direction of motion.
+    force: f64,
+}
+
+impl<'a> Piece<'a> {
+    /// The piece from `from` to `to` (s) of a phase; `fastest` is its motion at
+    /// the end that is faster.
+    pub fn new(
+        circle: &'a Circle<'a>,
+        phase: &'a Phase,
+        side: Side,
+        (from, to): (f64, f64),
+        fastest: &Motion,
+    ) -> Self {
+        let signs = circle.signs(phase, 0.5 * (from + to));
+        let bounds = circle.axes.iter().zip(signs).map(|(arc_axis, sign)| {
+            let axis = arc_axis.axis;
+            let factor = f64::max(
+                axis.accel_factor(side, true),
+                axis.accel_factor(side, false),
+            );
+            let (mechanical, copper) = arc_axis.curvature(fastest, factor);
+            let (jerk, force_slope) = arc_axis.slopes(fastest, factor);
+            let conversion = match side {
+                Side::Regen if !circle.credit_regen => axis.efficiency,
+                _ => axis.inverse_efficiency,
+            };
+            AxisBounds {
+                sign,
+                bend: 0.125 * (mechanical * conversion + copper),
+                jerk: 0.5 * jerk,
+                force_slope: 0.5 * force_slope,
+            }
+        });
+        Self {
+            circle,
+            phase,
+            side,
+            base_w: match side {
+                Side::Regen if circle.credit_regen => -circle.idle_w,
+                Side::Regen => 0.0,
+                _ => circle.idle_w,
+            },
+            axes: bounds.collect(),
+        }
+    }
+
+    /// The power of one axis.
+    fn axis_sample(&self, index: usize, m: &Motion) -> AxisSample {
+        let arc_axis = &self.circle.axes[index];
+        let sign = self.axes[index].sign;
+        let axis = arc_axis.axis;
+        let (v, a) = arc_axis.motion_towards(sign, m);
+        let friction = axis.friction_factor(self.side);
+        let steady = friction * (axis.viscous * v + axis.coulomb * sign) + axis.gravity;
+        let power = |factor: f64| {
+            let force = axis.mass * a * factor + steady;
+            let (p, copper) = (v * force, axis.copper * force * force);
+            let [first, second] = match self.side {
+                Side::Regen => [
+                    -p * axis.efficiency - copper,
+                    -p * axis.inverse_efficiency - copper,
+                ],
+                _ => [axis.converted(p) + copper; 2],
+            };
+            (first, second, force * sign)
+        };
+        let growing = a * sign > 0.0;
+        let factor = axis.accel_factor(self.side, growing);
+        let (first, second, force) = power(factor);
+        let mut sample = AxisSample {
+            first,
+            second,
+            excess: 0.0,
+            accel: a * sign,
+            force,
+        };
+        let other = axis.accel_factor(self.side, !growing);
+        if other != factor {
+            let (other_first, other_second, other_force) = power(other);
+            sample.excess = f64::max(0.0, (other_first - first).max(other_second - second));
+            sample.force = force.min(other_force);
+        }
+        sample
+    }
+}
+
+impl Bounded for Piece<'_> {
+    type Sample = Sample;
+
+    fn sample(&self, t: f64) -> Sample {
+        let motion = self.circle.motion(self.phase, t);
+        let axes: ArrayVec<AxisSample, AXES> = (0..self.axes.len())
+            .map(|index| self.axis_sample(index, &motion))
+            .collect();
+        let counted = axes.iter().map(|axis| {
+            if self.circle.credit_regen {
+                axis.first.min(axis.second)
+            } else {
+                axis.first.max(0.0)
+            }
+        });
+        Sample {
+            t,
+            value: self.base_w + counted.sum::<f64>(),
+            axes,
+        }
+    }
+
+    fn value(&self, sample: &Sample) -> (f64, f64) {
+        (sample.t, sample.value)
+    }
+
+    /// Each axis' power is smooth, or the larger of smooth functions, between
+    /// the samples. Where it is the smaller of two, either is a bound. Where
+    /// the factor of acceleration may change, the worse factor is.
+    fn bound(&self, from: &Sample, to: &Sample) -> f64 {
+        let h = to.t - from.t;
+        let (mut start, mut end, mut bend) = (self.base_w, self.base_w, 0.0);
+        for ((axis, a), b) in self.axes.iter().zip(&from.axes).zip(&to.axes) {
+            let axis_bend = axis.bend * h * h;
+            let steady =
+                a.accel * b.accel > 0.0 && a.accel.abs().min(b.accel.abs()) > axis.jerk * h;
+            let (excess_a, excess_b) = if steady {
+                (0.0, 0.0)
+            } else {
+                (a.excess, b.excess)
+            };
+            // An axis that is driven all along feeds nothing back.
+            let driven = self.side == Side::Regen && a.force.min(b.force) > axis.force_slope * h;
+            let credit = self.circle.credit_regen;
+            let (f0, f1) = if credit && a.first + b.first > a.second + b.second {
+                (a.second + excess_a, b.second + excess_b)
+            } else {
+                (a.first + excess_a, b.first + excess_b)
+            };
+            let negative = f0.max(f1) + axis_bend <= 0.0;
+            if credit && (negative || !driven) {
+                start += f0;
+                end += f1;
+                bend += axis_bend;
+            } else if !credit && !negative && !driven {
+                start += f0.max(0.0);
+                end += f1.max(0.0);
+                bend += axis_bend;
+            }
+        }
+        start.max(end) + bend
+    }
+}
