@@ -38,10 +38,34 @@ pub struct Change {
 }
 
 impl Change {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        feed: None,
+        as_feed: false,
+        rapid_percent: None,
+        accel: None,
+    };
+
+    /// The lower value of each word, for a block with several moves.
+    #[must_use]
+    pub fn lower(&self, other: &Self) -> Self {
+        let lower = |a: f64, b: f64| a.min(b);
+        Self {
+            feed: either(self.feed, other.feed, lower),
+            as_feed: self.as_feed || other.as_feed,
+            rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
+                (a.0, a.1.min(b.1))
+            }),
+            accel: either(self.accel, other.accel, |a, b| {
+                (a.0, std::array::from_fn(|axis| a.1[axis].min(b.1[axis])))
+            }),
+        }
+    }
+
     /// True when nothing is changed.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        *self == Self::default()
+        *self == Self::NONE
     }
 
     /// The move as the controller will run it, computed as the interpreter
@@ -68,6 +92,14 @@ impl Change {
             }
         }
         changed
+    }
+}
+
+/// One of two values, or both put together.
+fn either<T>(a: Option<T>, b: Option<T>, both: impl FnOnce(T, T) -> T) -> Option<T> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(both(a, b)),
+        (a, b) => a.or(b),
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::io::Read;
 
+use super::conditions::conditions;
 use super::front::Front;
-use super::tally::{Tally, conditions};
+use super::tally::Tally;
 use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Move, Step};
@@ -22,6 +23,7 @@ pub fn analyze<R: Read + Send>(
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
     let mut assessor = Assessor::new(machine, options.certificate, Want::ALL);
+    let energy = rows.is_some();
     let mut tally = Tally::new(machine, options, rows);
     while let Some(line) = front.next_line()? {
         for step in line.steps {
@@ -39,7 +41,7 @@ pub fn analyze<R: Read + Send>(
     let lines = front.lines;
     let notes = front.finish()?;
     refuse_planned(&assessor, machine)?;
-    let mut summary = tally.finish();
+    let mut summary = tally.finish(energy);
     summary.lines = lines;
     summary.notes = notes;
     summary.conditions = conditions(machine, options, &summary);

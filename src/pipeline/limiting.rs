@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::certify::{Batch, Certified, Certifier};
-use super::tally::conditions;
+use super::conditions::conditions;
 use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, RowSink, Strategy, Summary};
 use crate::limit::Law;
@@ -37,11 +37,7 @@ pub fn limit<R: Read + Send, W: Write + Send>(
     let (written, certified) = if options.threads > 1 {
         side_by_side(writer, certifier)?
     } else {
-        let written = writer.run(&mut |batch| {
-            certifier.take(batch)?;
-            batch.bytes.clear();
-            Ok(())
-        })?;
+        let written = writer.run(&mut |batch| certifier.take(batch))?;
         (written, certifier.finish()?)
     };
     Ok(conclude(machine, options, written, certified))
@@ -82,7 +78,6 @@ fn certify_all(
 ) -> Result<Certified, Failure> {
     for mut batch in receiver {
         certifier.take(&mut batch)?;
-        batch.bytes.clear();
         // A full channel of empty buffers only means one more allocation.
         let _ = back.try_send(batch);
     }

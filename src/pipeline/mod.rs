@@ -2,6 +2,8 @@
 
 mod analyze;
 mod certify;
+mod conditions;
+mod describe;
 mod front;
 mod limiting;
 mod options;

@@ -2,9 +2,10 @@
 
 use std::io;
 
-use super::{Certificate, Failure, Options, Row, RowSink, Start, Summary, Unfit};
+use super::describe::row;
+use super::{Certificate, Failure, Options, Row, RowSink, Summary, Unfit};
 use crate::interpret::Move;
-use crate::machine::{AxisSet, Machine, PathMode};
+use crate::machine::{AxisSet, Machine};
 use crate::power::{Assessment, PowerModel, Want};
 use crate::source::split_line_end;
 
@@ -141,10 +142,11 @@ impl<'m, 'r> Tally<'m, 'r> {
             .map_or(Ok(()), |error| Err(Failure::Output(error)))
     }
 
-    /// The figures; lines, notes and conditions are still to be filled in.
-    pub(super) fn finish(self) -> Summary {
+    /// The figures, with the energy where it was wanted of all moves; lines,
+    /// notes and conditions are still to be filled in.
+    pub(super) fn finish(self, energy: bool) -> Summary {
         let mut summary = self.summary;
-        summary.energy_j = self.rows.is_some().then_some(self.energy_j);
+        summary.energy_j = energy.then_some(self.energy_j);
         summary.certificate = summary.certificate.or(Some(Certificate::Planned));
         summary
     }
@@ -153,44 +155,6 @@ impl<'m, 'r> Tally<'m, 'r> {
 /// Axes that really move, or may.
 pub(super) fn axes(mv: &Move) -> AxisSet {
     AxisSet(mv.moving.0 | mv.unknown_start.0)
-}
-
-/// The row of a judged move that begins at `start_s`.
-pub(super) fn row(
-    machine: &Machine,
-    model: &PowerModel,
-    mv: &Move,
-    assessment: &Assessment,
-    start_s: f64,
-) -> Row {
-    let demand = &assessment.demand;
-    let limit_w = model.limit_w(demand.converter);
-    Row {
-        line: mv.line,
-        n_word: mv.number,
-        kind: mv.kind,
-        axes: axes(mv),
-        start_s,
-        duration_s: assessment.duration_s,
-        peak_w: demand.peak_w,
-        regen_w: demand.regen_w,
-        limit_w,
-        ratio: (demand.peak_w > 0.0).then(|| limit_w / demand.peak_w),
-        energy_j: demand.energy_j,
-        action: "",
-        knob: String::new(),
-        value_before: None,
-        value_after: None,
-        peak_after_w: None,
-        duration_after_s: None,
-        regen_after_w: None,
-        certificate: assessment.certificate,
-        regen_limit_w: model.regen_limit_w(demand.converter),
-        converter: machine
-            .converters
-            .get(demand.converter)
-            .map_or_else(String::new, |it| it.name.clone()),
-    }
 }
 
 fn unfit(model: &PowerModel, mv: &Move, assessment: &Assessment, text: &[u8]) -> Unfit {
@@ -209,54 +173,4 @@ fn unfit(model: &PowerModel, mv: &Move, assessment: &Assessment, text: &[u8]) ->
         help: String::new(),
         text: text.get(..TEXT_MAX).unwrap_or(text).to_vec(),
     }
-}
-
-/// What the figures rest on, in plain sentences.
-pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
-    let percent = |factor: f64| factor * 100.0;
-    let limits = &machine.limits;
-    let mut conditions = vec![match summary.certificate {
-        Some(Certificate::Robust) => {
-            "robust: blended moves hold for any look-ahead, blending and filtering that \
-             keeps each axis inside its own limits; times are those with a stop at each block"
-                .to_owned()
-        }
-        _ => "planned: every block ends at rest (exact stop)".to_owned(),
-    }];
-    if machine.path.mode == Some(PathMode::ExactStop) {
-        conditions
-            .push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());
-    }
-    conditions.push(format!(
-        "overrides at most: feed {} %, rapid {} %, spindle {} %",
-        percent(limits.feed_override_max),
-        percent(limits.rapid_override_max),
-        percent(limits.spindle_override_max)
-    ));
-    conditions.push(format!(
-        "margin {} % of the converter's power",
-        percent(limits.margin)
-    ));
-    conditions.push(match options.start {
-        Start::Unknown => "start position unknown".to_owned(),
-        Start::At(at) if at.iter().all(|value| *value == 0.0) => {
-            "start position 0 for every axis".to_owned()
-        }
-        Start::At(_) => "start position as given".to_owned(),
-    });
-    conditions.push(
-        if options.block_delete {
-            "blocks with / are skipped"
-        } else {
-            "blocks with / are executed"
-        }
-        .to_owned(),
-    );
-    conditions.push(
-        "cutting forces are not counted; emergency stop and feed hold are outside".to_owned(),
-    );
-    if !machine.unchecked.is_empty() {
-        conditions.push(format!("not checked yet: {}", machine.unchecked.join(", ")));
-    }
-    conditions
 }

@@ -8,13 +8,14 @@ use arrayvec::ArrayVec;
 
 use super::analyze::refuse_planned;
 use super::certify::{Batch, Expected, ExpectedMove, Reasons};
+use super::describe::{describe, row};
 use super::front::{Front, Line};
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Outcome, Permit};
+use crate::limit::{Change, Limiter, Obstacle, Outcome, Permit};
 use crate::machine::{Machine, PathMode, RapidJoint};
-use crate::power::{Assessment, Assessor, Want};
+use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 use crate::syntax::Block;
 
@@ -39,16 +40,18 @@ struct Entry {
     /// The state behind it.
     mark: Mark,
     knobs: Option<KnobState>,
-    feed_before: Option<f64>,
+    feed_mode: FeedMode,
+    /// Path mode of the move before it.
+    mode_before: PathMode,
     moves: usize,
     decided: ArrayVec<(Assessment, Outcome), MOVES_MAX>,
 }
 
 /// A move that is not decided yet.
 struct Flight {
-    /// Number of its block.
+    /// Number of its block, and which of its steps it is.
     entry: u64,
-    permit: Permit,
+    step: usize,
     assessment: Option<Assessment>,
 }
 
@@ -62,9 +65,9 @@ pub(super) struct Writer<'m, R, W> {
     tally: Tally<'m, 'm>,
     rewriter: Rewriter<'m>,
     /// Blocks that wait; `first` is the number of the front one.
-    entries: VecDeque<Entry>,
+    entries: VecDeque<Box<Entry>>,
     first: u64,
-    spare: Vec<Entry>,
+    spare: Vec<Box<Entry>>,
     flights: VecDeque<Flight>,
     outcomes: Vec<Outcome>,
     /// Path mode of the last move that was read.
@@ -76,6 +79,9 @@ pub(super) struct Writer<'m, R, W> {
     reasons: Reasons,
     /// Every figure is wanted exactly: there are rows.
     exact: bool,
+    model: PowerModel,
+    /// Time of the original so far, s.
+    start_s: f64,
 }
 
 impl<'m, R: Read, W: Write> Writer<'m, R, W> {
@@ -107,6 +113,8 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             batch: Batch::default(),
             reasons: Reasons::default(),
             exact,
+            model: PowerModel::new(machine),
+            start_s: 0.0,
         }
     }
 
@@ -137,7 +145,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         let lines = self.front.lines;
         let notes = self.front.finish()?;
         refuse_planned(&self.assessor, self.machine)?;
-        let mut before = self.tally.finish();
+        let mut before = self.tally.finish(self.exact);
         before.lines = lines;
         before.notes = notes;
         Ok(Written {
@@ -147,44 +155,48 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         })
     }
 
-    /// Reads a block, judges its moves, and lets it wait.
+    /// Reads a block, lets it wait, and judges its moves.
     fn read_block(&mut self) -> Result<bool, Failure> {
-        let mut entry = self.spare.pop();
+        let spare = self.spare.pop();
         let Some(line) = self.front.next_line()? else {
             return Ok(false);
         };
-        let entry = match entry.take() {
-            Some(mut entry) => {
-                entry.fill(&line, self.machine);
-                entry
-            }
-            None => Entry::new(&line, self.machine),
-        };
+        let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        entry.fill(&line, self.machine, self.mode);
         let number = self.first + self.entries.len() as u64;
-        for step in &entry.steps {
-            let Step::Move(mv) = step else { continue };
-            let permit = permit(&line, self.machine, mv, self.mode);
+        self.entries.push_back(entry);
+        let Self {
+            assessor,
+            limiter,
+            tally,
+            entries,
+            first,
+            flights,
+            outcomes,
+            ..
+        } = self;
+        for (step, mv) in line.steps.iter().enumerate() {
+            let Step::Move(mv) = mv else { continue };
             self.mode = mv.path_mode;
-            self.flights.push_back(Flight {
+            flights.push_back(Flight {
                 entry: number,
-                permit,
+                step,
                 assessment: None,
             });
-            let Self {
-                assessor,
+            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            let mut judge = Judge {
+                machine: self.machine,
                 limiter,
-                tally,
+                entries,
+                first: *first,
                 flights,
                 outcomes,
-                exact,
-                ..
-            } = self;
-            assessor.want = if *exact { Want::ALL } else { tally.want() };
+            };
             assessor.push(mv, line.text, &mut |mv, assessment, text| {
-                judged(mv, assessment, text, tally, limiter, flights, outcomes);
+                tally.add(mv, assessment, text);
+                judge.take(mv, assessment);
             });
         }
-        self.entries.push_back(entry);
         Ok(true)
     }
 
@@ -194,14 +206,25 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             assessor,
             limiter,
             tally,
+            entries,
+            first,
             flights,
             outcomes,
             ..
         } = self;
+        let mut judge = Judge {
+            machine: self.machine,
+            limiter,
+            entries,
+            first: *first,
+            flights,
+            outcomes,
+        };
         assessor.finish(&mut |mv, assessment, text| {
-            judged(mv, assessment, text, tally, limiter, flights, outcomes);
+            tally.add(mv, assessment, text);
+            judge.take(mv, assessment);
         });
-        limiter.finish(&mut |outcome| outcomes.push(outcome.clone()));
+        limiter.finish(&mut |outcome| outcomes.push(outcome));
         self.decide();
     }
 
@@ -251,7 +274,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             knobs: self.knobs.as_ref(),
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
             feeds: entry.moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
-            change: &change,
+            change: change.as_ref().unwrap_or(&Change::NONE),
         };
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
@@ -262,17 +285,18 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         self.output
             .write_all(&self.batch.bytes[start..])
             .map_err(Failure::Output)?;
-        self.expect(entry, &change);
+        self.expect(entry, change);
         Ok(())
     }
 
     /// Tells the certifier what the block must do.
-    fn expect(&mut self, entry: &mut Entry, change: &Change) {
+    fn expect(&mut self, entry: &mut Entry, change: Option<Change>) {
+        let feed_before = entry.feed_before();
         let mut decided = entry.decided.drain(..);
-        for step in entry.steps.drain(..) {
+        for step in &entry.steps {
             let mv = match step {
                 Step::Action(action) => {
-                    self.batch.expected.push(Expected::Action(action));
+                    self.batch.expected.push(Expected::Action(*action));
                     continue;
                 }
                 Step::Move(mv) => mv,
@@ -282,51 +306,65 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             };
             let hopeless = outcome.obstacle.is_some();
             if let Some(obstacle) = outcome.obstacle {
-                self.reasons.push(
-                    mv.line,
-                    obstacle.rule,
-                    obstacle.message,
-                    &obstacle.help,
-                    &entry.text,
-                );
+                let Obstacle {
+                    rule,
+                    message,
+                    help,
+                } = *obstacle;
+                self.reasons
+                    .push(mv.line, rule, message, &help, &entry.text);
             }
             // What a block gets, all its moves get, but not its dwell.
-            let change = if mv.kind == MoveKind::Dwell {
-                Change::default()
-            } else {
-                *change
-            };
-            let feed_before = entry.feed_before;
-            let expected = ExpectedMove {
-                mv,
-                assessment,
-                change,
-                feed_before,
+            let change = change.filter(|_| mv.kind != MoveKind::Dwell);
+            let row = self.exact.then(|| {
+                let mut row = row(self.machine, &self.model, mv, &assessment, self.start_s);
+                describe(self.machine, mv, change.as_ref(), feed_before, &mut row);
+                if hopeless {
+                    row.action = "none possible";
+                }
+                Box::new(row)
+            });
+            self.start_s += assessment.duration_s;
+            self.batch.expected.push(Expected::Move(ExpectedMove {
+                line: mv.line,
+                kind: mv.kind,
+                end: mv.end,
+                arc: mv.arc,
+                unknown_start: mv.unknown_start,
+                path_mode: mv.path_mode,
+                loads: mv.loads,
+                dwell_s: mv.dwell_s,
+                axis_accel_mm_s2: mv.accel_mm_s2,
+                speed_mm_s: assessment.speed_mm_s,
+                accel_mm_s2: assessment.accel_mm_s2,
+                changed: change.is_some(),
+                as_feed: change.is_some_and(|change| change.as_feed),
                 hopeless,
-            };
-            self.batch.expected.push(Expected::Move(expected));
+                row,
+            }));
         }
     }
 }
 
 impl Entry {
-    fn new(line: &Line<'_, '_>, machine: &Machine) -> Self {
-        let mut entry = Self {
+    fn new(line: &Line<'_, '_>) -> Self {
+        let modal = line.interpreter.modal();
+        Self {
             text: Vec::new(),
             block: Block::default(),
             facts: Facts::default(),
             steps: Vec::new(),
-            mark: Mark::of(line.interpreter.modal()),
+            mark: Mark::of(modal),
             knobs: None,
-            feed_before: None,
+            feed_mode: modal.feed_mode,
+            mode_before: modal.path_mode,
             moves: 0,
             decided: ArrayVec::new(),
-        };
-        entry.fill(line, machine);
-        entry
+        }
     }
 
-    fn fill(&mut self, line: &Line<'_, '_>, machine: &Machine) {
+    fn fill(&mut self, line: &Line<'_, '_>, machine: &Machine, mode_before: PathMode) {
+        let modal = line.interpreter.modal();
         self.text.clear();
         self.text.extend_from_slice(line.text);
         self.block.clone_from(line.block);
@@ -338,17 +376,14 @@ impl Entry {
             .iter()
             .filter(|step| matches!(step, Step::Move(_)))
             .count();
-        self.mark = Mark::of(line.interpreter.modal());
+        self.mark = Mark::of(modal);
         self.knobs = knobs(machine, line.interpreter.knobs());
-        self.feed_before = line
-            .interpreter
-            .modal()
-            .feed
-            .as_ref()
-            .map(|feed| feed.value);
+        self.feed_mode = modal.feed_mode;
+        self.mode_before = mode_before;
         self.decided.clear();
     }
 
+    /// Whether it moves by a kind that is wanted.
     fn moves_by(&self, wanted: fn(MoveKind) -> bool) -> bool {
         self.moves > 0
             && self
@@ -356,33 +391,107 @@ impl Entry {
                 .iter()
                 .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
     }
+
+    /// What may be changed for one of its moves.
+    fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
+        let facts = &self.facts;
+        let mode_before = if step == 0 {
+            self.mode_before
+        } else {
+            mv.path_mode
+        };
+        let stops = mv.path_mode == PathMode::ExactStop && mode_before == PathMode::ExactStop;
+        let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
+        // What forbids any edit, what forbids an F, what forbids G1 for G0.
+        let edit = [
+            (facts.checksum, "it carries a checksum"),
+            (
+                self.block.delete_level > 0,
+                "it may be skipped (block delete)",
+            ),
+            (
+                facts.boundary,
+                "it stops, changes the tool or ends the program",
+            ),
+            (facts.turns_knob, "it sets limits itself"),
+        ];
+        let feed = [
+            (
+                self.feed_mode == FeedMode::InverseTime,
+                "its feed is an inverse time (G93)",
+            ),
+            (
+                self.feed_mode == FeedMode::PerRevolution,
+                "its feed is per revolution (G95)",
+            ),
+        ];
+        let rapid = [
+            (facts.machine_coordinates, "G53 is for rapids"),
+            (facts.reference, "it moves to a reference point"),
+            (!stays, "without its stop the corner would be rounded"),
+        ];
+        let reason = |checks: &[(bool, &'static str)]| {
+            checks
+                .iter()
+                .find(|(applies, _)| *applies)
+                .map(|(_, reason)| *reason)
+        };
+        let reasons = [reason(&edit), reason(&feed), reason(&rapid)];
+        let feed_accel_mm_s2 = self
+            .knobs
+            .as_ref()
+            .map_or(mv.accel_mm_s2, |knobs| knobs.feed_accel_mm_s2);
+        Permit {
+            edit: reasons[0].is_none(),
+            feed_word: reasons[..2] == [None, None],
+            as_feed: reasons == [None; 3],
+            reason: reasons.into_iter().flatten().next().unwrap_or(""),
+            mm_per_unit: self.mark.mm_per_unit,
+            feed_before: self.feed_before(),
+            feed_accel_mm_s2,
+        }
+    }
+
+    /// The F in force, in program units.
+    fn feed_before(&self) -> Option<f64> {
+        self.mark.feed.as_ref().map(|feed| feed.value)
+    }
 }
 
-/// A move is judged: it goes to the limiter, whose decisions are collected.
-fn judged(
-    mv: &Move,
-    assessment: &Assessment,
-    text: &[u8],
-    tally: &mut Tally<'_, '_>,
-    limiter: &mut Limiter<'_>,
-    flights: &mut VecDeque<Flight>,
-    outcomes: &mut Vec<Outcome>,
-) {
-    tally.add(mv, assessment, text);
-    if let Some(flight) = flights
-        .iter_mut()
-        .find(|flight| flight.assessment.is_none())
-    {
+/// Hands judged moves to the limiter and collects its decisions.
+struct Judge<'a, 'm> {
+    machine: &'m Machine,
+    limiter: &'a mut Limiter<'m>,
+    entries: &'a VecDeque<Box<Entry>>,
+    first: u64,
+    flights: &'a mut VecDeque<Flight>,
+    outcomes: &'a mut Vec<Outcome>,
+}
+
+impl Judge<'_, '_> {
+    fn take(&mut self, mv: &Move, assessment: &Assessment) {
+        let Self {
+            machine,
+            limiter,
+            entries,
+            first,
+            flights,
+            outcomes,
+        } = self;
+        let Some(flight) = flights
+            .iter_mut()
+            .find(|flight| flight.assessment.is_none())
+        else {
+            return;
+        };
         flight.assessment = Some(*assessment);
-        limiter.push(
-            mv,
-            assessment,
-            &flight.permit,
-            assessment.joined,
-            &mut |outcome| {
-                outcomes.push(outcome.clone());
-            },
-        );
+        let Some(entry) = entries.get((flight.entry - *first) as usize) else {
+            return;
+        };
+        let permit = || entry.permit(machine, mv, flight.step);
+        limiter.push(mv, assessment, permit, &mut |outcome| {
+            outcomes.push(outcome)
+        });
     }
 }
 
@@ -390,68 +499,11 @@ fn knobs(machine: &Machine, state: &KnobState) -> Option<KnobState> {
     (!machine.controller.knobs.is_empty()).then(|| state.clone())
 }
 
-/// What may be changed about the block of a move; `mode` is the path mode of
-/// the move before it.
-fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, mode: PathMode) -> Permit {
-    let facts = &line.facts;
-    let modal = line.interpreter.modal();
-    let stops = mv.path_mode == PathMode::ExactStop && mode == PathMode::ExactStop;
-    let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
-    let checks = [
-        (facts.checksum, "it carries a checksum"),
-        (
-            line.block.delete_level > 0,
-            "it may be skipped (block delete)",
-        ),
-        (
-            facts.boundary,
-            "it stops, changes the tool or ends the program",
-        ),
-        (facts.turns_knob, "it sets limits itself"),
-        (
-            modal.feed_mode == FeedMode::InverseTime,
-            "its feed is an inverse time (G93)",
-        ),
-        (
-            modal.feed_mode == FeedMode::PerRevolution,
-            "its feed is per revolution (G95)",
-        ),
-        (facts.machine_coordinates, "G53 is for rapids"),
-        (facts.reference, "it moves to a reference point"),
-        (!stays, "without its stop the corner would be rounded"),
-    ];
-    let first = checks.iter().position(|(applies, _)| *applies);
-    Permit {
-        edit: first.is_none_or(|first| first > 3),
-        feed_word: first.is_none_or(|first| first > 5),
-        as_feed: first.is_none(),
-        reason: first.map_or("", |first| checks[first].1),
-        mm_per_unit: modal.mm_per_unit,
-        feed_before: modal.feed.as_ref().map(|feed| feed.value),
-        feed_accel_mm_s2: line.interpreter.knobs().feed_accel_mm_s2,
-    }
-}
-
 /// One change for a block of several moves: the lower value of each word.
-fn merge(decided: &[(Assessment, Outcome)]) -> Change {
-    let lower = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        (Some(a), Some(b)) => Some(a.min(b)),
-        (a, b) => a.or(b),
-    };
-    let mut merged = Change::default();
-    for (_, Outcome { change, .. }) in decided {
-        merged.feed = lower(merged.feed, change.feed);
-        merged.as_feed |= change.as_feed;
-        merged.rapid_percent = match (merged.rapid_percent, change.rapid_percent) {
-            (Some((knob, a)), Some((_, b))) => Some((knob, a.min(b))),
-            (a, b) => a.or(b),
-        };
-        merged.accel = match (merged.accel, change.accel) {
-            (Some((knob, a)), Some((_, b))) => {
-                Some((knob, std::array::from_fn(|axis| a[axis].min(b[axis]))))
-            }
-            (a, b) => a.or(b),
-        };
-    }
-    merged
+fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
+    let mut changes = decided
+        .iter()
+        .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
+    let first = changes.next()?;
+    Some(changes.fold(first, |merged, change| merged.lower(&change)))
 }
