@@ -158,11 +158,11 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
     /// Reads a block, lets it wait, and judges its moves.
     fn read_block(&mut self) -> Result<bool, Failure> {
         let spare = self.spare.pop();
-        let Some(line) = self.front.next_line()? else {
+        let Some(mut line) = self.front.next_line()? else {
             return Ok(false);
         };
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
-        entry.fill(&line, self.machine, self.mode);
+        entry.fill(&mut line, self.machine, self.mode);
         let number = self.first + self.entries.len() as u64;
         self.entries.push_back(entry);
         let Self {
@@ -175,7 +175,11 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             outcomes,
             ..
         } = self;
-        for (step, mv) in line.steps.iter().enumerate() {
+        let entries = &*entries;
+        let Some(entry) = entries.back() else {
+            return Ok(true);
+        };
+        for (step, mv) in entry.steps.iter().enumerate() {
             let Step::Move(mv) = mv else { continue };
             self.mode = mv.path_mode;
             flights.push_back(Flight {
@@ -192,7 +196,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 flights,
                 outcomes,
             };
-            assessor.push(mv, line.text, &mut |mv, assessment, text| {
+            assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
                 tally.add(mv, assessment, text);
                 judge.take(mv, assessment);
             });
@@ -363,15 +367,14 @@ impl Entry {
         }
     }
 
-    fn fill(&mut self, line: &Line<'_, '_>, machine: &Machine, mode_before: PathMode) {
+    fn fill(&mut self, line: &mut Line<'_, '_>, machine: &Machine, mode_before: PathMode) {
         let modal = line.interpreter.modal();
         self.text.clear();
         self.text.extend_from_slice(line.text);
-        self.block.clone_from(line.block);
+        std::mem::swap(&mut self.block, line.block);
         self.facts = line.facts;
-        self.steps.clear();
-        self.steps.extend_from_slice(line.steps);
-        self.moves = line
+        std::mem::swap(&mut self.steps, line.steps);
+        self.moves = self
             .steps
             .iter()
             .filter(|step| matches!(step, Step::Move(_)))

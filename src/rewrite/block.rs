@@ -86,9 +86,8 @@ impl<'m> Rewriter<'m> {
             self.turn_knobs(view, out);
         }
         self.edits.clear();
-        let style = Style::of(view.text, view.block);
-        self.motion_word(view, style);
-        self.feed_word(view, style);
+        self.motion_word(view);
+        self.feed_word(view);
         if self.edits.is_empty() {
             out.extend_from_slice(view.text);
             return true;
@@ -114,7 +113,7 @@ impl<'m> Rewriter<'m> {
     }
 
     /// The motion word: G1 for a rapid that becomes a feed, and back.
-    fn motion_word(&mut self, view: &BlockView<'_>, style: Style) {
+    fn motion_word(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
         if let Some(word) = facts.motion_word {
             self.written.motion = view.after.motion;
@@ -139,6 +138,7 @@ impl<'m> Rewriter<'m> {
             return;
         }
         if let (Some(digit), Some(first)) = (wanted.digit(), view.block.words.first()) {
+            let style = Style::of(view.text, view.block);
             let mut text = vec![style.letter(b'G'), digit];
             text.extend(style.spaced.then_some(b' '));
             self.edits.push(Edit::insert(first.span.start, text));
@@ -147,7 +147,7 @@ impl<'m> Rewriter<'m> {
     }
 
     /// F: changed, inserted, or put back.
-    fn feed_word(&mut self, view: &BlockView<'_>, style: Style) {
+    fn feed_word(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
         let original = view.after.feed_value();
         let wanted = match view.change.feed {
@@ -187,6 +187,7 @@ impl<'m> Rewriter<'m> {
             (None, Some(feed)) => feed_again(feed, view.after.mm_per_unit),
             (None, None) => return,
         };
+        let style = Style::of(view.text, view.block);
         let mut text = Vec::with_capacity(number.len() + 2);
         text.extend(style.spaced.then_some(b' '));
         text.push(style.letter(b'F'));
