@@ -30,7 +30,7 @@ pub fn analyze<R: Read + Send>(
             if let Step::Move(mv) = step {
                 assessor.want = tally.want();
                 assessor.push(mv, line.text, &mut |mv, assessment, text| {
-                    tally.take(mv, assessment, text)
+                    tally.take(mv, assessment, text);
                 });
             }
         }

@@ -4,6 +4,7 @@ mod analyze;
 mod certify;
 mod conditions;
 mod describe;
+mod entry;
 mod front;
 mod limiting;
 mod options;
