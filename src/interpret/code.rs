@@ -54,6 +54,7 @@ pub(super) enum GCode {
     ClearOffset { forget: bool },
     RestoreOffset,
     FeedMode(super::FeedMode),
+    MirrorX,
     Ignored,
 }
 
@@ -77,6 +78,7 @@ impl GCode {
                 12
             }
             Self::Ignored => 13,
+            Self::MirrorX => 14,
         }
     }
 }
@@ -95,9 +97,10 @@ pub(super) fn code_number(value: f64) -> Option<u16> {
 /// not known.
 pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
     match (family, number) {
-        // ISG: G20 and G21 mirror, G70 and G71 set the unit. Marlin: G60 and
-        // G61 save a position and return to it.
-        (Family::Isg, 200 | 210) | (Family::Marlin, 600..=640) => None,
+        // ISG: G21 mirrors X and G20 ends it; G70 and G71 set the unit.
+        (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
+        // Marlin: G60 and G61 save a position and return to it.
+        (Family::Marlin, 600..=640) => None,
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
         _ => common_g_code(number),

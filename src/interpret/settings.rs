@@ -6,6 +6,7 @@ use super::execute::{Control, Run};
 use super::modal::Feed;
 use super::moves::{ActionKind, FeedMode};
 use crate::machine::{Family, PathMode};
+use crate::source::Span;
 
 impl Control<'_> {
     pub(super) fn feed_mode(&mut self, run: &mut Run<'_, '_>) {
@@ -71,6 +72,7 @@ impl Control<'_> {
                     run.report.note_once("no-tool-table", message, span);
                 }
                 GCode::PathMode => self.path_mode(number, run),
+                GCode::MirrorX => self.mirror_x(span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
                     self.modal.extruder_absolute = absolute;
@@ -93,6 +95,25 @@ impl Control<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// Mirroring in X from X0 changes the sign of every X and with it no power,
+    /// as long as no weight hangs on X.
+    fn mirror_x(&self, span: Span, run: &mut Run<'_, '_>) {
+        let weightless = self.machine.axes[0].is_none_or(|axis| axis.gravity_n == 0.0);
+        if weightless && self.position.at[0] == 0.0 && self.position.absolute(0, 0.0) == 0.0 {
+            let message = "G20 and G21 switch mirroring in X, not the unit (G70, G71): \
+                           the sign of X is not shown, its power is the same";
+            run.report.note_once("mirrored-x", message, span);
+            return;
+        }
+        run.report
+            .error(
+                "mirrored-x",
+                "G20 and G21 switch mirroring in X on this controller",
+                span,
+            )
+            .help("for the unit write G70 (inch) or G71 (mm); mirroring is followed only at X0");
     }
 
     pub(super) fn path_mode(&mut self, number: u16, run: &mut Run<'_, '_>) {

@@ -1,5 +1,6 @@
 //! From bytes to figures, and from bytes to a certified program.
 
+mod advice;
 mod analyze;
 mod certify;
 mod conditions;
