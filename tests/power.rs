@@ -2,7 +2,7 @@
 //! too low.
 
 use crate::rig::{
-    any_arc, any_delta, any_feed, any_machine, arc, axis, dwell, machine, sample, straight,
+    Sampled, any_arc, any_delta, any_feed, any_machine, arc, axis, dwell, machine, sample, straight,
 };
 use gwatt::interpret::Move;
 use gwatt::machine::{Axis, AxisKind, AxisSet, Converter, Load, Machine, RapidPath};
@@ -269,7 +269,7 @@ fn gross_w(machine: &Machine, speed_mm_s: f64) -> f64 {
 /// Peaks within 1e-6 above the samples and never below them.
 fn peaks_agree(found: f64, sampled: f64, scale: f64) -> Result<(), TestCaseError> {
     prop_assert!(
-        found >= sampled * (1.0 - 1e-12),
+        found >= sampled * (1.0 - 1e-12) - 1e-12 * scale,
         "{found} is too low, sampled {sampled}"
     );
     let above = found - sampled.max(0.0);
@@ -304,10 +304,16 @@ proptest! {
         let mv = arc(&machine, plane, radius, angles, lift, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL);
-        let sampled = sample(&machine, &mv, &plan, 600);
         let scale = gross_w(&machine, plan.top_speed_mm_s);
-        peaks_agree(found.peak_w, sampled.peak_w, scale)?;
-        peaks_agree(found.regen_w, sampled.regen_w, scale)?;
+        let agree = |sampled: &Sampled| {
+            peaks_agree(found.peak_w, sampled.peak_w, scale)?;
+            peaks_agree(found.regen_w, sampled.regen_w, scale)
+        };
+        // Few samples may miss the highest of several peaks.
+        let sampled = sample(&machine, &mv, &plan, 600);
+        if agree(&sampled).is_err() {
+            agree(&sample(&machine, &mv, &plan, 60_000))?;
+        }
     }
 
     #[test]
@@ -366,25 +372,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20, ..ProptestConfig::default() })]
 
     #[test]
-    fn arc_energy_agrees_with_fine_integration(
-        machine in any_machine(), shape in any_arc(), smooth in any::<bool>(),
-    ) {
-        // The force jumps where an axis turns back; without copper loss the power
-        // does not, and the samples converge faster.
-        let mut machine = machine;
-        if smooth {
-            for axis in machine.axes.iter_mut().flatten() {
-                axis.copper_w_n2 = 0.0;
-            }
-        }
-        let tolerance = if smooth { 1e-6 } else { 2e-5 };
+    fn arc_energy_agrees_with_fine_integration(machine in any_machine(), shape in any_arc()) {
         let (plane, radius, angles, lift, feed) = shape;
         let mv = arc(&machine, plane, radius, angles, lift, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL).energy_j;
-        let sampled = sample(&machine, &mv, &plan, 20_000);
+        let sampled = sample(&machine, &mv, &plan, 4_000);
         let scale = found.abs() + sampled.peak_w * plan.duration_s;
-        prop_assert!((found - sampled.energy_j).abs() <= tolerance * scale, "{found} {}", sampled.energy_j);
+        prop_assert!((found - sampled.energy_j).abs() <= 1e-6 * scale, "{found} {}", sampled.energy_j);
     }
 
     #[test]
@@ -394,7 +389,7 @@ proptest! {
         let mv = straight(&machine, &delta, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL).energy_j;
-        let sampled = sample(&machine, &mv, &plan, 5_000);
+        let sampled = sample(&machine, &mv, &plan, 1_500);
         let scale = found.abs() + sampled.peak_w * plan.duration_s;
         prop_assert!((found - sampled.energy_j).abs() <= 1e-6 * scale, "{found} {}", sampled.energy_j);
     }

@@ -9,6 +9,7 @@
 //! energy, and only regenerating ones towards the regenerative peak.
 
 mod arc;
+mod arc_energy;
 mod arc_piece;
 mod axis;
 mod circle;
@@ -16,6 +17,7 @@ mod demand;
 mod independent;
 mod interval;
 mod model;
+mod quadrants;
 mod quadrature;
 mod robust;
 mod search;
