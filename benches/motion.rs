@@ -60,6 +60,7 @@ fn machine(edit: fn(&mut Axis)) -> Machine {
         planner: Planner {
             rapid: RapidPath::Independent,
             arc_rule: ArcRule::Shared,
+            rapid_joint: gwatt::machine::RapidJoint::Stop,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,

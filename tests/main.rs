@@ -1,5 +1,10 @@
 //! Tests.
 
+mod layers;
+mod syntax;
 mod plan;
 mod power;
 mod rig;
+mod machine;
+mod cli;
+mod readme;

@@ -91,6 +91,7 @@ fn controller() -> Controller {
         planner: Planner {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,
+            rapid_joint: gwatt::machine::RapidJoint::Stop,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,

@@ -1,5 +1,31 @@
 //! Blocks to moves: modal state, coordinates, arcs.
+//!
+//! In: blocks of a program, one by one. Out: moves in machine coordinates and
+//! actions. Reference: RS274/NGC as documented by LinuxCNC, with what a
+//! controller profile says otherwise.
 
+mod arc;
+mod arc_words;
+mod code;
+mod execute;
+mod facts;
+mod knob;
+mod knob_words;
+mod m_words;
+mod modal;
+mod motion;
 mod moves;
+mod position;
+mod reference;
+mod report;
+mod settings;
+mod words;
 
+pub use code::Motion;
+pub use execute::Interpreter;
+pub use facts::Facts;
+pub use knob::KnobState;
+pub use modal::{Feed, Modal};
 pub use moves::*;
+pub use position::Start;
+pub use report::Diagnostics;

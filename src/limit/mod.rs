@@ -1,1 +1,21 @@
-//! limit
+//! Demand to adjustments: which moves are too much, and what is done about it.
+//!
+//! Input: moves with their assessments, and what may be changed about each.
+//! Output: for each move, in order, the [`Change`] that makes it fit, or why
+//! there is none. The limiter never sees text.
+
+mod change;
+mod law;
+mod lever;
+mod limiter;
+mod optimum;
+mod options;
+mod root;
+mod solver;
+mod window;
+
+pub use change::{Change, Permit};
+pub use lever::Obstacle;
+pub use limiter::{Limiter, Outcome};
+pub use options::{Law, LimitOptions, Strategy};
+pub use solver::Solver;

@@ -20,6 +20,10 @@ pub struct Controller {
 
 /// How program text is read.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a separate property of the control"
+)]
 pub struct Language {
     /// The family of words.
     pub family: Family,
@@ -55,11 +59,11 @@ pub struct Language {
 pub enum Family {
     /// ISO 6983 as most machine tools read it.
     Iso,
-    /// RS274/NGC as LinuxCNC reads it.
+    /// RS274/NGC as `LinuxCNC` reads it.
     Rs274,
     /// Marlin and its kin: 3D printers.
     Marlin,
-    /// ISG kernel, Beckhoff TwinCAT CNC.
+    /// ISG kernel, Beckhoff `TwinCAT` CNC.
     Isg,
 }
 
@@ -88,6 +92,19 @@ pub struct Planner {
     pub rapid: RapidPath,
     /// How acceleration is shared on arcs.
     pub arc_rule: ArcRule,
+    /// What happens at the ends of rapids in a mode that blends.
+    pub rapid_joint: RapidJoint,
+}
+
+/// Whether rapids are blended with their neighbours where the path mode blends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RapidJoint {
+    /// A rapid starts from rest and ends at rest.
+    Stop,
+    /// Rapids blend among each other; between rapid and feed there is a stop.
+    Rapids,
+    /// Rapids blend like any other move.
+    All,
 }
 
 /// How acceleration is shared between turning and speeding up on an arc.
@@ -96,7 +113,7 @@ pub enum ArcRule {
     /// Tangential and centripetal each at most `a_min/√2`, `a_min` the smallest
     /// limit of the moving axes.
     Shared,
-    /// LinuxCNC 2.9: speed at most `√(0.866·a·r)`, tangential acceleration
+    /// `LinuxCNC` 2.9: speed at most `√(0.866·a·r)`, tangential acceleration
     /// `a·√(1 − (v²/(r·a))²)` at that speed, `a` the smaller limit of the plane.
     LinuxCnc,
 }

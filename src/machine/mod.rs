@@ -1,9 +1,13 @@
 //! The machine description: TOML in, validated model out.
 
 mod axis;
+pub mod builtin;
+mod config;
 mod controller;
 mod model;
 
 pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
+pub use builtin::builtin_controller;
+pub use config::{Loaded, controller_schema, schema};
 pub use controller::*;
 pub use model::*;

@@ -1,1 +1,46 @@
-//! pipeline
+//! From bytes to figures, and from bytes to a certified program.
+
+mod advice;
+mod analyze;
+mod certify;
+mod conditions;
+mod describe;
+mod entry;
+mod front;
+mod limiting;
+mod options;
+mod row;
+mod summary;
+mod tally;
+mod writer;
+
+pub use analyze::{analyze, moves};
+pub use limiting::limit;
+pub use options::{Law, LimitOptions, Options, Start, Strategy};
+pub use row::{Certificate, Row, RowSink};
+pub use summary::{LimitSummary, Summary, Unfit};
+
+use crate::diagnostic::Diagnostic;
+
+/// Why a run came to no result.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The program is refused: at least one error, with further warnings and
+    /// notes, in program order. `more` counts the errors that are not listed.
+    #[error("the program is refused")]
+    Refused {
+        /// What was found.
+        diagnostics: Vec<Diagnostic>,
+        /// Errors beyond those listed.
+        more: u64,
+    },
+    /// The input cannot be read.
+    #[error("cannot read the program")]
+    Input(#[source] std::io::Error),
+    /// The program or a report cannot be written.
+    #[error("cannot write")]
+    Output(#[source] std::io::Error),
+    /// What is asked for cannot be done with this machine: usage.
+    #[error("{0}")]
+    Unsuitable(String),
+}

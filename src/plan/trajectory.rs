@@ -6,7 +6,7 @@
 
 use super::bound::{SpeedBound, speed_bound};
 use super::limits::{self, PathLimits};
-use super::profile::Profile;
+use super::profile::{Phase, PhaseKind, Profile};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidPath};
 
@@ -60,7 +60,7 @@ impl Default for Caps {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(
     clippy::large_enum_variant,
-    reason = "paths are the common case and must not be allocated"
+    reason = "paths are the common case, and a box would be an allocation for each move"
 )]
 pub enum Trajectory {
     /// No axis moves.
@@ -112,6 +112,27 @@ impl Plan {
             speed_limit_mm_s: 0.0,
             accel_mm_s2: 0.0,
             top_speed_mm_s: 0.0,
+        }
+    }
+
+    /// A cruise alone: what remains of a long move without its ramps.
+    #[must_use]
+    pub fn cruise(speed_mm_s: f64, length_mm: f64) -> Self {
+        let mut profile = Profile::default();
+        profile.phases.push(Phase {
+            kind: PhaseKind::ConstantAcceleration,
+            duration_s: length_mm / speed_mm_s,
+            position_mm: 0.0,
+            velocity_mm_s: speed_mm_s,
+            end_velocity_mm_s: speed_mm_s,
+            accel_mm_s2: 0.0,
+        });
+        Self {
+            trajectory: Trajectory::Path(profile),
+            duration_s: length_mm / speed_mm_s,
+            speed_limit_mm_s: speed_mm_s,
+            accel_mm_s2: 0.0,
+            top_speed_mm_s: speed_mm_s,
         }
     }
 }

@@ -8,10 +8,12 @@
 //! plain sum; where not, only motoring axes count towards the peak and the
 //! energy, and only regenerating ones towards the regenerative peak.
 
+mod assess;
 mod arc;
 mod arc_energy;
 mod arc_piece;
 mod axis;
+mod ceiling;
 mod circle;
 mod demand;
 mod independent;
@@ -23,5 +25,6 @@ mod robust;
 mod search;
 mod straight;
 
+pub use assess::{Assessment, Assessor, Certificate};
 pub use demand::{Demand, Want};
 pub use model::PowerModel;

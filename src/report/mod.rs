@@ -1,1 +1,29 @@
-//! report
+//! Results for people and for other programs: one writer for each format.
+
+mod checked;
+mod comparison;
+mod csv;
+mod figure;
+mod finding;
+mod github;
+mod json;
+mod junit;
+mod moves;
+mod patch;
+mod quantity;
+mod record;
+mod sarif;
+mod text;
+
+pub use checked::{Checked, Verdict, chain};
+pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
+pub use csv::CsvRows;
+pub use github::github;
+pub use json::{JsonRows, check_json, limit_json, report_json};
+pub use junit::junit;
+pub use moves::write_move;
+pub use patch::unified_diff;
+pub use quantity::{duration, power};
+pub use record::COLUMNS;
+pub use sarif::sarif;
+pub use text::{axis_table, check_text, limit_text};

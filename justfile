@@ -1,0 +1,26 @@
+# Everything that CI runs
+ci:
+    .ci/run
+
+test *args:
+    cargo test --locked {{args}}
+
+fmt:
+    cargo fmt
+
+lint:
+    cargo clippy --all-targets -- -D warnings
+
+# Accept what snapshots and README examples show now
+bless:
+    INSTA_UPDATE=always TRYCMD=overwrite cargo test
+
+doc:
+    RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
+
+bench *args:
+    cargo bench {{args}}
+
+# One fuzz target, ten minutes; needs cargo-fuzz and a nightly toolchain
+fuzz target seconds="600":
+    cargo +nightly fuzz run {{target}} -- -max_total_time={{seconds}}

@@ -1,0 +1,46 @@
+//! Arguments of `check`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{MachineArgs, ProgramArgs};
+
+const EXAMPLES: &str = "\
+Examples:
+  gwatt check part.ngc -m vmc
+  gwatt check programs/*.ngc -m mill.toml
+  gwatt check programs/*.ngc -m mill.toml --format sarif > gwatt.sarif";
+
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct CheckArgs {
+    /// The programs; - for standard input
+    #[arg(required = true, value_name = "PROGRAM")]
+    pub programs: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub machine: MachineArgs,
+    /// How to print the results
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: ProgramArgs,
+}
+
+/// How results are printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people
+    Text,
+    /// An array with one object a program
+    Json,
+    /// SARIF 2.1.0, for code scanning
+    Sarif,
+    /// XML as `JUnit` writes it, one test case a program
+    Junit,
+    /// Annotations of a GitHub workflow
+    Github,
+}

@@ -1,0 +1,127 @@
+//! Arguments of `limit`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use gwatt::pipeline;
+
+use super::{MachineArgs, ProgramArgs};
+
+const EXAMPLES: &str = "\
+Examples:
+  gwatt limit part.ngc -m vmc -o fit.ngc
+  gwatt limit part.ngc -m vmc --allow feed --report moves.csv -o fit.ngc
+  gwatt limit part.ngc -m vmc --dry-run      show the edit as a diff
+  gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
+  gwatt limit - -m vmc < part.ngc > fit.ngc
+
+Nothing is written unless the result is certified: it is read, planned and
+evaluated again, and every move fits.";
+
+/// Arguments of `limit`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct LimitArgs {
+    /// The program, or - for standard input
+    pub program: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub machine: MachineArgs,
+    /// Write the program here [default: standard output]
+    #[arg(short, long, value_name = "OUT", conflicts_with = "in_place")]
+    pub output: Option<PathBuf>,
+    /// Replace the program, and keep it as PROGRAM.bak
+    #[arg(long)]
+    pub in_place: bool,
+    /// Write no program; print what would change as a unified diff
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Write what each move draws, before and after, as CSV
+    #[arg(long, value_name = "CSV")]
+    pub report: Option<PathBuf>,
+    /// Write the same, with a summary, as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// What to lower
+    #[arg(long, value_enum, default_value_t = Strategy::Optimal)]
+    pub strategy: Strategy,
+    /// How far to lower it
+    #[arg(long, value_enum, default_value_t = Law::Exact)]
+    pub law: Law,
+    /// Allow cutting feeds to be lowered
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub allow: Option<Allow>,
+    /// Which certificate is asked for [default: the best the controller allows]
+    #[arg(long, value_enum)]
+    pub certificate: Option<Certificate>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: ProgramArgs,
+}
+
+/// What `--allow` allows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Allow {
+    /// Cutting feeds may be lowered.
+    Feed,
+}
+
+/// See [`pipeline::Strategy`].
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Strategy {
+    /// The machine's presets for combinations of axes
+    Preset,
+    /// Speed alone
+    Speed,
+    /// Acceleration alone
+    Accel,
+    /// The shortest time with the words that the controller has
+    Optimal,
+}
+
+/// See [`pipeline::Law`].
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Law {
+    /// Solved for the real block
+    Exact,
+    /// The square of limit/peak on nominal values, for comparison
+    Patent,
+}
+
+/// See [`pipeline::Certificate`].
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Certificate {
+    /// Under the planner that the controller profile models
+    Planned,
+    /// For any look-ahead and blending that keeps each axis in its limits
+    Robust,
+}
+
+impl From<Strategy> for pipeline::Strategy {
+    fn from(strategy: Strategy) -> Self {
+        match strategy {
+            Strategy::Preset => Self::Preset,
+            Strategy::Speed => Self::Speed,
+            Strategy::Accel => Self::Accel,
+            Strategy::Optimal => Self::Optimal,
+        }
+    }
+}
+
+impl From<Law> for pipeline::Law {
+    fn from(law: Law) -> Self {
+        match law {
+            Law::Exact => Self::Exact,
+            Law::Patent => Self::Patent,
+        }
+    }
+}
+
+impl From<Certificate> for pipeline::Certificate {
+    fn from(certificate: Certificate) -> Self {
+        match certificate {
+            Certificate::Planned => Self::Planned,
+            Certificate::Robust => Self::Robust,
+        }
+    }
+}

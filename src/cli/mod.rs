@@ -1,0 +1,80 @@
+//! The command line: types only.
+
+mod check;
+mod diff;
+mod limit;
+mod machine;
+mod moves;
+mod program;
+mod report;
+
+use clap::{ColorChoice, Parser, Subcommand};
+use clap_complete::Shell;
+
+pub use check::{CheckArgs, Format};
+pub use diff::DiffArgs;
+pub use limit::{Allow, LimitArgs};
+pub use machine::MachineCommand;
+pub use moves::MovesArgs;
+pub use program::{MachineArgs, ProgramArgs, StartArg};
+pub use report::ReportArgs;
+
+const EXAMPLES: &str = "\
+Examples:
+  gwatt check part.ngc -m vmc             does it fit?
+  gwatt limit part.ngc -m vmc -o fit.ngc  write a program that fits
+  gwatt report part.ngc -m mill.toml      what each move draws, as CSV
+  gwatt machine list                      the machines that are built in
+
+Exit status:
+  0  fits
+  1  does not fit
+  2  bad input, machine file or usage, or output that cannot be written
+  3  internal error
+
+gwatt works with a model. It protects nothing: the drives' own limits stay on.";
+
+/// Fits CNC part programs to the converter that all the drives of a machine
+/// share.
+#[derive(Debug, Parser)]
+#[command(name = "gwatt", version, after_help = EXAMPLES, arg_required_else_help = true)]
+pub struct Cli {
+    /// When to use colours; `NO_COLOR` is respected
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = ColorChoice::Auto)]
+    pub color: ColorChoice,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Write a program that fits, with as few edits as possible
+    Limit(LimitArgs),
+    /// Say whether programs fit
+    Check(CheckArgs),
+    /// Say what each move of a program draws
+    Report(ReportArgs),
+    /// Compare two machines over programs
+    Diff(DiffArgs),
+    /// Print every move of a program as JSON, one a line
+    Moves(MovesArgs),
+    /// List, show and check machine descriptions
+    Machine {
+        /// What to do with them.
+        #[command(subcommand)]
+        command: MachineCommand,
+    },
+    /// Print a completion script for a shell
+    #[command(
+        after_help = "Example:\n  gwatt completions bash > ~/.local/share/bash-completion/completions/gwatt"
+    )]
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print the manual page
+    #[command(after_help = "Example:\n  gwatt man > gwatt.1 && man ./gwatt.1")]
+    Man,
+}

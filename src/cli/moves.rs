@@ -1,0 +1,28 @@
+//! Arguments of `moves`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{MachineArgs, ProgramArgs};
+
+const EXAMPLES: &str = "\
+Examples:
+  gwatt moves part.ngc -m vmc
+  gwatt moves part.ngc -m vmc | jq 'select(.kind == \"arc\")'
+
+Positions are machine coordinates in mm or degrees.";
+
+/// Arguments of `moves`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct MovesArgs {
+    /// The program, or - for standard input
+    pub program: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub machine: MachineArgs,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: ProgramArgs,
+}

@@ -1,0 +1,120 @@
+//! `gwatt check`.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc;
+use std::thread;
+
+use anyhow::{Context, Result};
+use gwatt::pipeline;
+use gwatt::report::{self, Checked, Verdict};
+use rayon::iter::{ParallelBridge, ParallelIterator};
+
+use super::input::Program;
+use super::output::print;
+use super::setup::{Setup, share_threads};
+use super::terminal::Terminal;
+use crate::cli::{CheckArgs, Format};
+
+/// Says whether programs fit.
+pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
+    let programs = Program::list(&args.programs)?;
+    let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    let (at_once, each) = share_threads(setup.options.threads, programs.len());
+    setup.options.threads = each;
+    let check = |program: &Program| check_program(program, &setup);
+
+    let mut worst = Verdict::Fits;
+    let mut kept = Vec::new();
+    in_order(&programs, at_once, check, |checked| {
+        worst = worst.max(checked.verdict());
+        tell(&checked, terminal);
+        if args.format == Format::Text {
+            let text = report::check_text(&checked, &setup.machine);
+            return print(|out| out.write_all(text.as_bytes()));
+        }
+        kept.push(checked);
+        Ok(())
+    })?;
+    print(|out| write_all(&kept, args.format, &setup, out))?;
+    Ok(worst)
+}
+
+fn check_program(program: &Program, setup: &Setup) -> Checked {
+    let outcome = program
+        .open()
+        .and_then(|input| pipeline::analyze(input, &setup.machine, &setup.options, None));
+    Checked {
+        program: program.name.clone(),
+        outcome,
+    }
+}
+
+/// Warnings and refusals, with the lines under them.
+fn tell(checked: &Checked, terminal: Terminal) {
+    match &checked.outcome {
+        Ok(summary) => terminal.diagnostics(&checked.program, &summary.notes),
+        Err(failure) => terminal.failure(&checked.program, failure),
+    }
+}
+
+fn write_all(
+    checked: &[Checked],
+    format: Format,
+    setup: &Setup,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    match format {
+        Format::Text => Ok(()),
+        Format::Json => report::check_json(checked, &setup.machine.name, out),
+        Format::Sarif => report::sarif(checked, out),
+        Format::Junit => report::junit(checked, &setup.machine, out),
+        Format::Github => report::github(checked, out),
+    }
+}
+
+/// Does `work` for all `items`, so many at once, and hands the results over in
+/// the order of the items as soon as each one's turn comes.
+pub fn in_order<I: Sync, O: Send>(
+    items: &[I],
+    at_once: usize,
+    work: impl Fn(&I) -> O + Sync,
+    mut each: impl FnMut(O) -> Result<()>,
+) -> Result<()> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(at_once)
+        .build()
+        .context("cannot start threads")?;
+    // Set when results are no longer wanted: the output is closed.
+    let closed = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let (sender, results) = mpsc::channel();
+        let (pool, work, closed) = (&pool, &work, &closed);
+        scope.spawn(move || {
+            // A bridge takes the items one after another.
+            pool.install(|| {
+                items.iter().enumerate().par_bridge().for_each_with(
+                    sender,
+                    |sender, (index, item)| {
+                        // Nobody listens any more: the output is closed.
+                        let _ = sender.send((index, work(item)));
+                    },
+                );
+            });
+        });
+        let mut early = BTreeMap::new();
+        let mut next = 0;
+        for (index, result) in results {
+            early.insert(index, result);
+            while let Some(result) = early.remove(&next) {
+                if let Err(error) = each(result) {
+                    closed.store(true, Relaxed);
+                    return Err(error);
+                }
+                next += 1;
+            }
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,99 @@
+//! Programs to read: files, or standard input.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use gwatt::diagnostic::excerpt;
+use gwatt::pipeline::Failure;
+use tempfile::NamedTempFile;
+
+/// A program that is to be read.
+#[derive(Debug)]
+pub struct Program {
+    /// Its name as it was given, printable.
+    pub name: String,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    Stdin,
+    File(PathBuf),
+    /// Standard input, kept so that it can be read again.
+    Kept(NamedTempFile),
+}
+
+impl Program {
+    /// `-` is standard input.
+    pub fn new(path: &Path) -> Self {
+        let source = if is_dash(path) {
+            Source::Stdin
+        } else {
+            Source::File(path.to_owned())
+        };
+        Self {
+            name: excerpt(path.as_os_str().as_encoded_bytes(), usize::MAX),
+            source,
+        }
+    }
+
+    /// The programs, of which one may be standard input.
+    pub fn list(paths: &[PathBuf]) -> anyhow::Result<Vec<Self>> {
+        let dashes = paths.iter().filter(|path| is_dash(path)).count();
+        anyhow::ensure!(dashes <= 1, "standard input can be read only once");
+        Ok(paths.iter().map(|path| Self::new(path)).collect())
+    }
+
+    /// Its path, unless it is standard input.
+    pub fn path(&self) -> Option<&Path> {
+        match &self.source {
+            Source::File(path) => Some(path),
+            Source::Stdin | Source::Kept(_) => None,
+        }
+    }
+
+    /// Opens it for reading from the beginning.
+    pub fn open(&self) -> Result<Box<dyn Read + Send>, Failure> {
+        match &self.source {
+            Source::Stdin => Ok(Box::new(io::stdin())),
+            Source::File(path) => open_file(path),
+            Source::Kept(file) => open_file(file.path()),
+        }
+    }
+
+    /// Makes sure that it can be opened several times.
+    pub fn keep(&mut self) -> Result<(), Failure> {
+        if matches!(self.source, Source::Stdin) {
+            let mut file = NamedTempFile::new().map_err(Failure::Output)?;
+            io::copy(&mut io::stdin().lock(), &mut file).map_err(Failure::Input)?;
+            self.source = Source::Kept(file);
+        }
+        Ok(())
+    }
+
+    /// Its size in bytes; 0 for standard input that is not kept.
+    pub fn bytes(&self) -> u64 {
+        let path = match &self.source {
+            Source::Stdin => return 0,
+            Source::File(path) => path.as_path(),
+            Source::Kept(file) => file.path(),
+        };
+        fs::metadata(path).map_or(0, |metadata| metadata.len())
+    }
+}
+
+fn open_file(path: &Path) -> Result<Box<dyn Read + Send>, Failure> {
+    let file = File::open(path).map_err(Failure::Input)?;
+    // Some systems open a directory and fail later with a riddle.
+    if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
+        let error = io::Error::new(io::ErrorKind::IsADirectory, "it is a directory");
+        return Err(Failure::Input(error));
+    }
+    Ok(Box::new(file))
+}
+
+/// True for `-`.
+pub fn is_dash(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}

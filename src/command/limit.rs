@@ -1,0 +1,142 @@
+//! `gwatt limit`.
+
+use std::fs;
+use std::io::{self, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use gwatt::pipeline::{self, LimitOptions, LimitSummary};
+use gwatt::report::{Verdict, limit_json, limit_text, unified_diff};
+
+use super::clash::refuse_clashes;
+use super::input::Program;
+use super::output::{Spool, Target, back_up, print};
+use super::rows::Rows;
+use super::setup::{Setup, machine_file};
+use super::terminal::Terminal;
+use crate::cli::{Allow, LimitArgs};
+
+/// Bytes that go to the spool at once.
+const SPOOL_BYTES: usize = 1 << 16;
+
+/// Writes a program that fits.
+pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
+    let mut program = Program::new(&args.program);
+    ensure!(
+        !args.in_place || program.path().is_some(),
+        "standard input cannot be changed in place: use -o"
+    );
+    refuse_all_clashes(args, &program)?;
+    let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    setup.options.certificate = args.certificate.map(Into::into);
+    let report = args.report.as_deref().map(Target::new).transpose()?;
+    let mut rows = Rows::new(report, args.json.as_deref())?;
+    let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args)?.spool()?);
+
+    let done = (|| {
+        if args.dry_run {
+            program.keep()?;
+        }
+        let sink = rows.sink();
+        let how = options(args);
+        let input = program.open()?;
+        pipeline::limit(input, &setup.machine, &setup.options, how, &mut spool, sink)
+    })();
+    let summary = match done {
+        Ok(summary) => summary,
+        Err(failure) => {
+            terminal.failure(&program.name, &failure);
+            return Ok(Verdict::Refused);
+        }
+    };
+    let spool = spool.into_inner().map_err(io::IntoInnerError::into_error)?;
+    tell(&program.name, &summary, &setup, terminal);
+    rows.deliver(|blocks, out| {
+        limit_json(&program.name, &setup.machine.name, &summary, blocks, out)
+    })?;
+    if summary.certified {
+        deliver(args, &program, &summary, spool, terminal)?;
+    }
+    Ok(Verdict::of(summary.certified))
+}
+
+fn options(args: &LimitArgs) -> LimitOptions {
+    LimitOptions {
+        strategy: args.strategy.into(),
+        law: args.law.into(),
+        allow_feed: args.allow == Some(Allow::Feed),
+    }
+}
+
+fn refuse_all_clashes(args: &LimitArgs, program: &Program) -> Result<()> {
+    let machine = machine_file(args.machine.machine.as_deref());
+    let inputs: Vec<&Path> = program.path().into_iter().chain(machine).collect();
+    let program_out = match &args.output {
+        Some(path) => Some(path.as_path()),
+        None if args.in_place => None,
+        None => Some(Path::new("-")),
+    };
+    let outputs: Vec<&Path> = program_out
+        .into_iter()
+        .chain(args.report.as_deref())
+        .chain(args.json.as_deref())
+        .collect();
+    refuse_clashes(&inputs, &outputs)
+}
+
+/// Where the program goes. A diff needs only a spool.
+fn target(args: &LimitArgs) -> Result<Target> {
+    match &args.output {
+        _ if args.dry_run => Ok(Target::Stdout),
+        _ if args.in_place => Target::new(&args.program),
+        Some(path) => Target::new(path),
+        None => Ok(Target::Stdout),
+    }
+}
+
+fn tell(program: &str, summary: &LimitSummary, setup: &Setup, terminal: Terminal) {
+    terminal.diagnostics(program, &summary.before.notes);
+    terminal.diagnostics(program, &summary.reasons);
+    terminal.text(&limit_text(program, summary, &setup.machine));
+}
+
+fn deliver(
+    args: &LimitArgs,
+    program: &Program,
+    summary: &LimitSummary,
+    mut spool: Spool,
+    terminal: Terminal,
+) -> Result<()> {
+    if args.dry_run {
+        let old = BufReader::new(program.open()?);
+        let new = BufReader::new(spool.read()?);
+        return print(|out: &mut dyn Write| {
+            unified_diff(&program.name, program.bytes(), old, new, out)
+        });
+    }
+    if !args.in_place {
+        return spool.deliver();
+    }
+    if summary.edited_lines == 0 {
+        return Ok(());
+    }
+    let backup = replace(&args.program, spool)?;
+    terminal.note(format_args!(
+        "the program as it was is {}",
+        backup.display()
+    ));
+    Ok(())
+}
+
+/// Puts the spool in the place of the program, which keeps another name.
+fn replace(program: &Path, spool: Spool) -> Result<PathBuf> {
+    let program =
+        fs::canonicalize(program).with_context(|| format!("cannot write {}", program.display()))?;
+    let backup = back_up(&program)?;
+    if let Err(error) = spool.deliver() {
+        // Nothing is replaced, so there is nothing to go back to.
+        let _ = fs::remove_file(&backup);
+        return Err(error);
+    }
+    Ok(backup)
+}

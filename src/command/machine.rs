@@ -1,0 +1,76 @@
+//! `gwatt machine`.
+
+use anyhow::{Result, bail};
+use gwatt::machine::{builtin, schema};
+use gwatt::report::{Verdict, axis_table, power};
+
+use super::output::print;
+use super::setup::load_machine;
+use super::terminal::Terminal;
+use crate::cli::MachineCommand;
+
+/// Lists, shows and checks machine descriptions.
+pub fn run(command: &MachineCommand, terminal: Terminal) -> Result<Verdict> {
+    match command {
+        MachineCommand::List => list()?,
+        MachineCommand::Show { name } => show(name)?,
+        MachineCommand::Check { file } => check(file, terminal)?,
+        MachineCommand::Schema => print(|out| {
+            serde_json::to_writer_pretty(&mut *out, &schema())?;
+            writeln!(out)
+        })?,
+    }
+    Ok(Verdict::Fits)
+}
+
+fn list() -> Result<()> {
+    let machines = builtin::machines();
+    let width = machines.iter().map(|machine| machine.name.len()).max();
+    let width = width.unwrap_or_default();
+    print(|out| {
+        for machine in machines {
+            let is_default = machine.name == builtin::DEFAULT_MACHINE;
+            let mark = if is_default { '*' } else { ' ' };
+            writeln!(
+                out,
+                "{mark} {:width$}  {}",
+                machine.name, machine.description
+            )?;
+        }
+        writeln!(out, "\n* used when no machine is given")
+    })
+}
+
+fn show(name: &str) -> Result<()> {
+    let machines = builtin::machines();
+    let Some(machine) = machines.iter().find(|machine| machine.name == name) else {
+        let names: Vec<_> = machines.iter().map(|machine| machine.name).collect();
+        bail!(
+            "there is no built-in machine {name}; there are {}",
+            names.join(", ")
+        );
+    };
+    print(|out| out.write_all(machine.text.as_bytes()))
+}
+
+fn check(file: &str, terminal: Terminal) -> Result<()> {
+    let machine = load_machine(file, terminal)?;
+    print(|out| {
+        writeln!(out, "{file}: {}", machine.name)?;
+        write!(out, "{}", axis_table(&machine))?;
+        for converter in &machine.converters {
+            let share = 1.0 - machine.limits.margin;
+            let limit = power(share * converter.peak_power_w);
+            let name = match converter.name.as_str() {
+                "" => String::new(),
+                name => format!(" {name}"),
+            };
+            write!(out, "  converter{name}: limit {limit} with its margin")?;
+            if let Some(regen) = converter.regen_power_w {
+                write!(out, ", {} fed back", power(share * regen))?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    })
+}

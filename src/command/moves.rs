@@ -1,0 +1,39 @@
+//! `gwatt moves`.
+
+use std::io::{self, BufWriter};
+
+use anyhow::Result;
+use gwatt::pipeline;
+use gwatt::report::{Verdict, write_move};
+
+use super::input::Program;
+use super::output::Target;
+use super::setup::Setup;
+use super::terminal::Terminal;
+use crate::cli::MovesArgs;
+
+/// Prints every move of a program.
+pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
+    let program = Program::new(&args.program);
+    let setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    // A program may be refused at its last line: until then nothing is printed.
+    let mut out = BufWriter::new(Target::Stdout.spool()?);
+    let axes = setup.machine.axis_set;
+    let outcome = program.open().and_then(|input| {
+        pipeline::moves(input, &setup.machine, &setup.options, &mut |mv, seconds| {
+            write_move(mv, seconds, axes, &mut out)
+        })
+    });
+    match outcome {
+        Ok(notes) => {
+            terminal.diagnostics(&program.name, &notes);
+            let spool = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+            spool.deliver()?;
+            Ok(Verdict::Fits)
+        }
+        Err(failure) => {
+            terminal.failure(&program.name, &failure);
+            Ok(Verdict::Refused)
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Results to write: each appears whole or not at all.
+
+use std::fs::{self, File, Permissions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use tempfile::NamedTempFile;
+
+use super::input::is_dash;
+
+/// Where a result is to go.
+#[derive(Debug)]
+pub enum Target {
+    /// Standard output.
+    Stdout,
+    /// A file that is replaced, or made, by renaming.
+    File {
+        /// Where it really is, links followed.
+        path: PathBuf,
+        /// Those of the file that it replaces.
+        permissions: Option<Permissions>,
+    },
+    /// A device or a pipe: opened and written to.
+    Special(PathBuf),
+}
+
+impl Target {
+    /// `-` is standard output.
+    pub fn new(path: &Path) -> anyhow::Result<Self> {
+        if is_dash(path) {
+            return Ok(Self::Stdout);
+        }
+        let shown = path.display();
+        let metadata = match fs::metadata(path) {
+            Ok(metadata) => metadata,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Ok(Self::File {
+                    path: path.to_owned(),
+                    permissions: None,
+                });
+            }
+            Err(error) => return Err(error).with_context(|| format!("cannot write {shown}")),
+        };
+        anyhow::ensure!(
+            !metadata.is_dir(),
+            "cannot write {shown}: it is a directory"
+        );
+        if !metadata.is_file() {
+            return Ok(Self::Special(path.to_owned()));
+        }
+        let permissions = metadata.permissions();
+        anyhow::ensure!(
+            !permissions.readonly(),
+            "cannot write {shown}: it is write-protected"
+        );
+        let path = fs::canonicalize(path).with_context(|| format!("cannot write {shown}"))?;
+        Ok(Self::File {
+            path,
+            permissions: Some(permissions),
+        })
+    }
+
+    /// Opens a temporary file that can become the result.
+    pub fn spool(self) -> anyhow::Result<Spool> {
+        let body = match &self {
+            Self::Stdout | Self::Special(_) => {
+                let file = tempfile::tempfile().context("cannot make a temporary file")?;
+                Body::Apart(file)
+            }
+            Self::File { path, permissions } => {
+                let file = beside(path, permissions.clone())
+                    .with_context(|| format!("cannot write {}", path.display()))?;
+                Body::Beside(file)
+            }
+        };
+        Ok(Spool { target: self, body })
+    }
+}
+
+/// A temporary file beside `path`, so that renaming it moves no data.
+fn beside(path: &Path, permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".gwatt-");
+    #[cfg(unix)]
+    if permissions.is_none() {
+        use std::os::unix::fs::PermissionsExt;
+        // As for any new file: the system takes the umask off.
+        builder.permissions(Permissions::from_mode(0o666));
+    }
+    let file = builder.tempfile_in(folder)?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
+    }
+    Ok(file)
+}
+
+/// A result on its way: dropped, it leaves no trace.
+#[derive(Debug)]
+pub struct Spool {
+    target: Target,
+    body: Body,
+}
+
+#[derive(Debug)]
+enum Body {
+    Apart(File),
+    Beside(NamedTempFile),
+}
+
+impl Spool {
+    /// Opens what was written so far for reading from the beginning.
+    pub fn read(&mut self) -> io::Result<impl Read> {
+        let mut file = match &self.body {
+            Body::Apart(file) => file.try_clone()?,
+            Body::Beside(file) => file.as_file().try_clone()?,
+        };
+        file.seek(SeekFrom::Start(0))?;
+        Ok(file)
+    }
+
+    /// Puts the result where it is to go.
+    pub fn deliver(self) -> anyhow::Result<()> {
+        match (self.target, self.body) {
+            (Target::File { path, .. }, Body::Beside(file)) => {
+                file.persist(&path)
+                    .map_err(|error| error.error)
+                    .with_context(|| format!("cannot write {}", path.display()))?;
+                Ok(())
+            }
+            (Target::Special(path), Body::Apart(file)) => {
+                let copied = File::options()
+                    .write(true)
+                    .open(&path)
+                    .and_then(|out| copy(file, out));
+                copied.with_context(|| format!("cannot write {}", path.display()))
+            }
+            (_, Body::Apart(file)) => copy(file, io::stdout().lock()).context(STDOUT),
+            (_, Body::Beside(file)) => {
+                copy(file.reopen().context(STDOUT)?, io::stdout().lock()).context(STDOUT)
+            }
+        }
+    }
+}
+
+impl Write for Spool {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.body {
+            Body::Apart(file) => file.write(bytes),
+            Body::Beside(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.body {
+            Body::Apart(file) => file.flush(),
+            Body::Beside(file) => file.flush(),
+        }
+    }
+}
+
+const STDOUT: &str = "cannot write to standard output";
+
+fn copy(mut from: File, mut to: impl Write) -> io::Result<()> {
+    from.seek(SeekFrom::Start(0))?;
+    io::copy(&mut from, &mut to)?;
+    to.flush()
+}
+
+/// Lets `write` write to standard output, and makes sure that it arrives.
+pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> anyhow::Result<()> {
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    write(&mut out).and_then(|()| out.flush()).context(STDOUT)
+}
+
+/// Keeps the file at `path` under a name that is free, and says which. The file
+/// itself stays in place until something replaces it.
+pub fn back_up(path: &Path) -> anyhow::Result<PathBuf> {
+    for number in 0..1000 {
+        let mut name = path.as_os_str().to_owned();
+        name.push(".bak");
+        if number > 0 {
+            name.push(number.to_string());
+        }
+        let backup = PathBuf::from(name);
+        match link_or_copy(path, &backup) {
+            Ok(()) => return Ok(backup),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => {
+                return Err(error).with_context(|| format!("cannot write {}", backup.display()));
+            }
+        }
+    }
+    anyhow::bail!("there are too many backups of {}", path.display())
+}
+
+/// A second name is enough, as the file is replaced and never written to; where
+/// the file system has none, a copy. Neither overwrites anything.
+fn link_or_copy(path: &Path, backup: &Path) -> io::Result<()> {
+    match fs::hard_link(path, backup) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
+            let mut from = File::open(path)?;
+            let mut to = File::options().write(true).create_new(true).open(backup)?;
+            io::copy(&mut from, &mut to)?;
+            to.flush()
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,58 @@
+//! `gwatt report`.
+
+use std::path::Path;
+
+use anyhow::Result;
+use gwatt::pipeline;
+use gwatt::report::{Checked, Verdict, check_text, report_json};
+
+use super::clash::refuse_clashes;
+use super::input::Program;
+use super::output::Target;
+use super::rows::Rows;
+use super::setup::{Setup, machine_file};
+use super::terminal::Terminal;
+use crate::cli::ReportArgs;
+
+/// Says what each move of a program draws.
+pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
+    let program = Program::new(&args.program);
+    let machine = machine_file(args.machine.machine.as_deref());
+    let inputs: Vec<&Path> = program.path().into_iter().chain(machine).collect();
+    let outputs: Vec<&Path> = args
+        .csv
+        .iter()
+        .chain(&args.json)
+        .map(AsRef::as_ref)
+        .collect();
+    refuse_clashes(&inputs, &outputs)?;
+    let setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    let csv = match (&args.csv, &args.json) {
+        (Some(path), _) => Some(Target::new(path)?),
+        (None, None) => Some(Target::Stdout),
+        (None, Some(_)) => None,
+    };
+    let mut rows = Rows::new(csv, args.json.as_deref())?;
+
+    let outcome = program
+        .open()
+        .and_then(|input| pipeline::analyze(input, &setup.machine, &setup.options, rows.sink()));
+    let summary = match outcome {
+        Ok(summary) => summary,
+        Err(failure) => {
+            terminal.failure(&program.name, &failure);
+            return Ok(Verdict::Refused);
+        }
+    };
+    rows.deliver(|blocks, out| {
+        report_json(&program.name, &setup.machine.name, &summary, blocks, out)
+    })?;
+    terminal.diagnostics(&program.name, &summary.notes);
+    let checked = Checked {
+        program: program.name,
+        outcome: Ok(summary),
+    };
+    terminal.text(&check_text(&checked, &setup.machine));
+    let verdict = checked.verdict();
+    Ok(if args.fail { verdict } else { Verdict::Fits })
+}

@@ -1,0 +1,76 @@
+//! The rows of a report on their way to files.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use gwatt::pipeline::{Row, RowSink};
+use gwatt::report::{CsvRows, JsonRows};
+
+use super::output::{Spool, Target};
+
+/// The reports that are asked for.
+#[derive(Debug)]
+pub struct Rows {
+    csv: Option<CsvRows<Spool>>,
+    json: Option<(JsonRows<BufWriter<File>>, Spool)>,
+}
+
+impl Rows {
+    /// Opens what is asked for.
+    pub fn new(csv: Option<Target>, json: Option<&Path>) -> Result<Self> {
+        let csv = match csv {
+            Some(target) => Some(CsvRows::new(target.spool()?)?),
+            None => None,
+        };
+        let json = match json {
+            Some(path) => {
+                let blocks = tempfile::tempfile().context("cannot make a temporary file")?;
+                let rows = JsonRows::new(BufWriter::new(blocks));
+                Some((rows, Target::new(path)?.spool()?))
+            }
+            None => None,
+        };
+        Ok(Self { csv, json })
+    }
+
+    /// Where rows go; `None` where nobody wants them, which saves their making.
+    pub fn sink(&mut self) -> Option<&mut dyn RowSink> {
+        (self.csv.is_some() || self.json.is_some()).then_some(self as &mut dyn RowSink)
+    }
+
+    /// Delivers the reports; `write_json` puts the rows into their object.
+    pub fn deliver(
+        self,
+        write_json: impl FnOnce(File, &mut dyn Write) -> io::Result<()>,
+    ) -> Result<()> {
+        if let Some((rows, spool)) = self.json {
+            let mut blocks = rows
+                .finish()?
+                .into_inner()
+                .map_err(io::IntoInnerError::into_error)?;
+            blocks.seek(SeekFrom::Start(0))?;
+            let mut out = BufWriter::new(spool);
+            write_json(blocks, &mut out)?;
+            let spool = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+            spool.deliver()?;
+        }
+        if let Some(rows) = self.csv {
+            rows.finish()?.deliver()?;
+        }
+        Ok(())
+    }
+}
+
+impl RowSink for Rows {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        if let Some(csv) = &mut self.csv {
+            csv.row(row)?;
+        }
+        if let Some((json, _)) = &mut self.json {
+            json.row(row)?;
+        }
+        Ok(())
+    }
+}

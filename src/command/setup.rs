@@ -1,0 +1,118 @@
+//! Machine and options of a run, from its arguments.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::thread;
+
+use anyhow::{Context, Result, bail};
+use gwatt::machine::{self, AXES, Machine, builtin};
+use gwatt::pipeline::{Options, Start};
+
+use super::terminal::{Shown, Terminal};
+use crate::cli::{MachineArgs, ProgramArgs, StartArg};
+
+/// What a program is judged with.
+#[derive(Debug)]
+pub struct Setup {
+    /// The machine.
+    pub machine: Machine,
+    /// How programs are read.
+    pub options: Options,
+}
+
+impl Setup {
+    /// The machine that is asked for, or the default one.
+    pub fn new(args: &MachineArgs, reading: &ProgramArgs, terminal: Terminal) -> Result<Self> {
+        let name = args.machine.as_deref().unwrap_or_else(|| {
+            let name = builtin::DEFAULT_MACHINE;
+            terminal.note(format_args!(
+                "no machine is given: this is for the built-in {name} (see `gwatt machine list`)"
+            ));
+            name
+        });
+        Self::of(name, reading, terminal)
+    }
+
+    /// The machine of that name.
+    pub fn of(name: &str, reading: &ProgramArgs, terminal: Terminal) -> Result<Self> {
+        let mut machine = load_machine(name, terminal)?;
+        if let Some(dialect) = &reading.dialect {
+            machine.controller.language = language(dialect)?;
+        }
+        let options = Options {
+            start: start(reading.start.as_ref(), &machine)?,
+            block_delete: reading.block_delete,
+            certificate: None,
+            threads: threads(reading),
+        };
+        Ok(Self { machine, options })
+    }
+}
+
+/// Loads a machine and tells what is to be told of it.
+pub fn load_machine(name: &str, terminal: Terminal) -> Result<Machine> {
+    match Machine::load(name) {
+        Ok((machine, notes)) => {
+            terminal.diagnostics(name, &notes);
+            Ok(machine)
+        }
+        Err(errors) => {
+            terminal.diagnostics(name, &errors);
+            bail!(Shown)
+        }
+    }
+}
+
+/// The machine's file, if it is not a built-in one.
+pub fn machine_file(name: Option<&str>) -> Option<&Path> {
+    let name = name?;
+    let built_in = builtin::machines()
+        .iter()
+        .any(|machine| machine.name == name);
+    (!built_in).then(|| Path::new(name))
+}
+
+fn language(dialect: &str) -> Result<machine::Language> {
+    let controller = machine::builtin_controller(dialect).with_context(|| {
+        let names: Vec<_> = builtin::controllers()
+            .iter()
+            .map(|controller| controller.name)
+            .collect();
+        format!(
+            "there is no dialect {dialect}; there are {}",
+            names.join(", ")
+        )
+    })?;
+    Ok(controller.language)
+}
+
+fn start(start: Option<&StartArg>, machine: &Machine) -> Result<Start> {
+    let mut at = [0.0; AXES];
+    match start {
+        None => {}
+        Some(StartArg::Unknown) => return Ok(Start::Unknown),
+        Some(StartArg::At(axes)) => {
+            for &(axis, value) in axes {
+                if !machine.axis_set.contains(axis as usize) {
+                    let letter = axis.letter() as char;
+                    bail!("--start: the machine has no axis {letter}");
+                }
+                at[axis as usize] = value;
+            }
+        }
+    }
+    Ok(Start::At(at))
+}
+
+/// Threads to use: as asked for, else all cores.
+fn threads(reading: &ProgramArgs) -> usize {
+    let cores = || thread::available_parallelism().ok();
+    let threads = reading.threads.or_else(cores);
+    threads.map_or(1, NonZeroUsize::get)
+}
+
+/// Shares threads among programs: how many run at once, and how many each has.
+pub fn share_threads(threads: usize, programs: usize) -> (usize, usize) {
+    let at_once = threads.min(programs).max(1);
+    (at_once, (threads / at_once).max(1))
+}

@@ -1,0 +1,191 @@
+//! The G and M words: which modal group each belongs to, and the names of
+//! those that are refused.
+//!
+//! Groups follow RS274/NGC (LinuxCNC G-code reference, "Modal Groups").
+
+use crate::machine::{Family, PathMode};
+
+/// What the motion words mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// G80, and the state before the first motion word.
+    None,
+    /// G0.
+    Rapid,
+    /// G1.
+    Linear,
+    /// G2.
+    ArcCw,
+    /// G3.
+    ArcCcw,
+}
+
+impl Motion {
+    /// The digit behind G; `None` has none to write.
+    #[must_use]
+    pub fn digit(self) -> Option<u8> {
+        match self {
+            Self::None => None,
+            Self::Rapid => Some(b'0'),
+            Self::Linear => Some(b'1'),
+            Self::ArcCw => Some(b'2'),
+            Self::ArcCcw => Some(b'3'),
+        }
+    }
+}
+
+/// A G word that gwatt knows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum GCode {
+    Motion(Motion),
+    Dwell,
+    Plane([usize; 3]),
+    Units { mm_per_unit: f64 },
+    Reference,
+    CompensationOff,
+    ToolLengthOn,
+    ToolLengthOff,
+    MachineCoordinates,
+    WorkOffset(u8),
+    PathMode,
+    Absolute(bool),
+    ArcAbsolute(bool),
+    SetOffset,
+    ClearOffset { forget: bool },
+    RestoreOffset,
+    FeedMode(super::FeedMode),
+    MirrorX,
+    Ignored,
+}
+
+impl GCode {
+    /// The modal group, as a bit; words of one group exclude each other.
+    pub(super) fn group(self) -> u32 {
+        1 << match self {
+            Self::Motion(_) => 0,
+            Self::Plane(_) => 1,
+            Self::Absolute(_) => 2,
+            Self::ArcAbsolute(_) => 3,
+            Self::FeedMode(_) => 4,
+            Self::Units { .. } => 5,
+            Self::CompensationOff => 6,
+            Self::ToolLengthOn | Self::ToolLengthOff => 7,
+            Self::WorkOffset(_) => 8,
+            Self::PathMode => 9,
+            Self::Dwell => 10,
+            Self::MachineCoordinates => 11,
+            Self::Reference | Self::SetOffset | Self::ClearOffset { .. } | Self::RestoreOffset => {
+                12
+            }
+            Self::Ignored => 13,
+            Self::MirrorX => 14,
+        }
+    }
+}
+
+/// Number × 10 of a word; `None` for numbers that no code has.
+pub(super) fn code_number(value: f64) -> Option<u16> {
+    let tenfold = value * 10.0;
+    if !(-1e-6..=65_000.0).contains(&tenfold) {
+        return None;
+    }
+    let number = (tenfold + 0.5) as u16;
+    ((tenfold - f64::from(number)).abs() < 1e-6).then_some(number)
+}
+
+/// The G word with this number × 10, as the family reads it; `None` if it is
+/// not known.
+pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
+    match (family, number) {
+        // ISG: G21 mirrors X and G20 ends it; G70 and G71 set the unit.
+        (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
+        // Marlin: G60 and G61 save a position and return to it.
+        (Family::Marlin, 600..=640) => None,
+        (Family::Isg, 700) => common_g_code(200),
+        (Family::Isg, 710) => common_g_code(210),
+        _ => common_g_code(number),
+    }
+}
+
+/// The G words that most families share.
+fn common_g_code(number: u16) -> Option<GCode> {
+    use super::FeedMode::{InverseTime, PerMinute, PerRevolution};
+    Some(match number {
+        0 => GCode::Motion(Motion::Rapid),
+        10 => GCode::Motion(Motion::Linear),
+        20 => GCode::Motion(Motion::ArcCw),
+        30 => GCode::Motion(Motion::ArcCcw),
+        800 => GCode::Motion(Motion::None),
+        40 => GCode::Dwell,
+        170 => GCode::Plane([0, 1, 2]),
+        180 => GCode::Plane([2, 0, 1]),
+        190 => GCode::Plane([1, 2, 0]),
+        200 => GCode::Units {
+            mm_per_unit: crate::units::MM_PER_INCH,
+        },
+        210 => GCode::Units { mm_per_unit: 1.0 },
+        280 | 300 => GCode::Reference,
+        400 => GCode::CompensationOff,
+        430 => GCode::ToolLengthOn,
+        490 => GCode::ToolLengthOff,
+        530 => GCode::MachineCoordinates,
+        540..=590 if number.is_multiple_of(10) => GCode::WorkOffset((number / 10 - 53) as u8),
+        591..=593 => GCode::WorkOffset((number - 591 + 7) as u8),
+        610 | 611 | 640 => GCode::PathMode,
+        900 => GCode::Absolute(true),
+        910 => GCode::Absolute(false),
+        901 => GCode::ArcAbsolute(true),
+        911 => GCode::ArcAbsolute(false),
+        920 => GCode::SetOffset,
+        921 => GCode::ClearOffset { forget: true },
+        922 => GCode::ClearOffset { forget: false },
+        923 => GCode::RestoreOffset,
+        930 => GCode::FeedMode(InverseTime),
+        940 => GCode::FeedMode(PerMinute),
+        950 => GCode::FeedMode(PerRevolution),
+        _ => return None,
+    })
+}
+
+/// What a refused G word is, for its message.
+pub(super) fn refused_g_name(number: u16) -> &'static str {
+    match number {
+        50..=59 => "a spline or a high-speed mode",
+        70 | 80 => "diameter or radius programming",
+        100..=109 => "data setting",
+        171 | 181 | 191 => "a plane of the U V W axes",
+        330 | 331 | 340..=360 => "thread cutting or tapping",
+        380..=389 => "probing",
+        410..=429 => "cutter compensation",
+        431..=439 => "a tool length offset of another form",
+        500..=519 => "scaling",
+        520 => "a local coordinate system",
+        650..=670 => "a macro call",
+        680..=699 => "coordinate rotation",
+        700..=799 | 801..=899 => "a canned cycle",
+        960 => "constant surface speed",
+        _ => "a word",
+    }
+}
+
+/// What a refused M word is, for its message.
+pub(super) fn refused_m_name(number: u16) -> &'static str {
+    match number {
+        190 => "spindle orientation",
+        480..=530 => "override control",
+        610..=689 => "input and output",
+        700..=730 => "saving of modal state",
+        970..=990 => "a subprogram call or return",
+        1000..=1999 => "a user-defined word",
+        _ => "a word",
+    }
+}
+
+/// Path modes that G61, G61.1 and G64 select under a controller.
+pub(super) fn path_mode(number: u16, language: &crate::machine::Language) -> PathMode {
+    match number {
+        610 => language.g61,
+        611 => language.g61_1,
+        _ => language.g64,
+    }
+}

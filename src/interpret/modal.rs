@@ -1,0 +1,82 @@
+//! Modal state: what a controller keeps from block to block.
+
+use arrayvec::ArrayVec;
+
+use super::code::Motion;
+use super::moves::FeedMode;
+use crate::machine::{Machine, PathMode};
+use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
+
+/// The feed in force: value, unit and text of the F word that set it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Feed {
+    /// The number, in program units of that time.
+    pub value: f64,
+    /// Unit of length when it was set, mm.
+    pub mm_per_unit: f64,
+    /// The number as it was written, to be written again; cut numbers are
+    /// left empty.
+    pub text: ArrayVec<u8, { Feed::TEXT_MAX }>,
+}
+
+impl Feed {
+    /// Longest number whose text is kept.
+    pub const TEXT_MAX: usize = 24;
+
+    /// Speed along a path of linear axes under G94, mm/s.
+    #[must_use]
+    pub fn linear_mm_s(&self) -> f64 {
+        self.value * self.mm_per_unit / SECONDS_PER_MINUTE
+    }
+
+    /// Speed of rotary axes alone under G94, degrees/s.
+    #[must_use]
+    pub fn rotary_deg_s(&self) -> f64 {
+        self.value / SECONDS_PER_MINUTE
+    }
+}
+
+/// What holds from block to block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modal {
+    /// The motion word in force.
+    pub motion: Motion,
+    /// Axes of the plane: first, second, normal.
+    pub plane: [usize; 3],
+    /// G90 (true) or G91.
+    pub absolute: bool,
+    /// M82 (true) or M83: positions of the extruder.
+    pub extruder_absolute: bool,
+    /// G90.1 (true) or G91.1.
+    pub arc_absolute: bool,
+    /// Millimetres in one program unit.
+    pub mm_per_unit: f64,
+    /// G93, G94 or G95.
+    pub feed_mode: FeedMode,
+    /// The F in force, if any.
+    pub feed: Option<Feed>,
+    /// Whether the program may run through the end of a block.
+    pub path_mode: PathMode,
+    /// S in force, 1/min; 0 without one.
+    pub spindle_rpm: f64,
+}
+
+impl Modal {
+    /// The state at power-on.
+    #[must_use]
+    pub fn power_on(machine: &Machine) -> Self {
+        let language = &machine.controller.language;
+        Self {
+            motion: Motion::None,
+            plane: [0, 1, 2],
+            absolute: language.absolute,
+            extruder_absolute: language.absolute,
+            arc_absolute: language.arc_absolute,
+            mm_per_unit: if language.metric { 1.0 } else { MM_PER_INCH },
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
+            spindle_rpm: 0.0,
+        }
+    }
+}

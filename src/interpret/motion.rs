@@ -1,0 +1,284 @@
+//! Motion: straight moves, arcs, reference points, and G92.
+
+use super::code::{GCode, Motion};
+use super::execute::{Control, Run};
+use super::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use super::words::{AXIS_LETTERS, bit};
+use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// Differences of position below this are rounding, not motion (mm, degrees).
+const STANDSTILL_MM: f64 = 1e-9;
+/// Positions beyond this are refused (mm, degrees): no machine is that large.
+pub(super) const POSITION_MAX_MM: f64 = 1e9;
+/// Index of the extruder axis.
+const EXTRUDER: usize = 9;
+
+impl Control<'_> {
+    /// The block's motion, with what else uses axis words.
+    pub(super) fn motion(&mut self, run: &mut Run<'_, '_>) {
+        for index in 0..run.words.g.len() {
+            let (code, number, span) = run.words.g[index];
+            match code {
+                GCode::Reference => return self.reference(number, span, run),
+                GCode::SetOffset => return self.set_offset(span, run),
+                GCode::ClearOffset { forget } => self.position.clear_offset(forget),
+                GCode::RestoreOffset => self.position.restore_offset(),
+                _ => {}
+            }
+        }
+        let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
+        let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
+        if !(run.words.has_axes() || arc && center) {
+            return;
+        }
+        run.facts.uses_motion = true;
+        run.facts.uses_feed = self.obeys_feed();
+        match self.modal.motion {
+            Motion::None => {
+                let span = run.whole();
+                run.report
+                    .error(
+                        "no-motion-word",
+                        "axis words without a motion word in force",
+                        span,
+                    )
+                    .help("write G0, G1, G2 or G3 in this block or before");
+            }
+            Motion::Rapid | Motion::Linear => self.straight(run),
+            Motion::ArcCw | Motion::ArcCcw => self.arc(run),
+        }
+    }
+
+    /// A dwell where the axes stand.
+    pub(super) fn dwell(&self, run: &mut Run<'_, '_>, dwell_s: f64) {
+        run.steps.push(Step::Move(Move {
+            line: run.line,
+            number: run.block.number.map(|word| word.value),
+            kind: MoveKind::Dwell,
+            start: self.position.at,
+            end: self.position.at,
+            moving: AxisSet::default(),
+            unknown_start: AxisSet::default(),
+            arc: None,
+            length_mm: 0.0,
+            feed_mm_s: f64::INFINITY,
+            feed_mode: self.modal.feed_mode,
+            accel_mm_s2: self.knobs.feed_accel_mm_s2,
+            path_accel_mm_s2: f64::INFINITY,
+            rapid_factor: self.knobs.rapid_factor,
+            dwell_s,
+            loads: self.loads,
+            path_mode: self.modal.path_mode,
+        }));
+    }
+
+    /// Reads the axis words into `end`, machine coordinates. Returns the axes
+    /// whose start is not known; `None` when something was wrong.
+    pub(super) fn targets(
+        &self,
+        run: &mut Run<'_, '_>,
+        machine_coordinates: bool,
+        end: &mut AxisValues,
+    ) -> Option<AxisSet> {
+        let mut unknown = AxisSet::default();
+        let mut fine = true;
+        for (axis, value) in run.words.axes() {
+            let letter = ALL_AXES[axis].letter();
+            let Some(data) = &self.machine.axes[axis] else {
+                let span = run.words.span(letter, run.block);
+                let message = format!("the machine has no {} axis", letter as char);
+                run.report
+                    .error("no-such-axis", message, span)
+                    .help(format!(
+                        "choose a machine with it, or describe it in the machine file: [axes.{}]",
+                        letter as char
+                    ));
+                fine = false;
+                continue;
+            };
+            let value = if data.kind == AxisKind::Linear {
+                value * self.modal.mm_per_unit
+            } else {
+                value
+            };
+            let absolute = if axis == EXTRUDER {
+                self.modal.extruder_absolute
+            } else {
+                self.modal.absolute
+            };
+            end[axis] = if machine_coordinates {
+                value
+            } else if absolute {
+                self.position.absolute(axis, value)
+            } else {
+                self.position.at[axis] + value
+            };
+            if self.position.unknown.contains(axis) && (absolute || machine_coordinates) {
+                unknown.insert(axis);
+            }
+            if end[axis].abs() > POSITION_MAX_MM {
+                let span = run.words.span(letter, run.block);
+                run.report
+                    .error("position-range", "the position is beyond any machine", span)
+                    .help("check the number");
+                fine = false;
+            }
+        }
+        run.words.unused &= !AXIS_LETTERS;
+        fine.then_some(unknown)
+    }
+
+    fn straight(&mut self, run: &mut Run<'_, '_>) {
+        let rapid =
+            self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
+        let kind = if rapid {
+            MoveKind::Rapid
+        } else {
+            MoveKind::Feed
+        };
+        let mut end = self.position.at;
+        let machine_coordinates = run.facts.machine_coordinates;
+        if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
+            self.go(run, kind, &end, unknown, None);
+        }
+    }
+
+    /// Moves to `end`: a straight line, or `arc`.
+    pub(super) fn go(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        end: &AxisValues,
+        unknown_start: AxisSet,
+        arc: Option<Arc>,
+    ) {
+        let start = &self.position.at;
+        let mut moving = AxisSet::default();
+        for axis in self.machine.axis_set.iter() {
+            if (end[axis] - start[axis]).abs() > STANDSTILL_MM {
+                moving.insert(axis);
+            }
+        }
+        moving.0 &= !unknown_start.0;
+        if let Some(arc) = &arc {
+            moving.insert(arc.plane[0]);
+            moving.insert(arc.plane[1]);
+        }
+        let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
+        let mut feed_mm_s = f64::INFINITY;
+        if kind != MoveKind::Rapid {
+            let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else {
+                return;
+            };
+            feed_mm_s = speed_mm_s;
+        }
+        let extrudes = moving.contains(EXTRUDER);
+        run.steps.push(Step::Move(Move {
+            line: run.line,
+            number: run.block.number.map(|word| word.value),
+            kind,
+            start: self.position.at,
+            end: *end,
+            moving,
+            unknown_start,
+            arc,
+            length_mm,
+            feed_mm_s,
+            feed_mode: self.modal.feed_mode,
+            accel_mm_s2: *self.knobs.accel(kind),
+            path_accel_mm_s2: self.knobs.path_accel_mm_s2[usize::from(!extrudes)],
+            rapid_factor: self.knobs.rapid_factor,
+            dwell_s: 0.0,
+            loads: self.loads,
+            path_mode: self.modal.path_mode,
+        }));
+        self.position.at = *end;
+        self.position.unknown.0 &= !unknown_start.0;
+    }
+
+    /// The path speed that F asks for, mm/s; reports an F that is missing.
+    fn feed_speed(&self, run: &mut Run<'_, '_>, length_mm: f64, linear: bool) -> Option<f64> {
+        let span = run.whole();
+        let feed = match &self.modal.feed {
+            Some(feed) if feed.value > 0.0 => feed,
+            Some(_) => {
+                run.report
+                    .error("no-feed", "a feed move with F0", span)
+                    .help("write the feed: F…");
+                return None;
+            }
+            None if self.machine.controller.language.family == Family::Marlin => {
+                let message = "no F yet: the first moves count at the speed limits of the axes";
+                run.report.note_once("no-feed-yet", message, span);
+                return Some(f64::INFINITY);
+            }
+            None => {
+                run.report
+                    .error("no-feed", "a feed move, but no F is in force", span)
+                    .help("write F in this block or before; after G93, G94 or G95 it must be written anew");
+                return None;
+            }
+        };
+        if self.feed_mode_is(FeedMode::InverseTime) {
+            if run.facts.feed_word.is_none() {
+                let help = "under G93 every block needs its own F";
+                run.report
+                    .error("no-feed", "a feed move without F under G93", span)
+                    .help(help);
+                return None;
+            }
+            return Some(length_mm * feed.value / SECONDS_PER_MINUTE);
+        }
+        let per_unit = if linear {
+            feed.linear_mm_s()
+        } else {
+            feed.rotary_deg_s()
+        };
+        if self.feed_mode_is(FeedMode::PerMinute) {
+            return Some(per_unit);
+        }
+        if self.modal.spindle_rpm > 0.0 {
+            return Some(per_unit * self.modal.spindle_rpm);
+        }
+        run.report
+            .error(
+                "no-spindle-speed",
+                "a feed per revolution, but no spindle speed is in force",
+                span,
+            )
+            .help("write S before the first move under G95");
+        None
+    }
+}
+
+/// Length of the path that F speaks for, and whether that is a length of
+/// linear axes: XYZ if any of them moves, else UVW, else the rotary axes, else
+/// the extruder (RS274/NGC, "Feed Rate").
+fn path_length(
+    start: &AxisValues,
+    end: &AxisValues,
+    moving: AxisSet,
+    arc: Option<&Arc>,
+) -> (f64, bool) {
+    let distance = |axis: usize| {
+        if moving.contains(axis) {
+            end[axis] - start[axis]
+        } else {
+            0.0
+        }
+    };
+    if let Some(arc) = arc {
+        let in_plane = arc.radius_mm * arc.sweep_rad.abs();
+        let rise = distance(3 - arc.plane[0] - arc.plane[1]);
+        return ((in_plane * in_plane + rise * rise).sqrt(), true);
+    }
+    for (axes, linear) in [([0, 1, 2], true), ([6, 7, 8], true), ([3, 4, 5], false)] {
+        let [x, y, z] = axes.map(distance);
+        let length = (x * x + y * y + z * z).sqrt();
+        if length > 0.0 {
+            return (length, linear);
+        }
+    }
+    (distance(EXTRUDER).abs(), true)
+}

@@ -1,0 +1,67 @@
+//! Positions: program coordinates to machine coordinates.
+//!
+//! Everything is kept in machine coordinates (mm, degrees); an absolute word
+//! means `value + work offset + G92 offset + tool length`.
+
+use crate::machine::{AXES, AxisSet, AxisValues};
+
+/// Where the axes stand at the beginning of a program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Start {
+    /// At these machine coordinates (mm or degrees); 0 by default.
+    At(AxisValues),
+    /// Nowhere known: each axis' first move is priced at its full speed and
+    /// acceleration.
+    Unknown,
+}
+
+/// Position and offsets.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Position {
+    /// Where the axes stand, machine coordinates.
+    pub(super) at: AxisValues,
+    /// Axes whose place is not known.
+    pub(super) unknown: AxisSet,
+    /// G92 offset in force, and the one that G92.3 restores.
+    offset: AxisValues,
+    stored: AxisValues,
+}
+
+impl Position {
+    pub(super) fn new(start: Start) -> Self {
+        let (at, unknown) = match start {
+            Start::At(at) => (at, AxisSet::default()),
+            Start::Unknown => ([0.0; AXES], AxisSet((1 << AXES) - 1)),
+        };
+        Self {
+            at,
+            unknown,
+            offset: [0.0; AXES],
+            stored: [0.0; AXES],
+        }
+    }
+
+    /// Machine coordinate of an absolute program coordinate.
+    pub(super) fn absolute(&self, axis: usize, value: f64) -> f64 {
+        value + self.offset[axis]
+    }
+
+    /// G92: the place where the axis stands is called `value` from now on.
+    pub(super) fn set_offset(&mut self, axis: usize, value: f64) {
+        self.offset[axis] = self.at[axis] - value;
+        self.stored[axis] = self.offset[axis];
+    }
+
+    /// G92.1 (`forget`) and G92.2.
+    pub(super) fn clear_offset(&mut self, forget: bool) {
+        self.offset = [0.0; AXES];
+        if forget {
+            self.stored = [0.0; AXES];
+        }
+    }
+
+    /// G92.3.
+    pub(super) fn restore_offset(&mut self) {
+        self.offset = self.stored;
+    }
+}

@@ -1,0 +1,270 @@
+//! The words of one block, sorted by letter, with checks that need no state.
+
+use arrayvec::ArrayVec;
+
+use super::code::{GCode, code_number, g_code};
+use super::report::Report;
+use crate::machine::Controller;
+use crate::source::Span;
+use crate::syntax::{Block, Word};
+
+/// Bit of a letter in the masks of this module.
+pub(super) const fn bit(letter: u8) -> u32 {
+    1 << (letter - b'A')
+}
+
+/// Letters that name axes.
+pub(super) const AXIS_LETTERS: u32 = bit(b'X')
+    | bit(b'Y')
+    | bit(b'Z')
+    | bit(b'A')
+    | bit(b'B')
+    | bit(b'C')
+    | bit(b'U')
+    | bit(b'V')
+    | bit(b'W')
+    | bit(b'E');
+
+/// The words of a block by letter. A buffer, filled again for each block.
+#[derive(Debug)]
+pub(super) struct Words {
+    values: [f64; 26],
+    /// Index in `Block::words` of each letter's word.
+    index: [u16; 26],
+    /// Letters that stand in the block.
+    pub(super) present: u32,
+    /// Letters that no code has used yet.
+    pub(super) unused: u32,
+    /// G words with their number × 10, in order.
+    pub(super) g: ArrayVec<(GCode, u16, Span), 16>,
+    /// M words with their number × 10.
+    pub(super) m: ArrayVec<(u16, Span), 16>,
+    /// Words that turn a knob: index in `controller.knobs`, value behind `=`.
+    pub(super) knobs: ArrayVec<(usize, Option<f64>, Span), 8>,
+    /// Modal groups that have a word.
+    pub(super) groups: u32,
+}
+
+impl Words {
+    pub(super) fn new() -> Self {
+        Self {
+            values: [0.0; 26],
+            index: [0; 26],
+            present: 0,
+            unused: 0,
+            g: ArrayVec::new(),
+            m: ArrayVec::new(),
+            knobs: ArrayVec::new(),
+            groups: 0,
+        }
+    }
+
+    /// Sorts the words of `block`. What is wrong is reported.
+    pub(super) fn fill(
+        &mut self,
+        block: &Block,
+        controller: &Controller,
+        report: &mut Report<'_, '_>,
+    ) {
+        self.present = 0;
+        self.groups = 0;
+        self.g.clear();
+        self.m.clear();
+        self.knobs.clear();
+        let mut words = block.words.iter().enumerate().peekable();
+        while let Some((index, word)) = words.next() {
+            match word.letter {
+                b'G' | b'M' => {
+                    let number = code_number(word.value);
+                    let knob = number.and_then(|number| {
+                        controller
+                            .knobs
+                            .iter()
+                            .position(|knob| knob.code == (word.letter, number))
+                    });
+                    if let Some(knob) = knob {
+                        let assigned = words
+                            .next_if(|(_, next)| next.letter == b'=')
+                            .map(|(_, next)| next.value);
+                        self.add_knob(knob, assigned, *word, report);
+                    } else if word.letter == b'G' {
+                        self.add_g(*word, controller, report);
+                    } else {
+                        self.add_m(*word, report);
+                    }
+                }
+                b'A'..=b'Z' => self.add(index, *word, report),
+                b'*' if block.number.is_some() => {}
+                _ => {
+                    report.error(
+                        "unknown-word",
+                        format!("`{}` has no meaning here", word.letter as char),
+                        word.span,
+                    );
+                }
+            }
+        }
+        self.unused = self.present;
+    }
+
+    fn add_knob(
+        &mut self,
+        knob: usize,
+        assigned: Option<f64>,
+        word: Word,
+        report: &mut Report<'_, '_>,
+    ) {
+        if self.knobs.try_push((knob, assigned, word.span)).is_err() {
+            report.error("too-many-words", "too many words in a block", word.span);
+        }
+    }
+
+    fn add(&mut self, index: usize, word: Word, report: &mut Report<'_, '_>) {
+        let mask = bit(word.letter);
+        let slot = usize::from(word.letter - b'A');
+        if self.present & mask != 0 {
+            let message = format!("the block has two {} words", word.letter as char);
+            report
+                .error("word-twice", message, word.span)
+                .help("write each letter once in a block");
+            return;
+        }
+        self.present |= mask;
+        self.values[slot] = word.value;
+        self.index[slot] = index as u16;
+    }
+
+    fn add_g(&mut self, word: Word, controller: &Controller, report: &mut Report<'_, '_>) {
+        let known = code_number(word.value).and_then(|number| {
+            let ignored = || {
+                controller
+                    .language
+                    .ignored_g
+                    .contains(&number)
+                    .then_some(GCode::Ignored)
+            };
+            g_code(number, controller.language.family)
+                .or_else(ignored)
+                .map(|code| (code, number))
+        });
+        let Some((code, number)) = known else {
+            report.refused_g(word);
+            return;
+        };
+        if self.groups & code.group() != 0 && code != GCode::Ignored {
+            report
+                .error(
+                    "modal-group-twice",
+                    "two G words of one modal group in a block",
+                    word.span,
+                )
+                .help("keep the one that is meant, or write two blocks");
+            return;
+        }
+        self.groups |= code.group();
+        if self.g.try_push((code, number, word.span)).is_err() {
+            report.error(
+                "too-many-words",
+                "more than 16 G words in a block",
+                word.span,
+            );
+        }
+    }
+
+    fn add_m(&mut self, word: Word, report: &mut Report<'_, '_>) {
+        let Some(number) = code_number(word.value) else {
+            report.error(
+                "unknown-code",
+                format!("M{} is not a valid word", word.value),
+                word.span,
+            );
+            return;
+        };
+        if self.m.try_push((number, word.span)).is_err() {
+            report.error(
+                "too-many-words",
+                "more than 16 M words in a block",
+                word.span,
+            );
+        }
+    }
+
+    /// Whether the letter stands in the block.
+    pub(super) fn has(&self, letter: u8) -> bool {
+        self.present & bit(letter) != 0
+    }
+
+    /// Value of a letter's word if no other code has used it; it is used now.
+    pub(super) fn take(&mut self, letter: u8) -> Option<f64> {
+        let free = self.unused & bit(letter) != 0;
+        self.unused &= !bit(letter);
+        free.then(|| self.values[usize::from(letter - b'A')])
+    }
+
+    /// The letter's word in its block.
+    pub(super) fn word(&self, letter: u8, block: &Block) -> Option<Word> {
+        self.has(letter).then(|| {
+            block
+                .words
+                .get(usize::from(self.index[usize::from(letter - b'A')]))
+                .copied()
+        })?
+    }
+
+    /// Where the letter's word stands.
+    pub(super) fn span(&self, letter: u8, block: &Block) -> Span {
+        self.word(letter, block).map_or(
+            Span {
+                start: 0,
+                end: block.text_end,
+            },
+            |word| word.span,
+        )
+    }
+
+    /// Axis letters that no code has used, with values.
+    #[inline]
+    pub(super) fn axes(&self) -> Axes<'_> {
+        Axes {
+            letters: self.unused & AXIS_LETTERS,
+            values: &self.values,
+        }
+    }
+
+    /// True when an axis letter is left.
+    pub(super) fn has_axes(&self) -> bool {
+        self.unused & AXIS_LETTERS != 0
+    }
+}
+
+/// Axes and values of the axis words of a block.
+pub(super) struct Axes<'a> {
+    letters: u32,
+    values: &'a [f64; 26],
+}
+
+impl Iterator for Axes<'_> {
+    type Item = (usize, f64);
+
+    #[inline]
+    fn next(&mut self) -> Option<(usize, f64)> {
+        if self.letters == 0 {
+            return None;
+        }
+        let letter = self.letters.trailing_zeros() as usize;
+        self.letters &= self.letters - 1;
+        Some((usize::from(AXIS_OF_LETTER[letter]), self.values[letter]))
+    }
+}
+
+/// Axis index of each letter from A; letters that name no axis are not asked.
+const AXIS_OF_LETTER: [u8; 26] = {
+    let mut table = [0; 26];
+    let letters = *b"XYZABCUVWE";
+    let mut axis = 0;
+    while axis < letters.len() {
+        table[(letters[axis] - b'A') as usize] = axis as u8;
+        axis += 1;
+    }
+    table
+};

@@ -1,0 +1,220 @@
+//! Changes: values of the words that a block gets, and the move that results.
+
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{AxisKind, AxisValues, KnobUnit, Machine};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// What may be changed about the block of a move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Permit {
+    /// Words may be changed and inserted, and lines inserted before the block.
+    pub edit: bool,
+    /// F means length per minute and may stand in this block.
+    pub feed_word: bool,
+    /// A rapid may be written as a feed.
+    pub as_feed: bool,
+    /// Why not, for a person; empty when all is permitted.
+    pub reason: &'static str,
+    /// Millimetres in one program unit, for F and for knobs.
+    pub mm_per_unit: f64,
+    /// The F in force in program units, if there is one.
+    pub feed_before: Option<f64>,
+    /// Acceleration limits of feed moves in force, for a rapid that is written
+    /// as one, mm/s².
+    pub feed_accel_mm_s2: AxisValues,
+}
+
+/// The values that the words of a block get.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Change {
+    /// F in program units per minute.
+    pub feed: Option<f64>,
+    /// The rapid is written as a feed.
+    pub as_feed: bool,
+    /// The knob for rapid speed (index in `controller.knobs`), and percent.
+    pub rapid_percent: Option<(usize, f64)>,
+    /// The knob for acceleration, and its value for each axis, in its unit.
+    pub accel: Option<(usize, AxisValues)>,
+}
+
+impl Change {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        feed: None,
+        as_feed: false,
+        rapid_percent: None,
+        accel: None,
+    };
+
+    /// The lower value of each word, for a block with several moves.
+    #[must_use]
+    pub fn lower(&self, other: &Self) -> Self {
+        let lower = |a: f64, b: f64| a.min(b);
+        Self {
+            feed: either(self.feed, other.feed, lower),
+            as_feed: self.as_feed || other.as_feed,
+            rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
+                (a.0, a.1.min(b.1))
+            }),
+            accel: either(self.accel, other.accel, |a, b| {
+                (a.0, std::array::from_fn(|axis| a.1[axis].min(b.1[axis])))
+            }),
+        }
+    }
+
+    /// True when nothing is changed.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        *self == Self::NONE
+    }
+
+    /// The move as the controller will run it, computed as the interpreter
+    /// does from the words that will be written.
+    #[must_use]
+    pub fn apply(&self, machine: &Machine, mv: &Move, permit: &Permit) -> Move {
+        let mut changed = mv.clone();
+        if self.as_feed {
+            changed.kind = MoveKind::Feed;
+            changed.accel_mm_s2 = permit.feed_accel_mm_s2;
+        }
+        if let Some(feed) = self.feed {
+            changed.feed_mm_s = feed_speed(machine, mv, permit, feed);
+        }
+        if let Some((_, percent)) = self.rapid_percent {
+            changed.rapid_factor = percent / 100.0;
+        }
+        if let Some((knob, values)) = self.accel
+            && let Some(knob) = machine.controller.knobs.get(knob)
+        {
+            for axis in machine.axis_set.iter() {
+                changed.accel_mm_s2[axis] =
+                    knob_accel(machine, knob.unit, axis, values[axis], permit.mm_per_unit);
+            }
+        }
+        changed
+    }
+}
+
+/// One of two values, or both put together.
+fn either<T>(a: Option<T>, b: Option<T>, both: impl FnOnce(T, T) -> T) -> Option<T> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(both(a, b)),
+        (a, b) => a.or(b),
+    }
+}
+
+/// Path speed in mm/s (degrees/s) of an F in program units.
+pub(super) fn feed_speed(machine: &Machine, mv: &Move, permit: &Permit, feed: f64) -> f64 {
+    feed * feed_unit(machine, mv, permit) / SECONDS_PER_MINUTE
+}
+
+/// Millimetres, or degrees, in the unit of length that F speaks of.
+pub(super) fn feed_unit(machine: &Machine, mv: &Move, permit: &Permit) -> f64 {
+    let commanded = mv.moving.0 | mv.unknown_start.0;
+    let linear = crate::machine::AxisSet(commanded)
+        .iter()
+        .any(|axis| machine.axes[axis].is_some_and(|data| data.kind == AxisKind::Linear));
+    if linear { permit.mm_per_unit } else { 1.0 }
+}
+
+/// Acceleration limit in mm/s² (degrees/s²) that a knob's value means.
+pub(super) fn knob_accel(
+    machine: &Machine,
+    unit: KnobUnit,
+    axis: usize,
+    value: f64,
+    mm_per_unit: f64,
+) -> f64 {
+    let Some(data) = &machine.axes[axis] else {
+        return 0.0;
+    };
+    match unit {
+        KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
+        KnobUnit::PerSecondSquared => {
+            value
+                * if data.kind == AxisKind::Linear {
+                    mm_per_unit
+                } else {
+                    1.0
+                }
+        }
+    }
+}
+
+/// The value of a knob that means this acceleration limit.
+pub(super) fn knob_value(
+    machine: &Machine,
+    unit: KnobUnit,
+    axis: usize,
+    accel: f64,
+    mm_per_unit: f64,
+) -> f64 {
+    let Some(data) = &machine.axes[axis] else {
+        return 0.0;
+    };
+    match unit {
+        KnobUnit::Percent => accel / data.accel_mm_s2 * 100.0,
+        KnobUnit::PerSecondSquared => {
+            accel
+                / if data.kind == AxisKind::Linear {
+                    mm_per_unit
+                } else {
+                    1.0
+                }
+        }
+    }
+}
+
+/// Rounds a feed down to five significant digits (a loss of 1e-4 at most).
+pub(super) fn round_feed_down(feed: f64) -> f64 {
+    let magnitude = libm::floor(libm::log10(feed));
+    let decimals = (4.0 - magnitude).clamp(0.0, 9.0);
+    round_down(feed, libm::pow(10.0, decimals).round())
+}
+
+/// Rounds down to a multiple of `step`.
+pub(super) fn round_to_step(value: f64, step: f64) -> f64 {
+    if step <= 0.0 {
+        return value;
+    }
+    let steps_in_one = 1.0 / step;
+    if steps_in_one >= 1.0 && (steps_in_one - steps_in_one.round()).abs() < 1e-9 {
+        round_down(value, steps_in_one.round())
+    } else {
+        (value / step).floor() * step
+    }
+}
+
+/// Rounds down to a multiple of 1/`per_one`; the quotient of two whole numbers
+/// is the decimal number that will be written.
+fn round_down(value: f64, per_one: f64) -> f64 {
+    let whole = (value * per_one).floor();
+    let rounded = whole / per_one;
+    if rounded <= value {
+        rounded
+    } else {
+        (whole - 1.0) / per_one
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{round_feed_down, round_to_step};
+
+    #[test]
+    fn feeds_keep_five_digits() {
+        assert_eq!(round_feed_down(1234.5678), 1234.5);
+        assert_eq!(round_feed_down(123_456.7), 123_456.0);
+        assert_eq!(round_feed_down(83.333_333), 83.333);
+        assert_eq!(round_feed_down(0.012_345_67), 0.012_345);
+        assert_eq!(round_feed_down(800.0), 800.0);
+    }
+
+    #[test]
+    fn steps_go_down() {
+        assert_eq!(round_to_step(47.39, 0.1), 47.3);
+        assert_eq!(round_to_step(47.3, 0.1), 47.3);
+        assert_eq!(round_to_step(47.9, 5.0), 45.0);
+        assert_eq!(round_to_step(0.04, 0.1), 0.0);
+    }
+}

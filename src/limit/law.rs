@@ -1,0 +1,142 @@
+//! Values by rule instead of by solution: presets, and the squared ratio.
+
+use super::change::{Change, feed_unit, round_feed_down, round_to_step};
+use super::lever::{Levers, Obstacle, SpeedLever};
+use super::options::Strategy;
+use super::solver::{Case, Solver};
+use crate::interpret::MoveKind;
+use crate::machine::{AXES, AxisSet, AxisValues};
+use crate::plan::{Caps, SpeedBound, speed_bound};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// The limits of the preset for exactly the axes that start together.
+pub(super) fn preset(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    levers: Levers,
+) -> Result<Change, Obstacle> {
+    let axes = AxisSet(case.mv.moving.0 | case.mv.unknown_start.0);
+    let Some(preset) = solver
+        .machine
+        .presets
+        .iter()
+        .find(|preset| preset.axes == axes)
+    else {
+        return Err(Obstacle::new(
+            "no-preset",
+            format!("the machine has no preset for the axes {axes}"),
+            "add a [[preset]] for them, or use another strategy",
+        ));
+    };
+    let mut change = Change::default();
+    if preset.has_speed {
+        let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
+        let bound = speed_bound(solver.machine, case.mv, solver.largest, Caps::default());
+        let speeds = axis_speeds(&bound);
+        let share = axes
+            .iter()
+            .map(|axis| preset.speed_mm_s[axis] / speeds[axis])
+            .fold(1.0, f64::min);
+        if share < 1.0 {
+            scale_speed(solver, case, lever, share, &mut change)?;
+        }
+    }
+    if preset.has_accel {
+        let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
+        let mut accel = case.mv.accel_mm_s2;
+        for axis in axes.iter() {
+            accel[axis] = accel[axis].min(preset.accel_mm_s2[axis]);
+        }
+        if accel != case.mv.accel_mm_s2 {
+            let values = solver
+                .knob_values(knob, &accel, case.permit)
+                .ok_or_else(|| no_lever("acceleration"))?;
+            change.accel = Some((knob, values));
+        }
+    }
+    Ok(change)
+}
+
+/// V² on the nominal values: V is the limit by the sum of what the commanded
+/// axes take at their nominal speeds and accelerations.
+pub(super) fn squared_ratio(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    levers: Levers,
+    strategy: Strategy,
+) -> Result<Change, Obstacle> {
+    let mut bound = speed_bound(solver.machine, case.mv, solver.largest, Caps::default());
+    if case.mv.kind == MoveKind::Rapid {
+        // Nominal is the rapid speed of each axis, not its share of the path.
+        for axis in case.mv.moving.iter() {
+            let rapid = solver.machine.axes[axis].map_or(0.0, |data| data.rapid_mm_s)
+                * solver.largest.rapid;
+            for side in [&mut bound.positive[axis], &mut bound.negative[axis]] {
+                *side = if *side > 0.0 {
+                    rapid * case.mv.rapid_factor
+                } else {
+                    0.0
+                };
+            }
+        }
+    }
+    let nominal = solver.model.robust(case.mv, &bound, &case.mv.accel_mm_s2);
+    let ratio = solver.model.limit_w(nominal.converter) / nominal.peak_w;
+    let factor = (ratio * ratio).min(1.0);
+    let mut change = Change::default();
+    if strategy == Strategy::Accel {
+        let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
+        return solver
+            .accel_change(case, knob, factor, &change)
+            .ok_or_else(|| no_lever("acceleration"));
+    }
+    let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
+    scale_speed(solver, case, lever, factor, &mut change)?;
+    Ok(change)
+}
+
+/// Sets a share of the nominal path speed.
+fn scale_speed(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    lever: SpeedLever,
+    share: f64,
+    change: &mut Change,
+) -> Result<(), Obstacle> {
+    if let SpeedLever::RapidPercent(knob) = lever {
+        let step = solver
+            .machine
+            .controller
+            .knobs
+            .get(knob)
+            .map_or(1.0, |knob| knob.step);
+        let percent = round_to_step(case.mv.rapid_factor * share * 100.0, step);
+        change.rapid_percent = (percent > 0.0).then_some((knob, percent));
+        return if percent > 0.0 {
+            Ok(())
+        } else {
+            Err(no_lever("speed"))
+        };
+    }
+    let unit = feed_unit(solver.machine, case.mv, case.permit);
+    change.as_feed = lever == SpeedLever::AsFeed;
+    let speed_mm_s = case.assessment.speed_mm_s * share;
+    change.feed = Some(round_feed_down(speed_mm_s * SECONDS_PER_MINUTE / unit));
+    Ok(())
+}
+
+fn axis_speeds(bound: &SpeedBound) -> AxisValues {
+    let mut speeds = [0.0; AXES];
+    for (axis, speed) in speeds.iter_mut().enumerate() {
+        *speed = bound.positive[axis].max(bound.negative[axis]);
+    }
+    speeds
+}
+
+fn no_lever(what: &str) -> Obstacle {
+    Obstacle::new(
+        "no-knob",
+        format!("no permitted word lowers the {what} of this block"),
+        "use --allow feed for feeds, or another strategy",
+    )
+}

@@ -1,0 +1,106 @@
+//! Levers: which words may bring one move down, and what stands in the way.
+
+use super::change::Permit;
+use super::options::LimitOptions;
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
+
+/// The word that lowers the speed of a move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum SpeedLever {
+    /// F.
+    FeedWord,
+    /// G1 and F for G0.
+    AsFeed,
+    /// A percentage of the rapid speed: index of the knob.
+    RapidPercent(usize),
+}
+
+/// The levers of one move.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Levers {
+    pub(super) speed: Option<SpeedLever>,
+    /// Index of the knob for acceleration.
+    pub(super) accel: Option<usize>,
+}
+
+/// Why a move cannot be brought down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// Short stable name.
+    pub rule: &'static str,
+    /// What stands in the way.
+    pub message: String,
+    /// What would help.
+    pub help: String,
+}
+
+impl Obstacle {
+    pub(super) fn new(
+        rule: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self {
+            rule,
+            message: message.into(),
+            help: help.into(),
+        }
+    }
+}
+
+/// The first verified knob with this target (or `Accel`), in whatever form.
+pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize> {
+    let suits = |knob: &Knob| {
+        knob.verified
+            && (knob.target == target || knob.target == KnobTarget::Accel)
+            && !matches!(knob.argument, KnobArgument::Path(_))
+    };
+    machine.controller.knobs.iter().position(suits)
+}
+
+/// The knob for the speed of rapids.
+fn rapid_knob(machine: &Machine) -> Option<usize> {
+    machine
+        .controller
+        .knobs
+        .iter()
+        .position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
+}
+
+/// What may be used to bring `mv` down.
+pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &Permit) -> Levers {
+    if !permit.edit {
+        return Levers::default();
+    }
+    if mv.kind != MoveKind::Rapid {
+        let speed = (how.allow_feed && permit.feed_word).then_some(SpeedLever::FeedWord);
+        return Levers {
+            speed,
+            accel: accel_knob(machine, KnobTarget::FeedAccel),
+        };
+    }
+    let speed = match rapid_knob(machine) {
+        Some(knob) => Some(SpeedLever::RapidPercent(knob)),
+        None => rapid_as_feed(machine, mv, permit).then_some(SpeedLever::AsFeed),
+    };
+    // A rapid written as a feed is under the knobs of feeds, which differ.
+    let accel = accel_knob(machine, KnobTarget::RapidAccel);
+    Levers {
+        speed,
+        accel: accel.filter(|_| speed != Some(SpeedLever::AsFeed)),
+    }
+}
+
+/// Whether G1 runs the same path as this G0, no faster.
+fn rapid_as_feed(machine: &Machine, mv: &Move, permit: &Permit) -> bool {
+    machine.controller.rapid_knob == RapidKnob::G1
+        && machine.path.rapid == RapidPath::Linear
+        && permit.as_feed
+        && permit.feed_word
+        && mv.unknown_start.is_empty()
+        && mv
+            .moving
+            .iter()
+            .all(|axis| permit.feed_accel_mm_s2[axis] <= mv.accel_mm_s2[axis])
+}

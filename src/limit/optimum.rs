@@ -1,0 +1,78 @@
+//! Speed and acceleration together: the pair with the shortest time.
+//!
+//! For each acceleration there is one highest speed that fits, and the time of
+//! the block has one minimum between the pair with full acceleration and the
+//! one with full speed (for a trapezoid: minimise L/v + v/a under the limit).
+
+use super::change::Change;
+use super::lever::SpeedLever;
+use super::solver::{Case, Solver};
+
+/// Steps of the search; each narrows the bracket to 0.618.
+const STEPS: u32 = 24;
+/// The golden section.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+/// Lowest acceleration that is tried, as a share.
+const LOWEST: f64 = 0.01;
+
+/// The fastest pair of speed and acceleration that fits.
+pub(super) fn best_pair(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    speed: SpeedLever,
+    accel: usize,
+) -> Option<Change> {
+    let none = Change::default();
+    let time = |change: &Change| {
+        let changed = change.apply(solver.machine, case.mv, case.permit);
+        let (plan, load) = solver.planned(&changed);
+        if load <= 1.0 + 1e-9 {
+            plan.duration_s
+        } else {
+            f64::INFINITY
+        }
+    };
+    let pair = |factor: f64| {
+        let with = solver.accel_change(case, accel, factor, &none)?;
+        solver.speed(case, speed, &with)
+    };
+    let time_of = |factor: f64| pair(factor).map_or(f64::INFINITY, |change| time(&change));
+
+    let by_accel = solver.accel(case, accel, &none);
+    let mut low = by_accel
+        .and_then(|change| share(case, solver, &change))
+        .unwrap_or(LOWEST);
+    let mut high = 1.0;
+    let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut time_left, mut time_right) = (time_of(left), time_of(right));
+    for _ in 0..STEPS {
+        if time_left <= time_right {
+            (high, right, time_right) = (right, left, time_left);
+            left = high - GOLDEN * (high - low);
+            time_left = time_of(left);
+        } else {
+            (low, left, time_left) = (left, right, time_right);
+            right = low + GOLDEN * (high - low);
+            time_right = time_of(right);
+        }
+    }
+    // Fewer words are better where they cost no time.
+    let single = [by_accel, solver.speed(case, speed, &none)];
+    let best_single = single
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| time(a).total_cmp(&time(b)));
+    let both = pair(f64::midpoint(low, high));
+    match (best_single, both) {
+        (Some(single), Some(both)) if time(&both) < time(&single) * (1.0 - 1e-6) => Some(both),
+        (Some(single), _) => Some(single),
+        (None, both) => both,
+    }
+}
+
+/// The share of the acceleration in force that a change leaves.
+fn share(case: Case<'_>, solver: &Solver<'_>, change: &Change) -> Option<f64> {
+    let changed = change.apply(solver.machine, case.mv, case.permit);
+    let axis = case.mv.moving.iter().next()?;
+    Some((changed.accel_mm_s2[axis] / case.mv.accel_mm_s2[axis]).clamp(LOWEST, 1.0))
+}

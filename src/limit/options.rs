@@ -1,0 +1,34 @@
+//! What is asked of the limiter.
+
+/// How power is brought down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Strategy {
+    /// The machine's presets for combinations of axes.
+    Preset,
+    /// Speed alone.
+    Speed,
+    /// Acceleration alone.
+    Accel,
+    /// The shortest time with the words that the controller has.
+    Optimal,
+}
+
+/// How far the ratio V = limit/peak lowers speed or acceleration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// Solved for the real block.
+    Exact,
+    /// V² on the nominal values of the commanded axes.
+    Patent,
+}
+
+/// What `limit` is asked to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LimitOptions {
+    /// How power is brought down.
+    pub strategy: Strategy,
+    /// How far.
+    pub law: Law,
+    /// Whether cutting feeds may be lowered.
+    pub allow_feed: bool,
+}

@@ -1,0 +1,371 @@
+//! One move by itself: the change that makes it fit.
+
+use super::change::{Change, Permit, feed_unit, knob_value, round_feed_down, round_to_step};
+use super::law;
+use super::lever::{Levers, Obstacle, SpeedLever, levers};
+use super::optimum;
+use super::options::{Law, LimitOptions, Strategy};
+use super::root::largest;
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{AxisValues, Machine};
+use crate::plan::{Overrides, Plan, plan};
+use crate::power::{Assessment, PowerModel, Want};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// How often a rounded value is lowered by one more step before giving up.
+const RETRIES: u32 = 3;
+
+/// Solves moves one by one.
+#[derive(Debug)]
+pub struct Solver<'m> {
+    pub(super) machine: &'m Machine,
+    pub(super) model: PowerModel,
+    pub(super) largest: Overrides,
+    pub(super) how: LimitOptions,
+}
+
+/// A move to be solved, with all that is known of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Case<'a> {
+    pub(super) mv: &'a Move,
+    pub(super) assessment: &'a Assessment,
+    pub(super) permit: &'a Permit,
+}
+
+impl<'m> Solver<'m> {
+    /// A solver for a machine.
+    #[must_use]
+    pub fn new(machine: &'m Machine, how: LimitOptions) -> Self {
+        let limits = &machine.limits;
+        let largest = Overrides {
+            feed: limits.feed_override_max,
+            rapid: limits.rapid_override_max,
+        };
+        Self {
+            machine,
+            model: PowerModel::new(machine),
+            largest,
+            how,
+        }
+    }
+
+    /// The change that makes a move fit which does not.
+    ///
+    /// # Errors
+    /// What stands in the way.
+    pub fn solve(
+        &self,
+        mv: &Move,
+        assessment: &Assessment,
+        permit: &Permit,
+    ) -> Result<Change, Obstacle> {
+        let case = Case {
+            mv,
+            assessment,
+            permit,
+        };
+        let levers = levers(self.machine, self.how, mv, permit);
+        if mv.kind == MoveKind::Dwell
+            || assessment.top_speed_mm_s == 0.0 && mv.unknown_start.is_empty()
+        {
+            return Err(Obstacle::new(
+                "base-load",
+                "base load, switched loads and holding the axes alone exceed the limit",
+                "no feed and no acceleration changes that: a larger converter is needed",
+            ));
+        }
+        let change = match (self.how.strategy, self.how.law) {
+            (Strategy::Preset, _) => law::preset(self, case, levers)?,
+            (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
+            (Strategy::Speed, _) => self.by_speed(case, levers)?,
+            (Strategy::Accel, _) => self.by_accel(case, levers)?,
+            (Strategy::Optimal, _) => self.optimal(case, levers)?,
+        };
+        self.verify(case, change)
+    }
+
+    /// Nothing is proposed that does not fit, or that breaks a floor.
+    fn verify(&self, case: Case<'_>, change: Change) -> Result<Change, Obstacle> {
+        self.respect_floor(case, &change)?;
+        let load = self.load(&change.apply(self.machine, case.mv, case.permit));
+        if load <= 1.0 + 1e-9 {
+            return Ok(change);
+        }
+        Err(Obstacle::new(
+            "not-enough",
+            format!(
+                "the values of this strategy leave the block at {:.1} % of the limit",
+                load * 100.0
+            ),
+            "use --strategy optimal --law exact",
+        ))
+    }
+
+    /// Load ratio of a move at the largest overrides.
+    pub(super) fn load(&self, mv: &Move) -> f64 {
+        self.model
+            .demand(mv, &plan(self.machine, mv, self.largest), Want::PEAKS)
+            .load_ratio
+    }
+
+    /// Plan and load of a move.
+    pub(super) fn planned(&self, mv: &Move) -> (Plan, f64) {
+        let plan = plan(self.machine, mv, self.largest);
+        let load = self.model.demand(mv, &plan, Want::PEAKS).load_ratio;
+        (plan, load)
+    }
+
+    pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+        let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
+        self.speed(case, lever, &Change::default())
+            .ok_or_else(|| too_much(case))
+    }
+
+    /// The highest speed that fits, on top of what `with` changes already.
+    pub(super) fn speed(&self, case: Case<'_>, lever: SpeedLever, with: &Change) -> Option<Change> {
+        let Case { mv, permit, .. } = case;
+        let mut trial = Change {
+            as_feed: lever == SpeedLever::AsFeed,
+            ..*with
+        };
+        let base = trial.apply(self.machine, mv, permit);
+        let mut moved = base.clone();
+        let mut load_at = |lever: SpeedLever, value: f64| {
+            match lever {
+                SpeedLever::RapidPercent(_) => moved.rapid_factor = value / 100.0,
+                _ => moved.feed_mm_s = value / self.largest.feed,
+            }
+            self.load(&moved)
+        };
+        let top = match lever {
+            SpeedLever::RapidPercent(_) => base.rapid_factor * 100.0,
+            _ if mv.unknown_start.is_empty() => self.planned(&base).0.top_speed_mm_s,
+            _ => base.feed_mm_s.min(1e6),
+        };
+        let load_top = load_at(lever, top);
+        let value = if load_top <= 1.0 {
+            top
+        } else {
+            largest(top, load_top, |value| load_at(lever, value))?
+        };
+        match lever {
+            SpeedLever::RapidPercent(knob) => {
+                let step = self.machine.controller.knobs.get(knob)?.step;
+                let percent = round_to_step(value, step);
+                trial.rapid_percent = (percent > 0.0).then_some((knob, percent));
+                trial.rapid_percent?;
+            }
+            _ => trial.feed = Some(self.feed_number(case, &trial, value)?),
+        }
+        Some(trial)
+    }
+
+    /// The F, in program units and rounded down, for a path speed at the
+    /// largest override.
+    fn feed_number(&self, case: Case<'_>, trial: &Change, speed_mm_s: f64) -> Option<f64> {
+        let unit = feed_unit(self.machine, case.mv, case.permit);
+        let mut feed = round_feed_down(speed_mm_s / self.largest.feed * SECONDS_PER_MINUTE / unit);
+        for _ in 0..RETRIES {
+            let rounded = Change {
+                feed: Some(feed),
+                ..*trial
+            }
+            .apply(self.machine, case.mv, case.permit);
+            if feed > 0.0 && feed.is_finite() && self.load(&rounded) <= 1.0 {
+                return Some(feed);
+            }
+            feed = round_feed_down(feed * (1.0 - 2e-5));
+        }
+        None
+    }
+
+    fn by_accel(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+        let knob = levers.accel.ok_or_else(|| self.no_accel_lever(case))?;
+        if let Some(load) = self.cruise_load(case.mv).filter(|load| *load > 1.0) {
+            return Err(Obstacle::new(
+                "friction-alone",
+                format!(
+                    "friction alone takes {:.1} % of the limit at the wanted speed",
+                    load * 100.0
+                ),
+                "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
+            ));
+        }
+        self.accel(case, knob, &Change::default())
+            .ok_or_else(|| too_much(case))
+    }
+
+    /// The highest acceleration that fits, on top of what `with` changes.
+    pub(super) fn accel(&self, case: Case<'_>, knob: usize, with: &Change) -> Option<Change> {
+        let base = with.apply(self.machine, case.mv, case.permit);
+        let mut moved = base.clone();
+        let mut load_at = |factor: f64| {
+            moved.accel_mm_s2 = base.accel_mm_s2.map(|accel| accel * factor);
+            self.load(&moved)
+        };
+        let load_top = load_at(1.0);
+        let factor = if load_top <= 1.0 {
+            1.0
+        } else {
+            largest(1.0, load_top, load_at)?
+        };
+        self.accel_change(case, knob, factor, with)
+    }
+
+    /// Acceleration knobs at `factor` of what is in force, rounded down;
+    /// `None` when the knob does not go that low.
+    pub(super) fn accel_change(
+        &self,
+        case: Case<'_>,
+        knob: usize,
+        factor: f64,
+        with: &Change,
+    ) -> Option<Change> {
+        let values: AxisValues = std::array::from_fn(|axis| factor * case.mv.accel_mm_s2[axis]);
+        let rounded = self.knob_values(knob, &values, case.permit)?;
+        Some(Change {
+            accel: Some((knob, rounded)),
+            ..*with
+        })
+    }
+
+    /// Values of a knob for these acceleration limits, rounded down.
+    pub(super) fn knob_values(
+        &self,
+        knob: usize,
+        accel_mm_s2: &AxisValues,
+        permit: &Permit,
+    ) -> Option<AxisValues> {
+        let data = self.machine.controller.knobs.get(knob)?;
+        let mut values = [0.0; crate::machine::AXES];
+        for axis in self.machine.axis_set.iter() {
+            let value = knob_value(
+                self.machine,
+                data.unit,
+                axis,
+                accel_mm_s2[axis],
+                permit.mm_per_unit,
+            );
+            // A value that is a step already must not fall by rounding.
+            values[axis] = round_to_step(value * (1.0 + 1e-12), data.step);
+            if values[axis] < data.min || values[axis] <= 0.0 {
+                return None;
+            }
+        }
+        Some(values)
+    }
+
+    fn optimal(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+        match levers {
+            Levers {
+                speed: Some(speed),
+                accel: Some(accel),
+            } => optimum::best_pair(self, case, speed, accel).ok_or_else(|| too_much(case)),
+            Levers { speed: Some(_), .. } => self.by_speed(case, levers),
+            Levers { accel: Some(_), .. } => self.by_accel(case, levers),
+            _ => Err(self.no_speed_lever(case)),
+        }
+    }
+
+    /// Load of a cruise at the wanted speed; `None` for moves without a path.
+    fn cruise_load(&self, mv: &Move) -> Option<f64> {
+        let mut slow = mv.clone();
+        // So slow a start that the ramps need next to nothing.
+        slow.accel_mm_s2 = slow.accel_mm_s2.map(|accel| accel * 1e-9);
+        let planned = plan(self.machine, mv, self.largest);
+        let crate::plan::Trajectory::Path(_) = planned.trajectory else {
+            return None;
+        };
+        let cruise = crate::plan::Plan::cruise(planned.speed_limit_mm_s, mv.length_mm);
+        Some(self.model.demand(&slow, &cruise, Want::PEAKS).load_ratio)
+    }
+
+    pub(super) fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {
+        let Some(feed) = change.feed.filter(|_| case.mv.kind != MoveKind::Rapid) else {
+            return Ok(());
+        };
+        let limits = &self.machine.limits;
+        let floor_mm_s = limits
+            .min_feed_mm_s
+            .max(limits.min_feed_ratio * case.assessment.speed_mm_s);
+        let per_minute = SECONDS_PER_MINUTE / feed_unit(self.machine, case.mv, case.permit);
+        let floor = floor_mm_s * per_minute;
+        if feed >= floor * (1.0 - 1e-12) {
+            return Ok(());
+        }
+        Err(Obstacle::new(
+            "feed-floor",
+            format!("it would need F{feed}, below the floor of F{floor:.5} in [limits]"),
+            "lower min_feed_mm_min or min_feed_ratio, or use a word for acceleration",
+        ))
+    }
+
+    fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
+        let Case { mv, permit, .. } = case;
+        if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word {
+            return Obstacle::new(
+                "untouchable",
+                format!("the block may not be changed: {}", permit.reason),
+                "change it by hand",
+            );
+        }
+        if mv.kind != MoveKind::Rapid {
+            let allowed = Self {
+                how: LimitOptions {
+                    allow_feed: true,
+                    ..self.how
+                },
+                model: self.model.clone(),
+                ..*self
+            };
+            let help = match allowed
+                .speed(case, SpeedLever::FeedWord, &Change::default())
+                .and_then(|it| it.feed)
+            {
+                Some(feed) => format!("it fits at F{feed}: --allow feed permits that"),
+                None => "--allow feed permits lower feeds".to_owned(),
+            };
+            return Obstacle::new(
+                "feed-not-allowed",
+                "cutting feeds are not changed without permission",
+                help,
+            );
+        }
+        let message = if permit.reason.is_empty() {
+            format!(
+                "the controller `{}` has no word that lowers this rapid",
+                self.machine.controller.name
+            )
+        } else {
+            format!("the rapid may not be written as a feed: {}", permit.reason)
+        };
+        Obstacle::new(
+            "no-knob",
+            message,
+            "write the move as a feed by hand, or lower the rapid speed of the machine",
+        )
+    }
+
+    fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
+        if !case.permit.edit {
+            let message = format!("the block may not be changed: {}", case.permit.reason);
+            return Obstacle::new("untouchable", message, "change it by hand");
+        }
+        let message = format!(
+            "the controller `{}` has no word for this acceleration",
+            self.machine.controller.name
+        );
+        Obstacle::new("no-knob", message, "use --strategy optimal or speed")
+    }
+}
+
+fn too_much(case: Case<'_>) -> Obstacle {
+    Obstacle::new(
+        "no-solution",
+        format!(
+            "no value of the permitted words brings {:.0} W down to the limit",
+            case.assessment.demand.peak_w
+        ),
+        "base load and friction leave too little: a larger converter, or another strategy",
+    )
+}

@@ -1,0 +1,208 @@
+//! The file's structs to the validated machine.
+
+use super::findings::Findings;
+use super::machine_file::{
+    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName, SpindleTable,
+};
+use super::value::{At, Num};
+use super::{axis, converter, plausible, preset, unchecked, word};
+use crate::machine::axis::{AXES, Axis, AxisSet};
+use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
+use crate::machine::model::{Converter, Limits, Load, Machine, Path, Spindle};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// Share of the peak power that is kept free if the file does not say.
+const DEFAULT_MARGIN: f64 = 0.1;
+
+/// Makes a machine; all mistakes go to the findings, and with any of them the
+/// result is not to be used.
+pub(crate) fn machine(
+    findings: &mut Findings<'_>,
+    file: &MachineFile,
+    mut controller: Controller,
+) -> Option<Machine> {
+    let path = path(file.path.as_ref().map(|table| &table.value), &controller);
+    if path.rapid == RapidPath::Independent {
+        // A feed is straight: written as one, such a rapid would take another path.
+        controller.rapid_knob = RapidKnob::None;
+    }
+    let mut axes: [Option<Axis>; AXES] = [None; AXES];
+    let mut axis_set = AxisSet::default();
+    let mut complete = true;
+    for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
+        axes[id as usize] = axis::axis(findings, id, table);
+        axis_set.insert(id as usize);
+        complete &= axes[id as usize].is_some();
+    }
+    if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
+        && !findings.refused_in("axes")
+    {
+        findings.error(
+            "machine-missing",
+            &table.span,
+            "the machine has no axes",
+            None,
+        );
+    }
+    let limits = limits(findings, file.limits.as_ref().map(|table| &table.value));
+    let converters = file.converter.as_ref().map_or_else(Vec::new, |tables| {
+        converter::converters(findings, tables, axis_set, limits.margin)
+    });
+    let loads = file
+        .load
+        .iter()
+        .flatten()
+        .filter_map(|table| load(findings, table, &converters))
+        .collect();
+    let machine = Machine {
+        name: file.name.as_ref()?.value.clone(),
+        path,
+        controller,
+        axes,
+        axis_set,
+        converters,
+        spindle: file
+            .spindle
+            .as_ref()
+            .and_then(|table| spindle(findings, &table.value)),
+        loads,
+        presets: preset::presets(findings, file, &axes, axis_set),
+        limits,
+        unchecked: unchecked::list(file),
+    };
+    // With an axis left out the machine would look weaker than it is.
+    complete.then_some(machine)
+}
+
+/// Path mode of its name.
+pub(crate) fn path_mode(name: PathModeName) -> PathMode {
+    match name {
+        PathModeName::ExactStop => PathMode::ExactStop,
+        PathModeName::LookAhead => PathMode::LookAhead,
+    }
+}
+
+/// Rapid path of its name.
+pub(crate) fn rapid_path(name: RapidName) -> RapidPath {
+    match name {
+        RapidName::Linear => RapidPath::Linear,
+        RapidName::Independent => RapidPath::Independent,
+    }
+}
+
+fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
+    Path {
+        mode: table.and_then(|table| table.mode).map(path_mode),
+        rapid: table
+            .and_then(|table| table.rapid)
+            .map_or(controller.planner.rapid, rapid_path),
+    }
+}
+
+fn value<B>(number: Option<&Num<B>>, default: f64) -> f64 {
+    number.map_or(default, |number| number.value)
+}
+
+fn spindle(findings: &mut Findings<'_>, table: &SpindleTable) -> Option<Spindle> {
+    let (max, time) = (table.max_rpm.as_ref()?, table.accel_time_s.as_ref()?);
+    if let Some(base) = table
+        .base_rpm
+        .as_ref()
+        .filter(|base| base.value > max.value)
+    {
+        let message = "`base_rpm` is above `max_rpm`";
+        findings.error("machine-spindle", &base.span, message, None);
+    }
+    if let Some(jerk) = table
+        .jerk_time_s
+        .as_ref()
+        .filter(|jerk| jerk.value > time.value)
+    {
+        let message = "`jerk_time_s` is longer than `accel_time_s`";
+        findings.error("machine-spindle", &jerk.span, message, None);
+    }
+    Some(Spindle {
+        inertia_kg_m2: table.inertia_kg_m2.as_ref()?.value,
+        friction_nm: value(table.friction_nm.as_ref(), 0.0),
+        max_rpm: max.value,
+        base_rpm: value(table.base_rpm.as_ref(), 0.0),
+        accel_time_s: time.value,
+        jerk_time_s: value(table.jerk_time_s.as_ref(), 0.0),
+        wait: table.wait.unwrap_or(true),
+    })
+}
+
+fn load(
+    findings: &mut Findings<'_>,
+    table: &At<LoadTable>,
+    converters: &[Converter],
+) -> Option<Load> {
+    let mut read = |text: &At<String>| {
+        let word = word::parse(&text.value);
+        if word.is_none() {
+            let message = format!("\"{}\" is not a program word", text.value);
+            let help = Some("a letter and a number, such as \"M8\"".to_owned());
+            findings.error("machine-load", &text.span, message, help);
+        }
+        word
+    };
+    let LoadTable {
+        on,
+        off,
+        power_w,
+        converter,
+    } = &table.value;
+    let on_word = on.as_ref().and_then(&mut read);
+    let mut off_words = Vec::new();
+    for text in off.iter().flat_map(|list| &list.0) {
+        off_words.extend(read(text).map(|word| (word, &text.span)));
+    }
+    for (word, span) in &off_words {
+        if on_word == Some(*word) {
+            let message = "the same word switches the load on and off";
+            findings.error("machine-load", span, message, None);
+        }
+    }
+    let converter = match converter {
+        Some(name) => converters
+            .iter()
+            .position(|other| other.name == name.value)
+            .or_else(|| {
+                let message = format!("no converter is named \"{}\"", name.value);
+                findings.error("machine-load", &name.span, message, None);
+                None
+            })?,
+        None if converters.len() > 1 => {
+            let message = "with several converters, a load needs `converter`";
+            findings.error("machine-missing", &table.span, message, None);
+            return None;
+        }
+        None => 0,
+    };
+    Some(Load {
+        on: on_word?,
+        off: off_words.into_iter().map(|(word, _)| word).collect(),
+        power_w: power_w.as_ref()?.value,
+        converter,
+    })
+}
+
+fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {
+    let overrides = table.and_then(|table| table.override_max_percent.as_ref());
+    if let Some(overrides) = overrides {
+        plausible::overrides(findings, overrides);
+    }
+    let floor = table.and_then(|table| table.min_feed_mm_min.as_ref());
+    let ratio = table.and_then(|table| table.min_feed_ratio.as_ref());
+    Limits {
+        margin: value(
+            table.and_then(|table| table.margin.as_ref()),
+            DEFAULT_MARGIN,
+        ),
+        feed_override_max: value(overrides.and_then(|o| o.feed.as_ref()), 100.0) / 100.0,
+        rapid_override_max: value(overrides.and_then(|o| o.rapid.as_ref()), 100.0) / 100.0,
+        spindle_override_max: value(overrides.and_then(|o| o.spindle.as_ref()), 100.0) / 100.0,
+        min_feed_mm_s: value(floor, 0.0) / SECONDS_PER_MINUTE,
+        min_feed_ratio: value(ratio, 0.0),
+    }
+}

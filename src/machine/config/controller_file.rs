@@ -1,0 +1,198 @@
+//! The controller profile as it is written.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::machine_file::{PathModeName, RapidName};
+use super::value::{At, Positive};
+
+/// What a controller reads, how it plans, and which words limit it.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "gwatt controller profile")]
+pub(crate) struct ControllerFile {
+    /// Version of this format: 1.
+    #[schemars(required)]
+    pub(crate) schema: Option<At<u32>>,
+    /// Its name.
+    #[schemars(required)]
+    pub(crate) name: Option<At<String>>,
+    /// One line on what it stands for.
+    pub(crate) description: Option<String>,
+    /// How program text is read.
+    #[schemars(required)]
+    pub(crate) language: Option<At<LanguageTable>>,
+    /// How it plans.
+    #[schemars(required)]
+    pub(crate) planner: Option<At<PlannerTable>>,
+    /// Words that limit speed or acceleration, best first.
+    pub(crate) knob: Option<Vec<At<KnobTable>>>,
+}
+
+/// How program text is read.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LanguageTable {
+    /// The family of words.
+    #[schemars(required)]
+    pub(crate) family: Option<FamilyName>,
+    /// The words that G4 takes; if a block has several, the last one here wins.
+    #[schemars(required)]
+    pub(crate) dwell: Option<Vec<At<DwellTable>>>,
+    /// Unit at power-on; default mm.
+    pub(crate) units: Option<UnitsName>,
+    /// Distance mode at power-on; default absolute.
+    pub(crate) distance: Option<DistanceName>,
+    /// Arc centres at power-on; default incremental.
+    pub(crate) arc_centre: Option<DistanceName>,
+    /// Path mode at power-on.
+    #[schemars(required)]
+    pub(crate) power_on: Option<PathModeName>,
+    /// What G61 selects; default: as at power-on.
+    pub(crate) g61: Option<PathModeName>,
+    /// What G61.1 selects; default: as at power-on.
+    #[serde(rename = "g61_1")]
+    pub(crate) g61_1: Option<PathModeName>,
+    /// What G64 selects; default: as at power-on.
+    pub(crate) g64: Option<PathModeName>,
+    /// Whether G0 obeys F like G1; default false.
+    pub(crate) rapid_uses_feed: Option<bool>,
+    /// Further G and M words that certainly move nothing and are passed over.
+    pub(crate) ignored: Option<Vec<At<String>>>,
+    /// Whether `/` blocks exist; default true.
+    pub(crate) block_delete: Option<bool>,
+}
+
+/// The family of words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FamilyName {
+    Iso,
+    Rs274,
+    Marlin,
+    Isg,
+}
+
+/// A word of G4.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DwellTable {
+    /// Its letter.
+    #[schemars(required)]
+    pub(crate) letter: Option<At<String>>,
+    /// Seconds in one unit of it.
+    #[schemars(required)]
+    pub(crate) unit_s: Option<Positive>,
+}
+
+/// Unit of lengths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum UnitsName {
+    Mm,
+    Inch,
+}
+
+/// Distance mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum DistanceName {
+    Absolute,
+    Incremental,
+}
+
+/// How the controller plans.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PlannerTable {
+    /// How rapids run, if the machine does not say.
+    #[schemars(required)]
+    pub(crate) rapid: Option<RapidName>,
+    /// How acceleration is shared on arcs; default shared.
+    pub(crate) arc_rule: Option<ArcRuleName>,
+    /// What happens at the ends of rapids where the path mode blends; default
+    /// "all", which is the safe one.
+    pub(crate) rapid_joint: Option<RapidJointName>,
+    /// Whether a rapid may be written as a feed to lower its speed; default none.
+    pub(crate) rapid_knob: Option<At<RapidKnobName>>,
+}
+
+/// How acceleration is shared on arcs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum ArcRuleName {
+    Shared,
+    LinuxCnc,
+}
+
+/// Whether rapids are blended with their neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RapidJointName {
+    Stop,
+    Rapids,
+    All,
+}
+
+/// How a rapid's speed can be lowered besides the knobs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RapidKnobName {
+    None,
+    G1,
+}
+
+/// A word that limits speed or acceleration until it is taken back.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct KnobTable {
+    /// The word, such as `G131`.
+    #[schemars(required)]
+    pub(crate) word: Option<At<String>>,
+    /// What it acts on.
+    #[schemars(required)]
+    pub(crate) target: Option<TargetName>,
+    /// What stands behind it: `= value`, a value per axis, or the path's value.
+    #[schemars(required)]
+    pub(crate) argument: Option<At<ArgumentName>>,
+    /// Letters of the value, for `argument = "path"`.
+    pub(crate) letters: Option<At<Vec<At<String>>>>,
+    /// Unit of the value.
+    #[schemars(required)]
+    pub(crate) unit: Option<UnitName>,
+    /// Smallest step of a value that is written.
+    #[schemars(required)]
+    pub(crate) step: Option<Positive>,
+    /// Smallest value that is accepted.
+    #[schemars(required)]
+    pub(crate) min: Option<Positive>,
+    /// Whether a document confirms it; default false: used on request only.
+    pub(crate) verified: Option<bool>,
+}
+
+/// What a knob acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum TargetName {
+    FeedAccel,
+    RapidAccel,
+    Accel,
+    RapidSpeed,
+}
+
+/// What stands behind a knob's word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ArgumentName {
+    Assign,
+    Axes,
+    Path,
+}
+
+/// Unit of a knob's value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum UnitName {
+    Percent,
+    PerSecondSquared,
+}

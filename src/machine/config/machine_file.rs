@@ -1,0 +1,268 @@
+//! The machine file as it is written: names here are the names in the file.
+//!
+//! Every field is optional to serde; what is required, and what may be given
+//! in one way only, is checked where the machine is assembled, so that all
+//! mistakes of a file are reported at once.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::value::{
+    At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
+    RapidPercent, Share,
+};
+
+/// A machine whose drives share a power converter.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "gwatt machine file")]
+pub(crate) struct MachineFile {
+    /// Version of this format: 1.
+    #[schemars(required)]
+    pub(crate) schema: Option<At<u32>>,
+    /// What reports call the machine.
+    #[schemars(required)]
+    pub(crate) name: Option<At<String>>,
+    /// A built-in controller profile, or a profile file relative to this file.
+    #[schemars(required)]
+    pub(crate) controller: Option<At<String>>,
+    /// The converter; several as `[[converter]]`, each with `name` and `axes`.
+    #[schemars(required)]
+    pub(crate) converter: Option<OneOrMany<ConverterTable>>,
+    /// How the path is followed.
+    pub(crate) path: Option<At<PathTable>>,
+    /// The axes by letter; at least one.
+    #[schemars(required)]
+    pub(crate) axes: Option<At<PerAxis<At<AxisTable>>>>,
+    /// The spindle.
+    pub(crate) spindle: Option<At<SpindleTable>>,
+    /// What program words switch on and off.
+    pub(crate) load: Option<Vec<At<LoadTable>>>,
+    /// Limits for combinations of axes.
+    pub(crate) preset: Option<Vec<At<PresetTable>>>,
+    /// Margin, overrides and floors.
+    pub(crate) limits: Option<At<LimitsTable>>,
+}
+
+/// The converter (power supply) of the drives.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ConverterTable {
+    /// Its name; required if there are several.
+    pub(crate) name: Option<At<String>>,
+    /// The axes it feeds; required if there are several converters.
+    pub(crate) axes: Option<At<Vec<At<Letter>>>>,
+    /// Peak power in W.
+    #[schemars(required)]
+    pub(crate) peak_power_w: Option<Positive>,
+    /// Largest power that may be fed back in W; absent: no limit.
+    pub(crate) regen_power_w: Option<NotNegative>,
+    /// What is drawn at all times in W; default 0.
+    pub(crate) base_load_w: Option<NotNegative>,
+    /// Whether fed-back power feeds the other axes; default false.
+    pub(crate) credit_regen: Option<bool>,
+    /// Continuous power (RMS) in W.
+    pub(crate) continuous_power_w: Option<Positive>,
+    /// Window of the continuous power in s.
+    pub(crate) window_s: Option<Positive>,
+    /// Powers that are permitted for a time.
+    pub(crate) overload: Option<Vec<At<OverloadTable>>>,
+    /// Capacitance of the DC bus in F.
+    pub(crate) capacitance_f: Option<Positive>,
+    /// Nominal voltage of the DC bus in V.
+    pub(crate) bus_nominal_v: Option<Positive>,
+    /// Lowest permitted voltage in V.
+    pub(crate) bus_min_v: Option<Positive>,
+    /// Highest permitted voltage in V.
+    pub(crate) bus_max_v: Option<Positive>,
+    /// Power of the braking resistor in W.
+    pub(crate) brake_power_w: Option<NotNegative>,
+    /// Energy that the braking resistor takes in one go, in J.
+    pub(crate) brake_energy_j: Option<NotNegative>,
+}
+
+/// A power that is permitted for a time.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OverloadTable {
+    /// The power in W.
+    #[schemars(required)]
+    pub(crate) power_w: Option<Positive>,
+    /// For how long, in s.
+    #[schemars(required)]
+    pub(crate) seconds: Option<Positive>,
+    /// How often, in s.
+    #[schemars(required)]
+    pub(crate) every_s: Option<Positive>,
+}
+
+/// How the path is followed.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PathTable {
+    /// `exact-stop` overrides the program's G64; absent: the controller's mode.
+    pub(crate) mode: Option<PathModeName>,
+    /// Straight rapids, or each axis for itself; absent: the controller's.
+    pub(crate) rapid: Option<RapidName>,
+}
+
+/// What happens at the joint of two blocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PathModeName {
+    ExactStop,
+    LookAhead,
+}
+
+/// How rapids run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RapidName {
+    Linear,
+    Independent,
+}
+
+/// Whether an axis slides or turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum KindName {
+    Linear,
+    Rotary,
+}
+
+/// An axis: speed, acceleration and mass, each in one of its forms.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AxisTable {
+    /// Slides or turns; default: A, B and C turn, all others slide.
+    pub(crate) kind: Option<At<KindName>>,
+    /// Linear: rapid speed in mm/min; caps feeds too.
+    pub(crate) rapid_mm_min: Option<Positive>,
+    /// Rotary: rapid speed in degrees/min.
+    pub(crate) rapid_deg_min: Option<Positive>,
+    /// Largest speed of the motor (of the table without `gear_ratio`) in 1/min.
+    pub(crate) max_speed_rpm: Option<Positive>,
+    /// Linear: acceleration in mm/s².
+    pub(crate) accel_mm_s2: Option<Positive>,
+    /// Rotary: acceleration in degrees/s².
+    pub(crate) accel_deg_s2: Option<Positive>,
+    /// Time from rest to the largest speed in s.
+    pub(crate) accel_time_s: Option<Positive>,
+    /// Linear: moved mass in kg, drive included.
+    pub(crate) mass_kg: Option<Positive>,
+    /// Total inertia in kg·m²: at the motor with `lead_mm` or `gear_ratio`,
+    /// else at the rotary table.
+    pub(crate) inertia_kg_m2: Option<Positive>,
+    /// Linear: Coulomb friction in N; default 0.
+    pub(crate) coulomb_n: Option<NotNegative>,
+    /// Coulomb friction torque in N·m, on the side of the inertia; default 0.
+    pub(crate) friction_nm: Option<NotNegative>,
+    /// Linear: viscous friction in N·s/m; default 0.
+    pub(crate) viscous_n_s_m: Option<NotNegative>,
+    /// Viscous friction in N·m·s/rad, on the side of the inertia; default 0.
+    pub(crate) viscous_nm_s_rad: Option<NotNegative>,
+    /// Linear: force needed to move in + direction besides friction, in N.
+    pub(crate) gravity_n: Option<Number>,
+    /// Torque needed to move in + direction besides friction, in N·m, on the
+    /// side of the inertia.
+    pub(crate) gravity_nm: Option<Number>,
+    /// Copper loss in W per N² (rotary: W per (N·m)²); default 0.
+    pub(crate) copper_w_n2: Option<NotNegative>,
+    /// Copper loss in W per (N·m)², on the side of the inertia; default 0.
+    pub(crate) copper_w_nm2: Option<NotNegative>,
+    /// Linear, motor side: travel per screw revolution in mm.
+    pub(crate) lead_mm: Option<Positive>,
+    /// Motor revolutions per screw or table revolution; default 1.
+    pub(crate) gear_ratio: Option<Positive>,
+    /// Mechanical by electrical power, 0 to 1; default 1.
+    pub(crate) efficiency: Option<Share>,
+    /// Linear: jerk limit in mm/s³; 0: none.
+    pub(crate) jerk_mm_s3: Option<NotNegative>,
+    /// Rotary: jerk limit in degrees/s³; 0: none.
+    pub(crate) jerk_deg_s3: Option<NotNegative>,
+    /// How far real acceleration exceeds the command when driving; default 1.
+    pub(crate) servo_factor_motor: Option<AtLeastOne>,
+    /// The same when braking; default 1.
+    pub(crate) servo_factor_regen: Option<AtLeastOne>,
+    /// Friction of the warm machine by that of the cold one; default 1.
+    pub(crate) friction_min_ratio: Option<Share>,
+}
+
+/// The spindle.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpindleTable {
+    /// Inertia at the spindle in kg·m².
+    #[schemars(required)]
+    pub(crate) inertia_kg_m2: Option<Positive>,
+    /// Friction torque in N·m; default 0.
+    pub(crate) friction_nm: Option<NotNegative>,
+    /// Largest speed in 1/min.
+    #[schemars(required)]
+    pub(crate) max_rpm: Option<Positive>,
+    /// Speed up to which the torque is constant, in 1/min; 0: not given.
+    pub(crate) base_rpm: Option<NotNegative>,
+    /// Time to `max_rpm` in s.
+    #[schemars(required)]
+    pub(crate) accel_time_s: Option<Positive>,
+    /// Time to full acceleration in s; default 0.
+    pub(crate) jerk_time_s: Option<NotNegative>,
+    /// Whether feed moves wait for the speed; default true.
+    pub(crate) wait: Option<bool>,
+}
+
+/// A load that program words switch.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LoadTable {
+    /// Word that switches it on, such as `M8`.
+    #[schemars(required)]
+    pub(crate) on: Option<At<String>>,
+    /// Word or words that switch it off.
+    #[schemars(required)]
+    pub(crate) off: Option<OneOrMany<String>>,
+    /// What it draws in W.
+    #[schemars(required)]
+    pub(crate) power_w: Option<Positive>,
+    /// The converter that feeds it; required if there are several.
+    pub(crate) converter: Option<At<String>>,
+}
+
+/// Limits that hold when exactly these axes start together.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PresetTable {
+    /// The combination.
+    #[schemars(required)]
+    pub(crate) axes: Option<At<Vec<At<Letter>>>>,
+    /// Largest speeds in mm/min (rotary: degrees/min).
+    pub(crate) speed_mm_min: Option<PerAxis<Positive>>,
+    /// Largest accelerations in mm/s² (rotary: degrees/s²).
+    pub(crate) accel_mm_s2: Option<PerAxis<Positive>>,
+}
+
+/// Margin, overrides and floors.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LimitsTable {
+    /// Share of the peak power that is kept free; default 0.1.
+    pub(crate) margin: Option<Part>,
+    /// Largest overrides that the operator may set.
+    pub(crate) override_max_percent: Option<OverrideTable>,
+    /// No cutting feed is lowered below this, in mm/min; default: no floor.
+    pub(crate) min_feed_mm_min: Option<NotNegative>,
+    /// Nor below this share of the programmed feed; default: no floor.
+    pub(crate) min_feed_ratio: Option<Fraction>,
+}
+
+/// Largest overrides in percent; default 100.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OverrideTable {
+    /// Of the feed.
+    pub(crate) feed: Option<AtLeastOne>,
+    /// Of the rapids.
+    pub(crate) rapid: Option<RapidPercent>,
+    /// Of the spindle speed.
+    pub(crate) spindle: Option<AtLeastOne>,
+}

@@ -1,0 +1,28 @@
+//! Machine files and controller profiles: TOML in, checked values out.
+//!
+//! Text → tree (`document`) → checked against the schema (`structure`) →
+//! structs (`machine_file`, `controller_file`) → `Machine`, `Controller`
+//! (`assemble`, `axis`, `converter`, `preset`, `profile`). All mistakes of a file are
+//! collected on the way, each with its line.
+
+mod assemble;
+mod axis;
+mod controller_file;
+mod converter;
+mod document;
+mod findings;
+mod hints;
+mod load;
+mod machine_file;
+mod plausible;
+mod preset;
+mod profile;
+mod quantity;
+mod schema;
+mod structure;
+mod unchecked;
+mod value;
+mod word;
+
+pub use load::Loaded;
+pub use schema::{controller_schema, schema};

@@ -1,0 +1,246 @@
+//! Warnings for values that are possible, but look like another unit.
+
+use std::ops::Range;
+
+use super::findings::Findings;
+use super::machine_file::{AxisTable, ConverterTable, OverrideTable};
+use super::quantity::Given;
+use super::value::Num;
+
+const RULE: &str = "machine-unit";
+
+/// What a value is usually, and what it looks like when it is outside.
+struct Usual {
+    key: &'static str,
+    unit: &'static str,
+    low: f64,
+    if_below: &'static str,
+    high: f64,
+    if_above: &'static str,
+}
+
+const NONE: f64 = f64::INFINITY;
+
+/// Usual values of fields as they are written.
+const FIELDS: [Usual; 10] = [
+    Usual {
+        key: "rapid_mm_min",
+        unit: "mm/min",
+        low: 100.0,
+        if_below: "mm/s or m/min given?",
+        high: 1e6,
+        if_above: "µm/s given?",
+    },
+    Usual {
+        key: "rapid_deg_min",
+        unit: "degrees/min",
+        low: 100.0,
+        if_below: "revolutions/min or degrees/s given?",
+        high: 2e6,
+        if_above: "degrees/min are meant",
+    },
+    Usual {
+        key: "max_speed_rpm",
+        unit: "1/min",
+        low: 1.0,
+        if_below: "revolutions/s given?",
+        high: 1e5,
+        if_above: "degrees/min given?",
+    },
+    Usual {
+        key: "accel_time_s",
+        unit: "s",
+        low: 1e-3,
+        if_below: "seconds are meant",
+        high: 20.0,
+        if_above: "milliseconds given?",
+    },
+    Usual {
+        key: "lead_mm",
+        unit: "mm",
+        low: 0.1,
+        if_below: "metres given?",
+        high: 1000.0,
+        if_above: "µm given?",
+    },
+    Usual {
+        key: "gear_ratio",
+        unit: "",
+        low: 0.01,
+        if_below: "motor revolutions per screw or table revolution are meant",
+        high: 1000.0,
+        if_above: "motor revolutions per screw or table revolution are meant",
+    },
+    Usual {
+        key: "servo_factor_motor",
+        unit: "",
+        low: 0.0,
+        if_below: "",
+        high: 5.0,
+        if_above: "a factor is meant, not percent",
+    },
+    Usual {
+        key: "servo_factor_regen",
+        unit: "",
+        low: 0.0,
+        if_below: "",
+        high: 5.0,
+        if_above: "a factor is meant, not percent",
+    },
+    Usual {
+        key: "efficiency",
+        unit: "",
+        low: 0.05,
+        if_below: "a share is meant: 85 % is 0.85",
+        high: NONE,
+        if_above: "",
+    },
+    Usual {
+        key: "peak_power_w",
+        unit: "W",
+        low: 20.0,
+        if_below: "kW given?",
+        high: 1e7,
+        if_above: "mW given?",
+    },
+];
+
+const LINEAR_ACCEL: Usual = Usual {
+    key: "acceleration",
+    unit: "mm/s²",
+    low: 20.0,
+    if_below: "m/s² given?",
+    high: 200_000.0,
+    if_above: "mm/min² or µm/s² given?",
+};
+
+const LINEAR_MASS: Usual = Usual {
+    key: "mass",
+    unit: "kg",
+    low: 0.01,
+    if_below: "tonnes given, or an inertia in kg·cm²?",
+    high: 1e5,
+    if_above: "grams given, or an inertia in kg·cm²?",
+};
+
+const ROTARY_ACCEL: Usual = Usual {
+    key: "acceleration",
+    unit: "degrees/s²",
+    low: 20.0,
+    if_below: "rad/s² or revolutions/s² given?",
+    high: 1e6,
+    if_above: "degrees/min² given?",
+};
+
+const ROTARY_INERTIA: Usual = Usual {
+    key: "inertia",
+    unit: "kg·m²",
+    low: 1e-7,
+    if_below: "kg·m² are meant",
+    high: 1e5,
+    if_above: "kg·cm² or kg·mm² given?",
+};
+
+/// Checks a linear axis.
+pub(crate) fn linear(findings: &mut Findings<'_>, table: &AxisTable, accel: &Given, mass: &Given) {
+    fields(findings, table);
+    check(findings, &LINEAR_ACCEL, accel.key, accel.value, &accel.span);
+    check(findings, &LINEAR_MASS, mass.key, mass.value, &mass.span);
+}
+
+/// Checks a rotary axis.
+pub(crate) fn rotary(
+    findings: &mut Findings<'_>,
+    table: &AxisTable,
+    accel: &Given,
+    inertia: &Given,
+) {
+    fields(findings, table);
+    check(findings, &ROTARY_ACCEL, accel.key, accel.value, &accel.span);
+    check(
+        findings,
+        &ROTARY_INERTIA,
+        inertia.key,
+        inertia.value,
+        &inertia.span,
+    );
+}
+
+/// Checks a converter.
+pub(crate) fn converter(findings: &mut Findings<'_>, table: &ConverterTable) {
+    field(findings, "peak_power_w", table.peak_power_w.as_ref());
+}
+
+/// Checks the overrides: a factor instead of percent is far below 100.
+pub(crate) fn overrides(findings: &mut Findings<'_>, table: &OverrideTable) {
+    fn low<B>(findings: &mut Findings<'_>, key: &str, number: Option<&Num<B>>) {
+        if let Some(number) = number.filter(|number| (1.0..10.0).contains(&number.value)) {
+            let value = number.value;
+            let message = format!("override `{key}` of {value} % is unusually low");
+            let help = Some(format!("as a factor? {value} is {} %", value * 100.0));
+            findings.warning(RULE, &number.span, message, help);
+        }
+    }
+    low(findings, "feed", table.feed.as_ref());
+    low(findings, "rapid", table.rapid.as_ref());
+    low(findings, "spindle", table.spindle.as_ref());
+}
+
+fn fields(findings: &mut Findings<'_>, table: &AxisTable) {
+    field(findings, "rapid_mm_min", table.rapid_mm_min.as_ref());
+    field(findings, "rapid_deg_min", table.rapid_deg_min.as_ref());
+    field(findings, "max_speed_rpm", table.max_speed_rpm.as_ref());
+    field(findings, "accel_time_s", table.accel_time_s.as_ref());
+    field(findings, "lead_mm", table.lead_mm.as_ref());
+    field(findings, "gear_ratio", table.gear_ratio.as_ref());
+    field(findings, "efficiency", table.efficiency.as_ref());
+    field(
+        findings,
+        "servo_factor_motor",
+        table.servo_factor_motor.as_ref(),
+    );
+    field(
+        findings,
+        "servo_factor_regen",
+        table.servo_factor_regen.as_ref(),
+    );
+}
+
+fn field<B>(findings: &mut Findings<'_>, key: &'static str, number: Option<&Num<B>>) {
+    let usual = FIELDS.iter().find(|usual| usual.key == key);
+    if let (Some(usual), Some(number)) = (usual, number) {
+        check(findings, usual, key, number.value, &number.span);
+    }
+}
+
+fn check(findings: &mut Findings<'_>, usual: &Usual, key: &str, value: f64, span: &Range<usize>) {
+    if value <= 0.0 {
+        // Out of range: reported already.
+        return;
+    }
+    let (size, doubt) = if value < usual.low {
+        ("small", usual.if_below)
+    } else if value > usual.high {
+        ("large", usual.if_above)
+    } else {
+        return;
+    };
+    // A converted value is named with its quantity.
+    let quantity = match key {
+        "accel_time_s" if usual.unit != "s" => "an acceleration of ",
+        "inertia_kg_m2" if usual.unit == "kg" => "a mass of ",
+        _ => "",
+    };
+    let number = round(value);
+    let space = if usual.unit.is_empty() { "" } else { " " };
+    let message = format!(
+        "`{key}`: {quantity}{number}{space}{} is unusually {size}",
+        usual.unit
+    );
+    findings.warning(RULE, span, message, Some(doubt.to_owned()));
+}
+
+/// Four digits: a converted value has many.
+fn round(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}

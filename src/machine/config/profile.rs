@@ -1,0 +1,206 @@
+//! The profile's structs to the controller.
+
+use super::assemble::{path_mode, rapid_path};
+use super::controller_file::{
+    ArcRuleName, ArgumentName, ControllerFile, DistanceName, FamilyName, KnobTable, LanguageTable,
+    PlannerTable, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
+};
+use super::findings::Findings;
+use super::value::At;
+use super::word;
+use crate::machine::axis::AxisId;
+use crate::machine::controller::{
+    ArcRule, Controller, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language, Planner,
+    RapidJoint, RapidKnob, RapidPath,
+};
+
+/// Makes a controller; all mistakes go to the findings, and with any of them
+/// the result is not to be used.
+pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> Option<Controller> {
+    let language = file
+        .language
+        .as_ref()
+        .and_then(|table| language(findings, &table.value));
+    let knobs: Vec<Knob> = file
+        .knob
+        .iter()
+        .flatten()
+        .filter_map(|table| knob(findings, table))
+        .collect();
+    let planner_table = &file.planner.as_ref()?.value;
+    Some(Controller {
+        name: file.name.as_ref()?.value.clone(),
+        description: file.description.clone().unwrap_or_default(),
+        language: language?,
+        planner: planner(planner_table)?,
+        knobs,
+        rapid_knob: rapid_knob(findings, planner_table),
+    })
+}
+
+fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Language> {
+    let dwell = dwell(findings, table);
+    let (ignored_g, ignored_m) = ignored(findings, table);
+    let power_on = path_mode(table.power_on?);
+    Some(Language {
+        family: match table.family? {
+            FamilyName::Iso => Family::Iso,
+            FamilyName::Rs274 => Family::Rs274,
+            FamilyName::Marlin => Family::Marlin,
+            FamilyName::Isg => Family::Isg,
+        },
+        dwell,
+        metric: table.units != Some(UnitsName::Inch),
+        absolute: table.distance != Some(DistanceName::Incremental),
+        arc_absolute: table.arc_centre == Some(DistanceName::Absolute),
+        g61: table.g61.map_or(power_on, path_mode),
+        g61_1: table.g61_1.map_or(power_on, path_mode),
+        g64: table.g64.map_or(power_on, path_mode),
+        power_on_mode: power_on,
+        rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
+        ignored_g,
+        ignored_m,
+        block_delete: table.block_delete.unwrap_or(true),
+    })
+}
+
+fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
+    let mut list: Vec<(u8, f64)> = Vec::new();
+    for entry in table.dwell.iter().flatten() {
+        let (Some(text), Some(unit)) = (&entry.value.letter, &entry.value.unit_s) else {
+            continue;
+        };
+        let Some(letter) = one_letter(findings, text) else {
+            continue;
+        };
+        if list.iter().any(|(other, _)| *other == letter) {
+            let message = format!("letter {} is given twice", letter as char);
+            findings.error("machine-twice", &text.span, message, None);
+        }
+        list.push((letter, unit.value));
+    }
+    list
+}
+
+/// Ignored G words (number × 10) and M numbers.
+fn ignored(findings: &mut Findings<'_>, table: &LanguageTable) -> (Vec<u16>, Vec<u16>) {
+    let (mut g, mut m) = (Vec::new(), Vec::new());
+    for text in table.ignored.iter().flatten() {
+        match word::code(&text.value) {
+            Some((b'G', code)) => g.push(code),
+            Some((b'M', code)) if code % 10 == 0 => m.push(code / 10),
+            _ => {
+                let message = format!("\"{}\" is not a G or M word", text.value);
+                let help = Some("such as \"G187\" or \"M48\"".to_owned());
+                findings.error("machine-word", &text.span, message, help);
+            }
+        }
+    }
+    (g, m)
+}
+
+fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
+    let letter = word::letter(&text.value);
+    if letter.is_none() {
+        let message = format!("\"{}\" is not a letter", text.value);
+        findings.error("machine-word", &text.span, message, None);
+    }
+    letter
+}
+
+fn planner(table: &PlannerTable) -> Option<Planner> {
+    Some(Planner {
+        rapid: rapid_path(table.rapid?),
+        arc_rule: match table.arc_rule {
+            Some(ArcRuleName::LinuxCnc) => ArcRule::LinuxCnc,
+            Some(ArcRuleName::Shared) | None => ArcRule::Shared,
+        },
+        rapid_joint: match table.rapid_joint {
+            Some(RapidJointName::Stop) => RapidJoint::Stop,
+            Some(RapidJointName::Rapids) => RapidJoint::Rapids,
+            Some(RapidJointName::All) | None => RapidJoint::All,
+        },
+    })
+}
+
+/// A rapid may be written as a feed only where it is straight.
+fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
+    let Some(knob) = table
+        .rapid_knob
+        .as_ref()
+        .filter(|knob| knob.value == RapidKnobName::G1)
+    else {
+        return RapidKnob::None;
+    };
+    if table.rapid.map(rapid_path) == Some(RapidPath::Independent) {
+        let message = "`rapid_knob` = \"g1\" with independent rapids changes the path";
+        let help = Some("a feed is straight; use \"none\"".to_owned());
+        findings.error("machine-value", &knob.span, message, help);
+    }
+    RapidKnob::G1
+}
+
+fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
+    let knob = &table.value;
+    let code = knob.word.as_ref().and_then(|text| {
+        let code = word::code(&text.value);
+        if code.is_none() {
+            let message = format!("\"{}\" is not a program word", text.value);
+            let help = Some("a letter and a number, such as \"G131\"".to_owned());
+            findings.error("machine-word", &text.span, message, help);
+        }
+        code
+    });
+    let argument = argument(findings, knob)?;
+    Some(Knob {
+        code: code?,
+        target: match knob.target? {
+            TargetName::FeedAccel => KnobTarget::FeedAccel,
+            TargetName::RapidAccel => KnobTarget::RapidAccel,
+            TargetName::Accel => KnobTarget::Accel,
+            TargetName::RapidSpeed => KnobTarget::RapidSpeed,
+        },
+        argument,
+        unit: match knob.unit? {
+            UnitName::Percent => KnobUnit::Percent,
+            UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
+        },
+        step: knob.step.as_ref()?.value,
+        min: knob.min.as_ref()?.value,
+        verified: knob.verified.unwrap_or(false),
+    })
+}
+
+fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgument> {
+    let argument = knob.argument.as_ref()?;
+    if argument.value != ArgumentName::Path
+        && let Some(letters) = &knob.letters
+    {
+        let message = "`letters` belong to argument = \"path\"";
+        findings.error("machine-kind", &letters.span, message, None);
+    }
+    Some(match argument.value {
+        ArgumentName::Assign => KnobArgument::Assign,
+        ArgumentName::Axes => KnobArgument::Axes,
+        ArgumentName::Path => {
+            let mut list = Vec::new();
+            for text in knob.letters.iter().flat_map(|letters| &letters.value) {
+                let Some(letter) = one_letter(findings, text) else {
+                    continue;
+                };
+                if AxisId::from_letter(letter).is_some() {
+                    let message = format!("{} is an axis", letter as char);
+                    let help = Some("for a value per axis use argument = \"axes\"".to_owned());
+                    findings.error("machine-word", &text.span, message, help);
+                }
+                list.push(letter);
+            }
+            if list.is_empty() && !findings.refused_in("knob") {
+                let message = "argument = \"path\" needs `letters`";
+                let help = Some("such as letters = [\"P\", \"T\"]".to_owned());
+                findings.error("machine-missing", &argument.span, message, help);
+            }
+            KnobArgument::Path(list)
+        }
+    })
+}

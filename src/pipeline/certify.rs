@@ -1,0 +1,322 @@
+//! The certificate: what was written is read, interpreted, planned and
+//! evaluated again, and held against the original.
+//!
+//! It holds only if (a) every move fits, (b) end points, arcs, dwells and
+//! actions are the original's, (c) no effective path speed or acceleration
+//! went up, (d) the effective feed of each untouched move is what it was.
+
+use super::tally::Tally;
+use super::{Failure, Options, Row, RowSink, Summary};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::interpret::{Action, Arc, Diagnostics, Interpreter, Move, MoveKind, Step};
+use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
+use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::source::{Span, lines};
+use crate::syntax::{Block, scan_line};
+
+/// Rounding that speeds and accelerations may differ by, as a share.
+const ROUNDING: f64 = 1e-9;
+
+/// What the original does, in order.
+#[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "moves are the common case and live in reused buffers"
+)]
+pub(super) enum Expected {
+    Move(ExpectedMove),
+    Action(Action),
+}
+
+/// A move of the original, as far as the written one must equal it. It starts
+/// where the one before ends.
+#[derive(Debug)]
+pub(super) struct ExpectedMove {
+    pub(super) line: u64,
+    pub(super) kind: MoveKind,
+    pub(super) end: AxisValues,
+    pub(super) arc: Option<Arc>,
+    pub(super) unknown_start: AxisSet,
+    pub(super) path_mode: PathMode,
+    pub(super) loads: u32,
+    pub(super) dwell_s: f64,
+    pub(super) axis_accel_mm_s2: AxisValues,
+    /// Effective path speed and acceleration.
+    pub(super) speed_mm_s: f64,
+    pub(super) accel_mm_s2: f64,
+    /// Its block has been changed; a rapid was written as a feed.
+    pub(super) changed: bool,
+    pub(super) as_feed: bool,
+    /// It does not fit and could not be helped; the reason has been given.
+    pub(super) hopeless: bool,
+    /// Its row, where rows are wanted.
+    pub(super) row: Option<Box<Row>>,
+}
+
+/// A piece of the written program with what it must do.
+#[derive(Debug, Default)]
+pub(super) struct Batch {
+    /// Whole lines.
+    pub(super) bytes: Vec<u8>,
+    pub(super) expected: Vec<Expected>,
+}
+
+/// Reads the written program.
+pub(super) struct Certifier<'m, 'r> {
+    interpreter: Interpreter<'m>,
+    diagnostics: Diagnostics,
+    assessor: Assessor<'m>,
+    block: Block,
+    steps: Vec<Step>,
+    line: u64,
+    verdict: Verdict<'m, 'r>,
+}
+
+/// Holds the written program against the original.
+struct Verdict<'m, 'r> {
+    model: PowerModel,
+    tally: Tally<'m, 'r>,
+    /// What the original does, from the first move that is not judged.
+    expected: Vec<Expected>,
+    /// How much of it the written program has done, and how much is judged.
+    done: usize,
+    judged: usize,
+    reasons: Reasons,
+}
+
+/// Why the certificate does not hold: the first reasons in full.
+#[derive(Debug, Default)]
+pub(super) struct Reasons {
+    pub(super) list: Vec<Diagnostic>,
+    pub(super) count: u64,
+}
+
+impl Reasons {
+    pub(super) fn push(
+        &mut self,
+        line: u64,
+        rule: &'static str,
+        message: String,
+        help: &str,
+        text: &[u8],
+    ) {
+        self.count += 1;
+        if self.list.len() < Summary::KEPT {
+            let span = Span::new(0, crate::source::split_line_end(text).0.len());
+            self.list.push(
+                Diagnostic::error(rule, message)
+                    .at(line, span, text)
+                    .help(help),
+            );
+        }
+    }
+}
+
+/// What the certifier found.
+pub(super) struct Certified {
+    pub(super) summary: Summary,
+    pub(super) reasons: Reasons,
+}
+
+impl<'m, 'r> Certifier<'m, 'r> {
+    pub(super) fn new(
+        machine: &'m Machine,
+        options: &Options,
+        rows: Option<&'r mut (dyn RowSink + 'r)>,
+    ) -> Self {
+        Self {
+            interpreter: Interpreter::new(machine, options.start, options.block_delete),
+            diagnostics: Diagnostics::default(),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL),
+            block: Block::default(),
+            steps: Vec::new(),
+            line: 0,
+            verdict: Verdict {
+                model: PowerModel::new(machine),
+                tally: Tally::new(machine, options, rows),
+                expected: Vec::new(),
+                done: 0,
+                judged: 0,
+                reasons: Reasons::default(),
+            },
+        }
+    }
+
+    /// Takes the next piece and leaves its buffers empty.
+    pub(super) fn take(&mut self, batch: &mut Batch) -> Result<(), Failure> {
+        self.verdict.refill(&mut batch.expected);
+        for text in lines(&batch.bytes) {
+            self.line += 1;
+            scan_line(text, self.line == 1, &mut self.block);
+            self.steps.clear();
+            let Self {
+                interpreter,
+                diagnostics,
+                assessor,
+                block,
+                steps,
+                verdict,
+                ..
+            } = self;
+            interpreter.execute(self.line, text, block, steps, diagnostics);
+            for step in &*steps {
+                verdict.compare_step(step, text);
+                if let Step::Move(mv) = step {
+                    assessor.want = verdict.tally.want();
+                    assessor.push(mv, text, &mut |mv, after, text| {
+                        verdict.judge(mv, after, text);
+                    });
+                }
+            }
+        }
+        batch.bytes.clear();
+        if self.verdict.done < self.verdict.expected.len() {
+            let message = "the written program leaves something out".to_owned();
+            self.verdict
+                .reasons
+                .push(0, "changed-sequence", message, BUG, b"");
+        }
+        self.verdict.tally.check()
+    }
+
+    /// Judges what is left and gives the figures.
+    pub(super) fn finish(mut self) -> Result<Certified, Failure> {
+        let Self {
+            assessor, verdict, ..
+        } = &mut self;
+        assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+        let Verdict {
+            mut tally,
+            mut reasons,
+            ..
+        } = self.verdict;
+        tally.check()?;
+        for found in &self.diagnostics.list {
+            if found.severity == Severity::Error {
+                let message = format!("the written program cannot be read: {}", found.message);
+                reasons.push(found.line, "unreadable-output", message, BUG, &found.text);
+            }
+        }
+        let mut summary = tally.finish(false);
+        summary.lines = self.line;
+        Ok(Certified { summary, reasons })
+    }
+}
+
+impl Verdict<'_, '_> {
+    /// Forgets what is judged and takes more.
+    fn refill(&mut self, more: &mut Vec<Expected>) {
+        self.expected.drain(..self.judged.min(self.expected.len()));
+        self.done = self.expected.len();
+        self.judged = 0;
+        self.expected.append(more);
+    }
+
+    /// (b): the step must be the original's next one.
+    fn compare_step(&mut self, step: &Step, text: &[u8]) {
+        let original = self.expected.get(self.done);
+        self.done += 1;
+        let message = match (step, original) {
+            (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
+            (Step::Action(action), Some(Expected::Action(original)))
+                if action.kind == original.kind && action.value == original.value =>
+            {
+                None
+            }
+            _ => Some("something else than the original"),
+        };
+        let Some(message) = message else { return };
+        let line = match original {
+            Some(Expected::Move(original)) => original.line,
+            Some(Expected::Action(original)) => original.line,
+            None => 0,
+        };
+        let message = format!("the written program has {message} here");
+        self.reasons
+            .push(line, "changed-sequence", message, BUG, text);
+    }
+
+    /// (a), (c) and (d): the written move is judged.
+    fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
+        while matches!(self.expected.get(self.judged), Some(Expected::Action(_))) {
+            self.judged += 1;
+        }
+        if let Some(Expected::Move(original)) = self.expected.get_mut(self.judged) {
+            compare(&self.model, original, mv, after, text, &mut self.reasons);
+            if let Some(row) = &mut original.row {
+                row.peak_after_w = Some(after.demand.peak_w);
+                row.regen_after_w = Some(after.demand.regen_w);
+                row.duration_after_s = Some(after.duration_s);
+                self.tally.write(row);
+            }
+        }
+        self.judged += 1;
+        self.tally.add(mv, after, text);
+    }
+}
+
+const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
+
+/// What differs in two moves, if anything.
+fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
+    let same_kind = original.kind == mv.kind
+        || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
+    let checks = [
+        (same_kind, "another kind of move"),
+        (original.end == mv.end, "another end point"),
+        (
+            original.unknown_start == mv.unknown_start,
+            "another start point",
+        ),
+        (original.arc == mv.arc, "another arc"),
+        (original.dwell_s == mv.dwell_s, "another dwell"),
+        (original.path_mode == mv.path_mode, "another path mode"),
+        (original.loads == mv.loads, "other switched loads"),
+    ];
+    checks
+        .into_iter()
+        .find(|(same, _)| !same)
+        .map(|(_, message)| message)
+}
+
+/// (a), (c) and (d) for one move.
+fn compare(
+    model: &PowerModel,
+    original: &ExpectedMove,
+    mv: &Move,
+    after: &Assessment,
+    text: &[u8],
+    reasons: &mut Reasons,
+) {
+    let line = original.line;
+    if !model.fits(&after.demand) && !original.hopeless {
+        let limit_w = model.limit_w(after.demand.converter);
+        let message = format!(
+            "the block still needs {:.1} W of {limit_w:.1} W",
+            after.demand.peak_w
+        );
+        let help = "another strategy, or --allow feed, may help";
+        reasons.push(line, "does-not-fit", message, help, text);
+    }
+    let rises = |before: f64, after: f64| after > before * (1.0 + ROUNDING);
+    let axis_rises = !original.as_feed
+        && mv
+            .moving
+            .iter()
+            .any(|axis| rises(original.axis_accel_mm_s2[axis], mv.accel_mm_s2[axis]));
+    if rises(original.speed_mm_s, after.speed_mm_s)
+        || rises(original.accel_mm_s2, after.accel_mm_s2)
+        || axis_rises
+    {
+        let message = "a speed or an acceleration went up".to_owned();
+        reasons.push(line, "went-up", message, BUG, text);
+    }
+    let falls = |before: f64, after: f64| after < before * (1.0 - ROUNDING);
+    if !original.changed
+        && (falls(original.speed_mm_s, after.speed_mm_s)
+            || falls(original.accel_mm_s2, after.accel_mm_s2))
+    {
+        let message = "the feed of a block that was not to be changed differs".to_owned();
+        reasons.push(line, "changed-feed", message, BUG, text);
+    }
+}

@@ -1,0 +1,156 @@
+//! A program that fits: analysed, changed, written, and handed to the
+//! certifier piece by piece, so that nothing of it is held for long.
+
+use std::io::{Read, Write};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use super::certify::{Batch, Certified, Certifier};
+use super::conditions::conditions;
+use super::writer::{Writer, Written};
+use super::{Failure, LimitOptions, LimitSummary, Options, RowSink, Strategy, Summary};
+use crate::limit::Law;
+use crate::machine::{KnobArgument, KnobTarget, Machine};
+
+/// Pieces that may wait for the certifier.
+const BATCHES: usize = 2;
+
+/// Reads a program, writes one that fits to `output`, and certifies it.
+///
+/// `output` is a spool: its contents may be delivered only when the result
+/// says `certified`.
+///
+/// # Errors
+/// See [`Failure`]. A program that cannot be made to fit is no error: see
+/// [`LimitSummary::certified`].
+pub fn limit<R: Read + Send, W: Write + Send>(
+    input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+    output: W,
+    rows: Option<&mut dyn RowSink>,
+) -> Result<LimitSummary, Failure> {
+    check_strategy(machine, how)?;
+    let exact = rows.is_some();
+    let mut certifier = Certifier::new(machine, options, rows);
+    let writer = Writer::new(input, machine, options, how, exact, output);
+    let (written, certified) = if options.threads > 1 {
+        side_by_side(writer, certifier)?
+    } else {
+        let written = writer.run(&mut |batch| certifier.take(batch))?;
+        (written, certifier.finish()?)
+    };
+    Ok(conclude(machine, options, written, certified))
+}
+
+/// Writes in this thread and certifies in another.
+fn side_by_side<R: Read + Send, W: Write + Send>(
+    writer: Writer<'_, R, W>,
+    certifier: Certifier<'_, '_>,
+) -> Result<(Written, Certified), Failure> {
+    std::thread::scope(|scope| {
+        let (sender, receiver) = sync_channel(BATCHES);
+        let (back, empty) = sync_channel(BATCHES + 2);
+        let handle = scope.spawn(move || certify_all(certifier, receiver, &back));
+        let written = writer.run(&mut |batch| send(batch, &sender, &empty));
+        drop(sender);
+        // A panic of the certifier is a fault of gwatt: it goes on here.
+        let certified = handle
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        match (written, certified) {
+            // A certifier that failed has stopped the writer: its failure is
+            // the cause. A refusal of the program comes from the writer alone.
+            (Err(refused @ Failure::Refused { .. }), _) => Err(refused),
+            (written, certified) => {
+                let certified = certified?;
+                Ok((written?, certified))
+            }
+        }
+    })
+}
+
+/// The certifier's side of the channel.
+fn certify_all(
+    mut certifier: Certifier<'_, '_>,
+    receiver: Receiver<Batch>,
+    back: &SyncSender<Batch>,
+) -> Result<Certified, Failure> {
+    for mut batch in receiver {
+        certifier.take(&mut batch)?;
+        // A full channel of empty buffers only means one more allocation.
+        let _ = back.try_send(batch);
+    }
+    certifier.finish()
+}
+
+fn send(
+    batch: &mut Batch,
+    sender: &SyncSender<Batch>,
+    empty: &Receiver<Batch>,
+) -> Result<(), Failure> {
+    let full = std::mem::replace(batch, empty.try_recv().unwrap_or_default());
+    // The certifier has stopped: its own failure is the one to report.
+    sender
+        .send(full)
+        .map_err(|_| Failure::Output(std::io::ErrorKind::BrokenPipe.into()))
+}
+
+fn conclude(
+    machine: &Machine,
+    options: &Options,
+    written: Written,
+    certified: Certified,
+) -> LimitSummary {
+    let Written {
+        mut before,
+        edited_lines,
+        mut reasons,
+    } = written;
+    let Certified {
+        summary: mut after,
+        reasons: found,
+    } = certified;
+    reasons.count += found.count;
+    reasons.list.extend(found.list);
+    reasons.list.sort_by_key(|reason| reason.line);
+    reasons.list.truncate(Summary::KEPT);
+    before.conditions = conditions(machine, options, &before);
+    after.conditions = conditions(machine, options, &after);
+    let certified = reasons.count == 0 && after.fits();
+    LimitSummary {
+        before,
+        after,
+        edited_lines,
+        certified,
+        reasons: reasons.list,
+    }
+}
+
+/// A strategy that needs a word which the controller lacks is refused.
+fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
+    let accel = machine.controller.knobs.iter().any(|knob| {
+        knob.verified
+            && knob.target != KnobTarget::RapidSpeed
+            && !matches!(knob.argument, KnobArgument::Path(_))
+    });
+    let name = &machine.controller.name;
+    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
+    match how.strategy {
+        Strategy::Accel if !accel => unsuitable(format!(
+            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
+        )),
+        Strategy::Preset if machine.presets.is_empty() => {
+            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
+        }
+        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
+            unsuitable(format!(
+                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
+            ))
+        }
+        Strategy::Preset | Strategy::Optimal if how.law == Law::Patent => {
+            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
+        }
+        _ => Ok(()),
+    }
+}

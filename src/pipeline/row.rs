@@ -1,0 +1,71 @@
+//! One row of a report: a move, what it draws, and what was done about it.
+
+use std::io;
+
+use crate::interpret::MoveKind;
+use crate::machine::AxisSet;
+pub use crate::power::Certificate;
+
+/// One move in program order. Reports print it in the order of the fields; a
+/// value that is not known or does not apply is `None` and printed as blank.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Line from 1.
+    pub line: u64,
+    /// Block number without N.
+    pub n_word: Option<f64>,
+    /// What kind of move.
+    pub kind: MoveKind,
+    /// Axes that really move and start together.
+    pub axes: AxisSet,
+    /// Start in s from the beginning of the program.
+    pub start_s: f64,
+    /// Duration in s.
+    pub duration_s: f64,
+    /// Largest bus power in W, base load included.
+    pub peak_w: f64,
+    /// Largest power fed back in W, positive.
+    pub regen_w: f64,
+    /// Peak power of the converter less the margin, W.
+    pub limit_w: f64,
+    /// `limit_w / peak_w`; `None` where the peak is not positive.
+    pub ratio: Option<f64>,
+    /// Integral of the bus power in J.
+    pub energy_j: f64,
+    /// What was done, such as `lower feed`; empty for nothing.
+    pub action: &'static str,
+    /// The word that was used, such as `F` or `G131`; empty without one.
+    pub knob: String,
+    /// Value of that word before, in program units.
+    pub value_before: Option<f64>,
+    /// Value of that word after.
+    pub value_after: Option<f64>,
+    /// Peak in the written program; `None` in a report without limiting.
+    pub peak_after_w: Option<f64>,
+    /// Duration in the written program.
+    pub duration_after_s: Option<f64>,
+    /// Regenerative peak in the written program.
+    pub regen_after_w: Option<f64>,
+    /// Which certificate `peak_w` and `regen_w` belong to.
+    pub certificate: Certificate,
+    /// Regenerative limit less the margin; `None` without one.
+    pub regen_limit_w: Option<f64>,
+    /// Name of the converter that is loaded most; empty where there is one only.
+    pub converter: String,
+}
+
+/// Takes the rows of a report one by one.
+pub trait RowSink: Send {
+    /// Takes one row; an error stops the run.
+    ///
+    /// # Errors
+    /// Whatever the writing gives.
+    fn row(&mut self, row: &Row) -> io::Result<()>;
+}
+
+/// Wants no rows.
+impl RowSink for () {
+    fn row(&mut self, _: &Row) -> io::Result<()> {
+        Ok(())
+    }
+}

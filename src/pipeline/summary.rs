@@ -1,0 +1,93 @@
+//! What a run over a program comes to.
+
+use crate::diagnostic::Diagnostic;
+use crate::interpret::MoveKind;
+use crate::machine::AxisSet;
+
+use super::row::Certificate;
+
+/// A move that does not fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unfit {
+    /// Line from 1.
+    pub line: u64,
+    /// Block number without N.
+    pub n_word: Option<f64>,
+    /// What kind of move.
+    pub kind: MoveKind,
+    /// Axes that start together.
+    pub axes: AxisSet,
+    /// Peak in W and its limit.
+    pub peak_w: f64,
+    /// See `peak_w`.
+    pub limit_w: f64,
+    /// Regenerative peak in W and its limit.
+    pub regen_w: f64,
+    /// See `regen_w`.
+    pub regen_limit_w: Option<f64>,
+    /// How far over: the larger of peak/limit and regenerative peak/limit.
+    pub overload: f64,
+    /// What would help, such as "lower the feed to F812"; may be empty.
+    pub help: String,
+    /// The line, without its end; cut if it is long.
+    pub text: Vec<u8>,
+}
+
+/// The figures of one analysis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Summary {
+    /// Number of lines read.
+    pub lines: u64,
+    /// Number of moves, dwells included.
+    pub moves: u64,
+    /// Cycle time in s.
+    pub duration_s: f64,
+    /// Largest bus power in W, and where (0: no move).
+    pub peak_w: f64,
+    /// See `peak_w`.
+    pub peak_line: u64,
+    /// Largest power fed back in W, and where.
+    pub regen_w: f64,
+    /// See `regen_w`.
+    pub regen_line: u64,
+    /// Energy drawn in J; only where rows were asked for.
+    pub energy_j: Option<f64>,
+    /// Number of moves that do not fit.
+    pub unfit_count: u64,
+    /// The first of them, in program order; `Summary::KEPT` at most.
+    pub unfit: Vec<Unfit>,
+    /// The worst ten, worst first.
+    pub worst: Vec<Unfit>,
+    /// Which certificate the figures belong to: robust when any move needs it.
+    pub certificate: Option<Certificate>,
+    /// Under which conditions they hold, in plain sentences.
+    pub conditions: Vec<String>,
+    /// Warnings and notes.
+    pub notes: Vec<Diagnostic>,
+}
+
+impl Summary {
+    /// How many moves that do not fit are kept.
+    pub const KEPT: usize = 1000;
+
+    /// True when every move fits.
+    #[must_use]
+    pub fn fits(&self) -> bool {
+        self.unfit_count == 0
+    }
+}
+
+/// What `limit` did.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LimitSummary {
+    /// The program as it came.
+    pub before: Summary,
+    /// The program as written.
+    pub after: Summary,
+    /// Number of lines that were changed or inserted.
+    pub edited_lines: u64,
+    /// True when the certificate holds: only then may the output be delivered.
+    pub certified: bool,
+    /// Why it does not, each with its line; `Summary::KEPT` at most.
+    pub reasons: Vec<Diagnostic>,
+}

@@ -1,0 +1,378 @@
+//! The writing half of `limit`: blocks wait until their moves are judged and
+//! decided, are written with their changes, and go to the certifier in pieces.
+
+use std::collections::VecDeque;
+use std::io::{Read, Write};
+
+use super::analyze::refuse_planned;
+use super::certify::{Batch, Expected, ExpectedMove, Reasons};
+use super::describe::{describe, row};
+use super::entry::{Entry, knobs};
+use super::front::Front;
+use super::tally::Tally;
+use super::{Failure, LimitOptions, Options, Summary};
+use crate::interpret::{KnobState, Move, MoveKind, Step};
+use crate::limit::{Change, Limiter, Obstacle, Outcome};
+use crate::machine::{Machine, PathMode};
+use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::rewrite::{BlockView, Mark, Rewriter};
+
+/// Bytes of a piece that is handed to the certifier.
+const BATCH_BYTES: usize = 64 * 1024;
+
+/// What the writing half comes to.
+pub(super) struct Written {
+    pub(super) before: Summary,
+    pub(super) edited_lines: u64,
+    pub(super) reasons: Reasons,
+}
+
+/// A move that is not decided yet.
+struct Flight {
+    /// Number of its block, and which of its steps it is.
+    entry: u64,
+    step: usize,
+    assessment: Option<Assessment>,
+}
+
+/// Analyses, changes and writes.
+pub(super) struct Writer<'m, R, W> {
+    machine: &'m Machine,
+    front: Front<'m, R>,
+    output: W,
+    assessor: Assessor<'m>,
+    limiter: Limiter<'m>,
+    tally: Tally<'m, 'm>,
+    rewriter: Rewriter<'m>,
+    /// Blocks that wait; `first` is the number of the front one.
+    entries: VecDeque<Box<Entry>>,
+    first: u64,
+    #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
+    spare: Vec<Box<Entry>>,
+    flights: VecDeque<Flight>,
+    outcomes: Vec<Outcome>,
+    /// Path mode of the last move that was read.
+    mode: PathMode,
+    /// The original's state behind the last block that was written.
+    mark: Mark,
+    knobs: Option<KnobState>,
+    batch: Batch,
+    reasons: Reasons,
+    /// Every figure is wanted exactly: there are rows.
+    exact: bool,
+    model: PowerModel,
+    /// Time of the original so far, s.
+    start_s: f64,
+}
+
+impl<'m, R: Read, W: Write> Writer<'m, R, W> {
+    pub(super) fn new(
+        input: R,
+        machine: &'m Machine,
+        options: &Options,
+        how: LimitOptions,
+        exact: bool,
+        output: W,
+    ) -> Self {
+        let front = Front::new(input, machine, options);
+        Self {
+            machine,
+            mark: Mark::of(front.interpreter().modal()),
+            knobs: knobs(machine, front.interpreter().knobs()),
+            mode: front.interpreter().modal().path_mode,
+            front,
+            output,
+            assessor: Assessor::new(machine, options.certificate, Want::ALL),
+            limiter: Limiter::new(machine, how),
+            tally: Tally::new(machine, options, None),
+            rewriter: Rewriter::new(machine),
+            entries: VecDeque::new(),
+            first: 0,
+            spare: Vec::new(),
+            flights: VecDeque::new(),
+            outcomes: Vec::new(),
+            batch: Batch::default(),
+            reasons: Reasons::default(),
+            exact,
+            model: PowerModel::new(machine),
+            start_s: 0.0,
+        }
+    }
+
+    /// Reads and writes the whole program; `deliver` takes the pieces.
+    pub(super) fn run(
+        mut self,
+        deliver: &mut impl FnMut(&mut Batch) -> Result<(), Failure>,
+    ) -> Result<Written, Failure> {
+        while self.read_block()? {
+            self.decide();
+            self.write_decided()?;
+            if self.batch.bytes.len() >= BATCH_BYTES {
+                deliver(&mut self.batch)?;
+            }
+        }
+        self.finish_moves();
+        self.write_decided()?;
+        if !self.front.interpreter().ended() {
+            let start = self.batch.bytes.len();
+            self.rewriter
+                .finish(&self.mark, self.knobs.as_ref(), &mut self.batch.bytes);
+            self.output
+                .write_all(&self.batch.bytes[start..])
+                .map_err(Failure::Output)?;
+        }
+        deliver(&mut self.batch)?;
+        self.output.flush().map_err(Failure::Output)?;
+        let lines = self.front.lines;
+        let notes = self.front.finish()?;
+        refuse_planned(&self.assessor, self.machine)?;
+        let mut before = self.tally.finish(self.exact);
+        before.lines = lines;
+        before.notes = notes;
+        Ok(Written {
+            before,
+            edited_lines: self.rewriter.edited_lines,
+            reasons: self.reasons,
+        })
+    }
+
+    /// Reads a block, lets it wait, and judges its moves.
+    fn read_block(&mut self) -> Result<bool, Failure> {
+        let spare = self.spare.pop();
+        let Some(mut line) = self.front.next_line()? else {
+            return Ok(false);
+        };
+        let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        entry.fill(&mut line, self.machine, self.mode);
+        let number = self.first + self.entries.len() as u64;
+        self.entries.push_back(entry);
+        let Self {
+            assessor,
+            limiter,
+            tally,
+            entries,
+            first,
+            flights,
+            outcomes,
+            ..
+        } = self;
+        let entries = &*entries;
+        let Some(entry) = entries.back() else {
+            return Ok(true);
+        };
+        for (step, mv) in entry.steps.iter().enumerate() {
+            let Step::Move(mv) = mv else { continue };
+            self.mode = mv.path_mode;
+            flights.push_back(Flight {
+                entry: number,
+                step,
+                assessment: None,
+            });
+            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            let mut judge = Judge {
+                machine: self.machine,
+                limiter,
+                entries,
+                first: *first,
+                flights,
+                outcomes,
+            };
+            assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
+                tally.add(mv, assessment, text);
+                judge.take(mv, assessment);
+            });
+        }
+        Ok(true)
+    }
+
+    /// Judges and decides what is left at the end.
+    fn finish_moves(&mut self) {
+        let Self {
+            assessor,
+            limiter,
+            tally,
+            entries,
+            first,
+            flights,
+            outcomes,
+            ..
+        } = self;
+        let mut judge = Judge {
+            machine: self.machine,
+            limiter,
+            entries,
+            first: *first,
+            flights,
+            outcomes,
+        };
+        assessor.finish(&mut |mv, assessment, text| {
+            tally.add(mv, assessment, text);
+            judge.take(mv, assessment);
+        });
+        limiter.finish(&mut |outcome| outcomes.push(outcome));
+        self.decide();
+    }
+
+    /// Gives the outcomes to their blocks.
+    fn decide(&mut self) {
+        for outcome in self.outcomes.drain(..) {
+            let Some(flight) = self.flights.pop_front() else {
+                break;
+            };
+            let index = (flight.entry - self.first) as usize;
+            if let (Some(entry), Some(assessment)) =
+                (self.entries.get_mut(index), flight.assessment)
+            {
+                entry.decided.push((assessment, outcome));
+            }
+        }
+    }
+
+    /// Writes the blocks whose moves are all decided.
+    fn write_decided(&mut self) -> Result<(), Failure> {
+        while self
+            .entries
+            .front()
+            .is_some_and(|entry| entry.decided.len() >= entry.moves)
+        {
+            let Some(mut entry) = self.entries.pop_front() else {
+                break;
+            };
+            self.first += 1;
+            self.write(&mut entry)?;
+            std::mem::swap(&mut self.mark, &mut entry.mark);
+            self.knobs = entry.knobs.take();
+            self.spare.push(entry);
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, entry: &mut Entry) -> Result<(), Failure> {
+        let start = self.batch.bytes.len();
+        let change = merge(&entry.decided);
+        let view = BlockView {
+            text: &entry.text,
+            block: &entry.block,
+            facts: &entry.facts,
+            before: &self.mark,
+            after: &entry.mark,
+            knobs: self.knobs.as_ref(),
+            rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
+            feeds: entry.moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
+            change: change.as_ref().unwrap_or(&Change::NONE),
+        };
+        if !self.rewriter.write(&view, &mut self.batch.bytes) {
+            let message = "the edits of this block contradict each other".to_owned();
+            self.reasons
+                .push(0, "edit", message, "change the block by hand", &entry.text);
+            self.batch.bytes.extend_from_slice(&entry.text);
+        }
+        self.output
+            .write_all(&self.batch.bytes[start..])
+            .map_err(Failure::Output)?;
+        self.expect(entry, change);
+        Ok(())
+    }
+
+    /// Tells the certifier what the block must do.
+    fn expect(&mut self, entry: &mut Entry, change: Option<Change>) {
+        let feed_before = entry.feed_before();
+        let mut decided = entry.decided.drain(..);
+        for step in &entry.steps {
+            let mv = match step {
+                Step::Action(action) => {
+                    self.batch.expected.push(Expected::Action(*action));
+                    continue;
+                }
+                Step::Move(mv) => mv,
+            };
+            let Some((assessment, outcome)) = decided.next() else {
+                continue;
+            };
+            let hopeless = outcome.obstacle.is_some();
+            if let Some(obstacle) = outcome.obstacle {
+                let Obstacle {
+                    rule,
+                    message,
+                    help,
+                } = *obstacle;
+                self.reasons
+                    .push(mv.line, rule, message, &help, &entry.text);
+            }
+            // What a block gets, all its moves get, but not its dwell.
+            let change = change.filter(|_| mv.kind != MoveKind::Dwell);
+            let row = self.exact.then(|| {
+                let mut row = row(self.machine, &self.model, mv, &assessment, self.start_s);
+                describe(self.machine, mv, change.as_ref(), feed_before, &mut row);
+                if hopeless {
+                    row.action = "none possible";
+                }
+                Box::new(row)
+            });
+            self.start_s += assessment.duration_s;
+            self.batch.expected.push(Expected::Move(ExpectedMove {
+                line: mv.line,
+                kind: mv.kind,
+                end: mv.end,
+                arc: mv.arc,
+                unknown_start: mv.unknown_start,
+                path_mode: mv.path_mode,
+                loads: mv.loads,
+                dwell_s: mv.dwell_s,
+                axis_accel_mm_s2: mv.accel_mm_s2,
+                speed_mm_s: assessment.speed_mm_s,
+                accel_mm_s2: assessment.accel_mm_s2,
+                changed: change.is_some(),
+                as_feed: change.is_some_and(|change| change.as_feed),
+                hopeless,
+                row,
+            }));
+        }
+    }
+}
+
+/// Hands judged moves to the limiter and collects its decisions.
+struct Judge<'a, 'm> {
+    machine: &'m Machine,
+    limiter: &'a mut Limiter<'m>,
+    entries: &'a VecDeque<Box<Entry>>,
+    first: u64,
+    flights: &'a mut VecDeque<Flight>,
+    outcomes: &'a mut Vec<Outcome>,
+}
+
+impl Judge<'_, '_> {
+    fn take(&mut self, mv: &Move, assessment: &Assessment) {
+        let Self {
+            machine,
+            limiter,
+            entries,
+            first,
+            flights,
+            outcomes,
+        } = self;
+        let Some(flight) = flights
+            .iter_mut()
+            .find(|flight| flight.assessment.is_none())
+        else {
+            return;
+        };
+        flight.assessment = Some(*assessment);
+        let Some(entry) = entries.get((flight.entry - *first) as usize) else {
+            return;
+        };
+        let permit = || entry.permit(machine, mv, flight.step);
+        limiter.push(mv, assessment, permit, &mut |outcome| {
+            outcomes.push(outcome);
+        });
+    }
+}
+
+/// One change for a block of several moves: the lower value of each word.
+fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
+    let mut changes = decided
+        .iter()
+        .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
+    let first = changes.next()?;
+    Some(changes.fold(first, |merged, change| merged.lower(&change)))
+}

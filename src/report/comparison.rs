@@ -1,0 +1,174 @@
+//! Two machines over the same programs.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use super::checked::Verdict;
+use super::figure::Figure;
+use super::quantity::{duration, energy, power};
+use super::text::aligned;
+use crate::pipeline::{Failure, Summary};
+
+/// Changes that are listed a program.
+const LISTED_MAX: usize = 10;
+
+/// A move that fits on one machine only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Change {
+    /// Line from 1.
+    pub line: u64,
+    /// True: it fits on the second machine only.
+    pub begins: bool,
+}
+
+/// One program on two machines.
+#[derive(Debug)]
+pub struct Comparison {
+    /// The program's name as it was given.
+    pub program: String,
+    /// Its figures on the first machine.
+    pub from: Result<Summary, Failure>,
+    /// Its figures on the second machine.
+    pub to: Result<Summary, Failure>,
+    /// Moves that fit on the second machine only.
+    pub begin: u64,
+    /// Moves that fit on the first machine only.
+    pub cease: u64,
+    /// The first changes.
+    pub changes: Vec<Change>,
+}
+
+impl Comparison {
+    /// Counts a change, and keeps it if it is among the first.
+    pub fn count(&mut self, change: Change) {
+        if change.begins {
+            self.begin += 1;
+        } else {
+            self.cease += 1;
+        }
+        if self.changes.len() < LISTED_MAX {
+            self.changes.push(change);
+        }
+    }
+
+    /// Does not fit when something fits on the first machine only.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        if self.from.is_err() || self.to.is_err() {
+            Verdict::Refused
+        } else {
+            Verdict::of(self.cease == 0)
+        }
+    }
+}
+
+/// A table with a line a program, and below it what begins and ceases to fit.
+#[must_use]
+pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str) -> String {
+    let mut rows = vec![
+        [
+            "program",
+            "peak",
+            "time",
+            "energy",
+            "begin to fit",
+            "cease to fit",
+        ]
+        .map(String::from),
+    ];
+    let mut changes = String::new();
+    for comparison in comparisons {
+        let program = &comparison.program;
+        let (Ok(before), Ok(after)) = (&comparison.from, &comparison.to) else {
+            rows.push([program, "refused", "", "", "", ""].map(String::from));
+            continue;
+        };
+        let pair = |a: String, b: String| format!("{a} → {b}");
+        rows.push([
+            program.clone(),
+            pair(power(before.peak_w), power(after.peak_w)),
+            pair(duration(before.duration_s), duration(after.duration_s)),
+            pair(
+                energy(before.energy_j.unwrap_or_default()),
+                energy(after.energy_j.unwrap_or_default()),
+            ),
+            comparison.begin.to_string(),
+            comparison.cease.to_string(),
+        ]);
+        changes.push_str(&listed(comparison));
+    }
+    format!("from {from}\nto   {to}\n\n{}{changes}", aligned(&rows, ""))
+}
+
+fn listed(comparison: &Comparison) -> String {
+    let mut text = String::new();
+    for change in &comparison.changes {
+        let verb = if change.begins { "begins" } else { "ceases" };
+        let program = &comparison.program;
+        let _ = writeln!(text, "{program}: line {} {verb} to fit", change.line);
+    }
+    let more = comparison.begin + comparison.cease - comparison.changes.len() as u64;
+    if more > 0 {
+        let _ = writeln!(text, "{}: and {more} more", comparison.program);
+    }
+    text
+}
+
+#[derive(Serialize)]
+struct Line<'a> {
+    program: &'a str,
+    from: &'a str,
+    to: &'a str,
+    peak_from_w: Figure,
+    peak_to_w: Figure,
+    regen_from_w: Figure,
+    regen_to_w: Figure,
+    duration_from_s: Figure,
+    duration_to_s: Figure,
+    energy_from_j: Option<Figure>,
+    energy_to_j: Option<Figure>,
+    unfit_from: u64,
+    unfit_to: u64,
+    begin_to_fit: u64,
+    cease_to_fit: u64,
+}
+
+/// The table as CSV, without programs that are refused.
+///
+/// # Errors
+/// Those of `out`.
+pub fn comparison_csv(
+    comparisons: &[Comparison],
+    from: &str,
+    to: &str,
+    out: impl Write,
+) -> io::Result<()> {
+    let mut out = csv::WriterBuilder::new()
+        .terminator(csv::Terminator::CRLF)
+        .from_writer(out);
+    for comparison in comparisons {
+        let (Ok(before), Ok(after)) = (&comparison.from, &comparison.to) else {
+            continue;
+        };
+        out.serialize(Line {
+            program: &comparison.program,
+            from,
+            to,
+            peak_from_w: Figure(before.peak_w),
+            peak_to_w: Figure(after.peak_w),
+            regen_from_w: Figure(before.regen_w),
+            regen_to_w: Figure(after.regen_w),
+            duration_from_s: Figure(before.duration_s),
+            duration_to_s: Figure(after.duration_s),
+            energy_from_j: before.energy_j.map(Figure),
+            energy_to_j: after.energy_j.map(Figure),
+            unfit_from: before.unfit_count,
+            unfit_to: after.unfit_count,
+            begin_to_fit: comparison.begin,
+            cease_to_fit: comparison.cease,
+        })?;
+    }
+    out.flush()
+}

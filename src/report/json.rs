@@ -1,0 +1,243 @@
+//! Reports as JSON. Blocks are the only part that grows with the program: they
+//! are spooled row by row and copied between head and tail.
+
+use std::io::{self, Read, Write};
+
+use serde::Serialize;
+
+use super::checked::{Checked, chain};
+use super::figure::Figure;
+use super::finding::{Finding, UnfitMove};
+use super::record::Record;
+use crate::pipeline::{Certificate, Failure, LimitSummary, Row, RowSink, Summary};
+
+/// Writes rows as JSON objects with commas between them.
+#[derive(Debug)]
+pub struct JsonRows<W: Write> {
+    out: W,
+    any: bool,
+}
+
+impl<W: Write> JsonRows<W> {
+    /// Writes to `out`, which should be buffered.
+    pub fn new(out: W) -> Self {
+        Self { out, any: false }
+    }
+
+    /// Writes what is still held back and gives `out` back.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.out.flush()?;
+        Ok(self.out)
+    }
+}
+
+impl<W: Write + Send> RowSink for JsonRows<W> {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let between: &[u8] = if self.any { b",\n" } else { b"\n" };
+        self.any = true;
+        self.out.write_all(between)?;
+        Ok(serde_json::to_writer(&mut self.out, &Record::from(row))?)
+    }
+}
+
+#[derive(Serialize)]
+struct Head<'a> {
+    program: &'a str,
+    machine: &'a str,
+    duration_s: Figure,
+    peak_w: Figure,
+    peak_line: u64,
+    regen_w: Figure,
+    energy_j: Option<Figure>,
+    fits: bool,
+    certificate: Option<&'static str>,
+    conditions: &'a [String],
+}
+
+impl<'a> Head<'a> {
+    fn new(program: &'a str, machine: &'a str, summary: &'a Summary) -> Self {
+        Self {
+            program,
+            machine,
+            duration_s: Figure(summary.duration_s),
+            peak_w: Figure(summary.peak_w),
+            peak_line: summary.peak_line,
+            regen_w: Figure(summary.regen_w),
+            energy_j: summary.energy_j.map(Figure),
+            fits: summary.fits(),
+            certificate: summary.certificate.map(Certificate::name),
+            conditions: &summary.conditions,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct ReportTail {
+    unfit_count: u64,
+}
+
+#[derive(Serialize)]
+struct LimitTail<'a> {
+    duration_after_s: Figure,
+    peak_after_w: Figure,
+    regen_after_w: Figure,
+    energy_after_j: Option<Figure>,
+    unfit_count: u64,
+    edited_lines: u64,
+    certified: bool,
+    reasons: Vec<Finding<'a>>,
+}
+
+/// Writes what `report` found; `blocks` are the rows that [`JsonRows`] wrote.
+///
+/// # Errors
+/// Those of `blocks` and `out`.
+pub fn report_json(
+    program: &str,
+    machine: &str,
+    summary: &Summary,
+    blocks: impl Read,
+    out: impl Write,
+) -> io::Result<()> {
+    let tail = ReportTail {
+        unfit_count: summary.unfit_count,
+    };
+    write_object(&Head::new(program, machine, summary), blocks, &tail, out)
+}
+
+/// Writes what `limit` did. The figures of [`report_json`] are those of the
+/// program as it came, certificate and conditions those of what was written.
+///
+/// # Errors
+/// Those of `blocks` and `out`.
+pub fn limit_json(
+    program: &str,
+    machine: &str,
+    summary: &LimitSummary,
+    blocks: impl Read,
+    out: impl Write,
+) -> io::Result<()> {
+    let after = Head::new(program, machine, &summary.after);
+    let head = Head {
+        certificate: after.certificate,
+        conditions: after.conditions,
+        ..Head::new(program, machine, &summary.before)
+    };
+    let tail = LimitTail {
+        duration_after_s: Figure(summary.after.duration_s),
+        peak_after_w: Figure(summary.after.peak_w),
+        regen_after_w: Figure(summary.after.regen_w),
+        energy_after_j: summary.after.energy_j.map(Figure),
+        unfit_count: summary.before.unfit_count,
+        edited_lines: summary.edited_lines,
+        certified: summary.certified,
+        reasons: summary.reasons.iter().map(Finding::from).collect(),
+    };
+    write_object(&head, blocks, &tail, out)
+}
+
+/// Joins the keys of `head`, `blocks` and the keys of `tail` in one object.
+fn write_object(
+    head: &impl Serialize,
+    mut blocks: impl Read,
+    tail: &impl Serialize,
+    mut out: impl Write,
+) -> io::Result<()> {
+    let head = serde_json::to_string(head)?;
+    let tail = serde_json::to_string(tail)?;
+    let head = head.strip_suffix('}').unwrap_or(&head);
+    let tail = tail.strip_prefix('{').unwrap_or(&tail);
+    write!(out, "{head},\n\"blocks\":[")?;
+    io::copy(&mut blocks, &mut out)?;
+    writeln!(out, "],\n{tail}")?;
+    out.flush()
+}
+
+#[derive(Serialize)]
+struct CheckedProgram<'a> {
+    program: &'a str,
+    machine: &'a str,
+    duration_s: Option<Figure>,
+    peak_w: Option<Figure>,
+    peak_line: Option<u64>,
+    regen_w: Option<Figure>,
+    fits: bool,
+    unfit_count: Option<u64>,
+    unfit: Vec<UnfitMove<'a>>,
+    certificate: Option<&'static str>,
+    error: Option<String>,
+    diagnostics: Vec<Finding<'a>>,
+}
+
+impl<'a> CheckedProgram<'a> {
+    fn new(checked: &'a Checked, machine: &'a str) -> Self {
+        let summary = checked.outcome.as_ref().ok();
+        let diagnostics = match &checked.outcome {
+            Ok(summary) => summary.notes.as_slice(),
+            Err(Failure::Refused { diagnostics, .. }) => diagnostics,
+            Err(_) => &[],
+        };
+        let unfit = summary.map_or(&[][..], |summary| &summary.unfit);
+        Self {
+            program: &checked.program,
+            machine,
+            duration_s: summary.map(|summary| Figure(summary.duration_s)),
+            peak_w: summary.map(|summary| Figure(summary.peak_w)),
+            peak_line: summary.map(|summary| summary.peak_line),
+            regen_w: summary.map(|summary| Figure(summary.regen_w)),
+            fits: summary.is_some_and(Summary::fits),
+            unfit_count: summary.map(|summary| summary.unfit_count),
+            unfit: unfit.iter().map(UnfitMove::from).collect(),
+            certificate: summary
+                .and_then(|summary| summary.certificate)
+                .map(Certificate::name),
+            error: checked.outcome.as_ref().err().map(|error| chain(error)),
+            diagnostics: diagnostics.iter().map(Finding::from).collect(),
+        }
+    }
+}
+
+/// Writes what `check` found as an array with one object a program.
+///
+/// # Errors
+/// Those of `out`.
+pub fn check_json(checked: &[Checked], machine: &str, mut out: impl Write) -> io::Result<()> {
+    let programs: Vec<_> = checked
+        .iter()
+        .map(|checked| CheckedProgram::new(checked, machine))
+        .collect();
+    serde_json::to_writer_pretty(&mut out, &programs)?;
+    writeln!(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::record::example;
+
+    #[test]
+    fn a_report_has_its_keys_in_order() -> io::Result<()> {
+        let mut rows = JsonRows::new(Vec::new());
+        rows.row(&example())?;
+        rows.row(&example())?;
+        let blocks = rows.finish()?;
+        let summary = Summary {
+            duration_s: 12.5,
+            peak_w: 2000.0,
+            peak_line: 3,
+            ..Summary::default()
+        };
+        let mut out = Vec::new();
+        report_json("a\"b.ngc", "mill", &summary, &blocks[..], &mut out)?;
+        let value: serde_json::Value = serde_json::from_slice(&out)?;
+        assert_eq!(value["blocks"].as_array().map(Vec::len), Some(2));
+        assert_eq!(value["blocks"][1]["regen_w"], 0.3);
+        let text = String::from_utf8_lossy(&out);
+        let head = text.lines().next().unwrap_or_default();
+        insta::assert_snapshot!(head, @r#"{"program":"a\"b.ngc","machine":"mill","duration_s":12.5,"peak_w":2000,"peak_line":3,"regen_w":0,"energy_j":null,"fits":true,"certificate":null,"conditions":[],"#);
+        Ok(())
+    }
+}

@@ -1,0 +1,59 @@
+//! Results as `JUnit` XML: one test case a program. Without times of day or
+//! random identifiers, so that the same programs give the same file.
+
+use std::io::{self, Write};
+
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+use super::checked::Checked;
+use super::text::check_text;
+use crate::machine::Machine;
+use crate::pipeline::Failure;
+
+/// Writes one suite, named after the machine.
+///
+/// # Errors
+/// Those of `out`.
+pub fn junit(checked: &[Checked], machine: &Machine, mut out: impl Write) -> io::Result<()> {
+    let mut suite = TestSuite::new(machine.name.as_str());
+    suite.add_test_cases(checked.iter().map(|checked| test_case(checked, machine)));
+    let mut report = Report::new("gwatt");
+    report.add_test_suite(suite);
+    let text = report.to_string().map_err(io::Error::other)?;
+    out.write_all(text.as_bytes())
+}
+
+fn test_case(checked: &Checked, machine: &Machine) -> TestCase {
+    let text = check_text(checked, machine);
+    let title = text.lines().next().unwrap_or_default().to_owned();
+    let status = match &checked.outcome {
+        Ok(summary) if summary.fits() => TestCaseStatus::success(),
+        Ok(_) => {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_message(title).set_type("power");
+            status.set_description(text);
+            status
+        }
+        Err(failure) => {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+            status.set_message(title).set_type("refused");
+            status.set_description(refusal(&checked.program, failure, &text));
+            status
+        }
+    };
+    let mut case = TestCase::new(checked.program.as_str(), status);
+    case.set_classname("gwatt");
+    case
+}
+
+/// Every diagnostic with the line under it.
+fn refusal(program: &str, failure: &Failure, text: &str) -> String {
+    let Failure::Refused { diagnostics, .. } = failure else {
+        return text.to_owned();
+    };
+    let shown: Vec<String> = diagnostics
+        .iter()
+        .map(|diagnostic| diagnostic.render(program, false))
+        .collect();
+    shown.join("\n")
+}

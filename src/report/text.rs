@@ -1,0 +1,206 @@
+//! Results for people: a line a program, and below it what does not fit.
+
+use std::fmt::Write as _;
+
+use super::checked::{Checked, chain};
+use super::figure::round_to_digits;
+use super::finding::{LINE_CHARS, is_regenerative};
+use super::quantity::{duration, percent, power, three_digits};
+use crate::diagnostic::{Severity, excerpt};
+use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
+use crate::pipeline::{Certificate, Failure, LimitSummary, Summary, Unfit};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// What `check` says of one program: one line where it fits.
+#[must_use]
+pub fn check_text(checked: &Checked, machine: &Machine) -> String {
+    let program = &checked.program;
+    match &checked.outcome {
+        Ok(summary) if summary.fits() => {
+            format!("{program}: fits: {}\n", figures(summary, machine))
+        }
+        Ok(summary) => {
+            let count = moves(summary.unfit_count);
+            let mut text = format!(
+                "{program}: does not fit: {count} of {} over the limit; {}\n",
+                summary.moves,
+                figures(summary, machine)
+            );
+            text.push_str(&worst(summary));
+            text
+        }
+        Err(failure) => format!("{program}: refused: {}\n", refusal(failure)),
+    }
+}
+
+/// Peak, where, time and, if it is not the planned one, the certificate.
+fn figures(summary: &Summary, machine: &Machine) -> String {
+    let mut text = format!("peak {}", power(summary.peak_w));
+    // With several converters the peak may be any one's.
+    if let [converter] = machine.converters.as_slice() {
+        let limit_w = converter.peak_power_w * (1.0 - machine.limits.margin);
+        let _ = write!(text, " of {}", power(limit_w));
+    }
+    if summary.peak_line > 0 {
+        let _ = write!(text, " (line {})", summary.peak_line);
+    }
+    let _ = write!(text, ", {}", duration(summary.duration_s));
+    if summary.certificate == Some(Certificate::Robust) {
+        text.push_str(", robust");
+    }
+    text
+}
+
+fn moves(count: u64) -> String {
+    let noun = if count == 1 { "move" } else { "moves" };
+    format!("{count} {noun}")
+}
+
+/// Why a program came to no result.
+fn refusal(failure: &Failure) -> String {
+    match failure {
+        Failure::Refused { diagnostics, more } => {
+            let listed = diagnostics
+                .iter()
+                .filter(|diagnostic| diagnostic.severity == Severity::Error)
+                .count() as u64;
+            let count = listed + more;
+            let noun = if count == 1 { "error" } else { "errors" };
+            format!("{count} {noun}")
+        }
+        other => chain(other),
+    }
+}
+
+/// The worst moves, one a line, with the line of the program and what helps.
+fn worst(summary: &Summary) -> String {
+    let rows: Vec<[String; 5]> = summary.worst.iter().map(unfit_row).collect();
+    let mut text = aligned(&rows, "  ");
+    if summary.unfit_count > summary.worst.len() as u64 {
+        let more = summary.unfit_count - summary.worst.len() as u64;
+        let _ = writeln!(text, "  and {more} more: see `gwatt report`");
+    }
+    text
+}
+
+fn unfit_row(unfit: &Unfit) -> [String; 5] {
+    let limit = if is_regenerative(unfit) {
+        let limit_w = unfit.regen_limit_w.unwrap_or_default();
+        format!("{} of {} fed back", power(unfit.regen_w), power(limit_w))
+    } else {
+        format!("{} of {}", power(unfit.peak_w), power(unfit.limit_w))
+    };
+    let mut shown = excerpt(unfit.text.trim_ascii(), LINE_CHARS);
+    if !unfit.help.is_empty() {
+        let _ = write!(shown, "  → {}", unfit.help);
+    }
+    [
+        format!("line {}", unfit.line),
+        format!("{} {}", unfit.kind.name(), unfit.axes),
+        limit,
+        percent(unfit.overload),
+        shown,
+    ]
+}
+
+/// Rows as a table: columns as wide as their widest cell, two blanks apart.
+pub(super) fn aligned<const N: usize>(rows: &[[String; N]], indent: &str) -> String {
+    let mut widths = [0; N];
+    for row in rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = (*width).max(cell.chars().count());
+        }
+    }
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::from(indent);
+        for (width, cell) in widths.iter().zip(row) {
+            let _ = write!(line, "{cell:<width$}  ");
+        }
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+/// What `limit` did to a program; its reasons, if it could not, are shown
+/// apart with the lines under them.
+#[must_use]
+pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> String {
+    let (before, after) = (&summary.before, &summary.after);
+    if !summary.certified {
+        let count = summary.reasons.len();
+        let noun = if count == 1 { "reason" } else { "reasons" };
+        return format!(
+            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}",
+            figures(before, machine),
+            worst(after)
+        );
+    }
+    let mut text = if summary.edited_lines == 0 {
+        format!("{program}: fits as it is: {}\n", figures(before, machine))
+    } else {
+        format!(
+            "{program}: fits now: {}; before: peak {}, {}; {} changed\n",
+            figures(after, machine),
+            power(before.peak_w),
+            duration(before.duration_s),
+            lines(summary.edited_lines)
+        )
+    };
+    if let Some(certificate) = after.certificate {
+        let _ = writeln!(text, "certificate: {}", certificate.name());
+    }
+    for condition in &after.conditions {
+        let _ = writeln!(text, "  {condition}");
+    }
+    text
+}
+
+fn lines(count: u64) -> String {
+    let noun = if count == 1 { "line" } else { "lines" };
+    format!("{count} {noun}")
+}
+
+/// The axes of a machine, one a line: top speed, acceleration, mass, the force
+/// at full acceleration, and the peak power when the axis moves alone.
+#[must_use]
+pub fn axis_table(machine: &Machine) -> String {
+    let rows: Vec<[String; 6]> = machine
+        .axis_set
+        .iter()
+        .filter_map(|index| {
+            let axis = machine.axes.get(index)?.as_ref()?;
+            Some(axis_row(ALL_AXES.get(index)?.letter() as char, axis))
+        })
+        .collect();
+    aligned(&rows, "  ")
+}
+
+/// A number of the machine file: six digits show it, and hide how it was made.
+fn rounded(value: f64) -> f64 {
+    round_to_digits(value, 6)
+}
+
+fn axis_row(letter: char, axis: &Axis) -> [String; 6] {
+    let (length, mass, force) = match axis.kind {
+        AxisKind::Linear => ("mm", "kg", "N"),
+        AxisKind::Rotary => ("deg", "kg m2", "Nm"),
+    };
+    let speed = axis.rapid_mm_s * axis.si_per_unit;
+    let driving = axis.mass_kg * axis.accel_mm_s2 * axis.si_per_unit * axis.servo_factor_motor;
+    let load = axis.coulomb_n + axis.viscous_n_s_m * speed + axis.gravity_n.abs();
+    let peak = driving + load;
+    let peak_w = speed * peak / axis.efficiency + axis.copper_w_n2 * peak * peak;
+    [
+        letter.to_string(),
+        format!(
+            "{} {length}/min",
+            rounded(axis.rapid_mm_s * SECONDS_PER_MINUTE)
+        ),
+        format!("{} {length}/s2", rounded(axis.accel_mm_s2)),
+        format!("{} {mass}", three_digits(axis.mass_kg)),
+        format!("{} {force}", three_digits(peak)),
+        format!("{} alone", power(peak_w)),
+    ]
+}

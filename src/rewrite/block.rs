@@ -1,0 +1,318 @@
+//! One block at a time: its edits, and the lines before it.
+
+use super::knob_line;
+use super::number::{Style, decimal, feed_again, has_point, with_digit};
+use super::state::{FeedValue, Mark, Written};
+use crate::edit::{Edit, apply};
+use crate::interpret::{Facts, KnobState, Motion};
+use crate::limit::Change;
+use crate::machine::{AXES, AxisValues, KnobTarget, KnobUnit, Machine};
+use crate::source::split_line_end;
+use crate::syntax::Block;
+
+/// A block with what the rewriter must know of it.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockView<'a> {
+    /// The line, line end included.
+    pub text: &'a [u8],
+    /// Its words.
+    pub block: &'a Block,
+    /// What it does.
+    pub facts: &'a Facts,
+    /// The original's modal state before it.
+    pub before: &'a Mark,
+    /// The original's modal state behind it.
+    pub after: &'a Mark,
+    /// The original's limits in force for it; needed where the controller has
+    /// knobs.
+    pub knobs: Option<&'a KnobState>,
+    /// Whether it moves by a rapid, and by a feed.
+    pub rapids: bool,
+    /// See `rapids`.
+    pub feeds: bool,
+    /// What its moves get.
+    pub change: &'a Change,
+}
+
+/// Writes the blocks of one program.
+#[derive(Debug)]
+pub struct Rewriter<'m> {
+    machine: &'m Machine,
+    written: Written,
+    /// Knobs that differ from the original, with their values.
+    turned: Vec<(usize, AxisValues)>,
+    line_end: Vec<u8>,
+    edits: Vec<Edit>,
+    /// Lines changed or inserted so far.
+    pub edited_lines: u64,
+}
+
+impl<'m> Rewriter<'m> {
+    /// Begins a program.
+    #[must_use]
+    pub fn new(machine: &'m Machine) -> Self {
+        Self {
+            machine,
+            written: Written {
+                motion: Motion::None,
+                feed: None,
+            },
+            turned: Vec::new(),
+            line_end: b"\n".to_vec(),
+            edits: Vec::new(),
+            edited_lines: 0,
+        }
+    }
+
+    /// Writes a block to the end of `out`. False when its edits contradict
+    /// each other, which leaves the block as it was.
+    #[must_use]
+    pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
+        let (_, end) = split_line_end(view.text);
+        if !end.is_empty() && end != self.line_end {
+            self.line_end = end.to_vec();
+        }
+        let facts = view.facts;
+        let looked_at =
+            facts.boundary || facts.turns_knob || view.block.tape || view.block.delete_level > 0;
+        if looked_at {
+            self.restore(view.before, view.knobs, out);
+        }
+        if !facts.executed {
+            out.extend_from_slice(view.text);
+            return true;
+        }
+        if view.rapids || view.feeds {
+            self.turn_knobs(view, out);
+        }
+        self.edits.clear();
+        self.motion_word(view);
+        self.feed_word(view);
+        if self.edits.is_empty() {
+            out.extend_from_slice(view.text);
+            return true;
+        }
+        self.edited_lines += 1;
+        apply(view.text, &mut self.edits, out)
+    }
+
+    /// Puts the state right at the end of a program that has no end word.
+    pub fn finish(&mut self, last: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
+        let complete = out.is_empty() || matches!(out.last(), Some(b'\n' | b'\r'));
+        let mut lines = Vec::new();
+        self.restore(last, knobs, &mut lines);
+        if lines.is_empty() {
+            return;
+        }
+        if !complete {
+            // The last line has no end: the new one takes over that habit.
+            out.extend_from_slice(&self.line_end);
+            lines.truncate(lines.len() - self.line_end.len());
+        }
+        out.append(&mut lines);
+    }
+
+    /// The motion word: G1 for a rapid that becomes a feed, and back.
+    fn motion_word(&mut self, view: &BlockView<'_>) {
+        let facts = view.facts;
+        if let Some(word) = facts.motion_word {
+            self.written.motion = view.after.motion;
+            if view.change.as_feed {
+                self.edits.push(Edit::replace(
+                    word.number,
+                    with_digit(word.number.of(view.text), b'1'),
+                ));
+                self.written.motion = Motion::Linear;
+            }
+            return;
+        }
+        if !facts.uses_motion {
+            return;
+        }
+        let wanted = if view.change.as_feed {
+            Motion::Linear
+        } else {
+            view.after.motion
+        };
+        if wanted == self.written.motion {
+            return;
+        }
+        if let (Some(digit), Some(first)) = (wanted.digit(), view.block.words.first()) {
+            let style = Style::of(view.text, view.block);
+            let mut text = vec![style.letter(b'G'), digit];
+            text.extend(style.spaced.then_some(b' '));
+            self.edits.push(Edit::insert(first.span.start, text));
+        }
+        self.written.motion = wanted;
+    }
+
+    /// F: changed, inserted, or put back.
+    fn feed_word(&mut self, view: &BlockView<'_>) {
+        let facts = view.facts;
+        let original = view.after.feed_value();
+        let wanted = match view.change.feed {
+            Some(value) => Some(FeedValue {
+                value,
+                mm_per_unit: view.after.mm_per_unit,
+            }),
+            None => original,
+        };
+        if let Some(word) = facts.feed_word {
+            self.written.feed = original;
+            if let (Some(value), Some(_)) = (view.change.feed, wanted) {
+                let text = decimal(value, has_point(word.number.of(view.text)));
+                self.edits.push(Edit::replace(word.number, text));
+                self.written.feed = wanted;
+            }
+            return;
+        }
+        if view.after.feed.is_none() && view.change.feed.is_none() {
+            // G93, G94 and G95 forget the feed of another meaning.
+            self.written.feed = if view.after.per_minute {
+                self.written.feed
+            } else {
+                None
+            };
+            return;
+        }
+        let counts = facts.uses_motion && (facts.uses_feed || view.change.as_feed);
+        if !counts || wanted == self.written.feed {
+            return;
+        }
+        let number = match (view.change.feed, &view.after.feed) {
+            (Some(value), feed) => decimal(
+                value,
+                feed.as_ref().is_some_and(|feed| has_point(&feed.text)),
+            ),
+            (None, Some(feed)) => feed_again(feed, view.after.mm_per_unit),
+            (None, None) => return,
+        };
+        let style = Style::of(view.text, view.block);
+        let mut text = Vec::with_capacity(number.len() + 2);
+        text.extend(style.spaced.then_some(b' '));
+        text.push(style.letter(b'F'));
+        text.extend_from_slice(number.as_bytes());
+        self.edits.push(Edit::insert(view.block.words_end, text));
+        self.written.feed = wanted;
+    }
+
+    /// Lines before a block that moves: knobs that it needs, and those that it
+    /// must not have.
+    fn turn_knobs(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        let mut wanted: [Option<(usize, AxisValues)>; 2] = [view.change.accel, None];
+        if let Some((knob, percent)) = view.change.rapid_percent {
+            wanted[1] = Some((knob, [percent; AXES]));
+        }
+        for (knob, values) in wanted.into_iter().flatten() {
+            if self.turned.contains(&(knob, values)) {
+                continue;
+            }
+            if let Some(words) = knob_line::words(self.machine, knob, &values) {
+                self.insert_line(&words, out);
+                self.turned.retain(|(turned, _)| *turned != knob);
+                self.turned.push((knob, values));
+            }
+        }
+        let needed = |knob: usize| wanted.iter().flatten().any(|(wanted, _)| *wanted == knob);
+        let superfluous: Vec<usize> = self
+            .turned
+            .iter()
+            .map(|(knob, _)| *knob)
+            .filter(|knob| !needed(*knob) && self.concerns(*knob, view))
+            .collect();
+        for knob in superfluous {
+            self.restore_knob(knob, view.knobs, view.before.mm_per_unit, out);
+        }
+    }
+
+    /// Whether a knob acts on the moves of a block.
+    fn concerns(&self, knob: usize, view: &BlockView<'_>) -> bool {
+        self.machine
+            .controller
+            .knobs
+            .get(knob)
+            .is_some_and(|knob| match knob.target {
+                KnobTarget::FeedAccel => view.feeds,
+                KnobTarget::RapidAccel | KnobTarget::RapidSpeed => view.rapids,
+                KnobTarget::Accel => true,
+            })
+    }
+
+    /// Gives a knob the value that the original has in force.
+    fn restore_knob(
+        &mut self,
+        knob: usize,
+        knobs: Option<&KnobState>,
+        mm_per_unit: f64,
+        out: &mut Vec<u8>,
+    ) {
+        self.turned.retain(|(turned, _)| *turned != knob);
+        let (Some(state), Some(data)) = (knobs, self.machine.controller.knobs.get(knob)) else {
+            return;
+        };
+        let mut values = [0.0; AXES];
+        for axis in self.machine.axis_set.iter() {
+            let Some(own) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let accel = match data.target {
+                KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
+                _ => state.feed_accel_mm_s2[axis],
+            };
+            let linear = own.kind == crate::machine::AxisKind::Linear;
+            values[axis] = tidy(match (data.target, data.unit) {
+                (KnobTarget::RapidSpeed, _) => state.rapid_factor * 100.0,
+                (_, KnobUnit::Percent) => accel / own.accel_mm_s2 * 100.0,
+                (_, KnobUnit::PerSecondSquared) => accel / if linear { mm_per_unit } else { 1.0 },
+            });
+        }
+        if let Some(words) = knob_line::words(self.machine, knob, &values) {
+            self.insert_line(&words, out);
+        }
+    }
+
+    /// A line that gives motion word and feed their original values, and lines
+    /// for the knobs; nothing where they have them.
+    fn restore(&mut self, original: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
+        while let Some((knob, _)) = self.turned.last().copied() {
+            self.restore_knob(knob, knobs, original.mm_per_unit, out);
+        }
+        let mut words = Vec::new();
+        if self.written.motion != original.motion {
+            words.extend(
+                original
+                    .motion
+                    .digit()
+                    .map(|digit| format!("G{}", digit as char)),
+            );
+            self.written.motion = original.motion;
+        }
+        let feed = original.feed_value();
+        if self.written.feed != feed && original.per_minute {
+            words.extend(
+                original
+                    .feed
+                    .as_ref()
+                    .map(|feed| format!("F{}", feed_again(feed, original.mm_per_unit))),
+            );
+            if feed.is_some() {
+                self.written.feed = feed;
+            }
+        }
+        if !words.is_empty() {
+            self.insert_line(&words.join(" "), out);
+        }
+    }
+
+    fn insert_line(&mut self, words: &str, out: &mut Vec<u8>) {
+        out.extend_from_slice(words.as_bytes());
+        out.extend_from_slice(&self.line_end);
+        self.edited_lines += 1;
+    }
+}
+
+/// Takes the rounding of a division off: ten digits.
+fn tidy(value: f64) -> f64 {
+    let rounded = (value * 1e7).round() / 1e7;
+    if rounded.is_finite() { rounded } else { value }
+}

@@ -1,0 +1,47 @@
+//! Lines that turn a knob, such as `G131 = 70` or `M201 X500 Y500`.
+
+use super::number::decimal;
+use crate::machine::{ALL_AXES, AxisValues, Knob, KnobArgument, Machine};
+
+/// The words that give a knob these values for the machine's axes; `None` when
+/// its form cannot say it.
+pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String> {
+    let knob = machine.controller.knobs.get(index)?;
+    let mut axes = machine.axis_set.iter();
+    let first = values[axes.next()?];
+    let uniform = axes.all(|axis| values[axis] == first);
+    match &knob.argument {
+        KnobArgument::Assign if uniform => {
+            Some(format!("{} = {}", code(knob), decimal(first, false)))
+        }
+        KnobArgument::Assign => {
+            by_axis(machine, knob).and_then(|index| words(machine, index, values))
+        }
+        KnobArgument::Axes => {
+            let mut text = code(knob);
+            for axis in machine.axis_set.iter() {
+                text.push(' ');
+                text.push(ALL_AXES[axis].letter() as char);
+                text.push_str(&decimal(values[axis], false));
+            }
+            Some(text)
+        }
+        KnobArgument::Path(_) => None,
+    }
+}
+
+/// The knob of the same target that takes a value for each axis.
+fn by_axis(machine: &Machine, like: &Knob) -> Option<usize> {
+    machine.controller.knobs.iter().position(|knob| {
+        knob.verified
+            && knob.target == like.target
+            && knob.unit == like.unit
+            && knob.argument == KnobArgument::Axes
+    })
+}
+
+/// The word of a knob, such as `G131`.
+pub(super) fn code(knob: &Knob) -> String {
+    let number = f64::from(knob.code.1) / 10.0;
+    format!("{}{number}", knob.code.0 as char)
+}

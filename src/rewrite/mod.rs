@@ -1,0 +1,20 @@
+//! Adjustments to bytes: the fewest edits that give each block its values and
+//! leave the modal state of every other block as it was.
+//!
+//! Input: blocks in program order, each with the modal state before and behind
+//! it and the [`Change`](crate::limit::Change) of its moves. Output: the bytes
+//! of the block, with words changed or inserted and lines inserted before it.
+//! The rewriter never sees watts.
+//!
+//! Two states run side by side: what the original would have in force, and
+//! what the written program has. Where a block depends on a word that differs,
+//! the word is written; where somebody may look at the state (stops, tool
+//! changes, the end, blocks that may be skipped) a line puts it right.
+
+mod block;
+mod knob_line;
+mod number;
+mod state;
+
+pub use block::{BlockView, Rewriter};
+pub use state::Mark;

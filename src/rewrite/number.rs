@@ -1,0 +1,129 @@
+//! Numbers and words in the style of the block around them.
+
+use crate::interpret::Feed;
+use crate::syntax::Block;
+
+/// How a block is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Style {
+    /// Words are separated by blanks.
+    pub(super) spaced: bool,
+    /// Letters are small.
+    pub(super) lower: bool,
+}
+
+impl Style {
+    /// The style of a block; blanks where it has too few words to tell.
+    pub(super) fn of(text: &[u8], block: &Block) -> Self {
+        let first = block
+            .number
+            .iter()
+            .chain(&block.words)
+            .map(|word| word.span)
+            .next();
+        let start = first.map_or(0, |span| span.start as usize);
+        let words = text
+            .get(start..block.words_end as usize)
+            .unwrap_or_default();
+        let single = block.words.len() + usize::from(block.number.is_some()) < 2;
+        Self {
+            spaced: single || words.iter().any(|byte| matches!(byte, b' ' | b'\t')),
+            lower: words.first().is_some_and(u8::is_ascii_lowercase),
+        }
+    }
+
+    /// A letter in the style of the block.
+    pub(super) fn letter(self, letter: u8) -> u8 {
+        if self.lower {
+            letter.to_ascii_lowercase()
+        } else {
+            letter
+        }
+    }
+}
+
+/// A number as decimals, never with an exponent; `point`: with a decimal point
+/// even when it is whole.
+pub(super) fn decimal(value: f64, point: bool) -> String {
+    let mut text = value.to_string();
+    if point && !text.contains('.') {
+        text.push('.');
+    }
+    text
+}
+
+/// True for a number that was written with a decimal point.
+pub(super) fn has_point(text: &[u8]) -> bool {
+    text.contains(&b'.')
+}
+
+/// The text that puts a feed back in force under another or the same unit.
+pub(super) fn feed_again(feed: &Feed, mm_per_unit: f64) -> String {
+    if feed.mm_per_unit == mm_per_unit && !feed.text.is_empty() {
+        return feed
+            .text
+            .iter()
+            .map(|byte| char::from(*byte))
+            .filter(|c| !c.is_whitespace())
+            .collect();
+    }
+    let value = feed.value * feed.mm_per_unit / mm_per_unit;
+    // Down in the twelfth digit: a feed never goes up.
+    let scale = libm::pow(
+        10.0,
+        (11.0 - libm::floor(libm::log10(value))).clamp(0.0, 15.0),
+    )
+    .round();
+    decimal((value * scale).floor() / scale, has_point(&feed.text))
+}
+
+/// A number like `0`, `00` or `0.` with its last digit before the point set.
+pub(super) fn with_digit(number: &[u8], digit: u8) -> Vec<u8> {
+    let mut text = number.to_vec();
+    let whole = text
+        .iter()
+        .position(|byte| *byte == b'.')
+        .unwrap_or(text.len());
+    match text
+        .get_mut(..whole)
+        .and_then(|digits| digits.iter_mut().rev().find(|byte| byte.is_ascii_digit()))
+    {
+        Some(last) => *last = digit,
+        None => text.insert(whole, digit),
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_keep_the_point() {
+        assert_eq!(decimal(83.333, false), "83.333");
+        assert_eq!(decimal(800.0, false), "800");
+        assert_eq!(decimal(800.0, true), "800.");
+        assert_eq!(decimal(1e21, false), "1000000000000000000000");
+        assert_eq!(decimal(1e-7, false), "0.0000001");
+    }
+
+    #[test]
+    fn motion_digits() {
+        assert_eq!(with_digit(b"0", b'1'), b"1");
+        assert_eq!(with_digit(b"00", b'1'), b"01");
+        assert_eq!(with_digit(b"0.", b'1'), b"1.");
+        assert_eq!(with_digit(b"0.0", b'1'), b"1.0");
+        assert_eq!(with_digit(b".0", b'1'), b"1.0");
+    }
+
+    #[test]
+    fn a_feed_comes_back_as_it_was_written() {
+        let feed = Feed {
+            value: 1000.0,
+            mm_per_unit: 1.0,
+            text: b"1000.".iter().copied().collect(),
+        };
+        assert_eq!(feed_again(&feed, 1.0), "1000.");
+        assert_eq!(feed_again(&feed, 25.4), "39.3700787401");
+    }
+}
