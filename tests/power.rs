@@ -340,6 +340,38 @@ proptest! {
     }
 
     #[test]
+    fn wanting_less_changes_no_peak_of_interest(
+        machine in any_machine(), delta in any_delta(), feed in any_feed(),
+        shape in any_arc(), floors in [0.0..2.0_f64, 0.0..2.0_f64],
+    ) {
+        let (plane, radius, angles, lift, arc_feed) = shape;
+        let model = PowerModel::new(&machine);
+        for mv in [
+            straight(&machine, &delta, feed),
+            arc(&machine, plane, radius, angles, lift, arc_feed),
+        ] {
+            let plan = plan(&machine, &mv, Overrides::default());
+            let all = model.demand(&mv, &plan, Want::ALL);
+            let peaks = model.demand(&mv, &plan, Want::PEAKS);
+            prop_assert!((peaks.peak_w - all.peak_w).abs() <= 1e-12 * all.peak_w);
+            prop_assert!((peaks.regen_w - all.regen_w).abs() <= 1e-12 * all.peak_w);
+            let want = Want {
+                energy: false,
+                floor_w: floors[0] * all.peak_w,
+                regen_floor_w: floors[1] * all.regen_w,
+            };
+            let pruned = model.demand(&mv, &plan, want);
+            for (found, exact, floor) in [
+                (pruned.peak_w, all.peak_w, want.floor_w),
+                (pruned.regen_w, all.regen_w, want.regen_floor_w),
+            ] {
+                prop_assert!(found >= exact * (1.0 - 1e-6) || exact <= floor);
+                prop_assert!(found <= (exact * (1.0 + 1e-6)).max(floor) + 1e-9 * all.peak_w);
+            }
+        }
+    }
+
+    #[test]
     fn the_energy_balance_closes(
         machine in any_machine(), delta in any_delta(), feed in any_feed(),
         independent in any::<bool>(),

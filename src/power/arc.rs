@@ -36,7 +36,7 @@ pub(super) fn totals(
     let circle = Circle::new(model, converter, mv, arc, idle_w);
     let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
     let mut peak = Search::new(idle_w, want.floor_w);
-    let mut regen = Search::new(0.0, 0.0);
+    let mut regen = Search::new(0.0, want.regen_floor_w);
     for phase in &profile.phases {
         circle.search(phase, Side::Motor, &mut peak);
     }
