@@ -15,8 +15,10 @@ pub struct Permit {
     pub as_feed: bool,
     /// Why not, for a person; empty when all is permitted.
     pub reason: &'static str,
-    /// Millimetres in one program unit, for F and for knobs.
+    /// Millimetres in one program unit, for an F in the block.
     pub mm_per_unit: f64,
+    /// The same for knobs, on a line before the block.
+    pub knob_mm_per_unit: f64,
     /// The F in force in program units, if there is one.
     pub feed_before: Option<f64>,
     /// Acceleration limits of feed moves in force, for a rapid that is written
@@ -87,8 +89,13 @@ impl Change {
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
             for axis in machine.axis_set.iter() {
-                changed.accel_mm_s2[axis] =
-                    knob_accel(machine, knob.unit, axis, values[axis], permit.mm_per_unit);
+                changed.accel_mm_s2[axis] = knob_accel(
+                    machine,
+                    knob.unit,
+                    axis,
+                    values[axis],
+                    permit.knob_mm_per_unit,
+                );
             }
         }
         changed

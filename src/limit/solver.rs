@@ -244,7 +244,7 @@ impl<'m> Solver<'m> {
                 data.unit,
                 axis,
                 accel_mm_s2[axis],
-                permit.mm_per_unit,
+                permit.knob_mm_per_unit,
             );
             // A value that is a step already must not fall by rounding.
             values[axis] = round_to_step(value * (1.0 + 1e-12), data.step);

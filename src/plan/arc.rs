@@ -80,6 +80,20 @@ pub(super) fn plane_share(mv: &Move, arc: &Arc) -> f64 {
     arc.radius_mm * arc.sweep_rad.abs() / mv.length_mm
 }
 
+/// Path speed that the axes' own speeds permit.
+pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
+    let share = plane_share(mv, arc);
+    let ranges = tangent_ranges(arc);
+    let per_axis = limits::moving(machine, mv).map(|(axis, limit)| {
+        let part = match arc.plane.iter().position(|&plane| plane == axis) {
+            Some(i) => share * ranges[i].largest(),
+            None => (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm,
+        };
+        limit.rapid_mm_s / part
+    });
+    per_axis.fold(f64::INFINITY, f64::min)
+}
+
 /// What the axes and the arc rule permit.
 pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> PathLimits {
     let share = plane_share(mv, arc);
