@@ -18,7 +18,7 @@ use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 
 /// Bytes of a piece that is handed to the certifier.
-const BATCH_BYTES: usize = 64 * 1024;
+const BATCH_BYTES: usize = 8 * 1024;
 
 /// What the writing half comes to.
 pub(super) struct Written {
