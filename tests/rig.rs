@@ -182,16 +182,16 @@ pub(crate) enum Reading {
 /// Speed and acceleration of an axis on a path, in its own unit.
 fn on_path(mv: &Move, axis: usize, phase: &Phase, t: f64) -> (f64, f64) {
     let s = phase.state_at(t);
-    if let Some(arc) = mv.arc {
-        if let Some(which) = arc.plane.iter().position(|&p| p == axis) {
-            let turn = arc.sweep_rad / mv.length_mm;
-            let angle = arc.start_angle_rad + turn * s.position_mm;
-            let (sin, cos) = libm::sincos(angle);
-            let (tangent, normal) = [(-sin, -cos), (cos, -sin)][which];
-            let r = arc.radius_mm;
-            let (w, alpha) = (turn * s.velocity_mm_s, turn * s.accel_mm_s2);
-            return (r * w * tangent, r * (alpha * tangent + w * w * normal));
-        }
+    if let Some(arc) = mv.arc
+        && let Some(which) = arc.plane.iter().position(|&p| p == axis)
+    {
+        let turn = arc.sweep_rad / mv.length_mm;
+        let angle = arc.start_angle_rad + turn * s.position_mm;
+        let (sin, cos) = libm::sincos(angle);
+        let (tangent, normal) = [(-sin, -cos), (cos, -sin)][which];
+        let r = arc.radius_mm;
+        let (w, alpha) = (turn * s.velocity_mm_s, turn * s.accel_mm_s2);
+        return (r * w * tangent, r * (alpha * tangent + w * w * normal));
     }
     let u = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
     (u * s.velocity_mm_s, u * s.accel_mm_s2)
@@ -221,9 +221,8 @@ fn power_on_path(
         let (v, a) = (v * k, a * k);
         let direction = on_path(mv, i, phase, sign_t).0.signum();
         let (factor, friction) = match reading {
-            Reading::Nominal => (1.0, 1.0),
             Reading::Motor if a * direction > 0.0 => (axis.servo_factor_motor, 1.0),
-            Reading::Motor => (1.0, 1.0),
+            Reading::Nominal | Reading::Motor => (1.0, 1.0),
             Reading::Regen if a * direction > 0.0 => (1.0, axis.friction_min_ratio),
             Reading::Regen => (axis.servo_factor_regen, axis.friction_min_ratio),
         };
