@@ -143,6 +143,10 @@ impl<'m> Solver<'m> {
             _ => base.feed_mm_s.min(1e6),
         };
         let load_top = load_at(lever, top);
+        if load_top <= 1.0 && lever != SpeedLever::AsFeed {
+            // The speed in force fits: no word is needed.
+            return Some(trial);
+        }
         let value = if load_top <= 1.0 {
             top
         } else {
@@ -295,7 +299,10 @@ impl<'m> Solver<'m> {
         }
         Err(Obstacle::new(
             "feed-floor",
-            format!("it would need F{feed}, below the floor of F{floor:.5} in [limits]"),
+            format!(
+                "it would need F{feed}, below the floor of F{} in [limits]",
+                (floor * 1e3).round() / 1e3
+            ),
             "lower min_feed_mm_min or min_feed_ratio, or use a word for acceleration",
         ))
     }
@@ -329,6 +336,13 @@ impl<'m> Solver<'m> {
                 "feed-not-allowed",
                 "cutting feeds are not changed without permission",
                 help,
+            );
+        }
+        if !mv.unknown_start.is_empty() {
+            return Obstacle::new(
+                "no-knob",
+                "the rapid may not be written as a feed: where it starts is not known",
+                "give --start X…,Y…,Z…, or write the move as a feed by hand",
             );
         }
         let message = if permit.reason.is_empty() {

@@ -110,6 +110,10 @@ impl Entry {
         let feed = [
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
             (
+                self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
+                "no F is in force that could be put back",
+            ),
+            (
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",
             ),
