@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use arrayvec::ArrayVec;
 
-use super::change::{Change, feed_unit, knob_accel, round_feed_down};
+use super::change::{Change, feed_unit, round_feed_down};
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::Slot;
 use super::options::Strategy;
@@ -286,25 +286,6 @@ fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValu
     };
     slot.change.accel = Some((knob, values));
     slot.changed = slot.change.apply(solver.machine, &slot.mv, &slot.permit);
-    let unit = solver
-        .machine
-        .controller
-        .knobs
-        .get(knob)
-        .map(|knob| knob.unit);
-    debug_assert!(
-        solver
-            .machine
-            .axis_set
-            .iter()
-            .all(|axis| unit.is_some_and(|unit| knob_accel(
-                solver.machine,
-                unit,
-                axis,
-                values[axis],
-                slot.permit.knob_mm_per_unit
-            ) <= accel[axis] * (1.0 + 1e-9)))
-    );
     true
 }
 

@@ -6,7 +6,7 @@ use super::state::{FeedValue, Mark, Written};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobTarget, KnobUnit, Machine};
+use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
@@ -267,11 +267,9 @@ impl<'m> Rewriter<'m> {
                 KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
                 _ => state.feed_accel_mm_s2[axis],
             };
-            let linear = own.kind == crate::machine::AxisKind::Linear;
-            values[axis] = tidy(match (data.target, data.unit) {
-                (KnobTarget::RapidSpeed, _) => state.rapid_factor * 100.0,
-                (_, KnobUnit::Percent) => accel / own.accel_mm_s2 * 100.0,
-                (_, KnobUnit::PerSecondSquared) => accel / if linear { mm_per_unit } else { 1.0 },
+            values[axis] = tidy(match data.target {
+                KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
+                _ => data.unit.value(own, accel, mm_per_unit),
             });
         }
         if let Some(words) = knob_line::words(self.machine, knob, &values) {
