@@ -1,8 +1,11 @@
 //! Tests.
 
+mod layers;
 mod syntax;
 mod plan;
 mod power;
 mod rig;
 mod limit;
 mod machine;
+mod cli;
+mod readme;

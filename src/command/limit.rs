@@ -16,6 +16,9 @@ use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
 use crate::cli::{Allow, LimitArgs};
 
+/// Bytes that go to the spool at once.
+const SPOOL_BYTES: usize = 1 << 16;
+
 /// Writes a program that fits.
 pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     let mut program = Program::new(&args.program);
@@ -28,7 +31,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     setup.options.certificate = args.certificate.map(Into::into);
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
-    let mut spool = BufWriter::new(target(args)?.spool()?);
+    let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args)?.spool()?);
 
     let done = (|| {
         if args.dry_run {

@@ -143,7 +143,9 @@ impl Words {
                     .contains(&number)
                     .then_some(GCode::Ignored)
             };
-            g_code(number).or_else(ignored).map(|code| (code, number))
+            g_code(number, controller.language.family)
+                .or_else(ignored)
+                .map(|code| (code, number))
         });
         let Some((code, number)) = known else {
             report.refused_g(word);
@@ -223,7 +225,10 @@ impl Words {
     /// Axis letters that no code has used, with values.
     #[inline]
     pub(super) fn axes(&self) -> Axes<'_> {
-        Axes { letters: self.unused & AXIS_LETTERS, values: &self.values }
+        Axes {
+            letters: self.unused & AXIS_LETTERS,
+            values: &self.values,
+        }
     }
 
     /// True when an axis letter is left.

@@ -1,7 +1,7 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisKind, AxisValues, KnobUnit, Machine};
+use crate::machine::{AxisKind, AxisValues, Machine};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.
@@ -40,10 +40,34 @@ pub struct Change {
 }
 
 impl Change {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        feed: None,
+        as_feed: false,
+        rapid_percent: None,
+        accel: None,
+    };
+
+    /// The lower value of each word, for a block with several moves.
+    #[must_use]
+    pub fn lower(&self, other: &Self) -> Self {
+        let lower = |a: f64, b: f64| a.min(b);
+        Self {
+            feed: either(self.feed, other.feed, lower),
+            as_feed: self.as_feed || other.as_feed,
+            rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
+                (a.0, a.1.min(b.1))
+            }),
+            accel: either(self.accel, other.accel, |a, b| {
+                (a.0, std::array::from_fn(|axis| a.1[axis].min(b.1[axis])))
+            }),
+        }
+    }
+
     /// True when nothing is changed.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        *self == Self::default()
+        *self == Self::NONE
     }
 
     /// The move as the controller will run it, computed as the interpreter
@@ -65,16 +89,22 @@ impl Change {
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
             for axis in machine.axis_set.iter() {
-                changed.accel_mm_s2[axis] = knob_accel(
-                    machine,
-                    knob.unit,
-                    axis,
-                    values[axis],
-                    permit.knob_mm_per_unit,
-                );
+                if let Some(data) = &machine.axes[axis] {
+                    changed.accel_mm_s2[axis] =
+                        knob.unit
+                            .accel_mm_s2(data, values[axis], permit.knob_mm_per_unit);
+                }
             }
         }
         changed
+    }
+}
+
+/// One of two values, or both put together.
+fn either<T>(a: Option<T>, b: Option<T>, both: impl FnOnce(T, T) -> T) -> Option<T> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(both(a, b)),
+        (a, b) => a.or(b),
     }
 }
 
@@ -90,54 +120,6 @@ pub(super) fn feed_unit(machine: &Machine, mv: &Move, permit: &Permit) -> f64 {
         .iter()
         .any(|axis| machine.axes[axis].is_some_and(|data| data.kind == AxisKind::Linear));
     if linear { permit.mm_per_unit } else { 1.0 }
-}
-
-/// Acceleration limit in mm/s² (degrees/s²) that a knob's value means.
-pub(super) fn knob_accel(
-    machine: &Machine,
-    unit: KnobUnit,
-    axis: usize,
-    value: f64,
-    mm_per_unit: f64,
-) -> f64 {
-    let Some(data) = &machine.axes[axis] else {
-        return 0.0;
-    };
-    match unit {
-        KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
-        KnobUnit::PerSecondSquared => {
-            value
-                * if data.kind == AxisKind::Linear {
-                    mm_per_unit
-                } else {
-                    1.0
-                }
-        }
-    }
-}
-
-/// The value of a knob that means this acceleration limit.
-pub(super) fn knob_value(
-    machine: &Machine,
-    unit: KnobUnit,
-    axis: usize,
-    accel: f64,
-    mm_per_unit: f64,
-) -> f64 {
-    let Some(data) = &machine.axes[axis] else {
-        return 0.0;
-    };
-    match unit {
-        KnobUnit::Percent => accel / data.accel_mm_s2 * 100.0,
-        KnobUnit::PerSecondSquared => {
-            accel
-                / if data.kind == AxisKind::Linear {
-                    mm_per_unit
-                } else {
-                    1.0
-                }
-        }
-    }
 }
 
 /// Rounds a feed down to five significant digits (a loss of 1e-4 at most).

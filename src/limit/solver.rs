@@ -1,6 +1,6 @@
 //! One move by itself: the change that makes it fit.
 
-use super::change::{Change, Permit, feed_unit, knob_value, round_feed_down, round_to_step};
+use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
@@ -243,13 +243,12 @@ impl<'m> Solver<'m> {
         let data = self.machine.controller.knobs.get(knob)?;
         let mut values = [0.0; crate::machine::AXES];
         for axis in self.machine.axis_set.iter() {
-            let value = knob_value(
-                self.machine,
-                data.unit,
-                axis,
-                accel_mm_s2[axis],
-                permit.knob_mm_per_unit,
-            );
+            let Some(own) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let value = data
+                .unit
+                .value(own, accel_mm_s2[axis], permit.knob_mm_per_unit);
             // A value that is a step already must not fall by rounding.
             values[axis] = round_to_step(value * (1.0 + 1e-12), data.step);
             if values[axis] < data.min || values[axis] <= 0.0 {

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use arrayvec::ArrayVec;
 
-use super::change::{Change, feed_unit, knob_accel, round_feed_down};
+use super::change::{Change, feed_unit, round_feed_down};
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::Slot;
 use super::options::Strategy;
@@ -45,7 +45,7 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
             assessment: &slot.assessment,
             permit: &slot.permit,
         };
-        slot.outcome.obstacle = Some(obstacle(solver, case));
+        slot.obstacle = Some(obstacle(solver, case));
     }
 }
 
@@ -216,7 +216,7 @@ fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f
     let change = Change {
         feed: Some(feed),
         as_feed: lever == SpeedLever::AsFeed,
-        ..slot.outcome.change
+        ..slot.change
     };
     let case = Case {
         mv: &slot.mv,
@@ -224,11 +224,11 @@ fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f
         permit: &slot.permit,
     };
     if let Err(obstacle) = solver.respect_floor(case, &change) {
-        slot.outcome.obstacle = Some(obstacle);
+        slot.obstacle = Some(obstacle);
         return false;
     }
     slot.changed = change.apply(solver.machine, &slot.mv, &slot.permit);
-    slot.outcome.change = change;
+    slot.change = change;
     true
 }
 
@@ -284,30 +284,8 @@ fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValu
     let Some(values) = solver.knob_values(knob, accel, &slot.permit) else {
         return false;
     };
-    slot.outcome.change.accel = Some((knob, values));
-    slot.changed = slot
-        .outcome
-        .change
-        .apply(solver.machine, &slot.mv, &slot.permit);
-    let unit = solver
-        .machine
-        .controller
-        .knobs
-        .get(knob)
-        .map(|knob| knob.unit);
-    debug_assert!(
-        solver
-            .machine
-            .axis_set
-            .iter()
-            .all(|axis| unit.is_some_and(|unit| knob_accel(
-                solver.machine,
-                unit,
-                axis,
-                values[axis],
-                slot.permit.knob_mm_per_unit
-            ) <= accel[axis] * (1.0 + 1e-9)))
-    );
+    slot.change.accel = Some((knob, values));
+    slot.changed = slot.change.apply(solver.machine, &slot.mv, &slot.permit);
     true
 }
 
@@ -319,18 +297,15 @@ fn faster_of_both(
     found: &[Levers],
     by_speed: bool,
 ) -> bool {
-    let before: Vec<_> = range
-        .iter()
-        .copied()
-        .map(|index| (slots[index].changed.clone(), slots[index].outcome.clone()))
-        .collect();
-    let restore = |slots: &mut VecDeque<Slot>,
-                   states: &[(crate::interpret::Move, super::Outcome)]| {
-        for (index, (changed, outcome)) in range.iter().copied().zip(states) {
-            slots[index].changed.clone_from(changed);
-            slots[index].outcome.clone_from(outcome);
+    let save = |slots: &VecDeque<Slot>| -> Vec<Slot> {
+        range.iter().map(|index| slots[*index].clone()).collect()
+    };
+    let restore = |slots: &mut VecDeque<Slot>, saved: Vec<Slot>| {
+        for (index, slot) in range.iter().zip(saved) {
+            slots[*index] = slot;
         }
     };
+    let before = save(slots);
     let accel_done = lower_accel(solver, slots, range, found);
     if !by_speed {
         return accel_done;
@@ -340,17 +315,13 @@ fn faster_of_both(
     } else {
         f64::INFINITY
     };
-    let accel_state: Vec<_> = range
-        .iter()
-        .copied()
-        .map(|index| (slots[index].changed.clone(), slots[index].outcome.clone()))
-        .collect();
-    restore(slots, &before);
+    let by_accel = save(slots);
+    restore(slots, before.clone());
     let speed_done = lower_speed(solver, slots, range, found);
     if speed_done && time(solver, slots, range) < accel_time {
         return true;
     }
-    restore(slots, if accel_done { &accel_state } else { &before });
+    restore(slots, if accel_done { by_accel } else { before });
     accel_done
 }
 

@@ -5,14 +5,11 @@
 //! actions are the original's, (c) no effective path speed or acceleration
 //! went up, (d) the effective feed of each untouched move is what it was.
 
-use std::collections::VecDeque;
-
-use super::tally::{Tally, row};
+use super::tally::Tally;
 use super::{Failure, Options, Row, RowSink, Summary};
-use crate::diagnostic::Diagnostic;
-use crate::interpret::{Action, Diagnostics, Interpreter, Move, MoveKind, Step};
-use crate::limit::Change;
-use crate::machine::Machine;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::interpret::{Action, Arc, Diagnostics, Interpreter, Move, MoveKind, Step};
+use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::source::{Span, lines};
 use crate::syntax::{Block, scan_line};
@@ -31,16 +28,29 @@ pub(super) enum Expected {
     Action(Action),
 }
 
-/// A move of the original with what was decided for it.
-#[derive(Debug, Clone)]
+/// A move of the original, as far as the written one must equal it. It starts
+/// where the one before ends.
+#[derive(Debug)]
 pub(super) struct ExpectedMove {
-    pub(super) mv: Move,
-    pub(super) assessment: Assessment,
-    pub(super) change: Change,
-    /// The F in force in program units.
-    pub(super) feed_before: Option<f64>,
+    pub(super) line: u64,
+    pub(super) kind: MoveKind,
+    pub(super) end: AxisValues,
+    pub(super) arc: Option<Arc>,
+    pub(super) unknown_start: AxisSet,
+    pub(super) path_mode: PathMode,
+    pub(super) loads: u32,
+    pub(super) dwell_s: f64,
+    pub(super) axis_accel_mm_s2: AxisValues,
+    /// Effective path speed and acceleration.
+    pub(super) speed_mm_s: f64,
+    pub(super) accel_mm_s2: f64,
+    /// Its block has been changed; a rapid was written as a feed.
+    pub(super) changed: bool,
+    pub(super) as_feed: bool,
     /// It does not fit and could not be helped; the reason has been given.
     pub(super) hopeless: bool,
+    /// Its row, where rows are wanted.
+    pub(super) row: Option<Box<Row>>,
 }
 
 /// A piece of the written program with what it must do.
@@ -53,20 +63,25 @@ pub(super) struct Batch {
 
 /// Reads the written program.
 pub(super) struct Certifier<'m, 'r> {
-    machine: &'m Machine,
-    model: PowerModel,
     interpreter: Interpreter<'m>,
     diagnostics: Diagnostics,
     assessor: Assessor<'m>,
-    tally: Tally<'m, 'r>,
     block: Block,
     steps: Vec<Step>,
     line: u64,
-    /// Original moves whose written twins have not been judged yet.
-    pending: VecDeque<ExpectedMove>,
+    verdict: Verdict<'m, 'r>,
+}
+
+/// Holds the written program against the original.
+struct Verdict<'m, 'r> {
+    model: PowerModel,
+    tally: Tally<'m, 'r>,
+    /// What the original does, from the first move that is not judged.
+    expected: Vec<Expected>,
+    /// How much of it the written program has done, and how much is judged.
+    done: usize,
+    judged: usize,
     reasons: Reasons,
-    /// Time of the original so far, s.
-    start_s: f64,
 }
 
 /// Why the certificate does not hold: the first reasons in full.
@@ -109,163 +124,159 @@ impl<'m, 'r> Certifier<'m, 'r> {
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
-        let want = if rows.is_some() {
-            Want::ALL
-        } else {
-            Want::PEAKS
-        };
         Self {
-            machine,
-            model: PowerModel::new(machine),
             interpreter: Interpreter::new(machine, options.start, options.block_delete),
             diagnostics: Diagnostics::default(),
-            assessor: Assessor::new(machine, options.certificate, want),
-            tally: Tally::new(machine, options, rows),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL),
             block: Block::default(),
             steps: Vec::new(),
             line: 0,
-            pending: VecDeque::new(),
-            reasons: Reasons::default(),
-            start_s: 0.0,
+            verdict: Verdict {
+                model: PowerModel::new(machine),
+                tally: Tally::new(machine, options, rows),
+                expected: Vec::new(),
+                done: 0,
+                judged: 0,
+                reasons: Reasons::default(),
+            },
         }
     }
 
-    /// Takes the next piece.
+    /// Takes the next piece and leaves its buffers empty.
     pub(super) fn take(&mut self, batch: &mut Batch) -> Result<(), Failure> {
-        let mut expected = batch.expected.drain(..);
+        self.verdict.refill(&mut batch.expected);
         for text in lines(&batch.bytes) {
             self.line += 1;
             scan_line(text, self.line == 1, &mut self.block);
             self.steps.clear();
-            self.interpreter.execute(
-                self.line,
-                text,
-                &self.block,
-                &mut self.steps,
-                &mut self.diagnostics,
-            );
-            for step in &self.steps {
-                let Self {
-                    assessor,
-                    tally,
-                    pending,
-                    reasons,
-                    model,
-                    machine,
-                    start_s,
-                    ..
-                } = self;
-                match (step, expected.next()) {
-                    (Step::Move(mv), Some(Expected::Move(original))) => {
-                        if let Some(message) = different(&original, mv) {
-                            reasons.push(original.mv.line, "changed-motion", message, BUG, text);
-                        }
-                        pending.push_back(original);
-                        assessor.want.floor_w = tally.floor_w();
-                        assessor.push(mv, text, &mut |mv, assessment, text| {
-                            if let Some(original) = pending.pop_front() {
-                                compare(model, &original, mv, assessment, text, reasons);
-                                let row =
-                                    after_row(machine, model, &original, assessment, *start_s);
-                                tally.write(&row);
-                                *start_s += original.assessment.duration_s;
-                            }
-                            tally.add(mv, assessment, text);
-                        });
-                    }
-                    (Step::Action(action), Some(Expected::Action(original)))
-                        if action.kind == original.kind && action.value == original.value => {}
-                    (_, original) => {
-                        let line = match original {
-                            Some(Expected::Move(original)) => original.mv.line,
-                            Some(Expected::Action(original)) => original.line,
-                            None => 0,
-                        };
-                        let message =
-                            "the written program does something else than the original".to_owned();
-                        reasons.push(line, "changed-sequence", message, BUG, text);
-                    }
+            let Self {
+                interpreter,
+                diagnostics,
+                assessor,
+                block,
+                steps,
+                verdict,
+                ..
+            } = self;
+            interpreter.execute(self.line, text, block, steps, diagnostics);
+            for step in &*steps {
+                verdict.compare_step(step, text);
+                if let Step::Move(mv) = step {
+                    assessor.want = verdict.tally.want();
+                    assessor.push(mv, text, &mut |mv, after, text| {
+                        verdict.judge(mv, after, text);
+                    });
                 }
             }
         }
-        if expected.next().is_some() {
+        batch.bytes.clear();
+        if self.verdict.done < self.verdict.expected.len() {
             let message = "the written program leaves something out".to_owned();
-            self.reasons.push(0, "changed-sequence", message, BUG, b"");
+            self.verdict
+                .reasons
+                .push(0, "changed-sequence", message, BUG, b"");
         }
-        self.tally.check()
+        self.verdict.tally.check()
     }
 
     /// Judges what is left and gives the figures.
     pub(super) fn finish(mut self) -> Result<Certified, Failure> {
         let Self {
-            assessor,
-            tally,
-            pending,
-            reasons,
-            model,
-            machine,
-            start_s,
-            ..
+            assessor, verdict, ..
         } = &mut self;
-        assessor.finish(&mut |mv, assessment, text| {
-            if let Some(original) = pending.pop_front() {
-                compare(model, &original, mv, assessment, text, reasons);
-                tally.write(&after_row(machine, model, &original, assessment, *start_s));
-                *start_s += original.assessment.duration_s;
+        assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+        let Verdict {
+            mut tally,
+            mut reasons,
+            ..
+        } = self.verdict;
+        tally.check()?;
+        for found in &self.diagnostics.list {
+            if found.severity == Severity::Error {
+                let message = format!("the written program cannot be read: {}", found.message);
+                reasons.push(found.line, "unreadable-output", message, BUG, &found.text);
             }
-            tally.add(mv, assessment, text);
-        });
-        self.tally.check()?;
-        for diagnostic in self
-            .diagnostics
-            .list
-            .iter()
-            .filter(|it| it.severity == crate::diagnostic::Severity::Error)
-        {
-            let message = format!("the written program cannot be read: {}", diagnostic.message);
-            self.reasons.push(
-                diagnostic.line,
-                "unreadable-output",
-                message,
-                BUG,
-                &diagnostic.text,
-            );
         }
-        let mut summary = self.tally.finish();
+        let mut summary = tally.finish(false);
         summary.lines = self.line;
-        Ok(Certified {
-            summary,
-            reasons: self.reasons,
-        })
+        Ok(Certified { summary, reasons })
+    }
+}
+
+impl Verdict<'_, '_> {
+    /// Forgets what is judged and takes more.
+    fn refill(&mut self, more: &mut Vec<Expected>) {
+        self.expected.drain(..self.judged.min(self.expected.len()));
+        self.done = self.expected.len();
+        self.judged = 0;
+        self.expected.append(more);
+    }
+
+    /// (b): the step must be the original's next one.
+    fn compare_step(&mut self, step: &Step, text: &[u8]) {
+        let original = self.expected.get(self.done);
+        self.done += 1;
+        let message = match (step, original) {
+            (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
+            (Step::Action(action), Some(Expected::Action(original)))
+                if action.kind == original.kind && action.value == original.value =>
+            {
+                None
+            }
+            _ => Some("something else than the original"),
+        };
+        let Some(message) = message else { return };
+        let line = match original {
+            Some(Expected::Move(original)) => original.line,
+            Some(Expected::Action(original)) => original.line,
+            None => 0,
+        };
+        let message = format!("the written program has {message} here");
+        self.reasons
+            .push(line, "changed-sequence", message, BUG, text);
+    }
+
+    /// (a), (c) and (d): the written move is judged.
+    fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
+        while matches!(self.expected.get(self.judged), Some(Expected::Action(_))) {
+            self.judged += 1;
+        }
+        if let Some(Expected::Move(original)) = self.expected.get_mut(self.judged) {
+            compare(&self.model, original, mv, after, text, &mut self.reasons);
+            if let Some(row) = &mut original.row {
+                row.peak_after_w = Some(after.demand.peak_w);
+                row.regen_after_w = Some(after.demand.regen_w);
+                row.duration_after_s = Some(after.duration_s);
+                self.tally.write(row);
+            }
+        }
+        self.judged += 1;
+        self.tally.add(mv, after, text);
     }
 }
 
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
 
-/// (b): what differs in the geometry of two moves, if anything.
-fn different(original: &ExpectedMove, mv: &Move) -> Option<String> {
-    let before = &original.mv;
-    let same_kind = before.kind == mv.kind
-        || original.change.as_feed && before.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
-    let message = if !same_kind {
-        "another kind of move"
-    } else if before.start != mv.start
-        || before.end != mv.end
-        || before.unknown_start != mv.unknown_start
-    {
-        "another start or end point"
-    } else if before.arc != mv.arc {
-        "another arc"
-    } else if before.dwell_s != mv.dwell_s {
-        "another dwell"
-    } else if before.path_mode != mv.path_mode {
-        "another path mode"
-    } else if before.loads != mv.loads {
-        "other switched loads"
-    } else {
-        return None;
-    };
-    Some(format!("the written program has {message} here"))
+/// What differs in two moves, if anything.
+fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
+    let same_kind = original.kind == mv.kind
+        || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
+    let checks = [
+        (same_kind, "another kind of move"),
+        (original.end == mv.end, "another end point"),
+        (
+            original.unknown_start == mv.unknown_start,
+            "another start point",
+        ),
+        (original.arc == mv.arc, "another arc"),
+        (original.dwell_s == mv.dwell_s, "another dwell"),
+        (original.path_mode == mv.path_mode, "another path mode"),
+        (original.loads == mv.loads, "other switched loads"),
+    ];
+    checks
+        .into_iter()
+        .find(|(same, _)| !same)
+        .map(|(_, message)| message)
 }
 
 /// (a), (c) and (d) for one move.
@@ -277,119 +288,35 @@ fn compare(
     text: &[u8],
     reasons: &mut Reasons,
 ) {
-    let before = &original.assessment;
-    let line = original.mv.line;
+    let line = original.line;
     if !model.fits(&after.demand) && !original.hopeless {
+        let limit_w = model.limit_w(after.demand.converter);
         let message = format!(
-            "the block still needs {:.1} W of {:.1} W",
-            after.demand.peak_w,
-            model.limit_w(after.demand.converter)
+            "the block still needs {:.1} W of {limit_w:.1} W",
+            after.demand.peak_w
         );
-        reasons.push(
-            line,
-            "does-not-fit",
-            message,
-            "another strategy, or --allow feed, may help",
-            text,
-        );
+        let help = "another strategy, or --allow feed, may help";
+        reasons.push(line, "does-not-fit", message, help, text);
     }
     let rises = |before: f64, after: f64| after > before * (1.0 + ROUNDING);
-    let axes_rise = mv.moving.iter().any(|axis| {
-        !original.change.as_feed && rises(original.mv.accel_mm_s2[axis], mv.accel_mm_s2[axis])
-    });
-    if rises(before.speed_mm_s, after.speed_mm_s)
-        || rises(before.accel_mm_s2, after.accel_mm_s2)
-        || axes_rise
+    let axis_rises = !original.as_feed
+        && mv
+            .moving
+            .iter()
+            .any(|axis| rises(original.axis_accel_mm_s2[axis], mv.accel_mm_s2[axis]));
+    if rises(original.speed_mm_s, after.speed_mm_s)
+        || rises(original.accel_mm_s2, after.accel_mm_s2)
+        || axis_rises
     {
-        reasons.push(
-            line,
-            "went-up",
-            "a speed or an acceleration went up".to_owned(),
-            BUG,
-            text,
-        );
+        let message = "a speed or an acceleration went up".to_owned();
+        reasons.push(line, "went-up", message, BUG, text);
     }
-    let untouched = original.change.is_none();
-    if untouched && (before.speed_mm_s - after.speed_mm_s).abs() > ROUNDING * before.speed_mm_s
-        || untouched
-            && (before.accel_mm_s2 - after.accel_mm_s2).abs() > ROUNDING * before.accel_mm_s2
+    let falls = |before: f64, after: f64| after < before * (1.0 - ROUNDING);
+    if !original.changed
+        && (falls(original.speed_mm_s, after.speed_mm_s)
+            || falls(original.accel_mm_s2, after.accel_mm_s2))
     {
         let message = "the feed of a block that was not to be changed differs".to_owned();
         reasons.push(line, "changed-feed", message, BUG, text);
     }
-}
-
-/// The row of an original move, with what became of it.
-fn after_row(
-    machine: &Machine,
-    model: &PowerModel,
-    original: &ExpectedMove,
-    after: &Assessment,
-    start_s: f64,
-) -> Row {
-    let mut row = row(machine, model, &original.mv, &original.assessment, start_s);
-    row.peak_after_w = Some(after.demand.peak_w);
-    row.regen_after_w = Some(after.demand.regen_w);
-    row.duration_after_s = Some(after.duration_s);
-    describe(machine, original, &mut row);
-    row
-}
-
-/// What was done: action, word, and its value before and after.
-fn describe(machine: &Machine, original: &ExpectedMove, row: &mut Row) {
-    let change = &original.change;
-    let knob_name = |index: usize| {
-        machine
-            .controller
-            .knobs
-            .get(index)
-            .map_or_else(String::new, |knob| {
-                format!("{}{}", knob.code.0 as char, f64::from(knob.code.1) / 10.0)
-            })
-    };
-    let speed = change.feed.is_some() || change.rapid_percent.is_some();
-    row.action = match (speed, change.accel.is_some()) {
-        (true, true) => "lower speed and acceleration",
-        (true, false) if change.as_feed => "rapid as feed",
-        (true, false) if change.rapid_percent.is_some() => "lower rapid speed",
-        (true, false) => "lower feed",
-        (false, true) => "lower acceleration",
-        (false, false) if original.hopeless => "none possible",
-        (false, false) => "",
-    };
-    let mut names = Vec::new();
-    if let Some((index, values)) = &change.accel {
-        names.push(knob_name(*index));
-        let least = original
-            .mv
-            .moving
-            .iter()
-            .map(|axis| values[axis])
-            .fold(f64::INFINITY, f64::min);
-        row.value_after = least.is_finite().then_some(least);
-        row.value_before = original
-            .mv
-            .moving
-            .iter()
-            .find(|axis| values[*axis] == least)
-            .map(|axis| {
-                let share = original.mv.accel_mm_s2[axis]
-                    / machine.axes[axis].map_or(1.0, |data| data.accel_mm_s2);
-                match machine.controller.knobs.get(*index).map(|knob| knob.unit) {
-                    Some(crate::machine::KnobUnit::Percent) => share * 100.0,
-                    _ => original.mv.accel_mm_s2[axis],
-                }
-            });
-    }
-    if let Some((index, percent)) = change.rapid_percent {
-        names.insert(0, knob_name(index));
-        row.value_before = Some(original.mv.rapid_factor * 100.0);
-        row.value_after = Some(percent);
-    }
-    if let Some(feed) = change.feed {
-        names.insert(0, "F".to_owned());
-        row.value_before = original.feed_before.filter(|_| !change.as_feed);
-        row.value_after = Some(feed);
-    }
-    row.knob = names.join(" ");
 }

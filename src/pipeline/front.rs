@@ -13,8 +13,9 @@ use crate::syntax::{Block, scan_line};
 pub(super) struct Line<'f, 'm> {
     /// Its bytes, line end included.
     pub(super) text: &'f [u8],
-    pub(super) block: &'f Block,
-    pub(super) steps: &'f [Step],
+    /// Buffers: they may be exchanged for others.
+    pub(super) block: &'f mut Block,
+    pub(super) steps: &'f mut Vec<Step>,
     pub(super) facts: Facts,
     /// The state behind it.
     pub(super) interpreter: &'f Interpreter<'m>,

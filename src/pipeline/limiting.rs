@@ -5,12 +5,11 @@ use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::certify::{Batch, Certified, Certifier};
-use super::tally::conditions;
+use super::conditions::conditions;
 use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, RowSink, Strategy, Summary};
 use crate::limit::Law;
 use crate::machine::{KnobArgument, KnobTarget, Machine};
-use crate::power::Want;
 
 /// Pieces that may wait for the certifier.
 const BATCHES: usize = 2;
@@ -32,21 +31,13 @@ pub fn limit<R: Read + Send, W: Write + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
-    let want = if rows.is_some() {
-        Want::ALL
-    } else {
-        Want::PEAKS
-    };
+    let exact = rows.is_some();
     let mut certifier = Certifier::new(machine, options, rows);
-    let writer = Writer::new(input, machine, options, how, want, output);
+    let writer = Writer::new(input, machine, options, how, exact, output);
     let (written, certified) = if options.threads > 1 {
         side_by_side(writer, certifier)?
     } else {
-        let written = writer.run(&mut |batch| {
-            certifier.take(batch)?;
-            batch.bytes.clear();
-            Ok(())
-        })?;
+        let written = writer.run(&mut |batch| certifier.take(batch))?;
         (written, certifier.finish()?)
     };
     Ok(conclude(machine, options, written, certified))
@@ -87,7 +78,6 @@ fn certify_all(
 ) -> Result<Certified, Failure> {
     for mut batch in receiver {
         certifier.take(&mut batch)?;
-        batch.bytes.clear();
         // A full channel of empty buffers only means one more allocation.
         let _ = back.try_send(batch);
     }

@@ -4,24 +4,21 @@
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 
-use arrayvec::ArrayVec;
-
 use super::analyze::refuse_planned;
 use super::certify::{Batch, Expected, ExpectedMove, Reasons};
-use super::front::{Front, Line};
+use super::describe::{describe, row};
+use super::entry::{Entry, knobs};
+use super::front::Front;
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
-use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Outcome, Permit};
-use crate::machine::{Machine, PathMode, RapidJoint};
-use crate::power::{Assessment, Assessor, Want};
+use crate::interpret::{KnobState, Move, MoveKind, Step};
+use crate::limit::{Change, Limiter, Obstacle, Outcome};
+use crate::machine::{Machine, PathMode};
+use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
-use crate::syntax::Block;
 
 /// Bytes of a piece that is handed to the certifier.
-const BATCH_BYTES: usize = 64 * 1024;
-/// Moves that one block can have: a dwell, and two to a reference point.
-const MOVES_MAX: usize = 3;
+const BATCH_BYTES: usize = 8 * 1024;
 
 /// What the writing half comes to.
 pub(super) struct Written {
@@ -30,25 +27,11 @@ pub(super) struct Written {
     pub(super) reasons: Reasons,
 }
 
-/// A block that waits until all its moves are decided.
-struct Entry {
-    text: Vec<u8>,
-    block: Block,
-    facts: Facts,
-    steps: Vec<Step>,
-    /// The state behind it.
-    mark: Mark,
-    knobs: Option<KnobState>,
-    feed_before: Option<f64>,
-    moves: usize,
-    decided: ArrayVec<(Assessment, Outcome), MOVES_MAX>,
-}
-
 /// A move that is not decided yet.
 struct Flight {
-    /// Number of its block.
+    /// Number of its block, and which of its steps it is.
     entry: u64,
-    permit: Permit,
+    step: usize,
     assessment: Option<Assessment>,
 }
 
@@ -62,9 +45,10 @@ pub(super) struct Writer<'m, R, W> {
     tally: Tally<'m, 'm>,
     rewriter: Rewriter<'m>,
     /// Blocks that wait; `first` is the number of the front one.
-    entries: VecDeque<Entry>,
+    entries: VecDeque<Box<Entry>>,
     first: u64,
-    spare: Vec<Entry>,
+    #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
+    spare: Vec<Box<Entry>>,
     flights: VecDeque<Flight>,
     outcomes: Vec<Outcome>,
     /// Path mode of the last move that was read.
@@ -76,6 +60,11 @@ pub(super) struct Writer<'m, R, W> {
     knobs: Option<KnobState>,
     batch: Batch,
     reasons: Reasons,
+    /// Every figure is wanted exactly: there are rows.
+    exact: bool,
+    model: PowerModel,
+    /// Time of the original so far, s.
+    start_s: f64,
 }
 
 impl<'m, R: Read, W: Write> Writer<'m, R, W> {
@@ -84,7 +73,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         machine: &'m Machine,
         options: &Options,
         how: LimitOptions,
-        want: Want,
+        exact: bool,
         output: W,
     ) -> Self {
         let front = Front::new(input, machine, options);
@@ -96,7 +85,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
-            assessor: Assessor::new(machine, options.certificate, want),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL),
             limiter: Limiter::new(machine, how),
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
@@ -107,6 +96,9 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             outcomes: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
+            exact,
+            model: PowerModel::new(machine),
+            start_s: 0.0,
         }
     }
 
@@ -137,7 +129,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         let lines = self.front.lines;
         let notes = self.front.finish()?;
         refuse_planned(&self.assessor, self.machine)?;
-        let mut before = self.tally.finish();
+        let mut before = self.tally.finish(self.exact);
         before.lines = lines;
         before.notes = notes;
         Ok(Written {
@@ -147,51 +139,53 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         })
     }
 
-    /// Reads a block, judges its moves, and lets it wait.
+    /// Reads a block, lets it wait, and judges its moves.
     fn read_block(&mut self) -> Result<bool, Failure> {
-        let mut entry = self.spare.pop();
-        let Some(line) = self.front.next_line()? else {
+        let spare = self.spare.pop();
+        let Some(mut line) = self.front.next_line()? else {
             return Ok(false);
         };
-        let entry = match entry.take() {
-            Some(mut entry) => {
-                entry.fill(&line, self.machine);
-                entry
-            }
-            None => Entry::new(&line, self.machine),
-        };
+        let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
+        self.mm_per_unit = entry.mark.mm_per_unit;
         let number = self.first + self.entries.len() as u64;
-        let before = Before {
-            mode: self.mode,
-            mm_per_unit: self.mm_per_unit,
+        self.entries.push_back(entry);
+        let Self {
+            assessor,
+            limiter,
+            tally,
+            entries,
+            first,
+            flights,
+            outcomes,
+            ..
+        } = self;
+        let entries = &*entries;
+        let Some(entry) = entries.back() else {
+            return Ok(true);
         };
-        self.mm_per_unit = line.interpreter.modal().mm_per_unit;
-        for step in &entry.steps {
-            let Step::Move(mv) = step else { continue };
-            let permit = permit(&line, self.machine, mv, before);
+        for (step, mv) in entry.steps.iter().enumerate() {
+            let Step::Move(mv) = mv else { continue };
             self.mode = mv.path_mode;
-            self.flights.push_back(Flight {
+            flights.push_back(Flight {
                 entry: number,
-                permit,
+                step,
                 assessment: None,
             });
-            let Self {
-                assessor,
+            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            let mut judge = Judge {
+                machine: self.machine,
                 limiter,
-                tally,
+                entries,
+                first: *first,
                 flights,
                 outcomes,
-                ..
-            } = self;
-            // Rows need every peak exactly.
-            if !assessor.want.energy {
-                assessor.want.floor_w = tally.floor_w();
-            }
-            assessor.push(mv, line.text, &mut |mv, assessment, text| {
-                judged(mv, assessment, text, tally, limiter, flights, outcomes);
+            };
+            assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
+                tally.add(mv, assessment, text);
+                judge.take(mv, assessment);
             });
         }
-        self.entries.push_back(entry);
         Ok(true)
     }
 
@@ -201,14 +195,25 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             assessor,
             limiter,
             tally,
+            entries,
+            first,
             flights,
             outcomes,
             ..
         } = self;
+        let mut judge = Judge {
+            machine: self.machine,
+            limiter,
+            entries,
+            first: *first,
+            flights,
+            outcomes,
+        };
         assessor.finish(&mut |mv, assessment, text| {
-            judged(mv, assessment, text, tally, limiter, flights, outcomes);
+            tally.add(mv, assessment, text);
+            judge.take(mv, assessment);
         });
-        limiter.finish(&mut |outcome| outcomes.push(outcome.clone()));
+        limiter.finish(&mut |outcome| outcomes.push(outcome));
         self.decide();
     }
 
@@ -258,7 +263,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             knobs: self.knobs.as_ref(),
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
             feeds: entry.moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
-            change: &change,
+            change: change.as_ref().unwrap_or(&Change::NONE),
         };
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
@@ -269,17 +274,18 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         self.output
             .write_all(&self.batch.bytes[start..])
             .map_err(Failure::Output)?;
-        self.expect(entry, &change);
+        self.expect(entry, change);
         Ok(())
     }
 
     /// Tells the certifier what the block must do.
-    fn expect(&mut self, entry: &mut Entry, change: &Change) {
+    fn expect(&mut self, entry: &mut Entry, change: Option<Change>) {
+        let feed_before = entry.feed_before();
         let mut decided = entry.decided.drain(..);
-        for step in entry.steps.drain(..) {
+        for step in &entry.steps {
             let mv = match step {
                 Step::Action(action) => {
-                    self.batch.expected.push(Expected::Action(action));
+                    self.batch.expected.push(Expected::Action(*action));
                     continue;
                 }
                 Step::Move(mv) => mv,
@@ -289,190 +295,88 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             };
             let hopeless = outcome.obstacle.is_some();
             if let Some(obstacle) = outcome.obstacle {
-                self.reasons.push(
-                    mv.line,
-                    obstacle.rule,
-                    obstacle.message,
-                    &obstacle.help,
-                    &entry.text,
-                );
+                let Obstacle {
+                    rule,
+                    message,
+                    help,
+                } = *obstacle;
+                self.reasons
+                    .push(mv.line, rule, message, &help, &entry.text);
             }
             // What a block gets, all its moves get, but not its dwell.
-            let change = if mv.kind == MoveKind::Dwell {
-                Change::default()
-            } else {
-                *change
-            };
-            let feed_before = entry.feed_before;
-            let expected = ExpectedMove {
-                mv,
-                assessment,
-                change,
-                feed_before,
+            let change = change.filter(|_| mv.kind != MoveKind::Dwell);
+            let row = self.exact.then(|| {
+                let mut row = row(self.machine, &self.model, mv, &assessment, self.start_s);
+                describe(self.machine, mv, change.as_ref(), feed_before, &mut row);
+                if hopeless {
+                    row.action = "none possible";
+                }
+                Box::new(row)
+            });
+            self.start_s += assessment.duration_s;
+            self.batch.expected.push(Expected::Move(ExpectedMove {
+                line: mv.line,
+                kind: mv.kind,
+                end: mv.end,
+                arc: mv.arc,
+                unknown_start: mv.unknown_start,
+                path_mode: mv.path_mode,
+                loads: mv.loads,
+                dwell_s: mv.dwell_s,
+                axis_accel_mm_s2: mv.accel_mm_s2,
+                speed_mm_s: assessment.speed_mm_s,
+                accel_mm_s2: assessment.accel_mm_s2,
+                changed: change.is_some(),
+                as_feed: change.is_some_and(|change| change.as_feed),
                 hopeless,
-            };
-            self.batch.expected.push(Expected::Move(expected));
+                row,
+            }));
         }
     }
 }
 
-impl Entry {
-    fn new(line: &Line<'_, '_>, machine: &Machine) -> Self {
-        let mut entry = Self {
-            text: Vec::new(),
-            block: Block::default(),
-            facts: Facts::default(),
-            steps: Vec::new(),
-            mark: Mark::of(line.interpreter.modal()),
-            knobs: None,
-            feed_before: None,
-            moves: 0,
-            decided: ArrayVec::new(),
+/// Hands judged moves to the limiter and collects its decisions.
+struct Judge<'a, 'm> {
+    machine: &'m Machine,
+    limiter: &'a mut Limiter<'m>,
+    entries: &'a VecDeque<Box<Entry>>,
+    first: u64,
+    flights: &'a mut VecDeque<Flight>,
+    outcomes: &'a mut Vec<Outcome>,
+}
+
+impl Judge<'_, '_> {
+    fn take(&mut self, mv: &Move, assessment: &Assessment) {
+        let Self {
+            machine,
+            limiter,
+            entries,
+            first,
+            flights,
+            outcomes,
+        } = self;
+        let Some(flight) = flights
+            .iter_mut()
+            .find(|flight| flight.assessment.is_none())
+        else {
+            return;
         };
-        entry.fill(line, machine);
-        entry
-    }
-
-    fn fill(&mut self, line: &Line<'_, '_>, machine: &Machine) {
-        self.text.clear();
-        self.text.extend_from_slice(line.text);
-        self.block.clone_from(line.block);
-        self.facts = line.facts;
-        self.steps.clear();
-        self.steps.extend_from_slice(line.steps);
-        self.moves = line
-            .steps
-            .iter()
-            .filter(|step| matches!(step, Step::Move(_)))
-            .count();
-        self.mark = Mark::of(line.interpreter.modal());
-        self.knobs = knobs(machine, line.interpreter.knobs());
-        self.feed_before = line
-            .interpreter
-            .modal()
-            .feed
-            .as_ref()
-            .map(|feed| feed.value);
-        self.decided.clear();
-    }
-
-    fn moves_by(&self, wanted: fn(MoveKind) -> bool) -> bool {
-        self.moves > 0
-            && self
-                .steps
-                .iter()
-                .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
-    }
-}
-
-/// A move is judged: it goes to the limiter, whose decisions are collected.
-fn judged(
-    mv: &Move,
-    assessment: &Assessment,
-    text: &[u8],
-    tally: &mut Tally<'_, '_>,
-    limiter: &mut Limiter<'_>,
-    flights: &mut VecDeque<Flight>,
-    outcomes: &mut Vec<Outcome>,
-) {
-    tally.add(mv, assessment, text);
-    if let Some(flight) = flights
-        .iter_mut()
-        .find(|flight| flight.assessment.is_none())
-    {
         flight.assessment = Some(*assessment);
-        limiter.push(
-            mv,
-            assessment,
-            &flight.permit,
-            assessment.joined,
-            &mut |outcome| {
-                outcomes.push(outcome.clone());
-            },
-        );
-    }
-}
-
-fn knobs(machine: &Machine, state: &KnobState) -> Option<KnobState> {
-    (!machine.controller.knobs.is_empty()).then(|| state.clone())
-}
-
-/// What held before a block.
-#[derive(Clone, Copy)]
-struct Before {
-    /// Path mode of the move before it.
-    mode: PathMode,
-    /// Millimetres in a program unit.
-    mm_per_unit: f64,
-}
-
-/// What may be changed about the block of a move.
-fn permit(line: &Line<'_, '_>, machine: &Machine, mv: &Move, before: Before) -> Permit {
-    let facts = &line.facts;
-    let modal = line.interpreter.modal();
-    let stops = mv.path_mode == PathMode::ExactStop && before.mode == PathMode::ExactStop;
-    let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
-    let checks = [
-        (facts.checksum, "it carries a checksum"),
-        (
-            line.block.delete_level > 0,
-            "it may be skipped (block delete)",
-        ),
-        (
-            facts.boundary,
-            "it stops, changes the tool or ends the program",
-        ),
-        (facts.turns_knob, "it sets limits itself"),
-        (facts.dwell_takes_feed, "an F in it would be its dwell"),
-        (
-            modal.feed.is_none() && matches!(mv.kind, MoveKind::Feed | MoveKind::Arc),
-            "no F is in force that could be put back",
-        ),
-        (
-            modal.feed_mode == FeedMode::InverseTime,
-            "its feed is an inverse time (G93)",
-        ),
-        (
-            modal.feed_mode == FeedMode::PerRevolution,
-            "its feed is per revolution (G95)",
-        ),
-        (facts.machine_coordinates, "G53 is for rapids"),
-        (facts.reference, "it moves to a reference point"),
-        (!stays, "without its stop the corner would be rounded"),
-    ];
-    let first = checks.iter().position(|(applies, _)| *applies);
-    Permit {
-        edit: first.is_none_or(|first| first > 3),
-        feed_word: first.is_none_or(|first| first > 7),
-        as_feed: first.is_none(),
-        reason: first.map_or("", |first| checks[first].1),
-        mm_per_unit: facts.feed_mm_per_unit,
-        knob_mm_per_unit: before.mm_per_unit,
-        feed_before: modal.feed.as_ref().map(|feed| feed.value),
-        feed_accel_mm_s2: line.interpreter.knobs().feed_accel_mm_s2,
+        let Some(entry) = entries.get((flight.entry - *first) as usize) else {
+            return;
+        };
+        let permit = || entry.permit(machine, mv, flight.step);
+        limiter.push(mv, assessment, permit, &mut |outcome| {
+            outcomes.push(outcome);
+        });
     }
 }
 
 /// One change for a block of several moves: the lower value of each word.
-fn merge(decided: &[(Assessment, Outcome)]) -> Change {
-    let lower = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        (Some(a), Some(b)) => Some(a.min(b)),
-        (a, b) => a.or(b),
-    };
-    let mut merged = Change::default();
-    for (_, Outcome { change, .. }) in decided {
-        merged.feed = lower(merged.feed, change.feed);
-        merged.as_feed |= change.as_feed;
-        merged.rapid_percent = match (merged.rapid_percent, change.rapid_percent) {
-            (Some((knob, a)), Some((_, b))) => Some((knob, a.min(b))),
-            (a, b) => a.or(b),
-        };
-        merged.accel = match (merged.accel, change.accel) {
-            (Some((knob, a)), Some((_, b))) => {
-                Some((knob, std::array::from_fn(|axis| a[axis].min(b[axis]))))
-            }
-            (a, b) => a.or(b),
-        };
-    }
-    merged
+fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
+    let mut changes = decided
+        .iter()
+        .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
+    let first = changes.next()?;
+    Some(changes.fold(first, |merged, change| merged.lower(&change)))
 }

@@ -13,7 +13,7 @@ use crate::interpret::{Arc, Move};
 use crate::machine::{ArcRule, AxisKind, Machine};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Share of the acceleration limit that LinuxCNC 2.9 gives to turning: √3/2,
+/// Share of the acceleration limit that `LinuxCNC` 2.9 gives to turning: √3/2,
 /// which leaves one half for speeding up.
 const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
 
@@ -132,7 +132,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
     }
 }
 
-/// LinuxCNC 2.9: path speed for turning, and tangential acceleration at the
+/// `LinuxCNC` 2.9: path speed for turning, and tangential acceleration at the
 /// largest speed that axes and turning permit, whatever F asks for.
 fn linuxcnc(a: f64, radius: f64, share: f64, axis_speed: f64) -> (f64, f64) {
     let turning = (LINUXCNC_NORMAL_SHARE * a * radius).sqrt() / share;

@@ -8,6 +8,8 @@ pub struct Want {
     /// A motoring peak below this need not be exact, in W: anything up to it
     /// may be returned. −∞ for an exact peak.
     pub floor_w: f64,
+    /// The same for the power that is fed back, in W.
+    pub regen_floor_w: f64,
 }
 
 impl Want {
@@ -15,11 +17,13 @@ impl Want {
     pub const PEAKS: Self = Self {
         energy: false,
         floor_w: f64::NEG_INFINITY,
+        regen_floor_w: f64::NEG_INFINITY,
     };
     /// Exact peaks and the energy.
     pub const ALL: Self = Self {
         energy: true,
         floor_w: f64::NEG_INFINITY,
+        regen_floor_w: f64::NEG_INFINITY,
     };
 }
 

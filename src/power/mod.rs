@@ -10,13 +10,16 @@
 
 mod assess;
 mod arc;
+mod arc_energy;
 mod arc_piece;
 mod axis;
+mod ceiling;
 mod circle;
 mod demand;
 mod independent;
 mod interval;
 mod model;
+mod quadrants;
 mod quadrature;
 mod robust;
 mod search;

@@ -3,6 +3,7 @@
 //! Input: a [`Machine`] once, then moves with their plans. Output: [`Demand`].
 
 use super::axis::AxisPower;
+use super::ceiling::Ceiling;
 use super::demand::{Demand, Totals, Want};
 use super::{arc, independent, straight};
 use crate::interpret::Move;
@@ -32,6 +33,8 @@ pub(super) struct ConverterPower {
     pub factored: AxisSet,
     /// Of these, axes that draw power while they hold their weight.
     pub holding: AxisSet,
+    /// A quick upper bound.
+    ceiling: Ceiling,
     /// Whether fed-back power feeds the other axes.
     pub credit_regen: bool,
     /// What is drawn at all times in W.
@@ -87,6 +90,12 @@ impl PowerModel {
     /// of the axes at rest.
     #[must_use]
     pub fn demand(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
+        if let ([converter], Trajectory::Path(_)) = (self.converters.as_slice(), &plan.trajectory) {
+            let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
+            if let Some(demand) = converter.ceiling.below_floor(mv, plan, idle_w, want) {
+                return demand;
+            }
+        }
         let mut demand = Demand::NONE;
         for (index, converter) in self.converters.iter().enumerate() {
             let active = AxisSet(mv.moving.0 & converter.axes.0);
@@ -138,6 +147,7 @@ impl ConverterPower {
             curved: select(AxisPower::is_curved),
             factored: select(AxisPower::has_factors),
             holding: select(|axis| axis.holding_w() > 0.0),
+            ceiling: Ceiling::new(axes, fed),
             credit_regen: converter.credit_regen,
             base_w: converter.base_load_w,
             loads: machine

@@ -45,6 +45,15 @@ pub(super) fn totals(
     want: Want,
 ) -> Totals {
     let active = AxisSet(mv.moving.0 & converter.axes.0);
+    if let ([up, .., down], false, true) = (
+        profile.phases.as_slice(),
+        want.energy,
+        active.0 & converter.curved.0 == 0,
+    ) && up.end_velocity_mm_s == down.velocity_mm_s
+        && (up.velocity_mm_s, down.end_velocity_mm_s) == (0.0, 0.0)
+    {
+        return ramp_peaks(model, converter, mv, active, [up, down], idle_w);
+    }
     let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
     let mut shares = ArrayVec::<Share<'_>, AXES>::new();
     let per_length = 1.0 / mv.length_mm;
@@ -85,6 +94,50 @@ pub(super) fn totals(
             .evaluate(want, &mut totals);
         }
     }
+    totals
+}
+
+/// Peaks of a trapezoid or triangle in which power is linear in speed.
+///
+/// The power of each axis grows with acceleration, so the largest power is
+/// drawn at the end of the ramp up, and the most is fed back at the beginning
+/// of the ramp down; a cruise lies between.
+#[inline]
+fn ramp_peaks(
+    model: &PowerModel,
+    converter: &ConverterPower,
+    mv: &Move,
+    active: AxisSet,
+    [up, down]: [&Phase; 2],
+    idle_w: f64,
+) -> Totals {
+    let per_length = 1.0 / mv.length_mm;
+    let mut totals = Totals::new(idle_w);
+    let (mut drawn, mut fed_back) = (0.0, 0.0);
+    for axis in active.iter() {
+        let power = &model.axes[axis];
+        let direction = (mv.end[axis] - mv.start[axis]) * power.si_per_unit * per_length;
+        let mass = power.mass * direction * direction;
+        let friction = power.coulomb * direction.abs();
+        let gravity = power.gravity * direction;
+        let electrical = |accel: f64, side: Side, growing: bool| {
+            let inertia = mass * accel * power.accel_factor(side, growing);
+            power.converted(inertia + friction * power.friction_factor(side) + gravity)
+        };
+        let growing = electrical(up.accel_mm_s2, Side::Motor, true);
+        let braking = electrical(down.accel_mm_s2, Side::Regen, false);
+        if converter.credit_regen {
+            drawn += growing;
+            fed_back -= braking;
+        } else {
+            drawn += growing.max(0.0);
+            fed_back += (-braking).max(0.0);
+        }
+    }
+    let v = up.end_velocity_mm_s;
+    let credit_w = if converter.credit_regen { idle_w } else { 0.0 };
+    totals.raise_peak(idle_w + v * drawn);
+    totals.raise_regen(v * fed_back - credit_w);
     totals
 }
 

@@ -46,7 +46,7 @@ fn print<S: Serializer>(value: f64, digits: i32, serializer: S) -> Result<S::Ok,
 
 /// `value` rounded to so many significant digits: the f64 nearest to that
 /// decimal number, so that its shortest form has no more digits.
-fn round_to_digits(value: f64, digits: i32) -> f64 {
+pub(super) fn round_to_digits(value: f64, digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }

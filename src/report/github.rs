@@ -125,6 +125,9 @@ mod tests {
         };
         let mut out = Vec::new();
         assert!(github(&[checked], &mut out).is_ok());
-        insta::assert_snapshot!(String::from_utf8_lossy(&out), @"");
+        insta::assert_snapshot!(String::from_utf8_lossy(&out), @"
+        ::error file=a%2Cb%3Ac%0A.ngc,title=gwatt::100 %25 wrong
+        ::notice title=gwatt::0 fit, 0 do not fit, 1 refused
+        ");
     }
 }

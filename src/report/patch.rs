@@ -31,7 +31,8 @@ pub fn unified_diff(
     new: impl BufRead,
     mut out: impl Write,
 ) -> io::Result<()> {
-    let names = (format!("a/{program}"), format!("b/{program}"));
+    let path = program.trim_start_matches('/');
+    let names = (format!("a/{path}"), format!("b/{path}"));
     if bytes <= WHOLE_MAX_BYTES {
         whole(&names, old, new, &mut out)?;
     } else {
@@ -276,7 +277,36 @@ mod tests {
         unified_diff("p", 0, old.as_bytes(), new.as_bytes(), &mut whole)?;
         let whole = String::from_utf8_lossy(&whole).into_owned();
         assert_eq!(streamed(&old, &new)?, whole);
-        insta::assert_snapshot!(whole, @"");
+        insta::assert_snapshot!(whole, @"
+        --- a/p
+        +++ b/p
+        @@ -5,7 +5,8 @@
+         G1 X4
+         G1 X5
+         G1 X6
+        -G1 X7
+        +G1 X7 F50
+        +G1 F100
+         G1 X8
+         G1 X9
+         G1 X10
+        @@ -28,7 +29,7 @@
+         G1 X27
+         G1 X28
+         G1 X29
+        -G1 X30
+        +G1 X30 F9
+         G1 X31
+         G1 X32
+         G1 X33
+        @@ -37,4 +38,4 @@
+         G1 X36
+         G1 X37
+         G1 X38
+        -G1 X39
+        +G1 X39 F100
+        \\ No newline at end of file
+        ");
         Ok(())
     }
 

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use super::checked::{Checked, chain};
+use super::figure::round_to_digits;
 use super::finding::{LINE_CHARS, is_regenerative};
-use super::quantity::{duration, percent, power};
+use super::quantity::{duration, percent, power, three_digits};
 use crate::diagnostic::{Severity, excerpt};
 use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
 use crate::pipeline::{Certificate, Failure, LimitSummary, Summary, Unfit};
@@ -76,7 +77,7 @@ fn worst(summary: &Summary) -> String {
     let rows: Vec<[String; 5]> = summary.worst.iter().map(unfit_row).collect();
     let mut text = aligned(&rows, "  ");
     if summary.unfit_count > summary.worst.len() as u64 {
-        let more = moves(summary.unfit_count - summary.worst.len() as u64);
+        let more = summary.unfit_count - summary.worst.len() as u64;
         let _ = writeln!(text, "  and {more} more: see `gwatt report`");
     }
     text
@@ -176,6 +177,11 @@ pub fn axis_table(machine: &Machine) -> String {
     aligned(&rows, "  ")
 }
 
+/// A number of the machine file: six digits show it, and hide how it was made.
+fn rounded(value: f64) -> f64 {
+    round_to_digits(value, 6)
+}
+
 fn axis_row(letter: char, axis: &Axis) -> [String; 6] {
     let (length, mass, force) = match axis.kind {
         AxisKind::Linear => ("mm", "kg", "N"),
@@ -188,10 +194,13 @@ fn axis_row(letter: char, axis: &Axis) -> [String; 6] {
     let peak_w = speed * peak / axis.efficiency + axis.copper_w_n2 * peak * peak;
     [
         letter.to_string(),
-        format!("{} {length}/min", axis.rapid_mm_s * SECONDS_PER_MINUTE),
-        format!("{} {length}/s2", axis.accel_mm_s2),
-        format!("{} {mass}", super::quantity::three_digits(axis.mass_kg)),
-        format!("{} {force}", super::quantity::three_digits(peak)),
+        format!(
+            "{} {length}/min",
+            rounded(axis.rapid_mm_s * SECONDS_PER_MINUTE)
+        ),
+        format!("{} {length}/s2", rounded(axis.accel_mm_s2)),
+        format!("{} {mass}", three_digits(axis.mass_kg)),
+        format!("{} {force}", three_digits(peak)),
         format!("{} alone", power(peak_w)),
     ]
 }

@@ -6,7 +6,7 @@ use super::state::{FeedValue, Mark, Written};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobTarget, KnobUnit, Machine};
+use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
@@ -95,9 +95,8 @@ impl<'m> Rewriter<'m> {
             self.turn_knobs(view, out);
         }
         self.edits.clear();
-        let style = Style::of(view.text, view.block);
-        self.motion_word(view, style);
-        self.feed_word(view, style);
+        self.motion_word(view);
+        self.feed_word(view);
         if self.edits.is_empty() {
             out.extend_from_slice(view.text);
             return true;
@@ -122,7 +121,7 @@ impl<'m> Rewriter<'m> {
     }
 
     /// The motion word: G1 for a rapid that becomes a feed, and back.
-    fn motion_word(&mut self, view: &BlockView<'_>, style: Style) {
+    fn motion_word(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
         if let Some(word) = facts.motion_word {
             self.written.motion = view.after.motion;
@@ -147,6 +146,7 @@ impl<'m> Rewriter<'m> {
             return;
         }
         if let (Some(digit), Some(first)) = (wanted.digit(), view.block.words.first()) {
+            let style = Style::of(view.text, view.block);
             let mut text = vec![style.letter(b'G'), digit];
             text.extend(style.spaced.then_some(b' '));
             self.edits.push(Edit::insert(first.span.start, text));
@@ -155,7 +155,7 @@ impl<'m> Rewriter<'m> {
     }
 
     /// F: changed, inserted, or put back.
-    fn feed_word(&mut self, view: &BlockView<'_>, style: Style) {
+    fn feed_word(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
         let original = view.after.feed_value();
         let wanted = match view.change.feed {
@@ -195,6 +195,7 @@ impl<'m> Rewriter<'m> {
             (None, Some(feed)) => feed_again(feed, facts.feed_mm_per_unit),
             (None, None) => return,
         };
+        let style = Style::of(view.text, view.block);
         let mut text = Vec::with_capacity(number.len() + 2);
         text.extend(style.spaced.then_some(b' '));
         text.push(style.letter(b'F'));
@@ -266,11 +267,9 @@ impl<'m> Rewriter<'m> {
                 KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
                 _ => state.feed_accel_mm_s2[axis],
             };
-            let linear = own.kind == crate::machine::AxisKind::Linear;
-            values[axis] = tidy(match (data.target, data.unit) {
-                (KnobTarget::RapidSpeed, _) => state.rapid_factor * 100.0,
-                (_, KnobUnit::Percent) => accel / own.accel_mm_s2 * 100.0,
-                (_, KnobUnit::PerSecondSquared) => accel / if linear { mm_per_unit } else { 1.0 },
+            values[axis] = tidy(match data.target {
+                KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
+                _ => data.unit.value(own, accel, mm_per_unit),
             });
         }
         if let Some(words) = knob_line::words(self.machine, knob, &values) {

@@ -1,0 +1,54 @@
+//! What the figures of a run rest on.
+
+use super::{Certificate, Options, Start, Summary};
+use crate::machine::{Machine, PathMode};
+
+/// What the figures rest on, in plain sentences.
+pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
+    let percent = |factor: f64| factor * 100.0;
+    let limits = &machine.limits;
+    let mut conditions = vec![match summary.certificate {
+        Some(Certificate::Robust) => {
+            "robust: blended moves hold for any look-ahead, blending and filtering that \
+             keeps each axis inside its own limits; times are those with a stop at each block"
+                .to_owned()
+        }
+        _ => "planned: every block ends at rest (exact stop)".to_owned(),
+    }];
+    if machine.path.mode == Some(PathMode::ExactStop) {
+        conditions
+            .push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());
+    }
+    conditions.push(format!(
+        "overrides at most: feed {} %, rapid {} %, spindle {} %",
+        percent(limits.feed_override_max),
+        percent(limits.rapid_override_max),
+        percent(limits.spindle_override_max)
+    ));
+    conditions.push(format!(
+        "margin {} % of the converter's power",
+        percent(limits.margin)
+    ));
+    conditions.push(match options.start {
+        Start::Unknown => "start position unknown".to_owned(),
+        Start::At(at) if at.iter().all(|value| *value == 0.0) => {
+            "start position 0 for every axis".to_owned()
+        }
+        Start::At(_) => "start position as given".to_owned(),
+    });
+    conditions.push(
+        if options.block_delete {
+            "blocks with / are skipped"
+        } else {
+            "blocks with / are executed"
+        }
+        .to_owned(),
+    );
+    conditions.push(
+        "cutting forces are not counted; emergency stop and feed hold are outside".to_owned(),
+    );
+    if !machine.unchecked.is_empty() {
+        conditions.push(format!("not checked yet: {}", machine.unchecked.join(", ")));
+    }
+    conditions
+}

@@ -1,0 +1,102 @@
+//! Judged moves as rows, with what was done about them.
+
+use super::Row;
+use super::tally::axes;
+use crate::interpret::Move;
+use crate::limit::Change;
+use crate::machine::{KnobUnit, Machine};
+use crate::power::{Assessment, PowerModel};
+
+/// The row of a judged move that begins at `start_s`.
+pub(super) fn row(
+    machine: &Machine,
+    model: &PowerModel,
+    mv: &Move,
+    assessment: &Assessment,
+    start_s: f64,
+) -> Row {
+    let demand = &assessment.demand;
+    let limit_w = model.limit_w(demand.converter);
+    Row {
+        line: mv.line,
+        n_word: mv.number,
+        kind: mv.kind,
+        axes: axes(mv),
+        start_s,
+        duration_s: assessment.duration_s,
+        peak_w: demand.peak_w,
+        regen_w: demand.regen_w,
+        limit_w,
+        ratio: (demand.peak_w > 0.0).then(|| limit_w / demand.peak_w),
+        energy_j: demand.energy_j,
+        action: "",
+        knob: String::new(),
+        value_before: None,
+        value_after: None,
+        peak_after_w: None,
+        duration_after_s: None,
+        regen_after_w: None,
+        certificate: assessment.certificate,
+        regen_limit_w: model.regen_limit_w(demand.converter),
+        converter: machine
+            .converters
+            .get(demand.converter)
+            .map_or_else(String::new, |it| it.name.clone()),
+    }
+}
+
+/// What was done: action, word, and its value before and after; `feed_before`
+/// is the F in force in program units.
+pub(super) fn describe(
+    machine: &Machine,
+    mv: &Move,
+    change: Option<&Change>,
+    feed_before: Option<f64>,
+    row: &mut Row,
+) {
+    let Some(change) = change else { return };
+    let speed = change.feed.is_some() || change.rapid_percent.is_some();
+    row.action = match (speed, change.accel.is_some()) {
+        (true, true) => "lower speed and acceleration",
+        (true, false) if change.as_feed => "rapid as feed",
+        (true, false) if change.rapid_percent.is_some() => "lower rapid speed",
+        (true, false) => "lower feed",
+        (false, true) => "lower acceleration",
+        (false, false) => "",
+    };
+    let mut names = Vec::new();
+    if let Some(feed) = change.feed {
+        names.push("F".to_owned());
+        row.value_before = feed_before.filter(|_| !change.as_feed);
+        row.value_after = Some(feed);
+    }
+    if let Some((knob, percent)) = change.rapid_percent {
+        names.push(knob_name(machine, knob));
+        row.value_before = Some(mv.rapid_factor * 100.0);
+        row.value_after = Some(percent);
+    }
+    if let Some((knob, values)) = &change.accel {
+        names.push(knob_name(machine, *knob));
+        if row.value_after.is_none()
+            && let Some(axis) = mv
+                .moving
+                .iter()
+                .min_by(|a, b| values[*a].total_cmp(&values[*b]))
+        {
+            let own = machine.axes[axis].map_or(1.0, |data| data.accel_mm_s2);
+            let percent = machine.controller.knobs.get(*knob).map(|knob| knob.unit)
+                == Some(KnobUnit::Percent);
+            row.value_before = Some(mv.accel_mm_s2[axis] * if percent { 100.0 / own } else { 1.0 });
+            row.value_after = Some(values[axis]);
+        }
+    }
+    row.knob = names.join(" ");
+}
+
+/// The word of a knob, such as `G131`.
+pub(super) fn knob_name(machine: &Machine, index: usize) -> String {
+    let Some(knob) = machine.controller.knobs.get(index) else {
+        return String::new();
+    };
+    format!("{}{}", knob.code.0 as char, f64::from(knob.code.1) / 10.0)
+}

@@ -1,0 +1,76 @@
+//! A quick upper bound of a path's power, to pass over moves that cannot
+//! matter where only the largest peak is wanted.
+//!
+//! With `u` the unit tangent of X Y Z, `Σ m_n·u_n² ≤ max m` and `|u_n| ≤ 1`, so
+//!
+//! ```text
+//! P ≤ P₀ + B/η_min + Σ R·F²,   B = v·(max m·k·a + Σ(Fc + |Fg|) + v·Σ b)
+//! ```
+//!
+//! and no more than B is fed back. On an arc `a` takes the centripetal
+//! acceleration in, since `Σ m·τ·ν ≤ max m` too.
+
+use super::axis::{AxisPower, Side};
+use super::demand::{Demand, Want};
+use crate::interpret::Move;
+use crate::machine::AxisSet;
+use crate::plan::Plan;
+
+/// X, Y and Z: the axes whose directions make a unit vector.
+const XYZ: u16 = 0b111;
+
+/// The coefficients of the bound for one converter.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ceiling {
+    si_per_unit: f64,
+    mass: f64,
+    friction: f64,
+    viscous: f64,
+    copper: f64,
+    inverse_efficiency: f64,
+}
+
+impl Ceiling {
+    /// The bound for the axes of `set` among X, Y and Z.
+    pub fn new(axes: &[AxisPower], set: AxisSet) -> Self {
+        let mut ceiling = Self {
+            inverse_efficiency: 1.0,
+            ..Self::default()
+        };
+        for axis in AxisSet(set.0 & XYZ).iter() {
+            let power = &axes[axis];
+            let factor = power
+                .accel_factor(Side::Motor, true)
+                .max(power.accel_factor(Side::Regen, false));
+            ceiling.si_per_unit = ceiling.si_per_unit.max(power.si_per_unit);
+            ceiling.mass = ceiling.mass.max(power.mass * factor);
+            ceiling.friction += power.coulomb + power.gravity.abs();
+            ceiling.viscous += power.viscous;
+            ceiling.copper += power.copper;
+            ceiling.inverse_efficiency = ceiling.inverse_efficiency.max(power.inverse_efficiency);
+        }
+        ceiling
+    }
+
+    /// A demand at the bound, if it stays below what is of interest.
+    #[inline]
+    pub fn below_floor(&self, mv: &Move, plan: &Plan, idle_w: f64, want: Want) -> Option<Demand> {
+        if want.energy || mv.moving.0 & !XYZ != 0 || !mv.unknown_start.is_empty() {
+            return None;
+        }
+        let v = plan.top_speed_mm_s * self.si_per_unit;
+        let mut a = plan.accel_mm_s2 * self.si_per_unit;
+        if let Some(arc) = &mv.arc {
+            a += v * v / (arc.radius_mm * self.si_per_unit);
+        }
+        let force = self.mass * a + self.friction + self.viscous * v;
+        let mechanical = v * force;
+        // F² of each axis is at most that of all, whose sum is bounded too.
+        let drawn_w = idle_w + mechanical * self.inverse_efficiency + self.copper * force * force;
+        (drawn_w <= want.floor_w && mechanical <= want.regen_floor_w).then_some(Demand {
+            peak_w: drawn_w,
+            regen_w: mechanical,
+            ..Demand::NONE
+        })
+    }
+}
