@@ -3,7 +3,7 @@
 //!
 //! Groups follow RS274/NGC (LinuxCNC G-code reference, "Modal Groups").
 
-use crate::machine::PathMode;
+use crate::machine::{Family, PathMode};
 
 /// What the motion words mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,6 +54,7 @@ pub(super) enum GCode {
     ClearOffset { forget: bool },
     RestoreOffset,
     FeedMode(super::FeedMode),
+    MirrorX,
     Ignored,
 }
 
@@ -77,6 +78,7 @@ impl GCode {
                 12
             }
             Self::Ignored => 13,
+            Self::MirrorX => 14,
         }
     }
 }
@@ -91,8 +93,22 @@ pub(super) fn code_number(value: f64) -> Option<u16> {
     ((tenfold - f64::from(number)).abs() < 1e-6).then_some(number)
 }
 
-/// The G word with this number × 10, if it is known to every family.
-pub(super) fn g_code(number: u16) -> Option<GCode> {
+/// The G word with this number × 10, as the family reads it; `None` if it is
+/// not known.
+pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
+    match (family, number) {
+        // ISG: G21 mirrors X and G20 ends it; G70 and G71 set the unit.
+        (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
+        // Marlin: G60 and G61 save a position and return to it.
+        (Family::Marlin, 600..=640) => None,
+        (Family::Isg, 700) => common_g_code(200),
+        (Family::Isg, 710) => common_g_code(210),
+        _ => common_g_code(number),
+    }
+}
+
+/// The G words that most families share.
+fn common_g_code(number: u16) -> Option<GCode> {
     use super::FeedMode::{InverseTime, PerMinute, PerRevolution};
     Some(match number {
         0 => GCode::Motion(Motion::Rapid),
@@ -113,7 +129,7 @@ pub(super) fn g_code(number: u16) -> Option<GCode> {
         430 => GCode::ToolLengthOn,
         490 => GCode::ToolLengthOff,
         530 => GCode::MachineCoordinates,
-        540..=590 if number % 10 == 0 => GCode::WorkOffset((number / 10 - 53) as u8),
+        540..=590 if number.is_multiple_of(10) => GCode::WorkOffset((number / 10 - 53) as u8),
         591..=593 => GCode::WorkOffset((number - 591 + 7) as u8),
         610 | 611 | 640 => GCode::PathMode,
         900 => GCode::Absolute(true),
@@ -140,8 +156,7 @@ pub(super) fn refused_g_name(number: u16) -> &'static str {
         171 | 181 | 191 => "a plane of the U V W axes",
         330 | 331 | 340..=360 => "thread cutting or tapping",
         380..=389 => "probing",
-        411..=429 => "cutter compensation",
-        410 => "cutter compensation",
+        410..=429 => "cutter compensation",
         431..=439 => "a tool length offset of another form",
         500..=519 => "scaling",
         520 => "a local coordinate system",

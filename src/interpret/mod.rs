@@ -5,18 +5,25 @@
 //! controller profile says otherwise.
 
 mod arc;
+mod arc_words;
 mod code;
 mod execute;
+mod facts;
 mod knob;
+mod knob_words;
+mod m_words;
 mod modal;
 mod motion;
 mod moves;
 mod position;
+mod reference;
 mod report;
+mod settings;
 mod words;
 
 pub use code::Motion;
-pub use execute::{Facts, Interpreter};
+pub use execute::Interpreter;
+pub use facts::Facts;
 pub use knob::KnobState;
 pub use modal::{Feed, Modal};
 pub use moves::*;

@@ -143,7 +143,9 @@ impl Words {
                     .contains(&number)
                     .then_some(GCode::Ignored)
             };
-            g_code(number).or_else(ignored).map(|code| (code, number))
+            g_code(number, controller.language.family)
+                .or_else(ignored)
+                .map(|code| (code, number))
         });
         let Some((code, number)) = known else {
             report.refused_g(word);

@@ -18,7 +18,8 @@ const EVALUATIONS: u32 = 80;
 pub(super) fn largest(top: f64, load_top: f64, mut load: impl FnMut(f64) -> f64) -> Option<f64> {
     let mut low = top * SMALLEST;
     let load_low = load(low);
-    if !(load_low <= 1.0) {
+    // Not a number counts as too much.
+    if load_low > 1.0 || load_low.is_nan() {
         return None;
     }
     let (mut high, mut below, mut above) = (top, load_low - 1.0, load_top - 1.0);

@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use super::advice::Adviser;
 use super::conditions::conditions;
 use super::front::Front;
 use super::tally::Tally;
@@ -25,18 +26,25 @@ pub fn analyze<R: Read + Send>(
     let mut assessor = Assessor::new(machine, options.certificate, Want::ALL);
     let energy = rows.is_some();
     let mut tally = Tally::new(machine, options, rows);
+    let adviser = Adviser::new(machine);
     while let Some(line) = front.next_line()? {
-        for step in line.steps {
+        for step in &*line.steps {
             if let Step::Move(mv) = step {
                 assessor.want = tally.want();
                 assessor.push(mv, line.text, &mut |mv, assessment, text| {
-                    tally.take(mv, assessment, text)
+                    let help = || adviser.help(mv, assessment, line.interpreter);
+                    tally.take(mv, assessment, text, help);
                 });
             }
         }
         tally.check()?;
     }
-    assessor.finish(&mut |mv, assessment, text| tally.take(mv, assessment, text));
+    let interpreter = front.interpreter();
+    assessor.finish(&mut |mv, assessment, text| {
+        tally.take(mv, assessment, text, || {
+            adviser.help(mv, assessment, interpreter)
+        });
+    });
     tally.check()?;
     let lines = front.lines;
     let notes = front.finish()?;
@@ -62,7 +70,7 @@ pub fn moves<R: Read + Send>(
     let mut front = Front::new(input, machine, options);
     let assessor = Assessor::new(machine, None, Want::PEAKS);
     while let Some(line) = front.next_line()? {
-        for step in line.steps {
+        for step in &*line.steps {
             if let Step::Move(mv) = step {
                 let seconds = crate::plan::plan(machine, mv, assessor.nominal).duration_s;
                 let known = mv.unknown_start.is_empty();

@@ -164,7 +164,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 if let Step::Move(mv) = step {
                     assessor.want = verdict.tally.want();
                     assessor.push(mv, text, &mut |mv, after, text| {
-                        verdict.judge(mv, after, text)
+                        verdict.judge(mv, after, text);
                     });
                 }
             }

@@ -94,7 +94,7 @@ pub(super) fn describe(
 }
 
 /// The word of a knob, such as `G131`.
-fn knob_name(machine: &Machine, index: usize) -> String {
+pub(super) fn knob_name(machine: &Machine, index: usize) -> String {
     let Some(knob) = machine.controller.knobs.get(index) else {
         return String::new();
     };

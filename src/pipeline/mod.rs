@@ -1,9 +1,11 @@
 //! From bytes to figures, and from bytes to a certified program.
 
+mod advice;
 mod analyze;
 mod certify;
 mod conditions;
 mod describe;
+mod entry;
 mod front;
 mod limiting;
 mod options;

@@ -62,8 +62,14 @@ impl<'m, 'r> Tally<'m, 'r> {
         }
     }
 
-    /// Takes the next judged move.
-    pub(super) fn take(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
+    /// Takes the next judged move; `help` says what would bring it down.
+    pub(super) fn take(
+        &mut self,
+        mv: &Move,
+        assessment: &Assessment,
+        text: &[u8],
+        help: impl FnOnce() -> String,
+    ) {
         if self.rows.is_some() {
             let row = row(
                 self.machine,
@@ -74,7 +80,7 @@ impl<'m, 'r> Tally<'m, 'r> {
             );
             self.write(&row);
         }
-        self.add(mv, assessment, text);
+        self.count(mv, assessment, text, help);
     }
 
     /// Writes a row.
@@ -87,8 +93,18 @@ impl<'m, 'r> Tally<'m, 'r> {
         }
     }
 
-    /// Adds a move to the figures, without a row.
+    /// Adds a move to the figures, without a row and without advice.
     pub(super) fn add(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
+        self.count(mv, assessment, text, String::new);
+    }
+
+    fn count(
+        &mut self,
+        mv: &Move,
+        assessment: &Assessment,
+        text: &[u8],
+        help: impl FnOnce() -> String,
+    ) {
         let summary = &mut self.summary;
         let demand = &assessment.demand;
         summary.moves += 1;
@@ -106,12 +122,18 @@ impl<'m, 'r> Tally<'m, 'r> {
             summary.certificate = Some(Certificate::Robust);
         }
         if !self.model.fits(demand) {
-            self.keep_unfit(mv, assessment, text);
+            self.keep_unfit(mv, assessment, text, help);
         }
     }
 
     #[cold]
-    fn keep_unfit(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
+    fn keep_unfit(
+        &mut self,
+        mv: &Move,
+        assessment: &Assessment,
+        text: &[u8],
+        help: impl FnOnce() -> String,
+    ) {
         let overload = assessment.demand.load_ratio;
         self.summary.unfit_count += 1;
         let listed = self.summary.unfit.len() < Summary::KEPT;
@@ -121,7 +143,7 @@ impl<'m, 'r> Tally<'m, 'r> {
         if !listed && !among_worst {
             return;
         }
-        let unfit = unfit(&self.model, mv, assessment, text);
+        let unfit = unfit(&self.model, mv, assessment, text, help());
         if among_worst {
             let at = self
                 .summary
@@ -157,7 +179,13 @@ pub(super) fn axes(mv: &Move) -> AxisSet {
     AxisSet(mv.moving.0 | mv.unknown_start.0)
 }
 
-fn unfit(model: &PowerModel, mv: &Move, assessment: &Assessment, text: &[u8]) -> Unfit {
+fn unfit(
+    model: &PowerModel,
+    mv: &Move,
+    assessment: &Assessment,
+    text: &[u8],
+    help: String,
+) -> Unfit {
     let demand = &assessment.demand;
     let (text, _) = split_line_end(text);
     Unfit {
@@ -170,7 +198,7 @@ fn unfit(model: &PowerModel, mv: &Move, assessment: &Assessment, text: &[u8]) ->
         regen_w: demand.regen_w,
         regen_limit_w: model.regen_limit_w(demand.converter),
         overload: demand.load_ratio,
-        help: String::new(),
+        help,
         text: text.get(..TEXT_MAX).unwrap_or(text).to_vec(),
     }
 }

@@ -4,47 +4,27 @@
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 
-use arrayvec::ArrayVec;
-
 use super::analyze::refuse_planned;
 use super::certify::{Batch, Expected, ExpectedMove, Reasons};
 use super::describe::{describe, row};
-use super::front::{Front, Line};
+use super::entry::{Entry, knobs};
+use super::front::Front;
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
-use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Obstacle, Outcome, Permit};
-use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::interpret::{KnobState, Move, MoveKind, Step};
+use crate::limit::{Change, Limiter, Obstacle, Outcome};
+use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
-use crate::syntax::Block;
 
 /// Bytes of a piece that is handed to the certifier.
 const BATCH_BYTES: usize = 64 * 1024;
-/// Moves that one block can have: a dwell, and two to a reference point.
-const MOVES_MAX: usize = 3;
 
 /// What the writing half comes to.
 pub(super) struct Written {
     pub(super) before: Summary,
     pub(super) edited_lines: u64,
     pub(super) reasons: Reasons,
-}
-
-/// A block that waits until all its moves are decided.
-struct Entry {
-    text: Vec<u8>,
-    block: Block,
-    facts: Facts,
-    steps: Vec<Step>,
-    /// The state behind it.
-    mark: Mark,
-    knobs: Option<KnobState>,
-    feed_mode: FeedMode,
-    /// Path mode of the move before it.
-    mode_before: PathMode,
-    moves: usize,
-    decided: ArrayVec<(Assessment, Outcome), MOVES_MAX>,
 }
 
 /// A move that is not decided yet.
@@ -67,6 +47,7 @@ pub(super) struct Writer<'m, R, W> {
     /// Blocks that wait; `first` is the number of the front one.
     entries: VecDeque<Box<Entry>>,
     first: u64,
+    #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
     spare: Vec<Box<Entry>>,
     flights: VecDeque<Flight>,
     outcomes: Vec<Outcome>,
@@ -350,117 +331,6 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
     }
 }
 
-impl Entry {
-    fn new(line: &Line<'_, '_>) -> Self {
-        let modal = line.interpreter.modal();
-        Self {
-            text: Vec::new(),
-            block: Block::default(),
-            facts: Facts::default(),
-            steps: Vec::new(),
-            mark: Mark::of(modal),
-            knobs: None,
-            feed_mode: modal.feed_mode,
-            mode_before: modal.path_mode,
-            moves: 0,
-            decided: ArrayVec::new(),
-        }
-    }
-
-    fn fill(&mut self, line: &mut Line<'_, '_>, machine: &Machine, mode_before: PathMode) {
-        let modal = line.interpreter.modal();
-        self.text.clear();
-        self.text.extend_from_slice(line.text);
-        std::mem::swap(&mut self.block, line.block);
-        self.facts = line.facts;
-        std::mem::swap(&mut self.steps, line.steps);
-        self.moves = self
-            .steps
-            .iter()
-            .filter(|step| matches!(step, Step::Move(_)))
-            .count();
-        self.mark = Mark::of(modal);
-        self.knobs = knobs(machine, line.interpreter.knobs());
-        self.feed_mode = modal.feed_mode;
-        self.mode_before = mode_before;
-        self.decided.clear();
-    }
-
-    /// Whether it moves by a kind that is wanted.
-    fn moves_by(&self, wanted: fn(MoveKind) -> bool) -> bool {
-        self.moves > 0
-            && self
-                .steps
-                .iter()
-                .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
-    }
-
-    /// What may be changed for one of its moves.
-    fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
-        let facts = &self.facts;
-        let mode_before = if step == 0 {
-            self.mode_before
-        } else {
-            mv.path_mode
-        };
-        let stops = mv.path_mode == PathMode::ExactStop && mode_before == PathMode::ExactStop;
-        let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
-        // What forbids any edit, what forbids an F, what forbids G1 for G0.
-        let edit = [
-            (facts.checksum, "it carries a checksum"),
-            (
-                self.block.delete_level > 0,
-                "it may be skipped (block delete)",
-            ),
-            (
-                facts.boundary,
-                "it stops, changes the tool or ends the program",
-            ),
-            (facts.turns_knob, "it sets limits itself"),
-        ];
-        let feed = [
-            (
-                self.feed_mode == FeedMode::InverseTime,
-                "its feed is an inverse time (G93)",
-            ),
-            (
-                self.feed_mode == FeedMode::PerRevolution,
-                "its feed is per revolution (G95)",
-            ),
-        ];
-        let rapid = [
-            (facts.machine_coordinates, "G53 is for rapids"),
-            (facts.reference, "it moves to a reference point"),
-            (!stays, "without its stop the corner would be rounded"),
-        ];
-        let reason = |checks: &[(bool, &'static str)]| {
-            checks
-                .iter()
-                .find(|(applies, _)| *applies)
-                .map(|(_, reason)| *reason)
-        };
-        let reasons = [reason(&edit), reason(&feed), reason(&rapid)];
-        let feed_accel_mm_s2 = self
-            .knobs
-            .as_ref()
-            .map_or(mv.accel_mm_s2, |knobs| knobs.feed_accel_mm_s2);
-        Permit {
-            edit: reasons[0].is_none(),
-            feed_word: reasons[..2] == [None, None],
-            as_feed: reasons == [None; 3],
-            reason: reasons.into_iter().flatten().next().unwrap_or(""),
-            mm_per_unit: self.mark.mm_per_unit,
-            feed_before: self.feed_before(),
-            feed_accel_mm_s2,
-        }
-    }
-
-    /// The F in force, in program units.
-    fn feed_before(&self) -> Option<f64> {
-        self.mark.feed.as_ref().map(|feed| feed.value)
-    }
-}
-
 /// Hands judged moves to the limiter and collects its decisions.
 struct Judge<'a, 'm> {
     machine: &'m Machine,
@@ -493,13 +363,9 @@ impl Judge<'_, '_> {
         };
         let permit = || entry.permit(machine, mv, flight.step);
         limiter.push(mv, assessment, permit, &mut |outcome| {
-            outcomes.push(outcome)
+            outcomes.push(outcome);
         });
     }
-}
-
-fn knobs(machine: &Machine, state: &KnobState) -> Option<KnobState> {
-    (!machine.controller.knobs.is_empty()).then(|| state.clone())
 }
 
 /// One change for a block of several moves: the lower value of each word.

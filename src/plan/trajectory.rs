@@ -58,6 +58,10 @@ impl Default for Caps {
 
 /// How a move runs in time.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "paths are the common case, and a box would be an allocation for each move"
+)]
 pub enum Trajectory {
     /// No axis moves.
     Rest,

@@ -204,7 +204,7 @@ impl<'m> Rewriter<'m> {
             wanted[1] = Some((knob, [percent; AXES]));
         }
         for (knob, values) in wanted.into_iter().flatten() {
-            if self.turned.iter().any(|turned| *turned == (knob, values)) {
+            if self.turned.contains(&(knob, values)) {
                 continue;
             }
             if let Some(words) = knob_line::words(self.machine, knob, &values) {

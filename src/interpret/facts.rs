@@ -1,0 +1,30 @@
+//! What a block is, besides what it does.
+
+use crate::syntax::Word;
+
+/// What the rewriter must know of a block besides its moves.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Facts {
+    /// The F word that sets the feed (not the one of a dwell).
+    pub feed_word: Option<Word>,
+    /// The word of the motion group, if the block has one.
+    pub motion_word: Option<Word>,
+    /// The block moves by the motion word in force, its own or an earlier one.
+    pub uses_motion: bool,
+    /// That motion obeys F.
+    pub uses_feed: bool,
+    /// G53: the move is in machine coordinates.
+    pub machine_coordinates: bool,
+    /// G28 or G30.
+    pub reference: bool,
+    /// The block carries a checksum.
+    pub checksum: bool,
+    /// A stop, tool change or end: the modal state must be the original's.
+    pub boundary: bool,
+    /// The block is executed: not deleted, not behind the end, not empty.
+    pub executed: bool,
+    /// The block turns a knob.
+    pub turns_knob: bool,
+    /// Millimetres in a program unit when the block's F is read.
+    pub feed_mm_per_unit: f64,
+}

@@ -1,0 +1,56 @@
+//! Words by which a program itself limits acceleration or rapid speed.
+
+use super::execute::{Control, Run};
+use crate::machine::KnobArgument;
+
+impl Control<'_> {
+    /// Words by which the program itself limits acceleration or rapid speed.
+    pub(super) fn turn_knobs(&mut self, run: &mut Run<'_, '_>) {
+        for index in 0..run.words.knobs.len() {
+            let (which, assigned, span) = run.words.knobs[index];
+            let Some(knob) = self.machine.controller.knobs.get(which) else {
+                continue;
+            };
+            run.facts.turns_knob = true;
+            let unit = self.modal.mm_per_unit;
+            let mut turned = false;
+            let mut fine = true;
+            let valid = |value: f64| value.is_finite() && value > 0.0;
+            match (&knob.argument, assigned) {
+                (KnobArgument::Assign, Some(value)) if valid(value) => {
+                    self.knobs.turn(self.machine, knob, None, value, unit);
+                    turned = true;
+                }
+                (KnobArgument::Axes, None) => {
+                    for (axis, value) in run.words.axes().collect::<arrayvec::ArrayVec<_, 10>>() {
+                        run.words.take(crate::machine::ALL_AXES[axis].letter());
+                        fine &= valid(value);
+                        self.knobs.turn(self.machine, knob, Some(axis), value, unit);
+                        turned = true;
+                    }
+                }
+                (KnobArgument::Path(letters), None) => {
+                    for letter in letters {
+                        let Some(value) = run.words.take(*letter) else {
+                            continue;
+                        };
+                        fine &= valid(value);
+                        self.knobs.turn_path(*letter, value, unit);
+                        turned = true;
+                    }
+                }
+                _ => {}
+            }
+            if !turned || !fine {
+                let code = format!("{}{}", knob.code.0 as char, f64::from(knob.code.1) / 10.0);
+                run.report
+                    .error(
+                        "knob-value",
+                        format!("{code} needs values above 0 in the form that its profile states"),
+                        span,
+                    )
+                    .help("see `argument` of this word in the controller profile");
+            }
+        }
+    }
+}

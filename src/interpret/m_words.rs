@@ -1,0 +1,119 @@
+//! M words, S and T: actions, and the loads that they switch.
+
+use super::execute::{Control, Run};
+use super::moves::ActionKind;
+use crate::machine::Family;
+use crate::syntax::Word;
+
+impl Control<'_> {
+    pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
+        let other = run
+            .words
+            .m
+            .iter()
+            .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other));
+        if let Some(value) = run.words.take(b'S')
+            && !other
+        {
+            self.modal.spindle_rpm = value.abs();
+            run.act(ActionKind::SpindleSpeed, value);
+            self.note_spindle(run);
+        }
+        if let Some(tool) = run.words.take(b'T')
+            && !other
+        {
+            run.act(ActionKind::ToolSelect, tool);
+            run.facts.boundary = true;
+        }
+    }
+
+    pub(super) fn note_spindle(&self, run: &mut Run<'_, '_>) {
+        if self.machine.spindle.is_none() {
+            let span = run.whole();
+            let message = "the machine file describes no spindle: its power is not counted";
+            run.report.note_once("no-spindle", message, span);
+        }
+    }
+
+    /// What an M word does; `None` if it is not known.
+    pub(super) fn m_kind(&self, number: u16) -> Option<ActionKind> {
+        let value = f64::from(number) / 10.0;
+        let word = (b'M', value);
+        let is_load = || {
+            self.machine
+                .loads
+                .iter()
+                .any(|load| load.on == word || load.off.contains(&word))
+        };
+        match number {
+            0 | 10 | 600 => Some(ActionKind::Stop),
+            20 | 300 => Some(ActionKind::End),
+            30 | 40 | 50 => Some(ActionKind::Spindle),
+            60 => Some(ActionKind::ToolChange),
+            70 | 80 | 90 => Some(ActionKind::Coolant),
+            _ if self.is_ignored(number) || is_load() => Some(ActionKind::Other),
+            _ => None,
+        }
+    }
+
+    /// Whether the profile says that an M word (number × 10) moves no axis.
+    pub(super) fn is_ignored(&self, number: u16) -> bool {
+        number.is_multiple_of(10)
+            && self
+                .machine
+                .controller
+                .language
+                .ignored_m
+                .contains(&(number / 10))
+    }
+
+    pub(super) fn m_words(&mut self, run: &mut Run<'_, '_>) {
+        for index in 0..run.words.m.len() {
+            let (number, span) = run.words.m[index];
+            let value = f64::from(number) / 10.0;
+            self.switch_loads(value);
+            if matches!(number, 820 | 830)
+                && self.machine.controller.language.family == Family::Marlin
+            {
+                self.modal.extruder_absolute = number == 820;
+                continue;
+            }
+            let Some(kind) = self.m_kind(number) else {
+                run.report.refused_m(Word {
+                    letter: b'M',
+                    value,
+                    span,
+                    number: span,
+                });
+                continue;
+            };
+            match kind {
+                ActionKind::Spindle => self.note_spindle(run),
+                // Arguments of a word that moves no axis, as in `M106 S255 P1`.
+                ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,
+                _ => {}
+            }
+            run.facts.boundary |= matches!(
+                kind,
+                ActionKind::Stop | ActionKind::End | ActionKind::ToolChange
+            );
+            if !matches!(kind, ActionKind::Stop | ActionKind::End) {
+                run.act(kind, value);
+            }
+        }
+    }
+
+    /// Switches loads on. Those that go off do so behind the block's moves,
+    /// since controllers differ in when they do.
+    pub(super) fn switch_loads(&mut self, value: f64) {
+        for (index, load) in self.machine.loads.iter().enumerate().take(32) {
+            if load.on == (b'M', value) {
+                self.loads |= 1 << index;
+                self.loads_off &= !(1 << index);
+            }
+            if load.off.contains(&(b'M', value)) {
+                self.loads_off |= 1 << index;
+            }
+        }
+    }
+}

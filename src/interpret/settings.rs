@@ -1,0 +1,182 @@
+//! Words that set modal state: feed, units, plane, modes; and the time of a
+//! dwell.
+
+use super::code::{GCode, Motion, path_mode};
+use super::execute::{Control, Run};
+use super::modal::Feed;
+use super::moves::{ActionKind, FeedMode};
+use crate::machine::{Family, PathMode};
+use crate::source::Span;
+
+impl Control<'_> {
+    pub(super) fn feed_mode(&mut self, run: &mut Run<'_, '_>) {
+        for (code, ..) in &run.words.g {
+            if let GCode::FeedMode(mode) = *code {
+                if mode != self.modal.feed_mode {
+                    // An F of another meaning must not be taken over.
+                    self.modal.feed = None;
+                }
+                self.modal.feed_mode = mode;
+            }
+        }
+    }
+
+    /// Takes the F word. LinuxCNC reads it in the unit in force before the
+    /// block; the others in the unit that the block itself sets.
+    pub(super) fn read_feed(&mut self, run: &mut Run<'_, '_>) {
+        if run.words.take(b'F').is_none() {
+            return;
+        }
+        let Some(word) = run.words.word(b'F', run.block) else {
+            return;
+        };
+        if word.value < 0.0 {
+            run.report
+                .error("negative-feed", "the feed is negative", word.span)
+                .help("write a positive F");
+            return;
+        }
+        let mut mm_per_unit = self.modal.mm_per_unit;
+        if self.machine.controller.language.family != Family::Rs274 {
+            for (code, ..) in &run.words.g {
+                if let GCode::Units { mm_per_unit: unit } = code {
+                    mm_per_unit = *unit;
+                }
+            }
+        }
+        let text = word.number.of(run.report.text);
+        run.facts.feed_word = Some(word);
+        run.facts.feed_mm_per_unit = mm_per_unit;
+        let kept = if text.len() > Feed::TEXT_MAX {
+            &[]
+        } else {
+            text
+        };
+        self.modal.feed = Some(Feed {
+            value: word.value,
+            mm_per_unit,
+            text: kept.iter().copied().collect(),
+        });
+    }
+
+    /// Plane, units, compensation, offsets, path and distance mode.
+    pub(super) fn settings(&mut self, run: &mut Run<'_, '_>) {
+        for index in 0..run.words.g.len() {
+            let (code, number, span) = run.words.g[index];
+            match code {
+                GCode::Plane(plane) => self.modal.plane = plane,
+                GCode::Units { mm_per_unit } => self.modal.mm_per_unit = mm_per_unit,
+                GCode::ToolLengthOn => {
+                    run.words.take(b'H');
+                    let message = "without a tool table the tool length is taken as 0";
+                    run.report.note_once("no-tool-table", message, span);
+                }
+                GCode::PathMode => self.path_mode(number, run),
+                GCode::MirrorX => self.mirror_x(span, run),
+                GCode::Absolute(absolute) => {
+                    self.modal.absolute = absolute;
+                    self.modal.extruder_absolute = absolute;
+                }
+                GCode::ArcAbsolute(absolute) => self.modal.arc_absolute = absolute,
+                GCode::MachineCoordinates => run.facts.machine_coordinates = true,
+                GCode::Motion(motion) => {
+                    self.modal.motion = motion;
+                    run.facts.motion_word = run
+                        .block
+                        .words
+                        .iter()
+                        .copied()
+                        .find(|word| word.span == span);
+                }
+                GCode::WorkOffset(offset) if offset > 1 => {
+                    let message = "without a parameter file all work offsets are taken as 0";
+                    run.report.note_once("no-offsets", message, span);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Mirroring in X from X0 changes the sign of every X and with it no power,
+    /// as long as no weight hangs on X.
+    fn mirror_x(&self, span: Span, run: &mut Run<'_, '_>) {
+        let weightless = self.machine.axes[0].is_none_or(|axis| axis.gravity_n == 0.0);
+        if weightless && self.position.at[0] == 0.0 && self.position.absolute(0, 0.0) == 0.0 {
+            let message = "G20 and G21 switch mirroring in X, not the unit (G70, G71): \
+                           the sign of X is not shown, its power is the same";
+            run.report.note_once("mirrored-x", message, span);
+            return;
+        }
+        run.report
+            .error(
+                "mirrored-x",
+                "G20 and G21 switch mirroring in X on this controller",
+                span,
+            )
+            .help("for the unit write G70 (inch) or G71 (mm); mirroring is followed only at X0");
+    }
+
+    pub(super) fn path_mode(&mut self, number: u16, run: &mut Run<'_, '_>) {
+        let asked = path_mode(number, &self.machine.controller.language);
+        let exact = self.machine.path.mode == Some(PathMode::ExactStop);
+        self.modal.path_mode = if exact { PathMode::ExactStop } else { asked };
+        if number == 640 {
+            run.words.take(b'P');
+            run.words.take(b'Q');
+        }
+        run.act(ActionKind::PathMode, f64::from(number) / 10.0);
+    }
+
+    pub(super) fn dwell_time(&mut self, run: &mut Run<'_, '_>) -> Option<f64> {
+        if run.words.groups & GCode::Dwell.group() == 0 {
+            return None;
+        }
+        let language = &self.machine.controller.language;
+        let mut seconds = None;
+        for (letter, unit) in &language.dwell {
+            if let Some(value) = run.words.take(*letter) {
+                seconds = Some(value * unit);
+            }
+        }
+        let span = run.whole();
+        match seconds {
+            Some(time) if (0.0..=1e9).contains(&time) => return seconds,
+            Some(_) => {
+                let message = "the time of G4 is negative or beyond reason";
+                run.report
+                    .error("dwell-time", message, span)
+                    .help("write a time from 0 to 1e9 s");
+            }
+            None if language.family == Family::Marlin => return Some(0.0),
+            None => {
+                let letters: Vec<_> = language
+                    .dwell
+                    .iter()
+                    .map(|(letter, _)| char::from(*letter).to_string())
+                    .collect();
+                let help = format!(
+                    "this controller takes the time from {}",
+                    letters.join(" or ")
+                );
+                run.report
+                    .error("dwell-time", "G4 without a time", span)
+                    .help(help);
+            }
+        }
+        None
+    }
+
+    /// True when F counts for the motion in force.
+    pub(super) fn obeys_feed(&self) -> bool {
+        match self.modal.motion {
+            Motion::None => false,
+            Motion::Rapid => self.machine.controller.language.rapid_uses_feed,
+            Motion::Linear | Motion::ArcCw | Motion::ArcCcw => true,
+        }
+    }
+
+    /// Whether the feed mode in force is `mode`.
+    pub(super) fn feed_mode_is(&self, mode: FeedMode) -> bool {
+        self.modal.feed_mode == mode
+    }
+}

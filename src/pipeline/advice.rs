@@ -1,0 +1,83 @@
+//! What would bring a move down, in a few words.
+
+use crate::interpret::{FeedMode, Interpreter, Move, MoveKind};
+use crate::limit::{Change, Law, LimitOptions, Permit, Solver, Strategy};
+use crate::machine::Machine;
+use crate::power::Assessment;
+
+/// Gives advice for moves that do not fit.
+pub(super) struct Adviser<'m> {
+    machine: &'m Machine,
+    solver: Solver<'m>,
+}
+
+impl<'m> Adviser<'m> {
+    pub(super) fn new(machine: &'m Machine) -> Self {
+        let how = LimitOptions {
+            strategy: Strategy::Optimal,
+            law: Law::Exact,
+            allow_feed: true,
+        };
+        Self {
+            machine,
+            solver: Solver::new(machine, how),
+        }
+    }
+
+    /// What helps; `interpreter` holds the state of the move's block.
+    pub(super) fn help(
+        &self,
+        mv: &Move,
+        assessment: &Assessment,
+        interpreter: &Interpreter<'_>,
+    ) -> String {
+        if assessment.blended {
+            return "lower feed or acceleration here and in the neighbouring blocks".to_owned();
+        }
+        let modal = interpreter.modal();
+        let per_minute = modal.feed_mode == FeedMode::PerMinute;
+        let permit = Permit {
+            edit: true,
+            feed_word: per_minute,
+            as_feed: per_minute,
+            reason: "",
+            mm_per_unit: modal.mm_per_unit,
+            feed_before: None,
+            feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
+        };
+        match self.solver.solve(mv, assessment, &permit) {
+            Ok(change) => self.words(mv, &change),
+            Err(obstacle) => format!("{}: {}", obstacle.message, obstacle.help),
+        }
+    }
+
+    /// The words that a change writes.
+    fn words(&self, mv: &Move, change: &Change) -> String {
+        let mut words = Vec::new();
+        if let Some(feed) = change.feed {
+            words.push(format!(
+                "{}F{feed}",
+                if change.as_feed { "G1 " } else { "" }
+            ));
+        }
+        let settings = [
+            change.rapid_percent,
+            change.accel.map(|(knob, values)| {
+                let least = mv.moving.iter().map(|axis| values[axis]);
+                (knob, least.fold(f64::INFINITY, f64::min))
+            }),
+        ];
+        for (knob, value) in settings.into_iter().flatten() {
+            words.push(format!(
+                "{} {value}",
+                super::describe::knob_name(self.machine, knob)
+            ));
+        }
+        let option = if mv.kind != MoveKind::Rapid && change.feed.is_some() {
+            " (limit --allow feed)"
+        } else {
+            ""
+        };
+        format!("fits with {}{option}", words.join(" and "))
+    }
+}

@@ -1,0 +1,151 @@
+//! A block that waits to be written, and what may be changed about it.
+
+use arrayvec::ArrayVec;
+
+use super::front::Line;
+use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
+use crate::limit::{Outcome, Permit};
+use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::power::Assessment;
+use crate::rewrite::Mark;
+use crate::syntax::Block;
+
+/// Moves that one block can have: a dwell, and two to a reference point.
+const MOVES_MAX: usize = 3;
+
+/// A block that waits until all its moves are decided.
+pub(super) struct Entry {
+    pub(super) text: Vec<u8>,
+    pub(super) block: Block,
+    pub(super) facts: Facts,
+    pub(super) steps: Vec<Step>,
+    /// The state behind it.
+    pub(super) mark: Mark,
+    pub(super) knobs: Option<KnobState>,
+    pub(super) feed_mode: FeedMode,
+    /// Path mode of the move before it.
+    pub(super) mode_before: PathMode,
+    pub(super) moves: usize,
+    pub(super) decided: ArrayVec<(Assessment, Outcome), MOVES_MAX>,
+}
+
+impl Entry {
+    pub(super) fn new(line: &Line<'_, '_>) -> Self {
+        let modal = line.interpreter.modal();
+        Self {
+            text: Vec::new(),
+            block: Block::default(),
+            facts: Facts::default(),
+            steps: Vec::new(),
+            mark: Mark::of(modal),
+            knobs: None,
+            feed_mode: modal.feed_mode,
+            mode_before: modal.path_mode,
+            moves: 0,
+            decided: ArrayVec::new(),
+        }
+    }
+
+    pub(super) fn fill(
+        &mut self,
+        line: &mut Line<'_, '_>,
+        machine: &Machine,
+        mode_before: PathMode,
+    ) {
+        let modal = line.interpreter.modal();
+        self.text.clear();
+        self.text.extend_from_slice(line.text);
+        std::mem::swap(&mut self.block, line.block);
+        self.facts = line.facts;
+        std::mem::swap(&mut self.steps, line.steps);
+        self.moves = self
+            .steps
+            .iter()
+            .filter(|step| matches!(step, Step::Move(_)))
+            .count();
+        self.mark = Mark::of(modal);
+        self.knobs = knobs(machine, line.interpreter.knobs());
+        self.feed_mode = modal.feed_mode;
+        self.mode_before = mode_before;
+        self.decided.clear();
+    }
+
+    /// Whether it moves by a kind that is wanted.
+    pub(super) fn moves_by(&self, wanted: fn(MoveKind) -> bool) -> bool {
+        self.moves > 0
+            && self
+                .steps
+                .iter()
+                .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
+    }
+
+    /// What may be changed for one of its moves.
+    pub(super) fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
+        let facts = &self.facts;
+        let mode_before = if step == 0 {
+            self.mode_before
+        } else {
+            mv.path_mode
+        };
+        let stops = mv.path_mode == PathMode::ExactStop && mode_before == PathMode::ExactStop;
+        let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
+        // What forbids any edit, what forbids an F, what forbids G1 for G0.
+        let edit = [
+            (facts.checksum, "it carries a checksum"),
+            (
+                self.block.delete_level > 0,
+                "it may be skipped (block delete)",
+            ),
+            (
+                facts.boundary,
+                "it stops, changes the tool or ends the program",
+            ),
+            (facts.turns_knob, "it sets limits itself"),
+        ];
+        let feed = [
+            (
+                self.feed_mode == FeedMode::InverseTime,
+                "its feed is an inverse time (G93)",
+            ),
+            (
+                self.feed_mode == FeedMode::PerRevolution,
+                "its feed is per revolution (G95)",
+            ),
+        ];
+        let rapid = [
+            (facts.machine_coordinates, "G53 is for rapids"),
+            (facts.reference, "it moves to a reference point"),
+            (!stays, "without its stop the corner would be rounded"),
+        ];
+        let reason = |checks: &[(bool, &'static str)]| {
+            checks
+                .iter()
+                .find(|(applies, _)| *applies)
+                .map(|(_, reason)| *reason)
+        };
+        let reasons = [reason(&edit), reason(&feed), reason(&rapid)];
+        let feed_accel_mm_s2 = self
+            .knobs
+            .as_ref()
+            .map_or(mv.accel_mm_s2, |knobs| knobs.feed_accel_mm_s2);
+        Permit {
+            edit: reasons[0].is_none(),
+            feed_word: reasons[..2] == [None, None],
+            as_feed: reasons == [None; 3],
+            reason: reasons.into_iter().flatten().next().unwrap_or(""),
+            mm_per_unit: self.mark.mm_per_unit,
+            feed_before: self.feed_before(),
+            feed_accel_mm_s2,
+        }
+    }
+
+    /// The F in force, in program units.
+    pub(super) fn feed_before(&self) -> Option<f64> {
+        self.mark.feed.as_ref().map(|feed| feed.value)
+    }
+}
+
+/// The knobs in force, where the controller has any.
+pub(super) fn knobs(machine: &Machine, state: &KnobState) -> Option<KnobState> {
+    (!machine.controller.knobs.is_empty()).then(|| state.clone())
+}
