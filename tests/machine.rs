@@ -8,6 +8,8 @@ mod load;
 mod profile_errors;
 mod robust;
 mod schema;
+mod table_errors;
+mod value_errors;
 mod warnings;
 
 use gwatt::diagnostic::{Diagnostic, Severity};

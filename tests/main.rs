@@ -5,6 +5,7 @@ mod syntax;
 mod plan;
 mod power;
 mod rig;
+mod limit;
 mod machine;
 mod cli;
 mod readme;

@@ -2,7 +2,7 @@
 //! too low.
 
 use crate::rig::{
-    any_arc, any_delta, any_feed, any_machine, arc, axis, dwell, machine, sample, straight,
+    Sampled, any_arc, any_delta, any_feed, any_machine, arc, axis, dwell, machine, sample, straight,
 };
 use gwatt::interpret::Move;
 use gwatt::machine::{Axis, AxisKind, AxisSet, Converter, Load, Machine, RapidPath};
@@ -269,7 +269,7 @@ fn gross_w(machine: &Machine, speed_mm_s: f64) -> f64 {
 /// Peaks within 1e-6 above the samples and never below them.
 fn peaks_agree(found: f64, sampled: f64, scale: f64) -> Result<(), TestCaseError> {
     prop_assert!(
-        found >= sampled * (1.0 - 1e-12),
+        found >= sampled * (1.0 - 1e-12) - 1e-12 * scale,
         "{found} is too low, sampled {sampled}"
     );
     let above = found - sampled.max(0.0);
@@ -304,10 +304,16 @@ proptest! {
         let mv = arc(&machine, plane, radius, angles, lift, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL);
-        let sampled = sample(&machine, &mv, &plan, 600);
         let scale = gross_w(&machine, plan.top_speed_mm_s);
-        peaks_agree(found.peak_w, sampled.peak_w, scale)?;
-        peaks_agree(found.regen_w, sampled.regen_w, scale)?;
+        let agree = |sampled: &Sampled| {
+            peaks_agree(found.peak_w, sampled.peak_w, scale)?;
+            peaks_agree(found.regen_w, sampled.regen_w, scale)
+        };
+        // Few samples may miss the highest of several peaks.
+        let sampled = sample(&machine, &mv, &plan, 600);
+        if agree(&sampled).is_err() {
+            agree(&sample(&machine, &mv, &plan, 60_000))?;
+        }
     }
 
     #[test]
@@ -330,6 +336,38 @@ proptest! {
             let robust = model.robust(&mv, &bound, &mv.accel_mm_s2);
             prop_assert!(robust.peak_w >= found.peak_w * (1.0 - 1e-6), "{robust:?} {found:?}");
             prop_assert!(robust.regen_w >= found.regen_w * (1.0 - 1e-6), "{robust:?} {found:?}");
+        }
+    }
+
+    #[test]
+    fn wanting_less_changes_no_peak_of_interest(
+        machine in any_machine(), delta in any_delta(), feed in any_feed(),
+        shape in any_arc(), floors in [0.0..2.0_f64, 0.0..2.0_f64],
+    ) {
+        let (plane, radius, angles, lift, arc_feed) = shape;
+        let model = PowerModel::new(&machine);
+        for mv in [
+            straight(&machine, &delta, feed),
+            arc(&machine, plane, radius, angles, lift, arc_feed),
+        ] {
+            let plan = plan(&machine, &mv, Overrides::default());
+            let all = model.demand(&mv, &plan, Want::ALL);
+            let peaks = model.demand(&mv, &plan, Want::PEAKS);
+            prop_assert!((peaks.peak_w - all.peak_w).abs() <= 1e-12 * all.peak_w);
+            prop_assert!((peaks.regen_w - all.regen_w).abs() <= 1e-12 * all.peak_w);
+            let want = Want {
+                energy: false,
+                floor_w: floors[0] * all.peak_w,
+                regen_floor_w: floors[1] * all.regen_w,
+            };
+            let pruned = model.demand(&mv, &plan, want);
+            for (found, exact, floor) in [
+                (pruned.peak_w, all.peak_w, want.floor_w),
+                (pruned.regen_w, all.regen_w, want.regen_floor_w),
+            ] {
+                prop_assert!(found >= exact * (1.0 - 1e-6) || exact <= floor);
+                prop_assert!(found <= (exact * (1.0 + 1e-6)).max(floor) + 1e-9 * all.peak_w);
+            }
         }
     }
 
@@ -366,25 +404,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20, ..ProptestConfig::default() })]
 
     #[test]
-    fn arc_energy_agrees_with_fine_integration(
-        machine in any_machine(), shape in any_arc(), smooth in any::<bool>(),
-    ) {
-        // The force jumps where an axis turns back; without copper loss the power
-        // does not, and the samples converge faster.
-        let mut machine = machine;
-        if smooth {
-            for axis in machine.axes.iter_mut().flatten() {
-                axis.copper_w_n2 = 0.0;
-            }
-        }
-        let tolerance = if smooth { 1e-6 } else { 2e-5 };
+    fn arc_energy_agrees_with_fine_integration(machine in any_machine(), shape in any_arc()) {
         let (plane, radius, angles, lift, feed) = shape;
         let mv = arc(&machine, plane, radius, angles, lift, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL).energy_j;
-        let sampled = sample(&machine, &mv, &plan, 20_000);
+        let sampled = sample(&machine, &mv, &plan, 4_000);
         let scale = found.abs() + sampled.peak_w * plan.duration_s;
-        prop_assert!((found - sampled.energy_j).abs() <= tolerance * scale, "{found} {}", sampled.energy_j);
+        prop_assert!((found - sampled.energy_j).abs() <= 1e-6 * scale, "{found} {}", sampled.energy_j);
     }
 
     #[test]
@@ -394,7 +421,7 @@ proptest! {
         let mv = straight(&machine, &delta, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL).energy_j;
-        let sampled = sample(&machine, &mv, &plan, 5_000);
+        let sampled = sample(&machine, &mv, &plan, 1_500);
         let scale = found.abs() + sampled.peak_w * plan.duration_s;
         prop_assert!((found - sampled.energy_j).abs() <= 1e-6 * scale, "{found} {}", sampled.energy_j);
     }

@@ -182,16 +182,16 @@ pub(crate) enum Reading {
 /// Speed and acceleration of an axis on a path, in its own unit.
 fn on_path(mv: &Move, axis: usize, phase: &Phase, t: f64) -> (f64, f64) {
     let s = phase.state_at(t);
-    if let Some(arc) = mv.arc {
-        if let Some(which) = arc.plane.iter().position(|&p| p == axis) {
-            let turn = arc.sweep_rad / mv.length_mm;
-            let angle = arc.start_angle_rad + turn * s.position_mm;
-            let (sin, cos) = libm::sincos(angle);
-            let (tangent, normal) = [(-sin, -cos), (cos, -sin)][which];
-            let r = arc.radius_mm;
-            let (w, alpha) = (turn * s.velocity_mm_s, turn * s.accel_mm_s2);
-            return (r * w * tangent, r * (alpha * tangent + w * w * normal));
-        }
+    if let Some(arc) = mv.arc
+        && let Some(which) = arc.plane.iter().position(|&p| p == axis)
+    {
+        let turn = arc.sweep_rad / mv.length_mm;
+        let angle = arc.start_angle_rad + turn * s.position_mm;
+        let (sin, cos) = libm::sincos(angle);
+        let (tangent, normal) = [(-sin, -cos), (cos, -sin)][which];
+        let r = arc.radius_mm;
+        let (w, alpha) = (turn * s.velocity_mm_s, turn * s.accel_mm_s2);
+        return (r * w * tangent, r * (alpha * tangent + w * w * normal));
     }
     let u = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
     (u * s.velocity_mm_s, u * s.accel_mm_s2)
@@ -199,7 +199,7 @@ fn on_path(mv: &Move, axis: usize, phase: &Phase, t: f64) -> (f64, f64) {
 
 /// Power of the first converter at one instant of a path: what counts as
 /// drawn and as fed back. `sign_t` is an instant nearby that tells the
-/// direction of an axis that is just at rest.
+/// directions of the axes, of which some may just be turning back.
 fn power_on_path(
     machine: &Machine,
     mv: &Move,
@@ -219,15 +219,10 @@ fn power_on_path(
         let k = axis.si_per_unit;
         let (v, a) = on_path(mv, i, phase, t);
         let (v, a) = (v * k, a * k);
-        let direction = if v == 0.0 {
-            on_path(mv, i, phase, sign_t).0.signum()
-        } else {
-            v.signum()
-        };
+        let direction = on_path(mv, i, phase, sign_t).0.signum();
         let (factor, friction) = match reading {
-            Reading::Nominal => (1.0, 1.0),
             Reading::Motor if a * direction > 0.0 => (axis.servo_factor_motor, 1.0),
-            Reading::Motor => (1.0, 1.0),
+            Reading::Nominal | Reading::Motor => (1.0, 1.0),
             Reading::Regen if a * direction > 0.0 => (1.0, axis.friction_min_ratio),
             Reading::Regen => (axis.servo_factor_regen, axis.friction_min_ratio),
         };
@@ -277,41 +272,69 @@ pub(crate) fn sample(machine: &Machine, mv: &Move, plan: &Plan, n: u32) -> Sampl
         let drawn = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Motor).0;
         let fed = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Regen).1;
         let energy = |t, sign_t| power_on_path(machine, mv, phase, t, sign_t, Reading::Nominal).0;
+        let ends = cell_ends(mv, phase, n);
         let mut cells = [vec![], vec![]];
-        for i in 0..n {
-            let from = f64::from(i) * h;
-            let middle = from + 0.5 * h;
+        for pair in ends.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let middle = 0.5 * (from + to);
             for (which, cell) in cells.iter_mut().enumerate() {
-                let f = |t| {
-                    if which == 0 {
-                        drawn(t, middle)
-                    } else {
-                        fed(t, middle)
-                    }
+                let f = |t| match which {
+                    0 => drawn(t, middle),
+                    _ => fed(t, middle),
                 };
-                cell.push(f(from).max(f(middle)).max(f(from + h)));
+                cell.push((middle, f(from).max(f(middle)).max(f(to))));
             }
-            let ends = energy(from, middle) + energy(from + h, middle);
-            found.energy_j += h * (ends + 4.0 * energy(middle, middle)) / 6.0;
+            let both = energy(from, middle) + energy(to, middle);
+            found.energy_j += (to - from) * (both + 4.0 * energy(middle, middle)) / 6.0;
         }
-        found.peak_w = found.peak_w.max(refine(&drawn, &cells[0], h));
-        found.regen_w = found.regen_w.max(refine(&fed, &cells[1], h));
+        found.peak_w = found
+            .peak_w
+            .max(refine(&drawn, &cells[0], h, phase.duration_s));
+        found.regen_w = found
+            .regen_w
+            .max(refine(&fed, &cells[1], h, phase.duration_s));
     }
     found
 }
 
+/// Ends of `n` cells of a phase, and between them the instants at which an axis
+/// turns back.
+fn cell_ends(mv: &Move, phase: &Phase, n: u32) -> Vec<f64> {
+    let h = phase.duration_s / f64::from(n);
+    let mut ends: Vec<f64> = (0..=n).map(|i| f64::from(i) * h).collect();
+    for axis in mv.moving.iter() {
+        let speed = |t| on_path(mv, axis, phase, t).0;
+        for i in 0..n as usize {
+            let (mut from, mut to) = (ends[i], ends[i + 1]);
+            if speed(from) * speed(to) < 0.0 {
+                for _ in 0..60 {
+                    let middle = 0.5 * (from + to);
+                    if speed(from) * speed(middle) > 0.0 {
+                        from = middle;
+                    } else {
+                        to = middle;
+                    }
+                }
+                ends.push(from);
+            }
+        }
+    }
+    ends.sort_by(f64::total_cmp);
+    ends.dedup_by(|a, b| *a - *b < 1e-9 * h);
+    ends
+}
+
 /// Refines each sampled maximum that comes close to the largest by finer and
-/// finer grids around it.
-fn refine(f: &dyn Fn(f64, f64) -> f64, cells: &[f64], h: f64) -> f64 {
-    let mut largest = cells.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+/// finer grids around it. Cells are given by their middle and value.
+fn refine(f: &dyn Fn(f64, f64) -> f64, cells: &[(f64, f64)], h: f64, end: f64) -> f64 {
+    let mut largest = cells.iter().fold(f64::NEG_INFINITY, |a, b| a.max(b.1));
     let close = largest - 0.02 * largest.abs();
-    let end = cells.len() as f64 * h;
-    for (i, &cell) in cells.iter().enumerate() {
+    for (i, &(middle, cell)) in cells.iter().enumerate() {
         let neighbours = [i.saturating_sub(1), (i + 1).min(cells.len() - 1)];
-        if cell < close || neighbours.iter().any(|&other| cells[other] > cell) {
+        if cell < close || neighbours.iter().any(|&other| cells[other].1 > cell) {
             continue;
         }
-        let (mut value, mut centre, mut half) = (cell, (i as f64 + 0.5) * h, 1.5 * h);
+        let (mut value, mut centre, mut half) = (cell, middle, 1.5 * h);
         for _ in 0..6 {
             let mut next = centre;
             for step in -10..=10 {

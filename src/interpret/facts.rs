@@ -19,12 +19,14 @@ pub struct Facts {
     pub reference: bool,
     /// The block carries a checksum.
     pub checksum: bool,
+    /// An F in this block would be the time of its dwell.
+    pub dwell_takes_feed: bool,
     /// A stop, tool change or end: the modal state must be the original's.
     pub boundary: bool,
     /// The block is executed: not deleted, not behind the end, not empty.
     pub executed: bool,
     /// The block turns a knob.
     pub turns_knob: bool,
-    /// Millimetres in a program unit when the block's F is read.
+    /// Millimetres in a program unit when the block's F is read, or would be.
     pub feed_mm_per_unit: f64,
 }

@@ -1,7 +1,7 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
 use super::moves::MoveKind;
-use crate::machine::{AXES, AxisKind, AxisValues, Knob, KnobTarget, KnobUnit, Machine};
+use crate::machine::{AXES, AxisValues, Knob, KnobTarget, Machine};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,17 +69,7 @@ impl KnobState {
             let Some(data) = &machine.axes[axis] else {
                 continue;
             };
-            let accel = match knob.unit {
-                KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
-                KnobUnit::PerSecondSquared => {
-                    value
-                        * if data.kind == AxisKind::Linear {
-                            mm_per_unit
-                        } else {
-                            1.0
-                        }
-                }
-            };
+            let accel = knob.unit.accel_mm_s2(data, value, mm_per_unit);
             if knob.target != KnobTarget::RapidAccel {
                 self.feed_accel_mm_s2[axis] = accel;
             }

@@ -24,6 +24,15 @@ impl Control<'_> {
     /// Takes the F word. LinuxCNC reads it in the unit in force before the
     /// block; the others in the unit that the block itself sets.
     pub(super) fn read_feed(&mut self, run: &mut Run<'_, '_>) {
+        let mut mm_per_unit = self.modal.mm_per_unit;
+        if self.machine.controller.language.family != Family::Rs274 {
+            for (code, ..) in &run.words.g {
+                if let GCode::Units { mm_per_unit: unit } = code {
+                    mm_per_unit = *unit;
+                }
+            }
+        }
+        run.facts.feed_mm_per_unit = mm_per_unit;
         if run.words.take(b'F').is_none() {
             return;
         }
@@ -36,17 +45,8 @@ impl Control<'_> {
                 .help("write a positive F");
             return;
         }
-        let mut mm_per_unit = self.modal.mm_per_unit;
-        if self.machine.controller.language.family != Family::Rs274 {
-            for (code, ..) in &run.words.g {
-                if let GCode::Units { mm_per_unit: unit } = code {
-                    mm_per_unit = *unit;
-                }
-            }
-        }
         let text = word.number.of(run.report.text);
         run.facts.feed_word = Some(word);
-        run.facts.feed_mm_per_unit = mm_per_unit;
         self.modal.feed = Some(Feed {
             value: word.value,
             mm_per_unit,
@@ -128,12 +128,20 @@ impl Control<'_> {
         }
         let language = &self.machine.controller.language;
         let mut seconds = None;
-        for (letter, unit) in &language.dwell {
-            if let Some(value) = run.words.take(*letter) {
-                seconds = Some(value * unit);
-            }
-        }
         let span = run.whole();
+        for (letter, unit) in &language.dwell {
+            run.facts.dwell_takes_feed |= *letter == b'F';
+            let Some(value) = run.words.take(*letter) else {
+                continue;
+            };
+            // Of P and X one may be the time and the other a motion.
+            if seconds.is_some() && language.family != Family::Marlin {
+                run.report
+                    .error("dwell-time", "two words could be the time of G4", span)
+                    .help("write the dwell in a block of its own, with one time");
+            }
+            seconds = Some(value * unit);
+        }
         match seconds {
             Some(time) if (0.0..=1e9).contains(&time) => return seconds,
             Some(_) => {

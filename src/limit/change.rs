@@ -1,7 +1,7 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisKind, AxisValues, KnobUnit, Machine};
+use crate::machine::{AxisKind, AxisValues, Machine};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.
@@ -15,8 +15,10 @@ pub struct Permit {
     pub as_feed: bool,
     /// Why not, for a person; empty when all is permitted.
     pub reason: &'static str,
-    /// Millimetres in one program unit, for F and for knobs.
+    /// Millimetres in one program unit, for an F in the block.
     pub mm_per_unit: f64,
+    /// The same for knobs, on a line before the block.
+    pub knob_mm_per_unit: f64,
     /// The F in force in program units, if there is one.
     pub feed_before: Option<f64>,
     /// Acceleration limits of feed moves in force, for a rapid that is written
@@ -87,8 +89,11 @@ impl Change {
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
             for axis in machine.axis_set.iter() {
-                changed.accel_mm_s2[axis] =
-                    knob_accel(machine, knob.unit, axis, values[axis], permit.mm_per_unit);
+                if let Some(data) = &machine.axes[axis] {
+                    changed.accel_mm_s2[axis] =
+                        knob.unit
+                            .accel_mm_s2(data, values[axis], permit.knob_mm_per_unit);
+                }
             }
         }
         changed
@@ -115,54 +120,6 @@ pub(super) fn feed_unit(machine: &Machine, mv: &Move, permit: &Permit) -> f64 {
         .iter()
         .any(|axis| machine.axes[axis].is_some_and(|data| data.kind == AxisKind::Linear));
     if linear { permit.mm_per_unit } else { 1.0 }
-}
-
-/// Acceleration limit in mm/s² (degrees/s²) that a knob's value means.
-pub(super) fn knob_accel(
-    machine: &Machine,
-    unit: KnobUnit,
-    axis: usize,
-    value: f64,
-    mm_per_unit: f64,
-) -> f64 {
-    let Some(data) = &machine.axes[axis] else {
-        return 0.0;
-    };
-    match unit {
-        KnobUnit::Percent => data.accel_mm_s2 * value / 100.0,
-        KnobUnit::PerSecondSquared => {
-            value
-                * if data.kind == AxisKind::Linear {
-                    mm_per_unit
-                } else {
-                    1.0
-                }
-        }
-    }
-}
-
-/// The value of a knob that means this acceleration limit.
-pub(super) fn knob_value(
-    machine: &Machine,
-    unit: KnobUnit,
-    axis: usize,
-    accel: f64,
-    mm_per_unit: f64,
-) -> f64 {
-    let Some(data) = &machine.axes[axis] else {
-        return 0.0;
-    };
-    match unit {
-        KnobUnit::Percent => accel / data.accel_mm_s2 * 100.0,
-        KnobUnit::PerSecondSquared => {
-            accel
-                / if data.kind == AxisKind::Linear {
-                    mm_per_unit
-                } else {
-                    1.0
-                }
-        }
-    }
 }
 
 /// Rounds a feed down to five significant digits (a loss of 1e-4 at most).

@@ -36,8 +36,10 @@ pub(super) struct Slot {
     pub(super) permit: Permit,
     pub(super) change: Change,
     pub(super) obstacle: Option<Obstacle>,
-    /// The controller may run from this move into the next.
+    /// The controller may run from this move into the next one that moves.
     pub(super) joined: bool,
+    /// It has no length and is passed on the way to the next.
+    pub(super) rider: bool,
 }
 
 /// Decides for the moves of one program.
@@ -64,37 +66,36 @@ impl<'m> Limiter<'m> {
         &mut self,
         mv: &Move,
         assessment: &Assessment,
-        permit: impl FnOnce() -> Permit,
+        permit: impl Fn() -> Permit,
         sink: &mut impl FnMut(Outcome),
     ) {
         let joined = assessment.joined;
         if !assessment.blended {
+            let outcome = self.alone(mv, assessment, &permit);
+            if joined && !self.slots.is_empty() {
+                let mut slot = Slot::new(mv, assessment, permit());
+                slot.rider = true;
+                slot.change = outcome.change.map_or(Change::NONE, |change| *change);
+                slot.obstacle = outcome.obstacle.map(|obstacle| *obstacle);
+                self.slots.push_back(slot);
+                return;
+            }
             self.settle(sink);
-            sink(self.alone(mv, assessment, permit));
+            sink(outcome);
             return;
         }
-        let slot = Slot {
-            mv: mv.clone(),
-            changed: mv.clone(),
-            assessment: *assessment,
-            permit: permit(),
-            change: Change::default(),
-            obstacle: None,
-            joined: false,
-        };
-        if let Some(last) = self.slots.back_mut() {
-            last.joined = joined;
-        }
-        self.slots.push_back(slot);
-        if self.slots.len() >= 2 {
-            let center = self.slots.len() - 2;
+        let previous = self.last_moving();
+        self.slots.push_back(Slot::new(mv, assessment, permit()));
+        let mut needed = self.slots.len() - 1;
+        if let Some(center) = previous {
+            self.slots[center].joined = joined;
             window::settle(&self.solver, &mut self.slots, center);
-        }
-        let keep = if joined { 2 } else { 1 };
-        while self.slots.len() > keep {
-            if let Some(slot) = self.slots.pop_front() {
-                sink(slot.outcome());
+            if joined {
+                needed = center;
             }
+        }
+        for slot in self.slots.drain(..needed) {
+            sink(slot.outcome());
         }
     }
 
@@ -105,9 +106,8 @@ impl<'m> Limiter<'m> {
 
     /// Decides what is waiting; nothing that follows is joined to it.
     fn settle(&mut self, sink: &mut impl FnMut(Outcome)) {
-        if let Some(last) = self.slots.back_mut() {
-            last.joined = false;
-            let center = self.slots.len() - 1;
+        if let Some(center) = self.last_moving() {
+            self.slots[center].joined = false;
             window::settle(&self.solver, &mut self.slots, center);
         }
         for slot in self.slots.drain(..) {
@@ -115,12 +115,11 @@ impl<'m> Limiter<'m> {
         }
     }
 
-    fn alone(
-        &self,
-        mv: &Move,
-        assessment: &Assessment,
-        permit: impl FnOnce() -> Permit,
-    ) -> Outcome {
+    fn last_moving(&self) -> Option<usize> {
+        self.slots.iter().rposition(|slot| !slot.rider)
+    }
+
+    fn alone(&self, mv: &Move, assessment: &Assessment, permit: impl Fn() -> Permit) -> Outcome {
         if self.solver.model.fits(&assessment.demand) {
             return Outcome::default();
         }
@@ -138,6 +137,19 @@ impl<'m> Limiter<'m> {
 }
 
 impl Slot {
+    fn new(mv: &Move, assessment: &Assessment, permit: Permit) -> Self {
+        Self {
+            mv: mv.clone(),
+            changed: mv.clone(),
+            assessment: *assessment,
+            permit,
+            change: Change::NONE,
+            obstacle: None,
+            joined: false,
+            rider: false,
+        }
+    }
+
     fn outcome(self) -> Outcome {
         Outcome {
             change: (!self.change.is_none()).then(|| Box::new(self.change)),

@@ -1,6 +1,6 @@
 //! One move by itself: the change that makes it fit.
 
-use super::change::{Change, Permit, feed_unit, knob_value, round_feed_down, round_to_step};
+use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
@@ -143,6 +143,10 @@ impl<'m> Solver<'m> {
             _ => base.feed_mm_s.min(1e6),
         };
         let load_top = load_at(lever, top);
+        if load_top <= 1.0 && lever != SpeedLever::AsFeed {
+            // The speed in force fits: no word is needed.
+            return Some(trial);
+        }
         let value = if load_top <= 1.0 {
             top
         } else {
@@ -239,13 +243,12 @@ impl<'m> Solver<'m> {
         let data = self.machine.controller.knobs.get(knob)?;
         let mut values = [0.0; crate::machine::AXES];
         for axis in self.machine.axis_set.iter() {
-            let value = knob_value(
-                self.machine,
-                data.unit,
-                axis,
-                accel_mm_s2[axis],
-                permit.mm_per_unit,
-            );
+            let Some(own) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let value = data
+                .unit
+                .value(own, accel_mm_s2[axis], permit.knob_mm_per_unit);
             // A value that is a step already must not fall by rounding.
             values[axis] = round_to_step(value * (1.0 + 1e-12), data.step);
             if values[axis] < data.min || values[axis] <= 0.0 {
@@ -295,7 +298,10 @@ impl<'m> Solver<'m> {
         }
         Err(Obstacle::new(
             "feed-floor",
-            format!("it would need F{feed}, below the floor of F{floor:.5} in [limits]"),
+            format!(
+                "it would need F{feed}, below the floor of F{} in [limits]",
+                (floor * 1e3).round() / 1e3
+            ),
             "lower min_feed_mm_min or min_feed_ratio, or use a word for acceleration",
         ))
     }
@@ -329,6 +335,13 @@ impl<'m> Solver<'m> {
                 "feed-not-allowed",
                 "cutting feeds are not changed without permission",
                 help,
+            );
+        }
+        if !mv.unknown_start.is_empty() {
+            return Obstacle::new(
+                "no-knob",
+                "the rapid may not be written as a feed: where it starts is not known",
+                "give --start X…,Y…,Z…, or write the move as a feed by hand",
             );
         }
         let message = if permit.reason.is_empty() {

@@ -6,14 +6,16 @@
 
 use std::collections::VecDeque;
 
-use super::change::{Change, feed_unit, knob_accel, round_feed_down};
+use arrayvec::ArrayVec;
+
+use super::change::{Change, feed_unit, round_feed_down};
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::Slot;
 use super::options::Strategy;
 use super::root::largest;
 use super::solver::{Case, Solver};
 use crate::machine::{AXES, AxisValues};
-use crate::plan::{Caps, SpeedBound, plan, speed_bound};
+use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Lowers the window around `center` if it does not fit.
@@ -23,7 +25,8 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
         return;
     }
     let found: Vec<Levers> = range
-        .clone()
+        .iter()
+        .copied()
         .map(|index| slot_levers(solver, &slots[index]))
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
@@ -46,20 +49,18 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
     }
 }
 
-/// Indices of the move and of the neighbours that it is joined to.
-fn range(slots: &VecDeque<Slot>, center: usize) -> std::ops::Range<usize> {
-    let first = center.saturating_sub(1);
-    let start = if center > 0 && slots[first].joined {
-        first
-    } else {
-        center
-    };
-    let end = if slots[center].joined && center + 1 < slots.len() {
-        center + 2
-    } else {
-        center + 1
-    };
-    start..end
+/// Indices of a move and of the neighbours that it is joined to.
+type Window = ArrayVec<usize, 3>;
+
+/// The window around `center`, across moves of no length.
+fn range(slots: &VecDeque<Slot>, center: usize) -> Window {
+    let mut window = Window::new();
+    let before = slots.iter().take(center).rposition(|slot| !slot.rider);
+    window.extend(before.filter(|before| slots[*before].joined));
+    window.push(center);
+    let behind = (center + 1..slots.len()).find(|index| !slots[*index].rider);
+    window.extend(behind.filter(|_| slots[center].joined));
+    window
 }
 
 fn slot_levers(solver: &Solver<'_>, slot: &Slot) -> Levers {
@@ -89,17 +90,12 @@ fn envelope<'a>(
 }
 
 fn own_bound(solver: &Solver<'_>, slot: &Slot) -> SpeedBound {
-    speed_bound(
-        solver.machine,
-        &slot.changed,
-        solver.largest,
-        Caps::default(),
-    )
+    blended_bound(solver.machine, &slot.changed, solver.largest)
 }
 
 /// Load ratio of the window; of several sets of switched loads the largest.
-fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &std::ops::Range<usize>) -> f64 {
-    let parts = range.clone().map(|index| {
+fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &Window) -> f64 {
+    let parts = range.iter().copied().map(|index| {
         (
             own_bound(solver, &slots[index]),
             &slots[index].changed.accel_mm_s2,
@@ -112,12 +108,13 @@ fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &std::ops::Range<usi
 fn window_load(
     solver: &Solver<'_>,
     slots: &VecDeque<Slot>,
-    range: &std::ops::Range<usize>,
+    range: &Window,
     bound: &SpeedBound,
     accel: &AxisValues,
 ) -> f64 {
     range
-        .clone()
+        .iter()
+        .copied()
         .map(|index| {
             solver
                 .model
@@ -131,15 +128,17 @@ fn window_load(
 fn lower_speed(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &std::ops::Range<usize>,
+    range: &Window,
     found: &[Levers],
 ) -> bool {
     let bounds: Vec<SpeedBound> = range
-        .clone()
+        .iter()
+        .copied()
         .map(|index| own_bound(solver, &slots[index]))
         .collect();
     let accels: Vec<AxisValues> = range
-        .clone()
+        .iter()
+        .copied()
         .map(|index| slots[index].changed.accel_mm_s2)
         .collect();
     let adjustable: Vec<bool> = found
@@ -170,7 +169,7 @@ fn lower_speed(
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;
     };
-    for ((index, factor), levers) in range.clone().zip(factors(cap)).zip(found) {
+    for ((index, factor), levers) in range.iter().copied().zip(factors(cap)).zip(found) {
         if factor < 1.0
             && let Some(lever) = speed_lever(*levers)
             && !lower_feed(solver, &mut slots[index], lever, factor)
@@ -204,7 +203,7 @@ fn scale(bound: &SpeedBound, factor: f64) -> SpeedBound {
 /// Sets the F of one move to a share of the speed that it has now.
 fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f64) -> bool {
     let speed_mm_s = if slot.mv.unknown_start.is_empty() {
-        plan(solver.machine, &slot.changed, solver.largest).speed_limit_mm_s
+        blended_speed(solver.machine, &slot.changed, solver.largest)
     } else {
         slot.changed.feed_mm_s.min(1e6) * solver.largest.feed
     };
@@ -237,10 +236,10 @@ fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f
 fn lower_accel(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &std::ops::Range<usize>,
+    range: &Window,
     found: &[Levers],
 ) -> bool {
-    let parts = range.clone().map(|index| {
+    let parts = range.iter().copied().map(|index| {
         (
             own_bound(solver, &slots[index]),
             &slots[index].changed.accel_mm_s2,
@@ -248,7 +247,8 @@ fn lower_accel(
     });
     let (bound, top) = envelope(parts);
     let accels: Vec<AxisValues> = range
-        .clone()
+        .iter()
+        .copied()
         .map(|index| slots[index].changed.accel_mm_s2)
         .collect();
     let lowered = |cap: f64| -> Vec<AxisValues> {
@@ -269,7 +269,7 @@ fn lower_accel(
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;
     };
-    for ((index, accel), levers) in range.clone().zip(lowered(cap)).zip(found) {
+    for ((index, accel), levers) in range.iter().copied().zip(lowered(cap)).zip(found) {
         if let Some(knob) = levers.accel
             && accel != slots[index].changed.accel_mm_s2
             && !set_accel(solver, &mut slots[index], knob, &accel)
@@ -286,25 +286,6 @@ fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValu
     };
     slot.change.accel = Some((knob, values));
     slot.changed = slot.change.apply(solver.machine, &slot.mv, &slot.permit);
-    let unit = solver
-        .machine
-        .controller
-        .knobs
-        .get(knob)
-        .map(|knob| knob.unit);
-    debug_assert!(
-        solver
-            .machine
-            .axis_set
-            .iter()
-            .all(|axis| unit.is_some_and(|unit| knob_accel(
-                solver.machine,
-                unit,
-                axis,
-                values[axis],
-                slot.permit.mm_per_unit
-            ) <= accel[axis] * (1.0 + 1e-9)))
-    );
     true
 }
 
@@ -312,16 +293,16 @@ fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValu
 fn faster_of_both(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &std::ops::Range<usize>,
+    range: &Window,
     found: &[Levers],
     by_speed: bool,
 ) -> bool {
     let save = |slots: &VecDeque<Slot>| -> Vec<Slot> {
-        range.clone().map(|index| slots[index].clone()).collect()
+        range.iter().map(|index| slots[*index].clone()).collect()
     };
     let restore = |slots: &mut VecDeque<Slot>, saved: Vec<Slot>| {
-        for (index, slot) in range.clone().zip(saved) {
-            slots[index] = slot;
+        for (index, slot) in range.iter().zip(saved) {
+            slots[*index] = slot;
         }
     };
     let before = save(slots);
@@ -345,9 +326,10 @@ fn faster_of_both(
 }
 
 /// Time of the window's moves with a stop at each, s.
-fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &std::ops::Range<usize>) -> f64 {
+fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &Window) -> f64 {
     range
-        .clone()
+        .iter()
+        .copied()
         .map(|index| plan(solver.machine, &slots[index].changed, solver.largest).duration_s)
         .sum()
 }

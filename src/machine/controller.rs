@@ -1,6 +1,8 @@
 //! Controller profiles: what a controller reads, how it plans, and which words
 //! lower speed and acceleration. Profiles are data (TOML).
 
+use super::axis::{Axis, AxisKind};
+
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
@@ -178,4 +180,34 @@ pub enum KnobUnit {
     /// Program units per s² (mm/s², or inch/s² after G20); the machine's own
     /// limit takes it back.
     PerSecondSquared,
+}
+
+impl KnobUnit {
+    /// The acceleration limit of an axis, mm/s² (degrees/s²), that a value
+    /// means; `mm_per_unit` is the program's unit of length.
+    #[must_use]
+    pub fn accel_mm_s2(self, axis: &Axis, value: f64, mm_per_unit: f64) -> f64 {
+        match self {
+            Self::Percent => axis.accel_mm_s2 * value / 100.0,
+            Self::PerSecondSquared => value * unit_of(axis, mm_per_unit),
+        }
+    }
+
+    /// The value that means an acceleration limit of an axis.
+    #[must_use]
+    pub fn value(self, axis: &Axis, accel_mm_s2: f64, mm_per_unit: f64) -> f64 {
+        match self {
+            Self::Percent => accel_mm_s2 / axis.accel_mm_s2 * 100.0,
+            Self::PerSecondSquared => accel_mm_s2 / unit_of(axis, mm_per_unit),
+        }
+    }
+}
+
+/// Millimetres in the unit that positions of an axis are written in; degrees
+/// are degrees.
+fn unit_of(axis: &Axis, mm_per_unit: f64) -> f64 {
+    match axis.kind {
+        AxisKind::Linear => mm_per_unit,
+        AxisKind::Rotary => 1.0,
+    }
 }

@@ -42,6 +42,7 @@ impl<'m> Adviser<'m> {
             as_feed: per_minute,
             reason: "",
             mm_per_unit: modal.mm_per_unit,
+            knob_mm_per_unit: modal.mm_per_unit,
             feed_before: None,
             feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
         };

@@ -25,6 +25,8 @@ pub(super) struct Entry {
     pub(super) feed_mode: FeedMode,
     /// Path mode of the move before it.
     pub(super) mode_before: PathMode,
+    /// Millimetres in a program unit before it.
+    pub(super) mm_per_unit_before: f64,
     pub(super) moves: usize,
     pub(super) decided: ArrayVec<(Assessment, Outcome), MOVES_MAX>,
 }
@@ -41,6 +43,7 @@ impl Entry {
             knobs: None,
             feed_mode: modal.feed_mode,
             mode_before: modal.path_mode,
+            mm_per_unit_before: modal.mm_per_unit,
             moves: 0,
             decided: ArrayVec::new(),
         }
@@ -51,6 +54,7 @@ impl Entry {
         line: &mut Line<'_, '_>,
         machine: &Machine,
         mode_before: PathMode,
+        mm_per_unit_before: f64,
     ) {
         let modal = line.interpreter.modal();
         self.text.clear();
@@ -67,6 +71,7 @@ impl Entry {
         self.knobs = knobs(machine, line.interpreter.knobs());
         self.feed_mode = modal.feed_mode;
         self.mode_before = mode_before;
+        self.mm_per_unit_before = mm_per_unit_before;
         self.decided.clear();
     }
 
@@ -103,6 +108,11 @@ impl Entry {
             (facts.turns_knob, "it sets limits itself"),
         ];
         let feed = [
+            (facts.dwell_takes_feed, "an F in it would be its dwell"),
+            (
+                self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
+                "no F is in force that could be put back",
+            ),
             (
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",
@@ -133,7 +143,8 @@ impl Entry {
             feed_word: reasons[..2] == [None, None],
             as_feed: reasons == [None; 3],
             reason: reasons.into_iter().flatten().next().unwrap_or(""),
-            mm_per_unit: self.mark.mm_per_unit,
+            mm_per_unit: facts.feed_mm_per_unit,
+            knob_mm_per_unit: self.mm_per_unit_before,
             feed_before: self.feed_before(),
             feed_accel_mm_s2,
         }

@@ -19,7 +19,7 @@ use crate::rewrite::{BlockView, Mark, Rewriter};
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.
-const BATCH_BYTES: usize = 16 * 1024;
+const BATCH_BYTES: usize = 8 * 1024;
 
 /// What the writing half comes to.
 pub(super) struct Written {
@@ -54,6 +54,8 @@ pub(super) struct Writer<'m, R, W> {
     outcomes: Vec<Outcome>,
     /// Path mode of the last move that was read.
     mode: PathMode,
+    /// Millimetres in a program unit behind the last block that was read.
+    mm_per_unit: f64,
     /// The original's state behind the last block that was written.
     mark: Mark,
     knobs: Option<KnobState>,
@@ -81,6 +83,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             mark: Mark::of(front.interpreter().modal()),
             knobs: knobs(machine, front.interpreter().knobs()),
             mode: front.interpreter().modal().path_mode,
+            mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
@@ -153,7 +156,8 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             return Ok(false);
         };
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
-        entry.fill(&mut line, self.machine, self.mode);
+        entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
+        self.mm_per_unit = entry.mark.mm_per_unit;
         let number = self.first + self.entries.len() as u64;
         self.entries.push_back(entry);
         let Self {

@@ -13,7 +13,7 @@ use crate::interpret::{Arc, Move};
 use crate::machine::{ArcRule, AxisKind, Machine};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Share of the acceleration limit that LinuxCNC 2.9 gives to turning: √3/2,
+/// Share of the acceleration limit that `LinuxCNC` 2.9 gives to turning: √3/2,
 /// which leaves one half for speeding up.
 const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
 
@@ -80,6 +80,20 @@ pub(super) fn plane_share(mv: &Move, arc: &Arc) -> f64 {
     arc.radius_mm * arc.sweep_rad.abs() / mv.length_mm
 }
 
+/// Path speed that the axes' own speeds permit.
+pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
+    let share = plane_share(mv, arc);
+    let ranges = tangent_ranges(arc);
+    let per_axis = limits::moving(machine, mv).map(|(axis, limit)| {
+        let part = match arc.plane.iter().position(|&plane| plane == axis) {
+            Some(i) => share * ranges[i].largest(),
+            None => (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm,
+        };
+        limit.rapid_mm_s / part
+    });
+    per_axis.fold(f64::INFINITY, f64::min)
+}
+
 /// What the axes and the arc rule permit.
 pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> PathLimits {
     let share = plane_share(mv, arc);
@@ -118,7 +132,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
     }
 }
 
-/// LinuxCNC 2.9: path speed for turning, and tangential acceleration at the
+/// `LinuxCNC` 2.9: path speed for turning, and tangential acceleration at the
 /// largest speed that axes and turning permit, whatever F asks for.
 fn linuxcnc(a: f64, radius: f64, share: f64, axis_speed: f64) -> (f64, f64) {
     let turning = (LINUXCNC_NORMAL_SHARE * a * radius).sqrt() / share;

@@ -5,7 +5,7 @@
 //! not lowered where a short move never reaches its speed, since blending may
 //! carry the speed through.
 
-use super::arc::{plane_share, tangent_ranges};
+use super::arc::{axis_speed, plane_share, tangent_ranges};
 use super::limits::{PathLimits, moving, rapid_factor};
 use super::trajectory::{Caps, Overrides};
 use crate::interpret::{FeedMode, Move, MoveKind};
@@ -49,15 +49,52 @@ pub fn speed_bound(machine: &Machine, mv: &Move, overrides: Overrides, caps: Cap
     if !mv.unknown_start.is_empty() {
         return unknown(machine, mv, overrides, &caps);
     }
-    if mv.length_mm <= 0.0 {
-        return bound;
+    if mv.length_mm > 0.0 {
+        let v = PathLimits::of(machine, mv, overrides, &caps).speed_mm_s;
+        along(machine, mv, v, overrides, &caps, &mut bound);
     }
-    let v = PathLimits::of(machine, mv, overrides, &caps).speed_mm_s;
+    bound
+}
+
+/// The largest speeds in a move that may be blended with others.
+///
+/// Arcs are not slowed down for their radius: a blend or a filter may cut
+/// them short, and controllers differ in what they permit.
+#[must_use]
+pub fn blended_bound(machine: &Machine, mv: &Move, overrides: Overrides) -> SpeedBound {
+    let caps = Caps::default();
+    if mv.arc.is_none() || !mv.unknown_start.is_empty() || mv.length_mm <= 0.0 {
+        return speed_bound(machine, mv, overrides, caps);
+    }
+    let mut bound = SpeedBound::default();
+    let v = blended_speed(machine, mv, overrides);
+    along(machine, mv, v, overrides, &caps, &mut bound);
+    bound
+}
+
+/// Path speed in mm/s (degrees/s) to which [`blended_bound`] belongs.
+#[must_use]
+pub fn blended_speed(machine: &Machine, mv: &Move, overrides: Overrides) -> f64 {
+    match &mv.arc {
+        Some(arc) => (mv.feed_mm_s * overrides.feed).min(axis_speed(machine, mv, arc)),
+        None => PathLimits::of(machine, mv, overrides, &Caps::default()).speed_mm_s,
+    }
+}
+
+/// The bounds of the axes at the path speed `v`.
+fn along(
+    machine: &Machine,
+    mv: &Move,
+    v: f64,
+    overrides: Overrides,
+    caps: &Caps,
+    bound: &mut SpeedBound,
+) {
     let independent = mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent;
     for (axis, _) in moving(machine, mv) {
         let distance = mv.end[axis] - mv.start[axis];
         let speed = if independent {
-            PathLimits::of_rapid_axis(machine, mv, axis, overrides, &caps).speed_mm_s
+            PathLimits::of_rapid_axis(machine, mv, axis, overrides, caps).speed_mm_s
         } else {
             v * (distance.abs() / mv.length_mm)
         };
@@ -72,7 +109,6 @@ pub fn speed_bound(machine: &Machine, mv: &Move, overrides: Overrides, caps: Cap
             bound.raise(axis, v * range.min.min(0.0));
         }
     }
-    bound
 }
 
 /// True for the plane axes of an arc.

@@ -9,22 +9,19 @@
 //! from the fast end of the phase, so that the slow ones fall below what has
 //! been found. A cruise repeats after one turn.
 
+use super::arc_energy;
 use super::arc_piece::Piece;
 use super::axis::{AxisPower, Side};
 use super::circle::{ArcAxis, Motion, Shape};
 use super::demand::{Totals, Want};
 use super::model::{ConverterPower, PowerModel};
-use super::quadrature::integral;
+use super::quadrants::Pieces;
 use super::search::Search;
 use crate::interpret::{Arc, Move};
 use crate::machine::{AXES, AxisSet};
 use crate::plan::{Phase, Profile};
 use arrayvec::ArrayVec;
-use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// Pieces of a phase that are looked at one by one; beyond them bounds and
-/// averages over a turn are used.
-const PIECES: u32 = 1024;
+use std::f64::consts::TAU;
 
 /// The converter's share of an arc.
 pub(super) fn totals(
@@ -39,7 +36,7 @@ pub(super) fn totals(
     let circle = Circle::new(model, converter, mv, arc, idle_w);
     let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
     let mut peak = Search::new(idle_w, want.floor_w);
-    let mut regen = Search::new(0.0, 0.0);
+    let mut regen = Search::new(0.0, want.regen_floor_w);
     for phase in &profile.phases {
         circle.search(phase, Side::Motor, &mut peak);
     }
@@ -51,7 +48,7 @@ pub(super) fn totals(
     totals.raise_regen(regen.upper());
     if want.energy {
         for phase in &profile.phases {
-            totals.energy_j += circle.energy(phase);
+            totals.energy_j += arc_energy::phase_energy_j(&circle, phase);
         }
     }
     totals
@@ -66,11 +63,11 @@ pub(super) struct Circle<'a> {
     /// What is drawn besides the axes, W.
     pub idle_w: f64,
     /// Angle at the start of the move, rad.
-    start_angle: f64,
+    pub start_angle: f64,
     /// Sense of the sweep, ±1.
-    sense: f64,
+    pub sense: f64,
     /// Angle in rad per mm of path, positive.
-    angle_per_mm: f64,
+    pub angle_per_mm: f64,
 }
 
 impl<'a> Circle<'a> {
@@ -161,43 +158,8 @@ impl<'a> Circle<'a> {
         }
     }
 
-    /// Energy of the axes in one phase, J.
-    fn energy(&self, phase: &Phase) -> f64 {
-        let mut sum = 0.0;
-        let turn_s = self.turn_s(phase);
-        let turns = if phase.accel_mm_s2 == 0.0 && turn_s > 0.0 {
-            (phase.duration_s / turn_s).floor()
-        } else {
-            0.0
-        };
-        let rest_s = phase.duration_s - turns * turn_s;
-        for (from, to, last) in Pieces::new(self, phase) {
-            if last {
-                sum += integral(|t| self.turn_average(phase, t), from, to);
-                break;
-            }
-            let mut add = |from: f64, to: f64, times: f64| {
-                if to > from && times > 0.0 {
-                    let signs = self.signs(phase, 0.5 * (from + to));
-                    sum += times
-                        * integral(|t| self.nominal(&signs, &self.motion(phase, t)), from, to);
-                }
-            };
-            // Of a cruise the first turn is visited; what lies in the last,
-            // broken turn counts once more.
-            let split = if turns > 0.0 {
-                rest_s.clamp(from, to)
-            } else {
-                to
-            };
-            add(from, split, turns + 1.0);
-            add(split, to, turns);
-        }
-        sum
-    }
-
     /// Time of one turn at the speed of a cruise; infinite if it does not turn.
-    fn turn_s(&self, phase: &Phase) -> f64 {
+    pub fn turn_s(&self, phase: &Phase) -> f64 {
         TAU / (phase.velocity_mm_s * self.angle_per_mm)
     }
 
@@ -210,126 +172,5 @@ impl<'a> Circle<'a> {
             *sign = if speed == 0.0 { 0.0 } else { speed.signum() };
         }
         signs
-    }
-
-    /// Power of the axes that counts towards the energy, W.
-    fn nominal(&self, signs: &[f64; AXES], m: &Motion) -> f64 {
-        let mut sum = 0.0;
-        for (axis, sign) in self.axes.iter().zip(signs) {
-            let (v, a) = axis.motion_towards(*sign, m);
-            let power = axis.axis;
-            let force = power.mass * a + power.viscous * v + power.coulomb * sign + power.gravity;
-            let electrical = power.electrical(v, force);
-            sum += if self.credit_regen {
-                electrical
-            } else {
-                electrical.max(0.0)
-            };
-        }
-        sum
-    }
-
-    /// `nominal`, averaged over a turn at the speed of one instant.
-    fn turn_average(&self, phase: &Phase, t: f64) -> f64 {
-        const POINTS: u32 = 64;
-        let mut motion = self.motion(phase, t);
-        let mut sum = 0.0;
-        for i in 0..POINTS {
-            (motion.sin, motion.cos) = libm::sincos(TAU * (f64::from(i) + 0.5) / f64::from(POINTS));
-            let mut signs = [0.0; AXES];
-            for (sign, axis) in signs.iter_mut().zip(&self.axes) {
-                *sign = axis.motion(&motion).0.signum();
-            }
-            sum += self.nominal(&signs, &motion);
-        }
-        sum / f64::from(POINTS)
-    }
-}
-
-/// The pieces of a phase between quadrants, from its fast end; of a cruise,
-/// the first turn. Yields start and end in s, and `true` where the rest of the
-/// phase is given in one because there are too many.
-struct Pieces<'a> {
-    phase: &'a Phase,
-    /// Angle since the start of the move at the instants left to visit.
-    angle: f64,
-    /// Angle from the start of the move to the first quadrant of the circle.
-    offset: f64,
-    angle_per_mm: f64,
-    /// What is left to visit, s.
-    from: f64,
-    to: f64,
-    count: u32,
-}
-
-impl<'a> Pieces<'a> {
-    fn new(circle: &Circle<'_>, phase: &'a Phase) -> Self {
-        let mut to = phase.duration_s;
-        if phase.accel_mm_s2 == 0.0 {
-            to = to.min(circle.turn_s(phase));
-        }
-        let backwards = phase.accel_mm_s2 > 0.0;
-        let instant = if backwards { to } else { 0.0 };
-        Self {
-            phase,
-            angle: circle.angle_per_mm * phase.state_at(instant).position_mm,
-            offset: -circle.sense * circle.start_angle,
-            angle_per_mm: circle.angle_per_mm,
-            from: 0.0,
-            to,
-            count: 0,
-        }
-    }
-
-    /// The instant at which the angle is reached, within what is left.
-    fn instant(&self, angle: f64) -> f64 {
-        let phase = self.phase;
-        let (v, a) = (phase.velocity_mm_s, phase.accel_mm_s2);
-        let distance = (angle / self.angle_per_mm - phase.position_mm).max(0.0);
-        // distance = v·t + a·t²/2, without cancellation.
-        let root = (v * v + 2.0 * a * distance).max(0.0).sqrt();
-        let t = 2.0 * distance / (v + root);
-        if t.is_nan() {
-            self.from
-        } else {
-            t.clamp(self.from, self.to)
-        }
-    }
-}
-
-impl Iterator for Pieces<'_> {
-    type Item = (f64, f64, bool);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let backwards = self.phase.accel_mm_s2 > 0.0;
-        while self.from < self.to {
-            self.count += 1;
-            if self.count > PIECES {
-                let rest = (self.from, self.to, true);
-                self.from = self.to;
-                return Some(rest);
-            }
-            let quadrant = (self.angle - self.offset) / FRAC_PI_2;
-            let next = if backwards {
-                (quadrant - 1e-9).ceil() - 1.0
-            } else {
-                (quadrant + 1e-9).floor() + 1.0
-            };
-            self.angle = next * FRAC_PI_2 + self.offset;
-            let instant = self.instant(self.angle);
-            let piece = if backwards {
-                let piece = (instant, self.to, false);
-                self.to = instant;
-                piece
-            } else {
-                let piece = (self.from, instant, false);
-                self.from = instant;
-                piece
-            };
-            if piece.0 < piece.1 {
-                return Some(piece);
-            }
-        }
-        None
     }
 }

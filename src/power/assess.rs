@@ -8,7 +8,7 @@ use super::demand::{Demand, Want};
 use super::model::PowerModel;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, PathMode, RapidJoint};
-use crate::plan::{Overrides, SpeedBound, plan, speed_bound};
+use crate::plan::{Overrides, SpeedBound, blended_bound, plan};
 
 /// Which bound a figure rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,7 +49,8 @@ pub struct Assessment {
     /// The move may run into or out of a neighbour without a stop: its peaks
     /// depend on both.
     pub blended: bool,
-    /// The controller may run into it from its predecessor without a stop.
+    /// The controller may run into it from its predecessor without a stop; a
+    /// move of no length is passed on the way to the next.
     pub joined: bool,
 }
 
@@ -86,7 +87,22 @@ struct Held {
     own_bound: SpeedBound,
     /// Whether its predecessor runs into it.
     joined: bool,
+    /// Moves of no length behind it: controllers leave them out and blend
+    /// across them.
+    riders: Vec<Rider>,
 }
+
+/// A move of no length that waits with the move before it.
+#[derive(Debug)]
+struct Rider {
+    mv: Move,
+    text: Vec<u8>,
+    assessment: Assessment,
+}
+
+/// Moves of no length in a row that a controller may look across: more than
+/// any queue holds.
+const RIDERS: usize = 4096;
 
 impl<'m> Assessor<'m> {
     /// Judges by `requested`, or by what the controller profile models.
@@ -134,13 +150,26 @@ impl<'m> Assessor<'m> {
         let mut assessment = self.alone(mv);
         assessment.joined = joined;
         let may_blend = assessment.blended || joined;
+        if mv.kind != MoveKind::Dwell
+            && !moves(mv)
+            && let Some(held) = &mut self.held
+            && held.riders.len() < RIDERS
+        {
+            assessment.joined = true;
+            held.riders.push(Rider {
+                mv: mv.clone(),
+                text: text.to_vec(),
+                assessment,
+            });
+            return;
+        }
         if !may_blend {
             self.release(None, sink);
             sink(mv, &assessment, text);
             return;
         }
         assessment.blended = true;
-        let own_bound = speed_bound(self.machine, mv, self.largest, crate::plan::Caps::default());
+        let own_bound = blended_bound(self.machine, mv, self.largest);
         let mut bound = own_bound;
         let mut accel_mm_s2 = mv.accel_mm_s2;
         if joined && let Some(held) = &self.held {
@@ -158,6 +187,7 @@ impl<'m> Assessor<'m> {
             accel_mm_s2,
             own_bound,
             joined,
+            riders: Vec::new(),
         });
     }
 
@@ -185,16 +215,23 @@ impl<'m> Assessor<'m> {
         let stops = held.mv.kind == MoveKind::Rapid && !held.joined && next.is_none();
         if stops && self.requested != Some(Certificate::Robust) {
             held.assessment.blended = false;
-            sink(&held.mv, &held.assessment, &held.text);
-            return held.text;
+        } else {
+            self.bound(&mut held);
         }
+        sink(&held.mv, &held.assessment, &held.text);
+        for rider in &held.riders {
+            sink(&rider.mv, &rider.assessment, &rider.text);
+        }
+        held.text
+    }
+
+    /// Gives a move its robust bound.
+    fn bound(&mut self, held: &mut Held) {
         let energy_j = held.assessment.demand.energy_j;
         held.assessment.demand = self.model.robust(&held.mv, &held.bound, &held.accel_mm_s2);
         held.assessment.demand.energy_j = energy_j;
         held.assessment.certificate = Certificate::Robust;
         self.needs_robust |= self.requested == Some(Certificate::Planned);
-        sink(&held.mv, &held.assessment, &held.text);
-        held.text
     }
 
     /// The planned demand, and whether the move may be blended.

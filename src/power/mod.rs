@@ -10,6 +10,7 @@
 
 mod assess;
 mod arc;
+mod arc_energy;
 mod arc_piece;
 mod axis;
 mod ceiling;
@@ -18,6 +19,7 @@ mod demand;
 mod independent;
 mod interval;
 mod model;
+mod quadrants;
 mod quadrature;
 mod robust;
 mod search;

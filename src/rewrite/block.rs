@@ -6,7 +6,7 @@ use super::state::{FeedValue, Mark, Written};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobTarget, KnobUnit, Machine};
+use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
@@ -42,6 +42,8 @@ pub struct Rewriter<'m> {
     /// Knobs that differ from the original, with their values.
     turned: Vec<(usize, AxisValues)>,
     line_end: Vec<u8>,
+    /// The last line that was written has an end.
+    complete: bool,
     edits: Vec<Edit>,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
@@ -59,6 +61,7 @@ impl<'m> Rewriter<'m> {
             },
             turned: Vec::new(),
             line_end: b"\n".to_vec(),
+            complete: true,
             edits: Vec::new(),
             edited_lines: 0,
         }
@@ -69,12 +72,18 @@ impl<'m> Rewriter<'m> {
     #[must_use]
     pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         let (_, end) = split_line_end(view.text);
+        self.complete = !end.is_empty();
         if !end.is_empty() && end != self.line_end {
             self.line_end = end.to_vec();
         }
         let facts = view.facts;
-        let looked_at =
-            facts.boundary || facts.turns_knob || view.block.tape || view.block.delete_level > 0;
+        // Nothing can be put back inside a block that takes no further word.
+        let sealed = facts.checksum || facts.dwell_takes_feed;
+        let looked_at = facts.boundary
+            || facts.turns_knob
+            || sealed
+            || view.block.tape
+            || view.block.delete_level > 0;
         if looked_at {
             self.restore(view.before, view.knobs, out);
         }
@@ -98,13 +107,12 @@ impl<'m> Rewriter<'m> {
 
     /// Puts the state right at the end of a program that has no end word.
     pub fn finish(&mut self, last: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
-        let complete = out.is_empty() || matches!(out.last(), Some(b'\n' | b'\r'));
         let mut lines = Vec::new();
         self.restore(last, knobs, &mut lines);
         if lines.is_empty() {
             return;
         }
-        if !complete {
+        if !self.complete {
             // The last line has no end: the new one takes over that habit.
             out.extend_from_slice(&self.line_end);
             lines.truncate(lines.len() - self.line_end.len());
@@ -153,7 +161,7 @@ impl<'m> Rewriter<'m> {
         let wanted = match view.change.feed {
             Some(value) => Some(FeedValue {
                 value,
-                mm_per_unit: view.after.mm_per_unit,
+                mm_per_unit: facts.feed_mm_per_unit,
             }),
             None => original,
         };
@@ -184,7 +192,7 @@ impl<'m> Rewriter<'m> {
                 value,
                 feed.is_some_and(|feed| has_point(feed.text.as_bytes())),
             ),
-            (None, Some(feed)) => feed_again(feed, view.after.mm_per_unit),
+            (None, Some(feed)) => feed_again(feed, facts.feed_mm_per_unit),
             (None, None) => return,
         };
         let style = Style::of(view.text, view.block);
@@ -259,11 +267,9 @@ impl<'m> Rewriter<'m> {
                 KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
                 _ => state.feed_accel_mm_s2[axis],
             };
-            let linear = own.kind == crate::machine::AxisKind::Linear;
-            values[axis] = tidy(match (data.target, data.unit) {
-                (KnobTarget::RapidSpeed, _) => state.rapid_factor * 100.0,
-                (_, KnobUnit::Percent) => accel / own.accel_mm_s2 * 100.0,
-                (_, KnobUnit::PerSecondSquared) => accel / if linear { mm_per_unit } else { 1.0 },
+            values[axis] = tidy(match data.target {
+                KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
+                _ => data.unit.value(own, accel, mm_per_unit),
             });
         }
         if let Some(words) = knob_line::words(self.machine, knob, &values) {
@@ -311,8 +317,10 @@ impl<'m> Rewriter<'m> {
     }
 }
 
-/// Takes the rounding of a division off: ten digits.
+/// Takes the rounding of a division off: twelve digits.
 fn tidy(value: f64) -> f64 {
-    let rounded = (value * 1e7).round() / 1e7;
+    let decimals = 11.0 - libm::floor(libm::log10(value));
+    let scale = libm::pow(10.0, decimals.clamp(0.0, 18.0)).round();
+    let rounded = (value * scale).round() / scale;
     if rounded.is_finite() { rounded } else { value }
 }

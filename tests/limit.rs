@@ -1,0 +1,144 @@
+//! Programs in, programs that fit out: `gwatt::pipeline` from the outside.
+
+mod blends;
+mod figures;
+mod knobs;
+mod obstacles;
+mod random;
+mod reader;
+mod rewriting;
+mod rows;
+
+use gwatt::diagnostic::Diagnostic;
+use gwatt::machine::Machine;
+use gwatt::pipeline::{Failure, Law, LimitOptions, LimitSummary, Options, Strategy, limit};
+
+/// X and Y of 500 kg, 0.5 m/s and 5 m/s²: without friction an axis takes
+/// 0.5 m/s · 500 kg · 5 m/s² = 1250 W at the end of its ramp.
+#[derive(Clone, Copy)]
+pub(crate) struct Rig {
+    pub(crate) controller: &'static str,
+    pub(crate) peak_w: f64,
+    /// Further lines of the converter, of each axis, and at the end of the file.
+    pub(crate) converter: &'static str,
+    pub(crate) axis: &'static str,
+    pub(crate) rest: &'static str,
+    pub(crate) options: Run,
+}
+
+/// What is asked of a run.
+#[derive(Clone, Copy)]
+pub(crate) struct Run {
+    pub(crate) strategy: Strategy,
+    pub(crate) law: Law,
+    pub(crate) allow_feed: bool,
+    pub(crate) robust: bool,
+    pub(crate) unknown_start: bool,
+    pub(crate) threads: usize,
+}
+
+pub(crate) const RIG: Rig = Rig {
+    controller: "iso",
+    peak_w: 1000.0,
+    converter: "",
+    axis: "",
+    rest: "",
+    options: Run {
+        strategy: Strategy::Optimal,
+        law: Law::Exact,
+        allow_feed: true,
+        robust: false,
+        unknown_start: false,
+        threads: 1,
+    },
+};
+
+/// Every block stops, whatever the controller does by itself.
+pub(crate) const EXACT_STOP: &str = "[path]\nmode = \"exact-stop\"";
+
+impl Rig {
+    pub(crate) fn machine(&self) -> Machine {
+        let axis = |letter: &str| {
+            format!(
+                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n{}\n",
+                self.axis
+            )
+        };
+        let text = format!(
+            "schema = 1\nname = \"rig\"\ncontroller = \"{}\"\n[converter]\npeak_power_w = {:?}\n{}\n{}{}[limits]\nmargin = 0\n{}\n",
+            self.controller,
+            self.peak_w,
+            self.converter,
+            axis("X"),
+            axis("Y"),
+            self.rest
+        );
+        Machine::from_toml("rig.toml", &text).expect("a machine").0
+    }
+
+    /// What `limit` makes of a program; only certified text may be delivered.
+    pub(crate) fn limit(&self, program: &[u8]) -> Result<(Vec<u8>, LimitSummary), Failure> {
+        run(&self.machine(), self.options, program)
+    }
+
+    /// The text of a program that was made to fit.
+    pub(crate) fn fits(&self, program: &str) -> String {
+        let (text, summary) = self.limit(program.as_bytes()).expect("a program");
+        assert!(summary.certified, "{:?}", summary.reasons);
+        assert!(summary.after.fits());
+        String::from_utf8(text).expect("text")
+    }
+
+    /// Why a program could not be made to fit.
+    pub(crate) fn reasons(&self, program: &str) -> Vec<Diagnostic> {
+        let (_, summary) = self.limit(program.as_bytes()).expect("a program");
+        assert!(!summary.certified);
+        summary.reasons
+    }
+
+    /// Why a program was refused.
+    pub(crate) fn refusal(&self, program: &str) -> Vec<Diagnostic> {
+        match self.limit(program.as_bytes()) {
+            Err(Failure::Refused { diagnostics, .. }) => diagnostics,
+            other => panic!("not refused: {other:?}"),
+        }
+    }
+
+    pub(crate) fn strategy(self, strategy: Strategy) -> Self {
+        let options = Run {
+            strategy,
+            ..self.options
+        };
+        Self { options, ..self }
+    }
+}
+
+/// Runs `limit` and gives the text, certified or not.
+pub(crate) fn run(
+    machine: &Machine,
+    run: Run,
+    program: &[u8],
+) -> Result<(Vec<u8>, LimitSummary), Failure> {
+    let how = LimitOptions {
+        strategy: run.strategy,
+        law: run.law,
+        allow_feed: run.allow_feed,
+    };
+    let mut text = Vec::new();
+    let summary = limit(program, machine, &options(run), how, &mut text, None)?;
+    Ok((text, summary))
+}
+
+pub(crate) fn options(run: Run) -> Options {
+    let mut options = Options {
+        threads: run.threads,
+        ..Options::default()
+    };
+    if run.robust {
+        options.certificate = Some(gwatt::pipeline::Certificate::Robust);
+    }
+    if run.unknown_start {
+        options.start = gwatt::pipeline::Start::Unknown;
+    }
+    options
+}

@@ -1,0 +1,65 @@
+//! Moves that a controller may blend: the robust bound over neighbours.
+
+use super::{RIG, Rig};
+use gwatt::pipeline::{Certificate, analyze};
+
+const LINUXCNC: Rig = Rig {
+    controller: "linuxcnc",
+    ..RIG
+};
+
+/// Peak and certificate of a program.
+fn peak(rig: Rig, program: &str) -> (f64, Option<Certificate>) {
+    let options = super::options(rig.options);
+    let summary = analyze(program.as_bytes(), &rig.machine(), &options, None).expect("a program");
+    (summary.peak_w, summary.certificate)
+}
+
+#[track_caller]
+fn robust(program: &str, expected_w: f64) {
+    let (peak_w, certificate) = peak(LINUXCNC, program);
+    assert_eq!(certificate, Some(Certificate::Robust));
+    assert!((peak_w - expected_w).abs() < 1e-6, "{peak_w}");
+}
+
+#[test]
+fn the_feed_counts_though_the_move_is_short() {
+    // 0.1 m/s · 500 kg · 5 m/s²
+    robust("G64 G1 X0.01 F6000\n", 250.0);
+}
+
+#[test]
+fn neighbours_count_axis_by_axis() {
+    // X at 0.1 m/s and Y at 0.2 m/s.
+    robust("G64 G1 X10 F6000\nY10 F12000\n", 250.0 + 500.0);
+    // Nothing blends across a dwell or an exact stop.
+    robust("G64 G1 X10 F6000\nG4 P1\nY10 F12000\n", 500.0);
+    robust("G61.1 G1 X10 F6000\nG64 Y10 F12000\n", 500.0);
+}
+
+/// Controllers leave moves of no length out.
+#[test]
+fn blends_reach_across_moves_of_no_length() {
+    robust("G64 G1 X10 F6000\nX10\nX10\nY10 F12000\n", 250.0 + 500.0);
+    let rig = Rig {
+        peak_w: 600.0,
+        ..LINUXCNC
+    };
+    let text = rig.fits("G64 G1 X10 F6000\nX10\nY10 F12000\n");
+    let again = peak(rig, &text).0;
+    assert!(again <= 600.0 * (1.0 + 1e-6) && again > 599.0, "{text}");
+}
+
+#[test]
+fn arcs_count_at_their_feed() {
+    // F and the tangents of a half circle, whatever its radius.
+    robust("G64 G2 X0.2 I0.1 F6000\n", 250.0 + 250.0);
+}
+
+#[test]
+fn all_moves_of_an_exact_program_can_be_asked_for() {
+    let mut rig = RIG;
+    rig.options.robust = true;
+    let text = rig.fits("G1 X10 F30000\nX0\n");
+    assert_eq!(text, "G1 X10 F23999\nX0\nF30000\n");
+}

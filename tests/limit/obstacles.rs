@@ -1,0 +1,202 @@
+//! What stands in the way: rule, message, and what would help.
+
+use super::{EXACT_STOP, RIG, Rig};
+use gwatt::pipeline::{Failure, Strategy};
+
+#[track_caller]
+fn stopped(rig: Rig, program: &str, line: u64, rule: &str, message: &str, help: &str) {
+    let reasons = rig.reasons(program);
+    let first = &reasons[0];
+    assert_eq!((first.line, first.rule), (line, rule));
+    assert_eq!(first.message, message);
+    assert_eq!(first.help.as_deref(), Some(help));
+}
+
+const ISG: Rig = Rig {
+    controller: "isg",
+    rest: EXACT_STOP,
+    ..RIG
+};
+
+const BY_HAND: &str = "change it by hand";
+
+#[test]
+fn feeds_without_permission() {
+    let mut rig = RIG;
+    rig.options.allow_feed = false;
+    stopped(
+        rig,
+        "G1 X1 F100\nX400 F30000\n",
+        2,
+        "feed-not-allowed",
+        "cutting feeds are not changed without permission",
+        "it fits at F24000: --allow feed permits that",
+    );
+}
+
+#[test]
+fn a_floor_for_feeds() {
+    stopped(
+        Rig {
+            peak_w: 300.0,
+            rest: "min_feed_ratio = 0.5",
+            ..RIG
+        },
+        "G1 X400 F30000\n",
+        1,
+        "feed-floor",
+        "it would need F7199.9, below the floor of F15000 in [limits]",
+        "lower min_feed_mm_min or min_feed_ratio, or use a word for acceleration",
+    );
+}
+
+#[test]
+fn loads_alone() {
+    stopped(
+        Rig {
+            rest: "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 1500",
+            ..RIG
+        },
+        "M8\nG4 P1\n",
+        2,
+        "base-load",
+        "base load, switched loads and holding the axes alone exceed the limit",
+        "no feed and no acceleration changes that: a larger converter is needed",
+    );
+}
+
+#[test]
+fn friction_alone() {
+    stopped(
+        Rig {
+            axis: "coulomb_n = 2500",
+            ..ISG
+        }
+        .strategy(Strategy::Accel),
+        "G0 X1000\n",
+        1,
+        "friction-alone",
+        "friction alone takes 125.0 % of the limit at the wanted speed",
+        "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
+    );
+}
+
+#[test]
+fn presets() {
+    let rig = Rig {
+        rest: "[[preset]]\naxes = [\"X\"]\nspeed_mm_min = { X = 29000 }\n\
+               [[preset]]\naxes = [\"Y\"]\nspeed_mm_min = { Y = 15000 }",
+        ..RIG
+    }
+    .strategy(Strategy::Preset);
+    assert_eq!(rig.fits("G0 Y400\nG0 Y399\n"), "G1 Y400 F15000\nG0 Y399\n");
+    stopped(
+        rig,
+        "G0 Y400\nG0 X300 Y0\n",
+        2,
+        "no-preset",
+        "the machine has no preset for the axes XY",
+        "add a [[preset]] for them, or use another strategy",
+    );
+    stopped(
+        rig,
+        "G0 X400\n",
+        1,
+        "not-enough",
+        "the values of this strategy leave the block at 120.8 % of the limit",
+        "use --strategy optimal --law exact",
+    );
+}
+
+#[test]
+fn blocks_that_are_not_touched() {
+    let untouchable = |rig: Rig, program: &str, reason: &str| {
+        stopped(
+            rig,
+            program,
+            1,
+            "untouchable",
+            &format!("the block may not be changed: {reason}"),
+            BY_HAND,
+        );
+    };
+    untouchable(RIG, "/G0 X400\n", "it may be skipped (block delete)");
+    untouchable(
+        RIG,
+        "G0 X400 M0\n",
+        "it stops, changes the tool or ends the program",
+    );
+    untouchable(
+        RIG,
+        "G93 G1 X400 F100\n",
+        "its feed is an inverse time (G93)",
+    );
+    untouchable(ISG, "G131 = 90 G1 X400 F30000\n", "it sets limits itself");
+    let marlin = Rig {
+        controller: "marlin",
+        ..ISG
+    };
+    untouchable(marlin, "N5 G1 X400 F30000*12\n", "it carries a checksum");
+    // Marlin moves without an F, at a feed that no word can put back.
+    untouchable(
+        marlin.strategy(Strategy::Speed),
+        "G1 X400\n",
+        "no F is in force that could be put back",
+    );
+}
+
+#[test]
+fn rapids_that_are_not_written_as_feeds() {
+    let no_knob = |program: &str, reason: &str| {
+        stopped(
+            RIG,
+            program,
+            1,
+            "no-knob",
+            &format!("the rapid may not be written as a feed: {reason}"),
+            "write the move as a feed by hand, or lower the rapid speed of the machine",
+        );
+    };
+    no_knob("G53 G0 X400\n", "G53 is for rapids");
+    no_knob("G28 X400\n", "it moves to a reference point");
+    no_knob("G0 G4 P1 Y400\n", "an F in it would be its dwell");
+    no_knob(
+        "G64 G0 X400\n",
+        "without its stop the corner would be rounded",
+    );
+}
+
+#[test]
+fn rapids_from_an_unknown_start() {
+    let mut rig = RIG;
+    rig.options.unknown_start = true;
+    stopped(
+        rig,
+        "G0 X400\nX0\n",
+        1,
+        "no-knob",
+        "the rapid may not be written as a feed: where it starts is not known",
+        "give --start X…,Y…,Z…, or write the move as a feed by hand",
+    );
+    // Feeds may be lowered, and what follows starts where it is known.
+    assert_eq!(
+        rig.fits("G1 X400 F30000\nG0 X0\n"),
+        "G1 X400 F24000\nG1 X0\nG0 F30000\n"
+    );
+}
+
+#[test]
+fn strategies_without_their_word() {
+    let failure = RIG.strategy(Strategy::Accel).limit(b"G0 X400\n");
+    assert!(matches!(failure, Err(Failure::Unsuitable(_))));
+    let failure = RIG.strategy(Strategy::Preset).limit(b"G0 X400\n");
+    assert!(matches!(failure, Err(Failure::Unsuitable(_))));
+}
+
+/// Of `P` and `X` beside G4 one may be meant as motion.
+#[test]
+fn two_times_of_one_dwell() {
+    for program in ["G0 G4 P1 X400\n", "G4 F2 X1\n"] {
+        assert_eq!(RIG.refusal(program)[0].rule, "dwell-time");
+    }
+}

@@ -1,0 +1,236 @@
+//! Every message about converters, presets, loads, spindle and profile, once.
+
+use insta::assert_snapshot;
+
+use super::{edited, findings, with};
+
+#[test]
+fn axes_fed_twice_and_not_at_all() {
+    assert_snapshot!(findings(&edited("[converter]\npeak_power_w = 3500", "[[converter]]\nname = \"a\"\naxes = [\"X\"]\npeak_power_w = 3500\n\n[[converter]]\nname = \"a\"\naxes = [\"X\", \"Y\"]\npeak_power_w = 1000")), @r#"
+    line 11, error machine-converter: two converters are named "a"
+      | name = "a"
+      |        ^^^
+    line 12, error machine-converter: no converter feeds B / every axis needs a converter
+      | axes = ["X", "Y"]
+      |        ^^^^^^^^^^
+    line 12, error machine-converter: axis X is already fed / name each axis once, at one converter
+      | axes = ["X", "Y"]
+      |         ^^^
+    line 12, error machine-converter: the machine has no axis Y
+      | axes = ["X", "Y"]
+      |              ^^^
+    "#);
+}
+
+#[test]
+fn several_without_names() {
+    assert_snapshot!(findings(&edited("[converter]\npeak_power_w = 3500", "[[converter]]\npeak_power_w = 3500\n\n[[converter]]\naxes = [\"B\"]\npeak_power_w = 1000")), @r"
+    line 5, error machine-missing: each of several converters needs a `name`
+      | [[converter]]
+      | ^^^^^^^^^^^^^
+    line 5, error machine-missing: each of several converters needs `axes`
+      | [[converter]]
+      | ^^^^^^^^^^^^^
+    line 8, error machine-missing: each of several converters needs a `name`
+      | [[converter]]
+      | ^^^^^^^^^^^^^
+    ");
+}
+
+#[test]
+fn single_that_forgets_an_axis() {
+    assert_snapshot!(findings(&edited("peak_power_w = 3500", "peak_power_w = 3500\naxes = [\"X\"]")), @r#"
+    line 7, error machine-converter: no converter feeds B / every axis needs a converter
+      | axes = ["X"]
+      |        ^^^^^
+    "#);
+}
+
+#[test]
+fn unknown_letter() {
+    assert_snapshot!(findings(&edited("peak_power_w = 3500", "peak_power_w = 3500\naxes = [\"X\", \"D\"]")), @r#"
+    line 7, error machine-value: `axes` must be "X", "Y", "Z", "A", "B", "C", "U", "V", "W" or "E", not "D"
+      | axes = ["X", "D"]
+      |              ^^^
+    "#);
+}
+
+#[test]
+fn empty_list() {
+    assert_snapshot!(findings(&edited("[converter]\npeak_power_w = 3500\n", "").replace("controller = \"iso\"", "controller = \"iso\"\nconverter = []")), @r"
+    line 4, error machine-missing: `converter` is empty
+      | converter = []
+      |             ^^
+    ");
+}
+
+#[test]
+fn contradictions() {
+    assert_snapshot!(findings(&edited("peak_power_w = 3500", "peak_power_w = 3500\nbase_load_w = 3200\ncontinuous_power_w = 4000\nbus_min_v = 600\nbus_nominal_v = 560\nbus_max_v = 500\noverload = [{ power_w = 3000, seconds = 5, every_s = 1 }]")), @r"
+    line 7, error machine-converter: `base_load_w` leaves nothing of 3500 W for motion / the limit is (1 − margin)·peak_power_w, margin 0.1
+      | base_load_w = 3200
+      |               ^^^^
+    line 8, error machine-converter: `continuous_power_w` is above `peak_power_w`
+      | continuous_power_w = 4000
+      |                      ^^^^
+    line 9, error machine-converter: `bus_min_v` is not below `bus_nominal_v`
+      | bus_min_v = 600
+      |             ^^^
+    line 10, error machine-converter: `bus_nominal_v` is not below `bus_max_v`
+      | bus_nominal_v = 560
+      |                 ^^^
+    line 12, error machine-converter: `every_s` is shorter than `seconds`
+      | overload = [{ power_w = 3000, seconds = 5, every_s = 1 }]
+      |                                                      ^
+    ");
+}
+
+#[test]
+fn window_alone() {
+    assert_snapshot!(findings(&edited("peak_power_w = 3500", "peak_power_w = 3500\nwindow_s = 10")), @r"
+    line 7, error machine-converter: `window_s` without `continuous_power_w`
+      | window_s = 10
+      |            ^^
+    ");
+}
+
+#[test]
+fn of_an_axis_that_is_not_there() {
+    assert_snapshot!(findings(&with("[[preset]]\naxes = [\"X\", \"Z\"]\nspeed_mm_min = { X = 1000, Z = 1000 }")), @r#"
+    line 20, error machine-preset: the machine has no axis Z
+      | axes = ["X", "Z"]
+      |              ^^^
+    "#);
+}
+
+#[test]
+fn given_twice() {
+    assert_snapshot!(findings(&with("[[preset]]\naxes = [\"X\", \"B\"]\nspeed_mm_min = { X = 1000 }\n\n[[preset]]\naxes = [\"B\", \"X\"]\nspeed_mm_min = { X = 2000 }")), @r#"
+    line 24, error machine-preset: a second preset for the axes XB / keep one of the two
+      | axes = ["B", "X"]
+      |        ^^^^^^^^^^
+    "#);
+}
+
+#[test]
+fn letter_twice_and_other_axis() {
+    assert_snapshot!(findings(&with("[[preset]]\naxes = [\"X\", \"X\"]\nspeed_mm_min = { B = 1000 }")), @r#"
+    line 20, error machine-preset: axis X is named twice
+      | axes = ["X", "X"]
+      |              ^^^
+    line 21, error machine-preset: axis B is not in this preset's `axes`
+      | speed_mm_min = { B = 1000 }
+      |                      ^^^^
+    "#);
+}
+
+#[test]
+fn that_limits_nothing() {
+    assert_snapshot!(findings(&with("[[preset]]\naxes = [\"X\"]")), @r"
+    line 19, error machine-preset: a preset that limits nothing / give `speed_mm_min` or `accel_mm_s2`
+      | [[preset]]
+      | ^^^^^^^^^^
+    ");
+}
+
+#[test]
+fn without_axes() {
+    assert_snapshot!(findings(&with("[[preset]]\naxes = []\nspeed_mm_min = { X = 1000 }")), @r"
+    line 20, error machine-preset: a preset without axes
+      | axes = []
+      |        ^^
+    ");
+}
+
+#[test]
+fn malformed_words() {
+    assert_snapshot!(findings(&with("[[load]]\non = \"coolant\"\noff = [\"M9\", \"\"]\npower_w = 750")), @r#"
+    line 20, error machine-load: "coolant" is not a program word / a letter and a number, such as "M8"
+      | on = "coolant"
+      |      ^^^^^^^^^
+    line 21, error machine-load: "" is not a program word / a letter and a number, such as "M8"
+      | off = ["M9", ""]
+      |              ^^
+    "#);
+}
+
+#[test]
+fn same_word_on_and_off() {
+    assert_snapshot!(findings(&with("[[load]]\non = \"M8\"\noff = \"m08\"\npower_w = 750")), @r#"
+    line 21, error machine-load: the same word switches the load on and off
+      | off = "m08"
+      |       ^^^^^
+    "#);
+}
+
+#[test]
+fn unknown_converter() {
+    assert_snapshot!(findings(&with("[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 750\nconverter = \"main\"")), @r#"
+    line 23, error machine-load: no converter is named "main"
+      | converter = "main"
+      |             ^^^^^^
+    "#);
+}
+
+#[test]
+fn empty_off() {
+    assert_snapshot!(findings(&with("[[load]]\non = \"M8\"\noff = []\npower_w = 750")), @r"
+    line 21, error machine-missing: `off` is empty
+      | off = []
+      |       ^^
+    ");
+}
+
+#[test]
+fn contradictions_of_the_spindle() {
+    assert_snapshot!(findings(&with("[spindle]\ninertia_kg_m2 = 0.1\nmax_rpm = 4000\nbase_rpm = 5000\naccel_time_s = 1\njerk_time_s = 2")), @r"
+    line 22, error machine-spindle: `base_rpm` is above `max_rpm`
+      | base_rpm = 5000
+      |            ^^^^
+    line 24, error machine-spindle: `jerk_time_s` is longer than `accel_time_s`
+      | jerk_time_s = 2
+      |               ^
+    ");
+}
+
+#[test]
+fn unknown_controller() {
+    assert_snapshot!(findings(&edited("controller = \"iso\"", "controller = \"linuxcn\"")), @r#"
+    line 3, error machine-controller: no built-in controller profile and no file is named "linuxcn" / did you mean "linuxcnc"? built in: iso, linuxcnc, grbl, isg, marlin
+      | controller = "linuxcn"
+      |              ^^^^^^^^^
+    "#);
+}
+
+#[test]
+fn controller_file_missing() {
+    assert_snapshot!(findings(&edited("controller = \"iso\"", "controller = \"no/such.toml\"")), @r#"
+    line 3, error machine-controller: there is no controller profile file no/such.toml
+      | controller = "no/such.toml"
+      |              ^^^^^^^^^^^^^^
+    "#);
+}
+
+#[test]
+fn many_at_once() {
+    assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"isso\"\n[converter]\npeak_power_w = -1\n[axes.X]\nrapid_mm_mim = 1000\naccel_mm_s2 = \"a\"\n[limits]\nmargin = 2\n"), @r#"
+    line 3, error machine-controller: no built-in controller profile and no file is named "isso" / did you mean "iso"? built in: iso, linuxcnc, grbl, isg, marlin
+      | controller = "isso"
+      |              ^^^^^^
+    line 5, error machine-range: `peak_power_w` must be greater than 0, but is -1
+      | peak_power_w = -1
+      |                ^^
+    line 6, error machine-missing: axis X needs a mass or an inertia / give `mass_kg` or `inertia_kg_m2`
+      | [axes.X]
+      | ^^^^^^^^
+    line 7, error machine-unknown-key: unknown key `rapid_mm_mim` / did you mean `rapid_mm_min`?
+      | rapid_mm_mim = 1000
+      | ^^^^^^^^^^^^
+    line 8, error machine-type: `accel_mm_s2` must be a number, not text
+      | accel_mm_s2 = "a"
+      |               ^^^
+    line 10, error machine-range: `margin` must be less than 1, but is 2 / in percent? 2 % is 0.02
+      | margin = 2
+      |          ^
+    "#);
+}
