@@ -2,99 +2,27 @@
 
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
-use gwatt::machine::{
-    ArcRule, Axis, AxisKind, AxisSet, Controller, Converter, Family, Language, Limits, Machine,
-    Path, PathMode, Planner, RapidKnob, RapidPath,
-};
+use gwatt::limit::{Law, LimitOptions, Permit, Solver, Strategy};
+use gwatt::machine::{Axis, AxisSet, Machine, PathMode};
 use gwatt::plan::{Overrides, plan};
-use gwatt::power::{PowerModel, Want};
+use gwatt::power::{Assessment, Assessor, PowerModel, Want};
 
 fn main() {
     divan::main();
 }
 
-fn axis(mass_kg: f64) -> Axis {
-    Axis {
-        kind: AxisKind::Linear,
-        rapid_mm_s: 600.0,
-        accel_mm_s2: 6000.0,
-        jerk_mm_s3: 0.0,
-        mass_kg,
-        coulomb_n: 700.0,
-        viscous_n_s_m: 0.0,
-        gravity_n: 0.0,
-        efficiency: 0.9,
-        copper_w_n2: 0.0,
-        servo_factor_motor: 1.0,
-        servo_factor_regen: 1.0,
-        friction_min_ratio: 1.0,
-        si_per_unit: 1e-3,
+fn machine(name: &str) -> Machine {
+    match Machine::load(name) {
+        Ok((machine, _)) => machine,
+        Err(errors) => panic!("{name}: {errors:?}"),
     }
 }
 
-fn machine(edit: fn(&mut Axis)) -> Machine {
-    let mut axes = [None; 10];
-    for (i, mass) in [900.0, 600.0, 400.0].into_iter().enumerate() {
-        let mut axis = axis(mass);
-        edit(&mut axis);
-        axes[i] = Some(axis);
-    }
-    let controller = Controller {
-        name: "iso".into(),
-        description: String::new(),
-        language: Language {
-            family: Family::Iso,
-            dwell: Vec::new(),
-            metric: true,
-            absolute: true,
-            arc_absolute: false,
-            g61: PathMode::ExactStop,
-            g61_1: PathMode::ExactStop,
-            g64: PathMode::LookAhead,
-            power_on_mode: PathMode::ExactStop,
-            rapid_uses_feed: false,
-            ignored_g: Vec::new(),
-            ignored_m: Vec::new(),
-            block_delete: true,
-        },
-        planner: Planner {
-            rapid: RapidPath::Independent,
-            arc_rule: ArcRule::Shared,
-            rapid_joint: gwatt::machine::RapidJoint::Stop,
-        },
-        knobs: Vec::new(),
-        rapid_knob: RapidKnob::None,
-    };
-    Machine {
-        name: "bench".into(),
-        controller,
-        axes,
-        axis_set: AxisSet(7),
-        converters: vec![Converter {
-            name: String::new(),
-            axes: AxisSet(7),
-            peak_power_w: 3500.0,
-            regen_power_w: Some(3000.0),
-            base_load_w: 100.0,
-            credit_regen: false,
-        }],
-        path: Path {
-            mode: None,
-            rapid: RapidPath::Independent,
-        },
-        spindle: None,
-        loads: Vec::new(),
-        presets: Vec::new(),
-        limits: Limits {
-            margin: 0.1,
-            feed_override_max: 1.0,
-            rapid_override_max: 1.0,
-            spindle_override_max: 1.0,
-            min_feed_mm_s: 0.0,
-            min_feed_ratio: 0.0,
-        },
-        unchecked: Vec::new(),
-    }
+/// The default machine with its axes changed.
+fn three_axis(edit: fn(&mut Axis)) -> Machine {
+    let mut machine = machine("three-axis");
+    machine.axes.iter_mut().flatten().for_each(edit);
+    machine
 }
 
 fn feed() -> Move {
@@ -151,24 +79,24 @@ fn run(bencher: Bencher<'_, '_>, machine: &Machine, mv: &Move, want: Want) {
 
 #[divan::bench]
 fn straight(bencher: Bencher<'_, '_>) {
-    run(bencher, &machine(|_| ()), &feed(), Want::PEAKS);
+    run(bencher, &three_axis(|_| ()), &feed(), Want::PEAKS);
 }
 
 #[divan::bench]
 fn straight_plan_only(bencher: Bencher<'_, '_>) {
-    let machine = machine(|_| ());
+    let machine = three_axis(|_| ());
     let mv = feed();
     bencher.bench(|| plan(&machine, black_box(&mv), Overrides::default()));
 }
 
 #[divan::bench]
 fn straight_with_energy(bencher: Bencher<'_, '_>) {
-    run(bencher, &machine(|_| ()), &feed(), Want::ALL);
+    run(bencher, &three_axis(|_| ()), &feed(), Want::ALL);
 }
 
 #[divan::bench]
 fn straight_with_copper(bencher: Bencher<'_, '_>) {
-    let machine = machine(|axis| axis.copper_w_n2 = 1e-5);
+    let machine = three_axis(|axis| axis.copper_w_n2 = 1e-5);
     run(bencher, &machine, &feed(), Want::ALL);
 }
 
@@ -176,15 +104,75 @@ fn straight_with_copper(bencher: Bencher<'_, '_>) {
 fn independent_rapid(bencher: Bencher<'_, '_>) {
     let mut mv = feed();
     mv.kind = MoveKind::Rapid;
-    run(bencher, &machine(|_| ()), &mv, Want::PEAKS);
+    run(bencher, &three_axis(|_| ()), &mv, Want::PEAKS);
 }
 
 #[divan::bench(args = [0.05, 0.5, 1.5, 6.2, 60.0])]
 fn arc_of_r10(bencher: Bencher<'_, '_>, sweep: f64) {
-    run(bencher, &machine(|_| ()), &arc(10.0, sweep), Want::PEAKS);
+    run(bencher, &three_axis(|_| ()), &arc(10.0, sweep), Want::PEAKS);
 }
 
 #[divan::bench(args = [0.05, 1.5, 6.2])]
 fn arc_with_energy(bencher: Bencher<'_, '_>, sweep: f64) {
-    run(bencher, &machine(|_| ()), &arc(10.0, sweep), Want::ALL);
+    run(bencher, &three_axis(|_| ()), &arc(10.0, sweep), Want::ALL);
+}
+
+/// The change for a move that does not fit.
+fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
+    let mut machine = machine(name);
+    let accel = |axis: usize| machine.axes[axis].map_or(0.0, |axis| axis.accel_mm_s2);
+    let mut mv = mv.clone();
+    mv.feed_mm_s = 1e4;
+    mv.accel_mm_s2 = std::array::from_fn(accel);
+    let permit = Permit {
+        edit: true,
+        feed_word: true,
+        as_feed: false,
+        reason: "",
+        mm_per_unit: 1.0,
+        feed_before: None,
+        feed_accel_mm_s2: mv.accel_mm_s2,
+    };
+    machine.converters[0].regen_power_w = None;
+    machine.limits.margin = 0.0;
+    // So tight a limit that the move takes twice of it.
+    let peak_w = judge(&machine, &mv).demand.peak_w;
+    let base_w = machine.converters[0].base_load_w;
+    machine.converters[0].peak_power_w = base_w + (peak_w - base_w) / 2.0;
+    let assessment = judge(&machine, &mv);
+    let how = LimitOptions {
+        strategy,
+        law: Law::Exact,
+        allow_feed: true,
+    };
+    let solver = Solver::new(&machine, how);
+    assert!(solver.solve(&mv, &assessment, &permit).is_ok());
+    bencher.bench(|| solver.solve(black_box(&mv), &assessment, &permit));
+}
+
+fn judge(machine: &Machine, mv: &Move) -> Assessment {
+    let mut found = None;
+    let mut assessor = Assessor::new(machine, None, Want::PEAKS);
+    let mut keep = |_: &Move, assessment: &Assessment, _: &[u8]| found = Some(*assessment);
+    assessor.push(mv, b"", &mut keep);
+    assessor.finish(&mut keep);
+    match found {
+        Some(assessment) => assessment,
+        None => unreachable!("a pushed move is judged"),
+    }
+}
+
+#[divan::bench]
+fn solve_speed(bencher: Bencher<'_, '_>) {
+    solve(bencher, "vmc", Strategy::Speed, &feed());
+}
+
+#[divan::bench]
+fn solve_optimal(bencher: Bencher<'_, '_>) {
+    solve(bencher, "linear-gantry", Strategy::Optimal, &feed());
+}
+
+#[divan::bench]
+fn solve_arc(bencher: Bencher<'_, '_>) {
+    solve(bencher, "vmc", Strategy::Speed, &arc(10.0, 1.57));
 }

@@ -1,60 +1,116 @@
-//! What `limit` certifies fits when it is read again, and what it does not
-//! certify has a reason.
+//! What `limit` certifies fits when it is read again and stays as it is when
+//! limited again, and what it does not certify has a reason.
 //!
-//! The first byte selects machine and options, the rest is the program.
+//! The first four bytes select machine, controller profile and options; the
+//! rest is the program.
 #![no_main]
 
 use std::sync::OnceLock;
 
 use gwatt::machine::{Machine, builtin};
-use gwatt::pipeline::{Law, LimitOptions, Options, Start, Strategy, analyze, limit};
+use gwatt::pipeline::{
+    Certificate, Law, LimitOptions, LimitSummary, Options, Start, Strategy, analyze, limit,
+};
 use libfuzzer_sys::fuzz_target;
 
+const STRATEGIES: [Strategy; 4] = [
+    Strategy::Optimal,
+    Strategy::Speed,
+    Strategy::Accel,
+    Strategy::Preset,
+];
+
+/// Each built-in machine with each built-in profile that it can be used with.
 fn machines() -> &'static [Machine] {
     static MACHINES: OnceLock<Vec<Machine>> = OnceLock::new();
     MACHINES.get_or_init(|| {
-        builtin::machines()
-            .iter()
-            .map(|machine| match Machine::load(machine.name) {
-                Ok((machine, _)) => machine,
-                Err(errors) => panic!("{}: {errors:?}", machine.name),
-            })
-            .collect()
+        let mut machines = Vec::new();
+        for machine in builtin::machines() {
+            if let Err(errors) = Machine::load(machine.name) {
+                panic!("{}: {errors:?}", machine.name);
+            }
+            for profile in builtin::controllers() {
+                let text = with_controller(machine.text, profile.name);
+                machines.extend(Machine::from_toml(machine.name, &text).map(|(it, _)| it));
+            }
+        }
+        machines
     })
 }
 
+/// The machine file with another controller.
+fn with_controller(text: &str, profile: &str) -> String {
+    text.lines()
+        .map(|line| match line.starts_with("controller = ") {
+            true => format!("controller = \"{profile}\"\n"),
+            false => format!("{line}\n"),
+        })
+        .collect()
+}
+
 fuzz_target!(|bytes: &[u8]| {
-    let Some((&choice, program)) = bytes.split_first() else {
+    let Some((&[machine, strategy, options, threads], program)) = bytes.split_first_chunk() else {
         return;
     };
-    let choice = usize::from(choice);
     let machines = machines();
-    let machine = &machines[choice % machines.len()];
-    let choice = choice / machines.len();
+    let machine = &machines[usize::from(machine) % machines.len()];
+    let how = LimitOptions {
+        strategy: STRATEGIES[usize::from(strategy & 3)],
+        law: if strategy & 4 == 0 {
+            Law::Exact
+        } else {
+            Law::Patent
+        },
+        allow_feed: strategy & 8 == 0,
+    };
     let options = Options {
-        start: if choice & 16 == 0 {
+        start: if options & 1 == 0 {
             Options::default().start
         } else {
             Start::Unknown
         },
-        ..Options::default()
+        block_delete: options & 2 != 0,
+        certificate: match options >> 2 & 3 {
+            0 | 1 => None,
+            2 => Some(Certificate::Planned),
+            _ => Some(Certificate::Robust),
+        },
+        threads: 1 + usize::from(threads & 1),
     };
-    let how = LimitOptions {
-        strategy: [
-            Strategy::Optimal,
-            Strategy::Speed,
-            Strategy::Accel,
-            Strategy::Preset,
-        ][choice & 3],
-        law: Law::Exact,
-        allow_feed: choice & 4 == 0,
+    let run = |program: &[u8], options: &Options| -> Option<(Vec<u8>, LimitSummary)> {
+        let mut output = Vec::new();
+        let summary = limit(program, machine, options, how, &mut output, None).ok()?;
+        Some((output, summary))
     };
-    let mut output = Vec::new();
-    let Ok(summary) = limit(program, machine, &options, how, &mut output, None) else {
+    let Some((output, summary)) = run(program, &options) else {
         return;
     };
+    if options.threads > 1 {
+        let single = run(
+            program,
+            &Options {
+                threads: 1,
+                ..options.clone()
+            },
+        );
+        assert!(
+            single == Some((output.clone(), summary.clone())),
+            "threads change the result"
+        );
+    }
     if !summary.certified {
         assert!(!summary.reasons.is_empty(), "no reason is given");
+        for reason in &summary.reasons {
+            let _ = reason.render("fuzz.ngc", false);
+            // A fault of the analysis or of the edits, never of the program.
+            assert!(
+                !matches!(
+                    reason.rule,
+                    "changed-sequence" | "changed-feed" | "went-up" | "unreadable-output"
+                ),
+                "the rewritten program differs: {reason:?}"
+            );
+        }
         return;
     }
     match analyze(&output[..], machine, &options, None) {
@@ -65,4 +121,13 @@ fuzz_target!(|bytes: &[u8]| {
         }
         Err(failure) => panic!("the result is refused: {failure:?}"),
     }
+    let Some((again, _)) = run(&output, &options) else {
+        panic!("the result cannot be limited again");
+    };
+    assert!(
+        again == output,
+        "limiting again changes the result:\n{}\n---\n{}",
+        output.escape_ascii(),
+        again.escape_ascii()
+    );
 });

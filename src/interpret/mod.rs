@@ -25,7 +25,7 @@ pub use code::Motion;
 pub use execute::Interpreter;
 pub use facts::Facts;
 pub use knob::KnobState;
-pub use modal::{Feed, Modal};
+pub use modal::{Feed, Modal, NumberText};
 pub use moves::*;
 pub use position::Start;
 pub use report::Diagnostics;

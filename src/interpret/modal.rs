@@ -1,28 +1,52 @@
 //! Modal state: what a controller keeps from block to block.
 
-use arrayvec::ArrayVec;
-
 use super::code::Motion;
 use super::moves::FeedMode;
 use crate::machine::{Machine, PathMode};
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 
 /// The feed in force: value, unit and text of the F word that set it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feed {
     /// The number, in program units of that time.
     pub value: f64,
     /// Unit of length when it was set, mm.
     pub mm_per_unit: f64,
-    /// The number as it was written, to be written again; cut numbers are
-    /// left empty.
-    pub text: ArrayVec<u8, { Feed::TEXT_MAX }>,
+    /// The number as it was written, to be written again.
+    pub text: NumberText,
+}
+
+/// A number as it was written, so small that it is copied with its value;
+/// empty for longer ones.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NumberText {
+    bytes: [u8; NumberText::MAX],
+    len: u8,
+}
+
+impl NumberText {
+    /// Longest text that is kept.
+    pub const MAX: usize = 24;
+
+    /// Keeps a text, unless it is too long.
+    #[must_use]
+    pub fn new(text: &[u8]) -> Self {
+        let mut kept = Self::default();
+        if let Some(bytes) = kept.bytes.get_mut(..text.len()) {
+            bytes.copy_from_slice(text);
+            kept.len = text.len() as u8;
+        }
+        kept
+    }
+
+    /// The text; empty if it was too long.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8] {
+        self.bytes.get(..usize::from(self.len)).unwrap_or_default()
+    }
 }
 
 impl Feed {
-    /// Longest number whose text is kept.
-    pub const TEXT_MAX: usize = 24;
-
     /// Speed along a path of linear axes under G94, mm/s.
     #[must_use]
     pub fn linear_mm_s(&self) -> f64 {

@@ -3,7 +3,7 @@
 
 use super::code::{GCode, Motion, path_mode};
 use super::execute::{Control, Run};
-use super::modal::Feed;
+use super::modal::{Feed, NumberText};
 use super::moves::{ActionKind, FeedMode};
 use crate::machine::{Family, PathMode};
 use crate::source::Span;
@@ -47,15 +47,10 @@ impl Control<'_> {
         }
         let text = word.number.of(run.report.text);
         run.facts.feed_word = Some(word);
-        let kept = if text.len() > Feed::TEXT_MAX {
-            &[]
-        } else {
-            text
-        };
         self.modal.feed = Some(Feed {
             value: word.value,
             mm_per_unit,
-            text: kept.iter().copied().collect(),
+            text: NumberText::new(text),
         });
     }
 

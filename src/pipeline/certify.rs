@@ -209,7 +209,11 @@ impl Verdict<'_, '_> {
         self.expected.drain(..self.judged.min(self.expected.len()));
         self.done = self.expected.len();
         self.judged = 0;
-        self.expected.append(more);
+        if self.expected.is_empty() {
+            std::mem::swap(&mut self.expected, more);
+        } else {
+            self.expected.append(more);
+        }
     }
 
     /// (b): the step must be the original's next one.

@@ -53,6 +53,7 @@ impl<'m, R: Read> Front<'m, R> {
     }
 
     /// Reads and executes the next line.
+    #[inline]
     pub(super) fn next_line(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
         let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else {
             return Ok(None);

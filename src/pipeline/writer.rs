@@ -17,7 +17,8 @@ use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 
-/// Bytes of a piece that is handed to the certifier.
+/// Bytes of a piece that is handed to the certifier: so few that the moves of
+/// two pieces stay in the processor's cache.
 const BATCH_BYTES: usize = 8 * 1024;
 
 /// What the writing half comes to.
@@ -108,23 +109,21 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         deliver: &mut impl FnMut(&mut Batch) -> Result<(), Failure>,
     ) -> Result<Written, Failure> {
         while self.read_block()? {
-            self.decide();
-            self.write_decided()?;
+            // Not before there is another block: what is added at the end of a
+            // program depends on its last one.
             if self.batch.bytes.len() >= BATCH_BYTES {
-                deliver(&mut self.batch)?;
+                self.deliver(deliver)?;
             }
+            self.decide();
+            self.write_decided();
         }
         self.finish_moves();
-        self.write_decided()?;
+        self.write_decided();
         if !self.front.interpreter().ended() {
-            let start = self.batch.bytes.len();
             self.rewriter
                 .finish(&self.mark, self.knobs.as_ref(), &mut self.batch.bytes);
-            self.output
-                .write_all(&self.batch.bytes[start..])
-                .map_err(Failure::Output)?;
         }
-        deliver(&mut self.batch)?;
+        self.deliver(deliver)?;
         self.output.flush().map_err(Failure::Output)?;
         let lines = self.front.lines;
         let notes = self.front.finish()?;
@@ -137,6 +136,17 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             edited_lines: self.rewriter.edited_lines,
             reasons: self.reasons,
         })
+    }
+
+    /// Writes the piece, and hands it on.
+    fn deliver(
+        &mut self,
+        deliver: &mut impl FnMut(&mut Batch) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.output
+            .write_all(&self.batch.bytes)
+            .map_err(Failure::Output)?;
+        deliver(&mut self.batch)
     }
 
     /// Reads a block, lets it wait, and judges its moves.
@@ -233,7 +243,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
     }
 
     /// Writes the blocks whose moves are all decided.
-    fn write_decided(&mut self) -> Result<(), Failure> {
+    fn write_decided(&mut self) {
         while self
             .entries
             .front()
@@ -243,16 +253,14 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 break;
             };
             self.first += 1;
-            self.write(&mut entry)?;
+            self.write(&mut entry);
             std::mem::swap(&mut self.mark, &mut entry.mark);
             self.knobs = entry.knobs.take();
             self.spare.push(entry);
         }
-        Ok(())
     }
 
-    fn write(&mut self, entry: &mut Entry) -> Result<(), Failure> {
-        let start = self.batch.bytes.len();
+    fn write(&mut self, entry: &mut Entry) {
         let change = merge(&entry.decided);
         let view = BlockView {
             text: &entry.text,
@@ -271,11 +279,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 .push(0, "edit", message, "change the block by hand", &entry.text);
             self.batch.bytes.extend_from_slice(&entry.text);
         }
-        self.output
-            .write_all(&self.batch.bytes[start..])
-            .map_err(Failure::Output)?;
         self.expect(entry, change);
-        Ok(())
     }
 
     /// Tells the certifier what the block must do.

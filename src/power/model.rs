@@ -89,6 +89,7 @@ impl PowerModel {
     /// A move from an unknown start gets its robust bound; its energy is that
     /// of the axes at rest.
     #[must_use]
+    #[inline]
     pub fn demand(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
         if let ([converter], Trajectory::Path(_)) = (self.converters.as_slice(), &plan.trajectory) {
             let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
@@ -96,6 +97,11 @@ impl PowerModel {
                 return demand;
             }
         }
+        self.evaluate(mv, plan, want)
+    }
+
+    /// The demand, evaluated exactly.
+    fn evaluate(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
         let mut demand = Demand::NONE;
         for (index, converter) in self.converters.iter().enumerate() {
             let active = AxisSet(mv.moving.0 & converter.axes.0);

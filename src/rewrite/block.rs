@@ -190,7 +190,7 @@ impl<'m> Rewriter<'m> {
         let number = match (view.change.feed, &view.after.feed) {
             (Some(value), feed) => decimal(
                 value,
-                feed.as_ref().is_some_and(|feed| has_point(&feed.text)),
+                feed.is_some_and(|feed| has_point(feed.text.as_bytes())),
             ),
             (None, Some(feed)) => feed_again(feed, facts.feed_mm_per_unit),
             (None, None) => return,

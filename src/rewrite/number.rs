@@ -59,9 +59,9 @@ pub(super) fn has_point(text: &[u8]) -> bool {
 
 /// The text that puts a feed back in force under another or the same unit.
 pub(super) fn feed_again(feed: &Feed, mm_per_unit: f64) -> String {
-    if feed.mm_per_unit == mm_per_unit && !feed.text.is_empty() {
-        return feed
-            .text
+    let text = feed.text.as_bytes();
+    if feed.mm_per_unit == mm_per_unit && !text.is_empty() {
+        return text
             .iter()
             .map(|byte| char::from(*byte))
             .filter(|c| !c.is_whitespace())
@@ -74,7 +74,7 @@ pub(super) fn feed_again(feed: &Feed, mm_per_unit: f64) -> String {
         (11.0 - libm::floor(libm::log10(value))).clamp(0.0, 15.0),
     )
     .round();
-    decimal((value * scale).floor() / scale, has_point(&feed.text))
+    decimal((value * scale).floor() / scale, has_point(text))
 }
 
 /// A number like `0`, `00` or `0.` with its last digit before the point set.
@@ -97,6 +97,7 @@ pub(super) fn with_digit(number: &[u8], digit: u8) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interpret::NumberText;
 
     #[test]
     fn decimals_keep_the_point() {
@@ -121,7 +122,7 @@ mod tests {
         let feed = Feed {
             value: 1000.0,
             mm_per_unit: 1.0,
-            text: b"1000.".iter().copied().collect(),
+            text: NumberText::new(b"1000."),
         };
         assert_eq!(feed_again(&feed, 1.0), "1000.");
         assert_eq!(feed_again(&feed, 25.4), "39.3700787401");

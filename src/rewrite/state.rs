@@ -3,7 +3,7 @@
 use crate::interpret::{Feed, FeedMode, Modal, Motion};
 
 /// Motion word, feed and units at one place of the original program.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
     /// The motion word in force.
     pub motion: Motion,
@@ -21,7 +21,7 @@ impl Mark {
     pub fn of(modal: &Modal) -> Self {
         Self {
             motion: modal.motion,
-            feed: modal.feed.clone(),
+            feed: modal.feed,
             per_minute: modal.feed_mode == FeedMode::PerMinute,
             mm_per_unit: modal.mm_per_unit,
         }
