@@ -9,9 +9,10 @@ use std::collections::VecDeque;
 use arrayvec::ArrayVec;
 
 use super::change::{Change, feed_unit, round_feed_down};
+use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::Slot;
-use super::options::Strategy;
+use super::options::{Law, Strategy};
 use super::root::largest;
 use super::solver::{Case, Solver};
 use crate::machine::{AXES, AxisValues};
@@ -31,7 +32,9 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());
+    let by_rule = solver.how.strategy == Strategy::Preset || solver.how.law == Law::Patent;
     let done = match solver.how.strategy {
+        _ if by_rule => by_law(solver, slots, &range, &found),
         Strategy::Accel => by_accel() && lower_accel(solver, slots, &range, &found),
         Strategy::Optimal if by_accel() => {
             faster_of_both(solver, slots, &range, &found, by_speed())
@@ -47,6 +50,37 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
         };
         slot.obstacle = Some(obstacle(solver, case));
     }
+}
+
+/// Gives each move of the window what preset or law say for it alone.
+fn by_law(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    range: &Window,
+    found: &[Levers],
+) -> bool {
+    for (index, levers) in range.iter().zip(found) {
+        let slot = &mut slots[*index];
+        let case = Case {
+            mv: &slot.mv,
+            assessment: &slot.assessment,
+            permit: &slot.permit,
+        };
+        let change = match solver.how.strategy {
+            Strategy::Preset => law::preset(solver, case, *levers),
+            strategy => law::squared_ratio(solver, case, *levers, strategy),
+        };
+        // A neighbour for which there is none may fit as it is.
+        if let Ok(change) = change {
+            if let Err(obstacle) = solver.respect_floor(case, &change) {
+                slot.obstacle = Some(obstacle);
+                return false;
+            }
+            slot.change = change;
+            slot.changed = change.apply(solver.machine, &slot.mv, &slot.permit);
+        }
+    }
+    load(solver, slots, range) <= 1.0 + 1e-9
 }
 
 /// Indices of a move and of the neighbours that it is joined to.
