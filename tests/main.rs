@@ -1,6 +1,7 @@
 //! Tests.
 
 mod layers;
+mod interpret;
 mod syntax;
 mod plan;
 mod power;

@@ -190,7 +190,18 @@ impl Control<'_> {
         self.begun = true;
         run.words
             .fill(run.block, &self.machine.controller, &mut run.report);
-        run.facts.checksum = run.block.words.iter().any(|word| word.letter == b'*');
+        run.facts.checksum = run.words.checksum;
+        let errors = run.report.diagnostics.errors;
+        if run.words.is_plain_motion() {
+            // The same as below, without asking for what is not there.
+            self.read_feed(run);
+            self.motion_word(run);
+            self.motion(run);
+            if run.report.diagnostics.errors == errors {
+                self.complain_about_rest(run);
+            }
+            return;
+        }
         self.program_number(run);
         let dwell_s = self.dwell_time(run);
         self.feed_mode(run);
@@ -203,7 +214,9 @@ impl Control<'_> {
         self.settings(run);
         self.turn_knobs(run);
         self.motion(run);
-        self.complain_about_rest(run);
+        if run.report.diagnostics.errors == errors {
+            self.complain_about_rest(run);
+        }
         self.end_of_block(run);
     }
 

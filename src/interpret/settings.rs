@@ -56,6 +56,7 @@ impl Control<'_> {
 
     /// Plane, units, compensation, offsets, path and distance mode.
     pub(super) fn settings(&mut self, run: &mut Run<'_, '_>) {
+        self.motion_word(run);
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
@@ -74,20 +75,23 @@ impl Control<'_> {
                 }
                 GCode::ArcAbsolute(absolute) => self.modal.arc_absolute = absolute,
                 GCode::MachineCoordinates => run.facts.machine_coordinates = true,
-                GCode::Motion(motion) => {
-                    self.modal.motion = motion;
-                    run.facts.motion_word = run
-                        .block
-                        .words
-                        .iter()
-                        .copied()
-                        .find(|word| word.span == span);
-                }
                 GCode::WorkOffset(offset) if offset > 1 => {
                     let message = "without a parameter file all work offsets are taken as 0";
                     run.report.note_once("no-offsets", message, span);
                 }
                 _ => {}
+            }
+        }
+    }
+
+    /// The word of the motion group.
+    #[inline]
+    pub(super) fn motion_word(&mut self, run: &mut Run<'_, '_>) {
+        for (code, _, span) in &run.words.g {
+            if let GCode::Motion(motion) = *code {
+                self.modal.motion = motion;
+                let words = run.block.words.iter().copied();
+                run.facts.motion_word = words.into_iter().find(|word| word.span == *span);
             }
         }
     }

@@ -25,6 +25,9 @@ pub(super) const AXIS_LETTERS: u32 = bit(b'X')
     | bit(b'W')
     | bit(b'E');
 
+/// The bit of the motion group.
+const MOTION_GROUP: u32 = 1;
+
 /// The words of a block by letter. A buffer, filled again for each block.
 #[derive(Debug)]
 pub(super) struct Words {
@@ -43,6 +46,8 @@ pub(super) struct Words {
     pub(super) knobs: ArrayVec<(usize, Option<f64>, Span), 8>,
     /// Modal groups that have a word.
     pub(super) groups: u32,
+    /// The block carries a checksum.
+    pub(super) checksum: bool,
 }
 
 impl Words {
@@ -56,6 +61,7 @@ impl Words {
             m: ArrayVec::new(),
             knobs: ArrayVec::new(),
             groups: 0,
+            checksum: false,
         }
     }
 
@@ -68,6 +74,7 @@ impl Words {
     ) {
         self.present = 0;
         self.groups = 0;
+        self.checksum = false;
         self.g.clear();
         self.m.clear();
         self.knobs.clear();
@@ -94,7 +101,7 @@ impl Words {
                     }
                 }
                 b'A'..=b'Z' => self.add(index, *word, report),
-                b'*' if block.number.is_some() => {}
+                b'*' if block.number.is_some() => self.checksum = true,
                 _ => {
                     report.error(
                         "unknown-word",
@@ -187,6 +194,17 @@ impl Words {
                 word.span,
             );
         }
+    }
+
+    /// True for a block of axis words, arc words and F, with no G word but one
+    /// of the motion group: most blocks of a long program.
+    #[inline]
+    pub(super) fn is_plain_motion(&self) -> bool {
+        const PLAIN: u32 = AXIS_LETTERS | bit(b'F') | bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
+        self.present & !PLAIN == 0
+            && self.groups & !MOTION_GROUP == 0
+            && self.m.is_empty()
+            && self.knobs.is_empty()
     }
 
     /// Whether the letter stands in the block.

@@ -1,7 +1,5 @@
 //! A block that waits to be written, and what may be changed about it.
 
-use arrayvec::ArrayVec;
-
 use super::front::Line;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
 use crate::limit::{Outcome, Permit};
@@ -9,9 +7,6 @@ use crate::machine::{Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
-
-/// Moves that one block can have: a dwell, and two to a reference point.
-const MOVES_MAX: usize = 3;
 
 /// A block that waits until all its moves are decided.
 pub(super) struct Entry {
@@ -28,7 +23,7 @@ pub(super) struct Entry {
     /// Millimetres in a program unit before it.
     pub(super) mm_per_unit_before: f64,
     pub(super) moves: usize,
-    pub(super) decided: ArrayVec<(Assessment, Outcome), MOVES_MAX>,
+    pub(super) decided: Vec<(Assessment, Outcome)>,
 }
 
 impl Entry {
@@ -45,7 +40,7 @@ impl Entry {
             mode_before: modal.path_mode,
             mm_per_unit_before: modal.mm_per_unit,
             moves: 0,
-            decided: ArrayVec::new(),
+            decided: Vec::new(),
         }
     }
 

@@ -48,6 +48,8 @@ pub(super) struct Writer<'m, R, W> {
     /// Blocks that wait; `first` is the number of the front one.
     entries: VecDeque<Box<Entry>>,
     first: u64,
+    /// A block that did not have to wait.
+    ready: Option<Box<Entry>>,
     #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
     spare: Vec<Box<Entry>>,
     flights: VecDeque<Flight>,
@@ -92,6 +94,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             rewriter: Rewriter::new(machine),
             entries: VecDeque::new(),
             first: 0,
+            ready: None,
             spare: Vec::new(),
             flights: VecDeque::new(),
             outcomes: Vec::new(),
@@ -114,8 +117,12 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             if self.batch.bytes.len() >= BATCH_BYTES {
                 self.deliver(deliver)?;
             }
-            self.decide();
-            self.write_decided();
+            if let Some(entry) = self.ready.take() {
+                self.write(entry);
+            } else {
+                self.decide();
+                self.write_decided();
+            }
         }
         self.finish_moves();
         self.write_decided();
@@ -158,6 +165,13 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         self.mm_per_unit = entry.mark.mm_per_unit;
+        let assessor = &self.assessor;
+        let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
+        if self.entries.is_empty() && !entry.steps.iter().any(waits) {
+            self.decide_at_once(&mut entry);
+            self.ready = Some(entry);
+            return Ok(true);
+        }
         let number = self.first + self.entries.len() as u64;
         self.entries.push_back(entry);
         let Self {
@@ -197,6 +211,32 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             });
         }
         Ok(true)
+    }
+
+    /// Judges and decides the moves of a block none of which has to wait.
+    fn decide_at_once(&mut self, entry: &mut Entry) {
+        let mut decided = std::mem::take(&mut entry.decided);
+        let entry_ref = &*entry;
+        for (step, mv) in entry_ref.steps.iter().enumerate() {
+            let Step::Move(mv) = mv else { continue };
+            self.mode = mv.path_mode;
+            let Self {
+                assessor,
+                limiter,
+                tally,
+                machine,
+                ..
+            } = self;
+            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            assessor.push(mv, &entry_ref.text, &mut |mv, assessment, text| {
+                tally.add(mv, assessment, text);
+                let permit = || entry_ref.permit(machine, mv, step);
+                limiter.push(mv, assessment, permit, &mut |outcome| {
+                    decided.push((*assessment, outcome));
+                });
+            });
+        }
+        entry.decided = decided;
     }
 
     /// Judges and decides what is left at the end.
@@ -249,18 +289,16 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             .front()
             .is_some_and(|entry| entry.decided.len() >= entry.moves)
         {
-            let Some(mut entry) = self.entries.pop_front() else {
+            let Some(entry) = self.entries.pop_front() else {
                 break;
             };
             self.first += 1;
-            self.write(&mut entry);
-            std::mem::swap(&mut self.mark, &mut entry.mark);
-            self.knobs = entry.knobs.take();
-            self.spare.push(entry);
+            self.write(entry);
         }
     }
 
-    fn write(&mut self, entry: &mut Entry) {
+    /// Writes a block whose moves are decided, and keeps its buffers.
+    fn write(&mut self, mut entry: Box<Entry>) {
         let change = merge(&entry.decided);
         let view = BlockView {
             text: &entry.text,
@@ -279,7 +317,10 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 .push(0, "edit", message, "change the block by hand", &entry.text);
             self.batch.bytes.extend_from_slice(&entry.text);
         }
-        self.expect(entry, change);
+        self.expect(&mut entry, change);
+        std::mem::swap(&mut self.mark, &mut entry.mark);
+        self.knobs = entry.knobs.take();
+        self.spare.push(entry);
     }
 
     /// Tells the certifier what the block must do.

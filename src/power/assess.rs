@@ -135,6 +135,12 @@ impl<'m> Assessor<'m> {
         self.requested
     }
 
+    /// Whether the next move would wait for its successor, or others for it.
+    #[must_use]
+    pub fn waits(&self, mv: &Move) -> bool {
+        self.held.is_some() || self.may_blend(mv)
+    }
+
     /// Takes the next move with the text of its line, and hands on what can be
     /// judged now.
     pub fn push(

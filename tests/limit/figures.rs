@@ -87,7 +87,7 @@ fn acceleration_of_a_triangle_is_v_to_two_thirds() {
     };
     let text = rig.strategy(Strategy::Accel).fits("G0 X20\n");
     let peak: f64 = 500.0 * 5.0 * (5.0_f64 * 0.02).sqrt();
-    let exact = 100.0 * (400.0 / peak).powf(2.0 / 3.0);
+    let exact = 100.0 * libm::pow(400.0 / peak, 2.0 / 3.0);
     close(number(&text, "G231 ="), exact, 2e-3);
 }
 

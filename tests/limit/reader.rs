@@ -24,7 +24,7 @@ impl Move {
     }
 
     pub(super) fn length(&self) -> f64 {
-        (self.end[0] - self.start[0]).hypot(self.end[1] - self.start[1])
+        libm::hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
     }
 }
 

@@ -1,0 +1,283 @@
+//! Blocks to moves: what each word means, by hand-worked programs.
+
+use std::fmt::Write as _;
+
+use gwatt::machine::Machine;
+use gwatt::pipeline::{self, Failure, Options};
+use insta::assert_snapshot;
+
+/// A machine with linear axes X Y Z U and rotary axes A C.
+fn machine(controller: &str) -> Machine {
+    let mut text = format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
+    );
+    for axis in ["X", "Y", "Z", "U"] {
+        let _ = writeln!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
+        );
+    }
+    for axis in ["A", "C"] {
+        let _ = writeln!(
+            text,
+            "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
+        );
+    }
+    Machine::from_toml("test.toml", &text)
+        .expect("a valid machine")
+        .0
+}
+
+/// The moves of a program, a line each: line, kind, the axes that differ from
+/// the start, and feed in mm/min; or the messages of a refusal.
+fn moves(controller: &str, program: &str) -> String {
+    let machine = machine(controller);
+    let mut out = String::new();
+    let result = pipeline::moves(
+        program.as_bytes(),
+        &machine,
+        &Options::default(),
+        &mut |mv, _| {
+            let _ = write!(out, "{} {}", mv.line, mv.kind.name());
+            for axis in mv.moving.iter() {
+                let letter = gwatt::machine::ALL_AXES[axis].letter() as char;
+                let _ = write!(out, " {letter}{:.4}", mv.end[axis]);
+            }
+            if let Some(arc) = &mv.arc {
+                let turns = arc.sweep_rad / std::f64::consts::TAU;
+                let _ = write!(
+                    out,
+                    " center {:.4},{:.4} turns {turns:.4}",
+                    arc.center[0], arc.center[1]
+                );
+            }
+            if mv.feed_mm_s.is_finite() {
+                let _ = write!(out, " F{:.4}", mv.feed_mm_s * 60.0);
+            }
+            if mv.dwell_s > 0.0 {
+                let _ = write!(out, " {} s", mv.dwell_s);
+            }
+            out.push('\n');
+            Ok(())
+        },
+    );
+    if let Err(Failure::Refused { diagnostics, .. }) = result {
+        for found in diagnostics {
+            let help = found.help.as_deref().unwrap_or("");
+            let _ = writeln!(
+                out,
+                "{} {}: {} | {help}",
+                found.line, found.rule, found.message
+            );
+        }
+    }
+    out
+}
+
+#[test]
+fn distance_modes_units_and_offsets() {
+    let program = "G21 G90 G0 X10 Y5\nG91 X1 Y-1\nG90 G20 X1\nG21 G92 X0\nG1 X10 F100\nG92.2\nX40\nG92.3\nX0\nG92.1\nX0\nG53 G0 X7\n";
+    assert_snapshot!(moves("iso", program), @r#"
+1 rapid X10.0000 Y5.0000
+2 rapid X11.0000 Y4.0000
+3 rapid X25.4000
+5 feed X35.4000 F100.0000
+7 feed X40.0000 F100.0000
+9 feed X25.4000 F100.0000
+11 feed X0.0000 F100.0000
+12 rapid X7.0000
+"#);
+}
+
+#[test]
+fn arcs_in_three_planes() {
+    let program = "F600\nG17 G2 X10 I5 J0\nG3 X0 R5\nG18 G2 Z10 X0 K5 I0\nG19 G3 Y0 Z20 J0 K5\nG17 G90.1 G2 X0 Y0 I5 J0\nG91.1 G3 I1 Z30 P2\n";
+    assert_snapshot!(moves("linuxcnc", program), @r#"
+2 arc X10.0000 Y0.0000 center 5.0000,0.0000 turns -0.5000 F600.0000
+3 arc X0.0000 Y0.0000 center 5.0000,0.0000 turns 0.5000 F600.0000
+4 arc X0.0000 Z10.0000 center 5.0000,0.0000 turns -0.5000 F600.0000
+5 arc Y0.0000 Z20.0000 center 0.0000,15.0000 turns 0.5000 F600.0000
+6 arc X0.0000 Y0.0000 center 5.0000,0.0000 turns -1.0000 F600.0000
+7 arc X0.0000 Y0.0000 Z30.0000 center 1.0000,0.0000 turns 2.0000 F600.0000
+"#);
+}
+
+#[test]
+fn feeds_of_each_mode() {
+    let program = "G1 X10 A90 F100\nA0\nC90 A45\nG93 X20 F2\nG94 X0 F50\nS300 M3\nG95 X10 F0.2\n";
+    assert_snapshot!(moves("iso", program), @r#"
+1 feed X10.0000 A90.0000 F100.0000
+2 feed A0.0000 F100.0000
+3 feed A45.0000 C90.0000 F100.0000
+4 feed X20.0000 F20.0000
+5 feed X0.0000 F50.0000
+7 feed X10.0000 F60.0000
+"#);
+}
+
+#[test]
+fn a_unit_change_keeps_the_feed() {
+    assert_snapshot!(moves("linuxcnc", "G21 G1 X1 F100\nG20 X1\nX2 F10\nG21 X0 F60\n"), @r#"
+1 feed X1.0000 F100.0000
+2 feed X25.4000 F100.0000
+3 feed X50.8000 F254.0000
+4 feed X0.0000 F1524.0000
+"#);
+    assert_snapshot!(moves("iso", "G20 G1 X1 F10\n"), @r#"
+1 feed X25.4000 F254.0000
+"#);
+    assert_snapshot!(moves("linuxcnc", "G20 G1 X1 F10\n"), @r#"
+1 feed X25.4000 F10.0000
+"#);
+}
+
+#[test]
+fn dwells_of_each_dialect() {
+    assert_snapshot!(moves("iso", "G4 P1\nG04 F2\nG4 X0.5\nG0 X1\n"), @r#"
+1 dwell 1 s
+2 dwell 2 s
+3 dwell 0.5 s
+4 rapid X1.0000
+"#);
+    assert_snapshot!(moves("linuxcnc", "G4 P1.5\n"), @r#"
+1 dwell 1.5 s
+"#);
+    assert_snapshot!(moves("marlin", "G4 P1500\nG4 S2\nG4 S1 P5\n"), @r#"
+1 dwell 1.5 s
+2 dwell 2 s
+3 dwell 1 s
+"#);
+}
+
+#[test]
+fn reference_points_and_the_end() {
+    let program = "%\nO1\nG0 X5 Z5\nG28 G91 Z1\nG90 G30 X6\nM30\nX99\n%\n";
+    assert_snapshot!(moves("iso", program), @r#"
+3 rapid X5.0000 Z5.0000
+4 rapid Z6.0000
+4 rapid Z0.0000
+5 rapid X6.0000
+5 rapid X0.0000
+"#);
+}
+
+#[test]
+fn block_delete_and_tape_marks() {
+    let machine = machine("iso");
+    let options = Options {
+        block_delete: true,
+        ..Options::default()
+    };
+    let mut lines = Vec::new();
+    let program = b"%\nG0 X1\n/X2\n/2 X3\nX4\n%\nX5\n";
+    pipeline::moves(&program[..], &machine, &options, &mut |mv, _| {
+        lines.push(mv.line);
+        Ok(())
+    })
+    .expect("accepted");
+    assert_eq!(lines, [2, 5]);
+}
+
+#[test]
+fn marlin_moves_g0_at_the_feed() {
+    assert_snapshot!(moves("marlin", "G0 X10\nG1 F600 X0\nG0 X10\nM201 X500\nG92 X0\nG0 X1\n"), @r#"
+1 feed X10.0000
+2 feed X0.0000 F600.0000
+3 feed X10.0000 F600.0000
+6 feed X11.0000 F600.0000
+"#);
+}
+
+#[test]
+fn plain_blocks_mean_what_all_blocks_mean() {
+    // G40 sends a block the long way round.
+    for blocks in [
+        "X1",
+        "G0 X1 Y2",
+        "G1 X3 F50",
+        "G2 X10 I3.5 J0 F70",
+        "G3 X0 R5 F10",
+        "Y7",
+        "G1 A3",
+    ] {
+        let head = "F100 G40\nG1 X0.5 G40\n";
+        let plain = moves("iso", &format!("{head}{blocks}\n"));
+        let long = moves("iso", &format!("{head}{blocks} G40\n"));
+        assert_eq!(plain, long);
+    }
+}
+
+#[test]
+fn each_refusal_once() {
+    for program in [
+        "X1",
+        "G1 X1",
+        "G1 X1 F0",
+        "G1 X1 F-5",
+        "G93 G1 X1",
+        "F1 G95 G1 X1",
+        "G1 B5 F1",
+        "G0 G1 X1",
+        "G0 X1 X2",
+        "G81 X1 Z-1 R1 F1",
+        "G41 D1",
+        "M98 P1",
+        "M123",
+        "G123",
+        "G1 X1 Q5 F1",
+        "G2 X1 F1",
+        "F1 G2 X1 I1 J0 R2",
+        "F1 G2 X9 I1 J0",
+        "F1 G2 X9 R1",
+        "F1 G2 R1 X0",
+        "F1 G2 X0 I0 J0",
+        "F1 G17 G2 X2 I1 J0 K1",
+        "F1 G90.1 G2 X2 I1",
+        "F1 G2 X2 I1 J0 P0.5",
+        "F1 G53 G2 X2 I1",
+        "G4",
+        "G4 P-1",
+        "G0 X1e",
+        "G0 X2000000000",
+        "G92",
+        "O1\nO2\nG0 X1",
+        "#1=5",
+        "o100 sub",
+        "G28",
+        "@5",
+    ] {
+        let found = moves("iso", &format!("{program}\n"));
+        assert!(
+            found
+                .lines()
+                .any(|line| line.contains(": ") && line.contains(" | ")),
+            "{program}: {found}"
+        );
+    }
+    let all: String = [
+        "G1 X1",
+        "G0 G1 X1",
+        "G81 X1",
+        "G1 B5 F1",
+        "F1 G2 X9 I1 J0",
+        "G4",
+        "G28",
+        "M123",
+        "X1",
+    ]
+    .map(|program| moves("iso", &format!("{program}\n")))
+    .concat();
+    assert_snapshot!(all, @r#"
+1 no-feed: a feed move, but no F is in force | write F in this block or before; after G93, G94 or G95 it must be written anew
+1 modal-group-twice: two G words of one modal group in a block | keep the one that is meant, or write two blocks
+1 unsupported-code: G81 is a canned cycle, which gwatt does not support | nothing is estimated for a program with motion that is not understood
+1 no-motion-word: axis words without a motion word in force | write G0, G1, G2 or G3 in this block or before
+1 no-such-axis: the machine has no B axis | choose a machine with it, or describe it in the machine file: [axes.B]
+1 arc-radius: the arc's end is not on its circle: radius 1.0000 mm at the start, 8.0000 mm at the end | check the end point and the centre; a G90.1/G91.1 mix-up looks like this
+1 dwell-time: G4 without a time | this controller takes the time from P or X or F
+1 reference-point: the reference points of G28 and G30 are taken as machine zero | 
+1 reference-axes: a reference point without axes | name the axes, as in G28 G91 Z0
+1 unsupported-code: M123 is a user-defined word, which gwatt does not support | if it moves no axis, list it under `ignored_m` in the controller profile
+1 no-motion-word: axis words without a motion word in force | write G0, G1, G2 or G3 in this block or before
+"#);
+}
