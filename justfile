@@ -23,4 +23,4 @@ bench *args:
 
 # One fuzz target, ten minutes; needs cargo-fuzz and a nightly toolchain
 fuzz target seconds="600":
-    cargo +nightly fuzz run {{target}} -- -max_total_time={{seconds}}
+    cargo +nightly fuzz run {{target}} -- -max_total_time={{seconds}} -dict=fuzz/gcode.dict

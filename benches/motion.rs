@@ -136,6 +136,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
     };
     machine.converters[0].regen_power_w = None;
     machine.limits.margin = 0.0;
+    machine.limits.min_feed_ratio = 0.0;
     // So tight a limit that the move takes twice of it.
     let peak_w = judge(&machine, &mv).demand.peak_w;
     let base_w = machine.converters[0].base_load_w;
@@ -147,7 +148,9 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         allow_feed: true,
     };
     let solver = Solver::new(&machine, how);
-    assert!(solver.solve(&mv, &assessment, &permit).is_ok());
+    if let Err(obstacle) = solver.solve(&mv, &assessment, &permit) {
+        panic!("{obstacle:?}");
+    }
     bencher.bench(|| solver.solve(black_box(&mv), &assessment, &permit));
 }
 

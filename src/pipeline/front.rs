@@ -53,7 +53,11 @@ impl<'m, R: Read> Front<'m, R> {
     }
 
     /// Reads and executes the next line.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "a line that goes through memory costs a twentieth of an analysis"
+    )]
+    #[inline(always)]
     pub(super) fn next_line(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
         let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else {
             return Ok(None);

@@ -89,7 +89,11 @@ impl PowerModel {
     /// A move from an unknown start gets its robust bound; its energy is that
     /// of the axes at rest.
     #[must_use]
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "most moves end at the ceiling, and their demand stays in registers"
+    )]
+    #[inline(always)]
     pub fn demand(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
         if let ([converter], Trajectory::Path(_)) = (self.converters.as_slice(), &plan.trajectory) {
             let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
