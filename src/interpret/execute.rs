@@ -113,34 +113,32 @@ impl<'m> Interpreter<'m> {
         steps: &mut Vec<Step>,
         diagnostics: &mut Diagnostics,
     ) -> Facts {
-        let mut report = Report {
-            diagnostics,
-            line,
-            text,
-        };
-        if self.control.passes_over(block, &mut report) {
-            return Facts::default();
-        }
-        for issue in &block.issues {
-            report.diagnostics.push(issue.diagnostic(line, text));
-        }
-        if !block.issues.is_empty() || block.words.is_empty() {
-            return Facts::default();
-        }
-        let before = steps.len();
-        let errors = report.diagnostics.errors;
-        let facts = Facts {
-            executed: true,
-            ..Facts::default()
-        };
+        // Built once in its place: moving parts of it costs more than it seems.
         let mut run = Run {
             line,
             block,
             words: &mut self.words,
-            facts,
+            facts: Facts::default(),
             steps,
-            report,
+            report: Report {
+                diagnostics,
+                line,
+                text,
+            },
         };
+        if self.control.passes_over(block, &mut run.report) {
+            return run.facts;
+        }
+        for issue in &block.issues {
+            let found = issue.diagnostic(line, text);
+            run.report.diagnostics.push(found);
+        }
+        if !block.issues.is_empty() || block.words.is_empty() {
+            return run.facts;
+        }
+        let before = run.steps.len();
+        let errors = run.report.diagnostics.errors;
+        run.facts.executed = true;
         self.control.run(&mut run);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);

@@ -22,6 +22,13 @@ use crate::units::SECONDS_PER_MINUTE;
 /// Lowers the window around `center` if it does not fit.
 pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: usize) {
     let range = range(slots, center);
+    // Untouched, the window is the one that the assessment was made for.
+    let untouched = |index: &usize| {
+        slots[*index].change.is_none() && slots[*index].mv.loads == slots[center].mv.loads
+    };
+    if range.iter().all(untouched) && solver.model.fits(&slots[center].assessment.demand) {
+        return;
+    }
     if load(solver, slots, &range) <= 1.0 + 1e-9 {
         return;
     }
