@@ -79,7 +79,7 @@ fn machine(name: &str) -> Machine {
 
 /// The moves of the program.
 fn moves(machine: &Machine) -> Vec<Move> {
-    let mut interpreter = Interpreter::new(machine, Options::default().start, false);
+    let mut interpreter = Interpreter::new(machine, &Options::default().reading);
     let mut diagnostics = Diagnostics::default();
     let (mut block, mut steps) = (Block::default(), Vec::new());
     for (text, number) in lines(program().as_bytes()).zip(1..) {
@@ -152,7 +152,7 @@ fn c_interpret(bencher: Bencher<'_, '_>) {
         .collect();
     let mut steps = Vec::new();
     bencher.counter(bytes()).bench_local(|| {
-        let mut interpreter = Interpreter::new(&machine, Options::default().start, false);
+        let mut interpreter = Interpreter::new(&machine, &Options::default().reading);
         let mut diagnostics = Diagnostics::default();
         for ((text, block), number) in blocks.iter().zip(1..) {
             steps.clear();

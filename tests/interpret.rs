@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Failure, Options};
+use gwatt::pipeline::{self, Failure, Options, Reading};
 use insta::assert_snapshot;
 
 /// A machine with linear axes X Y Z U and rotary axes A C.
@@ -165,7 +165,10 @@ fn reference_points_and_the_end() {
 fn block_delete_and_tape_marks() {
     let machine = machine("iso");
     let options = Options {
-        block_delete: true,
+        reading: Reading {
+            block_delete: true,
+            ..Reading::default()
+        },
         ..Options::default()
     };
     let mut lines = Vec::new();

@@ -138,7 +138,7 @@ pub(crate) fn options(run: Run) -> Options {
         options.certificate = Some(gwatt::pipeline::Certificate::Robust);
     }
     if run.unknown_start {
-        options.start = gwatt::pipeline::Start::Unknown;
+        options.reading.start = gwatt::pipeline::Start::Unknown;
     }
     options
 }

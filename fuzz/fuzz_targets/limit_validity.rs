@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use gwatt::machine::{Machine, builtin};
 use gwatt::pipeline::{
-    Certificate, Law, LimitOptions, LimitSummary, Options, Start, Strategy, analyze, limit,
+    Certificate, Law, LimitOptions, Reading, LimitSummary, Options, Start, Strategy, analyze, limit,
 };
 use libfuzzer_sys::fuzz_target;
 
@@ -64,12 +64,14 @@ fuzz_target!(|bytes: &[u8]| {
         allow_feed: strategy & 8 == 0,
     };
     let options = Options {
-        start: if options & 1 == 0 {
-            Options::default().start
-        } else {
-            Start::Unknown
+        reading: Reading {
+            start: if options & 1 == 0 {
+                Reading::default().start
+            } else {
+                Start::Unknown
+            },
+            block_delete: options & 2 != 0,
         },
-        block_delete: options & 2 != 0,
         certificate: match options >> 2 & 3 {
             0 | 1 => None,
             2 => Some(Certificate::Planned),

@@ -6,7 +6,7 @@ use std::thread;
 
 use anyhow::{Context, Result, bail};
 use gwatt::machine::{self, AXES, Machine, builtin};
-use gwatt::pipeline::{Options, Start};
+use gwatt::pipeline::{Options, Reading, Start};
 
 use super::terminal::{Shown, Terminal};
 use crate::cli::{MachineArgs, ProgramArgs, StartArg};
@@ -40,8 +40,10 @@ impl Setup {
             machine.controller.language = language(dialect)?;
         }
         let options = Options {
-            start: start(reading.start.as_ref(), &machine)?,
-            block_delete: reading.block_delete,
+            reading: Reading {
+                start: start(reading.start.as_ref(), &machine)?,
+                block_delete: reading.block_delete,
+            },
             certificate: None,
             threads: threads(reading),
         };

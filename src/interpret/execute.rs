@@ -6,7 +6,7 @@ use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
-use super::position::{Position, Start};
+use super::position::{Position, Reading};
 use super::report::{Diagnostics, Report};
 use super::words::Words;
 use crate::machine::{Family, Machine};
@@ -63,18 +63,17 @@ impl Run<'_, '_> {
 }
 
 impl<'m> Interpreter<'m> {
-    /// Begins a program: state at power-on, axes at `start`; `block_delete`
-    /// passes over blocks that begin with `/`.
+    /// Begins a program: state at power-on.
     #[must_use]
-    pub fn new(machine: &'m Machine, start: Start, block_delete: bool) -> Self {
+    pub fn new(machine: &'m Machine, reading: &Reading) -> Self {
         let control = Control {
             machine,
             modal: Modal::power_on(machine),
-            position: Position::new(start),
+            position: Position::new(reading.start),
             knobs: KnobState::new(machine),
             loads: 0,
             loads_off: 0,
-            block_delete,
+            block_delete: reading.block_delete,
             begun: false,
             ended: false,
             has_program_number: false,

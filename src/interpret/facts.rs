@@ -21,6 +21,8 @@ pub struct Facts {
     pub checksum: bool,
     /// An F in this block would be the time of its dwell.
     pub dwell_takes_feed: bool,
+    /// Why none of its words may be changed, as in "it cuts a thread".
+    pub fixed: Option<&'static str>,
     /// A stop, tool change or end: the modal state must be the original's.
     pub boundary: bool,
     /// The block is executed: not deleted, not behind the end, not empty.

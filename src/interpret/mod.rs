@@ -27,5 +27,5 @@ pub use facts::Facts;
 pub use knob::KnobState;
 pub use modal::{Feed, Modal, NumberText};
 pub use moves::*;
-pub use position::Start;
+pub use position::{Reading, Start};
 pub use report::Diagnostics;

@@ -15,6 +15,24 @@ pub enum Start {
     Unknown,
 }
 
+/// How a program is to be read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Position at the beginning.
+    pub start: Start,
+    /// True: blocks that begin with `/` are passed over.
+    pub block_delete: bool,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self {
+            start: Start::At([0.0; AXES]),
+            block_delete: false,
+        }
+    }
+}
+
 /// Position and offsets.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Position {

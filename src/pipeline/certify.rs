@@ -125,7 +125,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
         Self {
-            interpreter: Interpreter::new(machine, options.start, options.block_delete),
+            interpreter: Interpreter::new(machine, &options.reading),
             diagnostics: Diagnostics::default(),
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
             block: Block::default(),

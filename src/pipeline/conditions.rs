@@ -29,7 +29,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         "margin {} % of the converter's power",
         percent(limits.margin)
     ));
-    conditions.push(match options.start {
+    conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),
         Start::At(at) if at.iter().all(|value| *value == 0.0) => {
             "start position 0 for every axis".to_owned()
@@ -37,7 +37,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         Start::At(_) => "start position as given".to_owned(),
     });
     conditions.push(
-        if options.block_delete {
+        if options.reading.block_delete {
             "blocks with / are skipped"
         } else {
             "blocks with / are executed"

@@ -101,6 +101,7 @@ impl Entry {
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),
+            (facts.fixed.is_some(), facts.fixed.unwrap_or_default()),
         ];
         let feed = [
             (facts.dwell_takes_feed, "an F in it would be its dwell"),

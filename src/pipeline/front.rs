@@ -39,7 +39,7 @@ impl<'m, R: Read> Front<'m, R> {
         Self {
             reader: LineReader::new(input),
             block: Block::default(),
-            interpreter: Interpreter::new(machine, options.start, options.block_delete),
+            interpreter: Interpreter::new(machine, &options.reading),
             diagnostics: Diagnostics::default(),
             steps: Vec::new(),
             lines: 0,

@@ -16,7 +16,7 @@ mod writer;
 
 pub use analyze::{analyze, moves};
 pub use limiting::limit;
-pub use options::{Law, LimitOptions, Options, Start, Strategy};
+pub use options::{Law, LimitOptions, Options, Reading, Start, Strategy};
 pub use row::{Certificate, Row, RowSink};
 pub use summary::{LimitSummary, Summary, Unfit};
 

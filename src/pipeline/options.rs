@@ -1,6 +1,6 @@
 //! What a run is asked to do.
 
-pub use crate::interpret::Start;
+pub use crate::interpret::{Reading, Start};
 
 use super::row::Certificate;
 pub use crate::limit::{Law, LimitOptions, Strategy};
@@ -8,10 +8,8 @@ pub use crate::limit::{Law, LimitOptions, Strategy};
 /// How a program is read and judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// Position at the beginning.
-    pub start: Start,
-    /// True: blocks that begin with `/` are passed over.
-    pub block_delete: bool,
+    /// How the program is to be read.
+    pub reading: Reading,
     /// The certificate asked for; `None`: planned where the controller's
     /// planner is modelled, else robust.
     pub certificate: Option<Certificate>,
@@ -22,8 +20,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            start: Start::At([0.0; crate::machine::AXES]),
-            block_delete: false,
+            reading: Reading::default(),
             certificate: None,
             threads: 1,
         }
