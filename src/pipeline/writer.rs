@@ -12,7 +12,7 @@ use super::front::Front;
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Obstacle, Outcome};
+use crate::limit::{Change, Limiter, Obstacle, Outcome, Waiting};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
@@ -53,6 +53,8 @@ pub(super) struct Writer<'m, R, W> {
     #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
     spare: Vec<Box<Entry>>,
     flights: VecDeque<Flight>,
+    /// How many of them are judged.
+    judged: usize,
     outcomes: Vec<Outcome>,
     /// Path mode of the last move that was read.
     mode: PathMode,
@@ -97,6 +99,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             ready: None,
             spare: Vec::new(),
             flights: VecDeque::new(),
+            judged: 0,
             outcomes: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
@@ -181,6 +184,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             entries,
             first,
             flights,
+            judged,
             outcomes,
             ..
         } = self;
@@ -198,11 +202,14 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             });
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
             let mut judge = Judge {
-                machine: self.machine,
                 limiter,
-                entries,
-                first: *first,
-                flights,
+                queue: Queue {
+                    machine: self.machine,
+                    entries,
+                    first: *first,
+                    flights,
+                },
+                judged,
                 outcomes,
             };
             assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
@@ -228,10 +235,10 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, &entry_ref.text, &mut |mv, assessment, text| {
+            assessor.push(mv, &entry_ref.text, &mut |_, assessment, text| {
                 tally.add(mv, assessment, text);
-                let permit = || entry_ref.permit(machine, mv, step);
-                limiter.push(mv, assessment, permit, &mut |outcome| {
+                let find = |_| Some(entry_ref.waiting(machine, mv, step));
+                limiter.push(mv, assessment, &find, &mut |outcome| {
                     decided.push((*assessment, outcome));
                 });
             });
@@ -248,22 +255,26 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             entries,
             first,
             flights,
+            judged,
             outcomes,
             ..
         } = self;
         let mut judge = Judge {
-            machine: self.machine,
             limiter,
-            entries,
-            first: *first,
-            flights,
+            queue: Queue {
+                machine: self.machine,
+                entries,
+                first: *first,
+                flights,
+            },
+            judged,
             outcomes,
         };
         assessor.finish(&mut |mv, assessment, text| {
             tally.add(mv, assessment, text);
             judge.take(mv, assessment);
         });
-        limiter.finish(&mut |outcome| outcomes.push(outcome));
+        judge.finish();
         self.decide();
     }
 
@@ -273,6 +284,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             let Some(flight) = self.flights.pop_front() else {
                 break;
             };
+            self.judged = self.judged.saturating_sub(1);
             let index = (flight.entry - self.first) as usize;
             if let (Some(entry), Some(assessment)) =
                 (self.entries.get_mut(index), flight.assessment)
@@ -382,38 +394,51 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
 
 /// Hands judged moves to the limiter and collects its decisions.
 struct Judge<'a, 'm> {
-    machine: &'m Machine,
     limiter: &'a mut Limiter<'m>,
+    queue: Queue<'a, 'm>,
+    judged: &'a mut usize,
+    outcomes: &'a mut Vec<Outcome>,
+}
+
+/// The moves that are not decided, and their blocks.
+struct Queue<'a, 'm> {
+    machine: &'m Machine,
     entries: &'a VecDeque<Box<Entry>>,
     first: u64,
     flights: &'a mut VecDeque<Flight>,
-    outcomes: &'a mut Vec<Outcome>,
+}
+
+impl Queue<'_, '_> {
+    /// A move with what may be changed about its block.
+    fn find(&self, flight: usize) -> Option<Waiting<'_>> {
+        let flight = self.flights.get(flight)?;
+        let entry = self.entries.get((flight.entry - self.first) as usize)?;
+        let Step::Move(mv) = entry.steps.get(flight.step)? else {
+            return None;
+        };
+        Some(entry.waiting(self.machine, mv, flight.step))
+    }
 }
 
 impl Judge<'_, '_> {
     fn take(&mut self, mv: &Move, assessment: &Assessment) {
-        let Self {
-            machine,
-            limiter,
-            entries,
-            first,
-            flights,
-            outcomes,
-        } = self;
-        let Some(flight) = flights
-            .iter_mut()
-            .find(|flight| flight.assessment.is_none())
-        else {
+        let Some(flight) = self.queue.flights.get_mut(*self.judged) else {
             return;
         };
         flight.assessment = Some(*assessment);
-        let Some(entry) = entries.get((flight.entry - *first) as usize) else {
-            return;
-        };
-        let permit = || entry.permit(machine, mv, flight.step);
-        limiter.push(mv, assessment, permit, &mut |outcome| {
-            outcomes.push(outcome);
-        });
+        *self.judged += 1;
+        let (queue, decided) = (&self.queue, self.outcomes.len());
+        let find = |place| queue.find(decided + place);
+        let mut keep = |outcome| self.outcomes.push(outcome);
+        self.limiter.push(mv, assessment, &find, &mut keep);
+    }
+
+    /// Decides what waits, at the end.
+    fn finish(&mut self) {
+        let (queue, decided) = (&self.queue, self.outcomes.len());
+        let find = |place| queue.find(decided + place);
+        let mut keep = |outcome| self.outcomes.push(outcome);
+        self.limiter.finish(&find, &mut keep);
     }
 }
 

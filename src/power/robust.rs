@@ -14,7 +14,7 @@
 //! speeds up to v̂, w the ratio of warm friction.
 
 use super::axis::{AxisPower, Side};
-use super::demand::{Demand, Totals};
+use super::demand::{Demand, Totals, Want};
 use super::model::{ConverterPower, PowerModel};
 use crate::interpret::Move;
 use crate::machine::{AxisSet, AxisValues};
@@ -34,6 +34,45 @@ impl PowerModel {
         demand
     }
 
+    /// The robust bound; where something above it stays below what is of
+    /// interest, that.
+    ///
+    /// Above it is `Σ [v·(m·â·k + b·v + Fc + |Fg|)/η + R·F²]` with the larger
+    /// speed of each axis; fed back is no more than `Σ v·(m·â·k − Fc·w + |Fg|)⁺`.
+    pub(super) fn robust_for(
+        &self,
+        mv: &Move,
+        bound: &SpeedBound,
+        accel_mm_s2: &AxisValues,
+        want: Want,
+    ) -> Demand {
+        let below = |converter: &ConverterPower| {
+            let active = active(converter, bound);
+            let mut drawn_w = converter.idle_w(mv, &self.axes, active);
+            let mut fed_back_w = 0.0;
+            for axis in active.iter() {
+                let power = &self.axes[axis];
+                let v = bound.positive[axis].max(bound.negative[axis]) * power.si_per_unit;
+                let inertia = power.mass * accel_mm_s2[axis] * power.si_per_unit;
+                let weight = power.gravity.abs();
+                let force = inertia * power.accel_factor(Side::Motor, true)
+                    + power.viscous * v
+                    + power.coulomb
+                    + weight;
+                drawn_w += v * force * power.inverse_efficiency + power.copper * force * force;
+                let braking = inertia * power.accel_factor(Side::Regen, false) + weight
+                    - power.coulomb * power.friction_factor(Side::Regen);
+                fed_back_w += v * braking.max(0.0);
+            }
+            Demand::below_floor(drawn_w, fed_back_w, want)
+        };
+        match self.converters.as_slice() {
+            [converter] => below(converter),
+            _ => None,
+        }
+        .unwrap_or_else(|| self.robust(mv, bound, accel_mm_s2))
+    }
+
     /// The robust bound for one converter.
     pub(super) fn robust_totals(
         &self,
@@ -42,12 +81,7 @@ impl PowerModel {
         bound: &SpeedBound,
         accel_mm_s2: &AxisValues,
     ) -> Totals {
-        let mut active = AxisSet::default();
-        for axis in converter.axes.iter() {
-            if bound.positive[axis] > 0.0 || bound.negative[axis] > 0.0 {
-                active.insert(axis);
-            }
-        }
+        let active = active(converter, bound);
         let idle_w = converter.idle_w(mv, &self.axes, active);
         let (mut peak, mut regen) = (idle_w, 0.0);
         for axis in active.iter() {
@@ -73,6 +107,18 @@ impl PowerModel {
         totals.raise_regen(regen);
         totals
     }
+}
+
+/// The axes of a converter that may move.
+#[inline]
+fn active(converter: &ConverterPower, bound: &SpeedBound) -> AxisSet {
+    let mut active = AxisSet::default();
+    for axis in converter.axes.iter() {
+        if bound.positive[axis] > 0.0 || bound.negative[axis] > 0.0 {
+            active.insert(axis);
+        }
+    }
+    active
 }
 
 /// Largest electrical power of an axis at speeds up to `v` in a direction in
