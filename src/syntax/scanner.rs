@@ -108,101 +108,6 @@ fn scan_word(text: &[u8], start: usize, letter: u8) -> Option<Word> {
     } else {
         number
     };
-    let Digits {
-        mantissa,
-        decimals,
-        length,
-    } = match eight_bytes(text, first).and_then(|bytes| few_digits(text, first, bytes)) {
-        Some(digits) => digits,
-        None => many_digits(text, first)?,
-    };
-    let at = first + length;
-    // Both operands are exact, so the quotient is rounded once: Clinger,
-    // How to Read Floating Point Numbers Accurately (1990).
-    let value = match POWERS_OF_TEN.get(decimals) {
-        Some(power) if mantissa < 1 << 53 => mantissa.cast_signed() as f64 / power,
-        _ => finite_value(text.get(first..at)?)?,
-    };
-    Some(Word {
-        letter: letter.to_ascii_uppercase(),
-        value: if sign == b'-' { -value } else { value },
-        span: Span::new(start, at),
-        number: Span::new(number, at),
-    })
-}
-
-/// What a number consists of.
-struct Digits {
-    /// All digits without the point; `u64::MAX` where there are too many.
-    mantissa: u64,
-    /// Digits behind the point.
-    decimals: usize,
-    /// Bytes of digits and point.
-    length: usize,
-}
-
-/// Eight bytes from `at` on, the first one lowest; what lies behind the text
-/// is 0. `None` for texts of less than eight bytes.
-#[inline]
-fn eight_bytes(text: &[u8], at: usize) -> Option<u64> {
-    if let Some(bytes) = text.get(at..)?.first_chunk() {
-        return Some(u64::from_le_bytes(*bytes));
-    }
-    let behind = at + 8 - text.len();
-    let bytes = u64::from_le_bytes(*text.last_chunk()?);
-    Some(bytes.checked_shr(8 * behind as u32).unwrap_or(0))
-}
-
-/// Digits that end within `bytes`, which begin at `at`: all eight are looked
-/// at in one go.
-#[inline]
-fn few_digits(text: &[u8], at: usize, bytes: u64) -> Option<Digits> {
-    let whole = leading_digits(bytes);
-    let (digits, count, length) = if whole < 8 && bytes >> (8 * whole) & 0xff == u64::from(b'.') {
-        // The point is taken out; a 0, no digit, moves up at the end.
-        let before = (1 << (8 * whole)) - 1;
-        let digits = bytes & before | bytes >> 8 & !before;
-        let count = leading_digits(digits);
-        (digits, count, count + 1)
-    } else {
-        (bytes, whole, whole)
-    };
-    let goes_on = || matches!(text.get(at + 8), Some(b'0'..=b'9' | b'.'));
-    if count == 0 || length == 8 && goes_on() {
-        return None;
-    }
-    Some(Digits {
-        mantissa: number_of(digits << (8 * (8 - count))),
-        decimals: (count - whole) as usize,
-        length: length as usize,
-    })
-}
-
-/// How many of eight bytes, from the lowest on, are digits.
-#[inline]
-fn leading_digits(bytes: u64) -> u32 {
-    const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
-    const ABOVE_NINE: u64 = u64::from_le_bytes([0x80 - 10; 8]);
-    const TOP_BITS: u64 = u64::from_le_bytes([0x80; 8]);
-    // A byte that is no digit is 10 or more in `digits`; what it carries over
-    // changes only bytes behind it.
-    let digits = bytes ^ ZEROS;
-    ((digits.wrapping_add(ABOVE_NINE) | digits) & TOP_BITS).trailing_zeros() / 8
-}
-
-/// The number that eight digits make, the lowest byte first; bytes of 0 count
-/// as the digit 0.
-#[inline]
-fn number_of(digits: u64) -> u64 {
-    // Neighbours are put together: ones to tens, pairs to fours, fours to all.
-    let ones = digits & u64::from_le_bytes([0x0f; 8]);
-    let pairs = (ones.wrapping_mul(10) + (ones >> 8)) & 0x00ff_00ff_00ff_00ff;
-    let fours = (pairs.wrapping_mul(100) + (pairs >> 16)) & 0x0000_ffff_0000_ffff;
-    (fours.wrapping_mul(10_000) + (fours >> 32)) & 0xffff_ffff
-}
-
-/// Any digits, one by one.
-fn many_digits(text: &[u8], first: usize) -> Option<Digits> {
     // Wraps only where there are too many digits, which is asked below.
     let mut mantissa = 0_u64;
     let mut at = first;
@@ -222,21 +127,22 @@ fn many_digits(text: &[u8], first: usize) -> Option<Digits> {
         decimals = at - point;
         digits += decimals;
     }
-    (digits > 0).then_some(Digits {
-        mantissa: if digits <= MAX_DIGITS {
-            mantissa
-        } else {
-            u64::MAX
-        },
-        decimals,
-        length: at - first,
+    let value = match POWERS_OF_TEN.get(decimals) {
+        _ if digits == 0 => return None,
+        // Both operands are exact, so the quotient is rounded once: Clinger,
+        // How to Read Floating Point Numbers Accurately (1990).
+        Some(power) if digits <= MAX_DIGITS && mantissa < 1 << 53 => mantissa as f64 / power,
+        _ => token::value(false, text.get(first..at)?),
+    };
+    if !value.is_finite() {
+        return None;
+    }
+    Some(Word {
+        letter: letter.to_ascii_uppercase(),
+        value: if sign == b'-' { -value } else { value },
+        span: Span::new(start, at),
+        number: Span::new(number, at),
     })
-}
-
-/// The value of many digits, if it is finite.
-#[cold]
-fn finite_value(digits: &[u8]) -> Option<f64> {
-    Some(token::value(false, digits)).filter(|value| value.is_finite())
 }
 
 /// The digit at `at`.
