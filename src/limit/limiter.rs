@@ -101,9 +101,7 @@ impl<'m> Limiter<'m> {
                 needed = center;
             }
         }
-        for slot in self.slots.drain(..needed) {
-            sink(slot.outcome);
-        }
+        self.hand_on(needed, sink);
     }
 
     /// Hands on what was waiting, at the end of the program.
@@ -129,7 +127,15 @@ impl<'m> Limiter<'m> {
             self.slots[center].joined = false;
             window::settle(&self.solver, &mut self.slots, find, center);
         }
-        for slot in self.slots.drain(..) {
+        self.hand_on(self.slots.len(), sink);
+    }
+
+    /// Hands on the first `count` that wait.
+    fn hand_on(&mut self, count: usize, sink: &mut impl FnMut(Outcome)) {
+        for _ in 0..count {
+            let Some(slot) = self.slots.pop_front() else {
+                break;
+            };
             sink(slot.outcome);
         }
     }

@@ -52,15 +52,13 @@ pub(super) fn settle<'a>(
     find: &impl Fn(usize) -> Option<Waiting<'a>>,
     center: usize,
 ) {
-    let indices = indices(slots, center);
     let loads = slots[center].loads;
     // Untouched, the window is the one that the assessment was made for.
-    let untouched =
-        |index: &usize| slots[*index].outcome.change.is_none() && slots[*index].loads == loads;
-    if indices.iter().all(untouched) && solver.model.fits(&slots[center].assessment.demand) {
+    let untouched = |slot: &Slot| slot.outcome.change.is_none() && slot.loads == loads;
+    if solver.model.fits(&slots[center].assessment.demand) && slots.iter().all(untouched) {
         return;
     }
-    let window: Window<'a> = indices
+    let window: Window<'a> = indices(slots, center)
         .into_iter()
         .filter_map(|index| {
             let Waiting { mv, permit } = find(index)?;

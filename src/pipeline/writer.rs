@@ -56,6 +56,8 @@ pub(super) struct Writer<'m, R, W> {
     /// How many of them are judged.
     judged: usize,
     outcomes: Vec<Outcome>,
+    /// Those of a block that does not wait; empty in between.
+    decided: Vec<(Assessment, Outcome)>,
     /// Path mode of the last move that was read.
     mode: PathMode,
     /// Millimetres in a program unit behind the last block that was read.
@@ -101,6 +103,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             flights: VecDeque::new(),
             judged: 0,
             outcomes: Vec::new(),
+            decided: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
             exact,
@@ -222,9 +225,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
 
     /// Judges and decides the moves of a block none of which has to wait.
     fn decide_at_once(&mut self, entry: &mut Entry) {
-        let mut decided = std::mem::take(&mut entry.decided);
-        let entry_ref = &*entry;
-        for (step, mv) in entry_ref.steps.iter().enumerate() {
+        for (step, mv) in entry.steps.iter().enumerate() {
             let Step::Move(mv) = mv else { continue };
             self.mode = mv.path_mode;
             let Self {
@@ -232,18 +233,19 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 limiter,
                 tally,
                 machine,
+                decided,
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, &entry_ref.text, &mut |_, assessment, text| {
+            assessor.push(mv, &entry.text, &mut |_, assessment, text| {
                 tally.add(mv, assessment, text);
-                let find = |_| Some(entry_ref.waiting(machine, mv, step));
+                let find = |_| Some(entry.waiting(machine, mv, step));
                 limiter.push(mv, assessment, &find, &mut |outcome| {
                     decided.push((*assessment, outcome));
                 });
             });
         }
-        entry.decided = decided;
+        std::mem::swap(&mut entry.decided, &mut self.decided);
     }
 
     /// Judges and decides what is left at the end.
@@ -329,16 +331,16 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 .push(0, "edit", message, "change the block by hand", &entry.text);
             self.batch.bytes.extend_from_slice(&entry.text);
         }
-        self.expect(&mut entry, change);
+        self.expect(&mut entry, change.as_ref());
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
         self.spare.push(entry);
     }
 
     /// Tells the certifier what the block must do.
-    fn expect(&mut self, entry: &mut Entry, change: Option<Change>) {
+    fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
         let feed_before = entry.feed_before();
-        let mut decided = entry.decided.drain(..);
+        let mut decided = entry.decided.iter_mut();
         for step in &entry.steps {
             let mv = match step {
                 Step::Action(action) => {
@@ -351,7 +353,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 continue;
             };
             let hopeless = outcome.obstacle.is_some();
-            if let Some(obstacle) = outcome.obstacle {
+            if let Some(obstacle) = outcome.obstacle.take() {
                 let Obstacle {
                     rule,
                     message,
@@ -363,8 +365,8 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);
             let row = self.exact.then(|| {
-                let mut row = row(self.machine, &self.model, mv, &assessment, self.start_s);
-                describe(self.machine, mv, change.as_ref(), feed_before, &mut row);
+                let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
+                describe(self.machine, mv, change, feed_before, &mut row);
                 if hopeless {
                     row.action = "none possible";
                 }
@@ -443,6 +445,7 @@ impl Judge<'_, '_> {
 }
 
 /// One change for a block of several moves: the lower value of each word.
+#[inline]
 fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
     let mut changes = decided
         .iter()

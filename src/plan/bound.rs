@@ -9,7 +9,7 @@ use super::arc::{axis_speed, plane_share, tangent_ranges};
 use super::limits::{PathLimits, moving, rapid_factor};
 use super::trajectory::{Caps, Overrides};
 use crate::interpret::{FeedMode, Move, MoveKind};
-use crate::machine::{AxisSet, AxisValues, Machine, RapidPath};
+use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
 
 /// Largest speed of each axis, mm/s or degrees/s, not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -23,8 +23,10 @@ pub struct SpeedBound {
 impl SpeedBound {
     /// Raises each bound to that of `other`: a block and its neighbours.
     pub fn include(&mut self, other: &Self) {
-        raise_all(&mut self.positive, &other.positive);
-        raise_all(&mut self.negative, &other.negative);
+        for axis in 0..AXES {
+            self.positive[axis] = self.positive[axis].max(other.positive[axis]);
+            self.negative[axis] = self.negative[axis].max(other.negative[axis]);
+        }
     }
 
     /// Raises the bound in the direction of a signed speed.
@@ -34,15 +36,6 @@ impl SpeedBound {
         } else {
             self.negative[axis] = self.negative[axis].max(-speed);
         }
-    }
-}
-
-/// Raises each value to that of `other`.
-#[inline]
-fn raise_all(values: &mut AxisValues, others: &AxisValues) {
-    for (own, other) in values.iter_mut().zip(others) {
-        // A plain choice, which takes the values two at a time.
-        *own = if *other > *own { *other } else { *own };
     }
 }
 
@@ -73,15 +66,25 @@ pub fn blended_bound(machine: &Machine, mv: &Move, overrides: Overrides) -> Spee
     if mv.arc.is_none() || !mv.unknown_start.is_empty() || mv.length_mm <= 0.0 {
         return speed_bound(machine, mv, overrides, caps);
     }
-    path_bound(machine, mv, blended_speed(machine, mv, overrides), overrides)
+    let mut bound = SpeedBound::default();
+    let v = blended_speed(machine, mv, overrides);
+    along(machine, mv, v, overrides, &caps, &mut bound);
+    bound
 }
 
-/// The largest speeds at a path speed of `v`, in a move with a known start that
-/// has a length.
+/// The largest speeds of a move that runs along one straight path at a speed of
+/// `v`; its start is known and it has a length.
 #[must_use]
-pub fn path_bound(machine: &Machine, mv: &Move, v: f64, overrides: Overrides) -> SpeedBound {
+#[inline]
+pub fn path_bound(machine: &Machine, mv: &Move, v: f64) -> SpeedBound {
     let mut bound = SpeedBound::default();
-    along(machine, mv, v, overrides, &Caps::default(), &mut bound);
+    for (axis, _) in moving(machine, mv) {
+        let distance = mv.end[axis] - mv.start[axis];
+        if distance != 0.0 {
+            let speed = v * (distance.abs() / mv.length_mm);
+            bound.raise(axis, speed.copysign(distance));
+        }
+    }
     bound
 }
 

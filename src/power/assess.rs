@@ -6,8 +6,9 @@
 
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
+use super::robust::Part;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine, PathMode, RapidJoint};
+use crate::machine::{Machine, PathMode, RapidJoint};
 use crate::plan::{
     Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
 };
@@ -72,7 +73,8 @@ pub struct Assessor<'m> {
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
     held: Option<Box<Held>>,
-    /// The one before it, whose room is used again.
+    /// The one that was held before, and room that is used again.
+    before: Option<Box<Held>>,
     spare: Option<Box<Held>>,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
@@ -84,16 +86,20 @@ struct Held {
     mv: Move,
     text: Vec<u8>,
     assessment: Assessment,
-    /// Its own largest speeds.
-    own_bound: SpeedBound,
-    /// Largest speeds and accelerations of it and its predecessor.
+    /// Its largest speeds, its neighbours left aside.
     bound: SpeedBound,
-    accel_mm_s2: AxisValues,
-    /// Whether its predecessor runs into it.
-    joined: bool,
     /// Moves of no length behind it: controllers leave them out and blend
     /// across them.
     riders: Vec<Rider>,
+}
+
+impl Held {
+    fn part(&self) -> Part<'_> {
+        Part {
+            bound: &self.bound,
+            accel_mm_s2: &self.mv.accel_mm_s2,
+        }
+    }
 }
 
 /// A move of no length that waits with the move before it.
@@ -129,6 +135,7 @@ impl<'m> Assessor<'m> {
             requested,
             want,
             held: None,
+            before: None,
             spare: None,
             needs_robust: false,
         }
@@ -194,41 +201,29 @@ impl<'m> Assessor<'m> {
         figures: Option<&PathFigures>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let own_bound = match figures {
-            Some(path) if mv.arc.is_none() => {
-                path_bound(self.machine, mv, path.speed_limit_mm_s, self.largest)
-            }
+        let bound = match figures {
+            Some(path) if mv.arc.is_none() => path_bound(self.machine, mv, path.speed_limit_mm_s),
             _ => blended_bound(self.machine, mv, self.largest),
         };
-        let joined = assessment.joined;
-        let mut fresh = match self.spare.take() {
+        let fresh = match self.spare.take() {
             Some(mut fresh) => {
                 fresh.mv.clone_from(mv);
+                fresh.text.clear();
+                fresh.text.extend_from_slice(text);
+                fresh.assessment = assessment;
+                fresh.bound = bound;
                 fresh
             }
             None => Box::new(Held {
                 mv: mv.clone(),
-                text: Vec::new(),
+                text: text.to_vec(),
                 assessment,
-                own_bound,
-                bound: own_bound,
-                accel_mm_s2: mv.accel_mm_s2,
-                joined,
+                bound,
                 riders: Vec::new(),
             }),
         };
-        fresh.text.clear();
-        fresh.text.extend_from_slice(text);
-        fresh.assessment = assessment;
-        fresh.own_bound = own_bound;
-        fresh.bound = own_bound;
-        fresh.accel_mm_s2 = mv.accel_mm_s2;
-        fresh.joined = joined;
-        if joined && let Some(held) = &self.held {
-            fresh.bound.include(&held.own_bound);
-            include_accel(&mut fresh.accel_mm_s2, &held.mv.accel_mm_s2);
-        }
-        self.release(joined.then_some((&own_bound, &mv.accel_mm_s2)), sink);
+        let next = assessment.joined.then(|| fresh.part());
+        self.release(next, sink);
         self.held = Some(fresh);
     }
 
@@ -237,43 +232,41 @@ impl<'m> Assessor<'m> {
         self.release(None, sink);
     }
 
-    /// Judges what is held; `next` is the bound of a move that it runs into.
+    /// Judges what is held; `next` is the move that it runs into.
     fn release(
         &mut self,
-        next: Option<(&SpeedBound, &AxisValues)>,
+        next: Option<Part<'_>>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let Some(mut held) = self.held.take() else {
             return;
         };
-        if let Some((bound, accel_mm_s2)) = next {
-            held.bound.include(bound);
-            include_accel(&mut held.accel_mm_s2, accel_mm_s2);
-        }
+        let joined = held.assessment.joined;
         // A rapid between two stops is planned like any other; feeds in a mode
         // that blends keep the robust bound.
-        let stops = held.mv.kind == MoveKind::Rapid && !held.joined && next.is_none();
+        let stops = held.mv.kind == MoveKind::Rapid && !joined && next.is_none();
         if stops && self.requested != Some(Certificate::Robust) {
             held.assessment.blended = false;
         } else {
-            self.bound(&mut held);
+            let demand = {
+                let own = held.part();
+                let before = self.before.as_deref().filter(|_| joined);
+                let window = [before.map_or(own, Held::part), own, next.unwrap_or(own)];
+                self.model.robust_over(&held.mv, &window, self.want)
+            };
+            held.assessment.demand = Demand {
+                energy_j: held.assessment.demand.energy_j,
+                ..demand
+            };
+            held.assessment.certificate = Certificate::Robust;
+            self.needs_robust |= self.requested == Some(Certificate::Planned);
         }
         sink(&held.mv, &held.assessment, &held.text);
-        for rider in held.riders.drain(..) {
+        for rider in &held.riders {
             sink(&rider.mv, &rider.assessment, &rider.text);
         }
-        self.spare = Some(held);
-    }
-
-    /// Gives a move its robust bound.
-    fn bound(&mut self, held: &mut Held) {
-        let energy_j = held.assessment.demand.energy_j;
-        held.assessment.demand =
-            self.model
-                .robust_for(&held.mv, &held.bound, &held.accel_mm_s2, self.want);
-        held.assessment.demand.energy_j = energy_j;
-        held.assessment.certificate = Certificate::Robust;
-        self.needs_robust |= self.requested == Some(Certificate::Planned);
+        held.riders.clear();
+        self.spare = self.before.replace(held);
     }
 
     /// The planned demand, and whether the move may be blended; `figures` are
@@ -380,10 +373,4 @@ impl<'m> Assessor<'m> {
 /// Whether any axis moves.
 fn moves(mv: &Move) -> bool {
     mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
-}
-
-fn include_accel(accel: &mut AxisValues, other: &AxisValues) {
-    for (own, other) in accel.iter_mut().zip(other) {
-        *own = if *other > *own { *other } else { *own };
-    }
 }
