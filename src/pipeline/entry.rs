@@ -3,7 +3,7 @@
 use super::front::Line;
 use super::table::LineKey;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
-use crate::limit::{Outcome, Permit};
+use crate::limit::{Outcome, Permit, Waiting};
 use crate::machine::{Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
@@ -83,8 +83,14 @@ impl Entry {
                 .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
     }
 
+    /// One of its moves, with what may be changed.
+    pub(super) fn waiting<'a>(&self, machine: &Machine, mv: &'a Move, step: usize) -> Waiting<'a> {
+        let permit = self.permit(machine, mv, step);
+        Waiting { mv, permit }
+    }
+
     /// What may be changed for one of its moves.
-    pub(super) fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
+    fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
         let facts = &self.facts;
         let mode_before = if step == 0 {
             self.mode_before

@@ -221,6 +221,10 @@ impl<'m> Rewriter<'m> {
     /// Lines before a block that moves: knobs that it needs, and those that it
     /// must not have.
     fn turn_knobs(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        let none = view.change.accel.is_none() && view.change.rapid_percent.is_none();
+        if none && self.turned.is_empty() {
+            return;
+        }
         let mut wanted: [Option<(usize, AxisValues)>; 2] = [view.change.accel, None];
         if let Some((knob, percent)) = view.change.rapid_percent {
             wanted[1] = Some((knob, [percent; AXES]));
