@@ -93,6 +93,7 @@ fn controller() -> Controller {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
+            dwell_stops: false,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,

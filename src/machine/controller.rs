@@ -98,6 +98,9 @@ pub struct Planner {
     pub arc_rule: ArcRule,
     /// What happens at the ends of rapids in a mode that blends.
     pub rapid_joint: RapidJoint,
+    /// Whether a dwell of no time ends the move before it at rest, so that a
+    /// rapid may be written as a feed between two of them.
+    pub dwell_stops: bool,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

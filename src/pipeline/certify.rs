@@ -269,6 +269,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
     /// (b): the step must be the original's next one.
     pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
         let original = self.originals.get(self.done).map(|original| &*original);
+        if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
+            return;
+        }
         self.done += 1;
         let message = match (step, original) {
             (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
@@ -295,6 +298,10 @@ impl<'m, 'r> Verdict<'m, 'r> {
         while matches!(self.originals.get(self.judged), Some(Expected::Action(_))) {
             self.judged += 1;
         }
+        let original = self.originals.get(self.judged).map(|original| &*original);
+        if added_stop(mv, original) {
+            return;
+        }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             compare(&self.model, original, mv, after, text, &mut self.reasons);
             if let Some(row) = &mut original.row {
@@ -307,6 +314,14 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.judged += 1;
         self.tally.add(mv, after, text);
     }
+}
+
+/// Whether a move is a dwell of no time that the original does not have: it
+/// only makes the axes stop.
+fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
+    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
+    is_stop(mv.kind, mv.dwell_s)
+        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
 }
 
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";

@@ -124,6 +124,7 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
             Some(RapidJointName::Rapids) => RapidJoint::Rapids,
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
+        dwell_stops: table.dwell_stops.unwrap_or(false),
     })
 }
 
