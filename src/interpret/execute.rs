@@ -7,6 +7,7 @@ use super::knob::KnobState;
 use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::position::{Position, Reading};
+use super::printer;
 use super::report::{Diagnostics, Report};
 use super::words::Words;
 use crate::machine::{Family, Machine};
@@ -29,6 +30,7 @@ pub(super) struct Control<'m> {
     pub(super) knobs: KnobState,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
+    pub(super) printer: printer::State,
     block_delete: bool,
     begun: bool,
     ended: bool,
@@ -73,6 +75,7 @@ impl<'m> Interpreter<'m> {
             knobs: KnobState::new(machine),
             loads: 0,
             loads_off: 0,
+            printer: printer::State::new(machine),
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
@@ -126,6 +129,11 @@ impl<'m> Interpreter<'m> {
             },
         };
         if self.control.passes_over(block, &mut run.report) {
+            return run.facts;
+        }
+        if printer::is_command(self.control.machine, block) {
+            self.control.begun = true;
+            self.control.command_line(&mut run);
             return run.facts;
         }
         for issue in &block.issues {
@@ -199,6 +207,18 @@ impl Control<'_> {
             }
             return;
         }
+        if self.machine.controller.language.family == Family::Marlin
+            && run.report.diagnostics.errors == errors
+            && !run.words.is_alone()
+        {
+            self.command_line(run);
+            return;
+        }
+        self.general(run, errors);
+    }
+
+    /// A block of any words, which are filled in; `errors` from before that.
+    pub(super) fn general(&mut self, run: &mut Run<'_, '_>, errors: u64) {
         self.program_number(run);
         let dwell_s = self.dwell_time(run);
         self.feed_mode(run);

@@ -16,6 +16,7 @@ mod modal;
 mod motion;
 mod moves;
 mod position;
+mod printer;
 mod reference;
 mod report;
 mod settings;
