@@ -27,10 +27,7 @@ impl Control<'_> {
         if printer && (touched.contains(first) || touched.contains(second)) {
             return self.arc_from_unknown(run, &end, unknown);
         }
-        if !printer && !unknown.is_empty()
-            || touched.contains(first)
-            || touched.contains(second)
-        {
+        if !printer && !unknown.is_empty() || touched.contains(first) || touched.contains(second) {
             run.report
                 .error(
                     "arc-from-unknown",

@@ -47,7 +47,13 @@ impl Control<'_> {
                 let mut middle = end;
                 middle[ends.plane[0]] = on_circle[0];
                 middle[ends.plane[1]] = on_circle[1];
-                self.go(run, MoveKind::Arc, &middle, AxisSet::default(), Some(circle));
+                self.go(
+                    run,
+                    MoveKind::Arc,
+                    &middle,
+                    AxisSet::default(),
+                    Some(circle),
+                );
                 self.go(run, MoveKind::Feed, &end, AxisSet::default(), None);
                 return;
             }

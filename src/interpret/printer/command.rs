@@ -1,10 +1,10 @@
 //! What a command does: which of its readers takes it, in which order.
 
-use super::line::{Head, Parameters, Text, value};
+use super::line::{Head, Parameters, Text, has, value};
 use super::verify_checksum;
 use crate::interpret::code::{GCode, Motion, g_code};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::ActionKind;
+use crate::interpret::moves::{ActionKind, Step};
 use crate::interpret::report::Report;
 use crate::machine::{Command, ExtruderMode, Family};
 use crate::source::Span;
@@ -26,7 +26,13 @@ impl Control<'_> {
             verify_checksum(star, &self.machine.controller, &mut run.report);
         }
         for index in 0..COMMANDS {
+            let so_far = run.steps.len();
             let next = self.one_command(run, text, index > 0);
+            let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
+            let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
+            if index > 0 && moves(own) && earlier.get(before..).is_some_and(moves) {
+                run.facts.fixed = Some("its line holds several commands that move");
+            }
             let Some(next) = next.filter(|_| run.report.diagnostics.errors == errors) else {
                 break;
             };
@@ -62,7 +68,7 @@ impl Control<'_> {
             }
         };
         if Text::is_text(letter, number) {
-            self.text_command(run, letter, number);
+            text_command(run, number);
             return None;
         }
         let (parameters, next) = match text.parameters(at) {
@@ -105,16 +111,6 @@ impl Control<'_> {
         if run.block.issues.is_empty() && !run.block.words.is_empty() {
             let block = run.block;
             self.words(run, block);
-        }
-    }
-
-    /// Commands with free text: stops, and what is listed.
-    fn text_command(&mut self, run: &mut Run<'_, '_>, letter: u8, number: u16) {
-        if letter == b'M' && number <= 10 {
-            run.facts.boundary = true;
-            run.act(ActionKind::Stop, f64::from(number) / 10.0);
-        } else {
-            run.act(ActionKind::Other, f64::from(number) / 10.0);
         }
     }
 
@@ -166,13 +162,17 @@ impl Control<'_> {
         let listed = |list: &[Command]| list.iter().any(|one| one.is_code(letter, number));
         let shifts = listed(&printer.shifts);
         if self.passes(letter, number) {
-            self.note_uncounted(run, letter, number, span);
+            note_uncounted(run, letter, number, span);
             run.act(ActionKind::Other, action);
         } else if shifts {
             self.shift_axes(parameters);
             run.act(ActionKind::Other, action);
         } else if listed(&printer.unknown_moves) {
             self.unknown_moves(run, span);
+            if has(parameters, b'F') {
+                // Whether it stays in force, firmwares see differently.
+                self.modal.feed = None;
+            }
         } else if letter == b'T' {
             self.tool(run, number, span);
         } else if !self.special(run, (letter, number, span), parameters) {
@@ -208,10 +208,9 @@ impl Control<'_> {
             }
             (b'M', 300) => run.act(ActionKind::Other, 30.0),
             (b'M', 920) => self.steps_per_unit(run, parameters),
-            (
-                b'M',
-                1040 | 1060 | 1070 | 1090 | 1400 | 1410 | 1900 | 1910 | 3030 | 5680,
-            ) => run.act(ActionKind::Other, f64::from(number) / 10.0),
+            (b'M', 1040 | 1060 | 1070 | 1090 | 1400 | 1410 | 1900 | 1910 | 3030 | 5680) => {
+                run.act(ActionKind::Other, f64::from(number) / 10.0);
+            }
             (b'M', 1200) => self.push_state(run, span),
             (b'M', 1210) => self.pop_state(run, span),
             (b'M', 2000) => self.volumetric(run, parameters, span),
@@ -262,9 +261,6 @@ impl Control<'_> {
                 .endstop_letters
                 .iter()
                 .any(|letter| value(parameters, *letter).is_some_and(|value| value != 0.0));
-        if to_endstop {
-            return self.unknown_moves(run, span);
-        }
         if letter == b'G' && number == 920 && !parameters.is_empty() {
             // `G92 E` without a number sets nothing.
             let valued = parameters.iter().any(|parameter| parameter.value.is_some());
@@ -281,7 +277,8 @@ impl Control<'_> {
         let mut words = vec![head];
         for parameter in parameters {
             let endstop = printer.endstop_letters.contains(&parameter.letter);
-            let Some(value) = parameter.value.filter(|_| !(moves && endstop)) else {
+            let passed = moves && endstop || to_endstop && parameter.letter != b'F';
+            let Some(value) = parameter.value.filter(|_| !passed) else {
                 continue;
             };
             words.push(Word {
@@ -292,7 +289,7 @@ impl Control<'_> {
             });
         }
         if moves {
-            self.flags_of_a_move(run, parameters);
+            flags_of_a_move(run, parameters);
         }
         let block = Block {
             words,
@@ -304,16 +301,8 @@ impl Control<'_> {
             issues: Vec::new(),
         };
         self.words(run, &block);
-    }
-
-    /// An axis without a number in a move: firmwares differ in what it means.
-    fn flags_of_a_move(&self, run: &mut Run<'_, '_>, parameters: &Parameters) {
-        for parameter in parameters.iter().filter(|one| one.value.is_none()) {
-            let letter = parameter.letter as char;
-            let message = format!("`{letter}` has no number behind it");
-            run.report
-                .error("missing-number", message, parameter.span)
-                .help("write the number right behind the letter, as in `X12.5`");
+        if to_endstop {
+            self.unknown_moves(run, span);
         }
     }
 
@@ -353,14 +342,37 @@ impl Control<'_> {
             ExtruderMode::Either => own && self.modal.absolute,
         };
     }
+}
 
-    /// What is known to be left out of the estimate.
-    fn note_uncounted(&self, run: &mut Run<'_, '_>, letter: u8, number: u16, span: Span) {
-        match (letter, number) {
-            (b'M', 9000 | 5720) => note_advance(run, span),
-            (b'M', 4200 | 3750) => note_levelling(run, span),
-            _ => {}
-        }
+/// Commands with free text: stops, and those that do nothing.
+fn text_command(run: &mut Run<'_, '_>, number: u16) {
+    let stops = number <= 10;
+    run.facts.boundary |= stops;
+    let kind = if stops {
+        ActionKind::Stop
+    } else {
+        ActionKind::Other
+    };
+    run.act(kind, f64::from(number) / 10.0);
+}
+
+/// An axis without a number in a move: firmwares differ in what it means.
+fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
+    for parameter in parameters.iter().filter(|one| one.value.is_none()) {
+        let letter = parameter.letter as char;
+        let message = format!("`{letter}` has no number behind it");
+        run.report
+            .error("missing-number", message, parameter.span)
+            .help("write the number right behind the letter, as in `X12.5`");
+    }
+}
+
+/// What is known to be left out of the estimate.
+fn note_uncounted(run: &mut Run<'_, '_>, letter: u8, number: u16, span: Span) {
+    match (letter, number) {
+        (b'M', 9000 | 5720) => note_advance(run, span),
+        (b'M', 4200 | 3750) => note_levelling(run, span),
+        _ => {}
     }
 }
 
@@ -385,19 +397,11 @@ pub(super) fn refuse(run: &mut Run<'_, '_>, span: Span, message: &str) {
 fn odd_text(report: &mut Report<'_, '_>, odd: Span) {
     if odd.of(report.text).contains(&b'{') {
         report
-            .error(
-                "expression",
-                "expressions in `{ }` are not supported",
-                odd,
-            )
+            .error("expression", "expressions in `{ }` are not supported", odd)
             .help("write the number itself");
         return;
     }
     report
-        .error(
-            "unknown-text",
-            "this is no parameter of the command",
-            odd,
-        )
+        .error("unknown-text", "this is no parameter of the command", odd)
         .help("parameters are a letter and a number each; put other text behind `;`");
 }

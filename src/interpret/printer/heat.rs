@@ -100,12 +100,21 @@ impl Control<'_> {
     }
 
     /// `SET_HEATER_TEMPERATURE HEATER=name TARGET=t`.
-    pub(super) fn set_heater(&mut self, run: &mut Run<'_, '_>, text: Text<'_>, at: usize, span: Span) {
-        let name = text.argument(at, "HEATER").unwrap_or_default().to_ascii_lowercase();
+    pub(super) fn set_heater(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        text: Text<'_>,
+        at: usize,
+        span: Span,
+    ) {
+        let name = text
+            .argument(at, "HEATER")
+            .unwrap_or_default()
+            .to_ascii_lowercase();
         let target = text.number_argument(at, "TARGET");
         let on = match target {
-            None => false,
-            Some(value) => value.is_none_or(|value| value > 0.0),
+            Ok(target) => target.is_some_and(|target| target > 0.0),
+            Err(_) => true,
         };
         let number = name
             .strip_prefix(b"extruder")
@@ -125,9 +134,7 @@ impl Control<'_> {
     /// `SET_FAN_SPEED FAN=name SPEED=s`: which of several fans is not told, so
     /// none is ever taken for switched off.
     pub(super) fn set_fan(&mut self, run: &mut Run<'_, '_>, text: Text<'_>, at: usize, span: Span) {
-        let on = text
-            .number_argument(at, "SPEED")
-            .is_none_or(|speed| speed.is_none_or(|speed| speed > 0.0));
+        let on = text.number_argument(at, "SPEED") != Ok(Some(0.0));
         if on && !self.switch_load((b'M', 106.0), Some(true), Some(NAMED)) {
             note_heaters(run, span);
         }

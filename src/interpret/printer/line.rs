@@ -51,6 +51,10 @@ pub(super) struct Parameter {
 /// The parameters of a command.
 pub(super) type Parameters = ArrayVec<Parameter, 32>;
 
+/// A value that should be a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct NotANumber;
+
 /// The value of a letter's parameter.
 pub(super) fn value(parameters: &Parameters, letter: u8) -> Option<f64> {
     let mut all = parameters.iter();
@@ -59,7 +63,9 @@ pub(super) fn value(parameters: &Parameters, letter: u8) -> Option<f64> {
 
 /// Whether a letter is among the parameters.
 pub(super) fn has(parameters: &Parameters, letter: u8) -> bool {
-    parameters.iter().any(|parameter| parameter.letter == letter)
+    parameters
+        .iter()
+        .any(|parameter| parameter.letter == letter)
 }
 
 impl<'t> Text<'t> {
@@ -73,7 +79,9 @@ impl<'t> Text<'t> {
         };
         text.start = text.blanks(0);
         let numbered = matches!(text.byte(text.start), Some(b'N' | b'n'))
-            && text.byte(text.start + 1).is_some_and(|byte| byte.is_ascii_digit());
+            && text
+                .byte(text.start + 1)
+                .is_some_and(|byte| byte.is_ascii_digit());
         text.end = text.comment();
         if numbered {
             text.start = text.blanks(text.number(text.start + 1));
@@ -170,7 +178,9 @@ impl<'t> Text<'t> {
             let span = Span::new(start, end);
             let begins = self.byte(digits).is_some_and(|byte| byte.is_ascii_digit());
             if begins
-                && let Some(number) = self.read(digits, end).and_then(super::super::code::code_number)
+                && let Some(number) = self
+                    .read(digits, end)
+                    .and_then(super::super::code::code_number)
             {
                 return (Head::Code(letter, number, span), end);
             }
@@ -246,7 +256,9 @@ impl<'t> Text<'t> {
                 _ => start + 1,
             };
             // A letter right behind a letter is a word of text, not a flag.
-            let joined = self.byte(start + 1).is_some_and(|byte| byte.is_ascii_alphabetic());
+            let joined = self
+                .byte(start + 1)
+                .is_some_and(|byte| byte.is_ascii_alphabetic());
             if value.is_none() && joined {
                 return Err(Span::new(start, self.end));
             }
@@ -296,12 +308,15 @@ impl<'t> Text<'t> {
         })
     }
 
-    /// The same as a number; `Some(None)` for one that cannot be read.
-    pub(super) fn number_argument(&self, at: usize, key: &str) -> Option<Option<f64>> {
-        let text = self.argument(at, key)?;
+    /// The same as a number.
+    pub(super) fn number_argument(&self, at: usize, key: &str) -> Result<Option<f64>, NotANumber> {
+        let Some(text) = self.argument(at, key) else {
+            return Ok(None);
+        };
         let number = std::str::from_utf8(text)
             .ok()
-            .and_then(|text| text.parse::<f64>().ok());
-        Some(number.filter(|number| number.is_finite()))
+            .and_then(|text| text.parse::<f64>().ok())
+            .filter(|number| number.is_finite());
+        number.map(Some).ok_or(NotANumber)
     }
 }

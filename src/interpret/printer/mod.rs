@@ -1,7 +1,7 @@
 //! The language of 3D printers: Marlin, RepRapFirmware, Klipper.
 //!
 //! In: a line that is no plain motion. Out: moves, actions and settings, or a
-//! refusal by name. Sources: Marlin documentation ("G-code Index"), the RepRap
+//! refusal by name. Sources: Marlin documentation ("G-code Index"), the `RepRap`
 //! wiki and Duet documentation ("G-code dictionary"), Klipper documentation
 //! ("G-Codes", "Commands templates"). What a firmware does of itself, as
 //! homing, probing or changing the tool, is priced from an unknown start.
@@ -112,7 +112,7 @@ pub(super) fn is_command(machine: &Machine, block: &Block) -> bool {
 
 /// Checks the checksum of a line: all bytes before the `*`, joined by XOR.
 ///
-/// Source: RepRap wiki, "G-code", "Checking"; Marlin ignores blanks before N.
+/// Source: `RepRap` wiki, "G-code", "Checking"; Marlin ignores blanks before N.
 pub(super) fn verify_checksum(star: Word, controller: &Controller, report: &mut Report<'_, '_>) {
     if controller.language.family != Family::Marlin {
         return;

@@ -6,6 +6,7 @@
 
 use super::command::{note_advance, note_levelling};
 use super::line::{Parameters, Text};
+use super::position::Back;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::motion::EXTRUDER;
 use crate::interpret::moves::ActionKind;
@@ -32,10 +33,7 @@ impl Control<'_> {
         let upper = name.to_ascii_uppercase();
         let upper = upper.as_slice();
         let shifts = listed(&printer.shifts);
-        let moves = shifts
-            && text
-                .argument(at, "MOVE")
-                .is_some_and(|value| value != b"0");
+        let moves = shifts && text.argument(at, "MOVE").is_some_and(|value| value != b"0");
         if listed(&printer.ignored_macros) {
             match upper {
                 b"SET_PRESSURE_ADVANCE" => note_advance(run, span),
@@ -68,34 +66,32 @@ impl Control<'_> {
         let state = || text.argument(at, "NAME").unwrap_or(b"default").to_vec();
         match name {
             b"SET_VELOCITY_LIMIT" => {
-                let keys = ["VELOCITY", "ACCEL"].map(|key| text.number_argument(at, key));
-                if keys.contains(&Some(None)) {
-                    Self::bad_value(run, span, "write numbers behind VELOCITY and ACCEL");
-                } else {
-                    self.limit_velocity(run, keys[0].flatten(), keys[1].flatten(), span);
+                match ["VELOCITY", "ACCEL"].map(|key| text.number_argument(at, key)) {
+                    [Ok(velocity), Ok(accel)] => self.limit_velocity(run, velocity, accel, span),
+                    _ => Self::bad_value(run, span, "write numbers behind VELOCITY and ACCEL"),
                 }
             }
             b"RESET_VELOCITY_LIMIT" => self.reset_velocity(run),
             b"SET_RETRACTION" => self.set_retraction(run, text, span, at),
             b"SAVE_GCODE_STATE" => self.save_state(run, state(), span),
             b"RESTORE_GCODE_STATE" => {
-                let back = text
-                    .argument(at, "MOVE")
-                    .is_some_and(|value| value != b"0");
-                let speed = text.number_argument(at, "MOVE_SPEED");
-                match speed {
-                    Some(Some(speed)) if speed > 0.0 => {
-                        self.restore_state(run, &state(), back.then_some(Some(speed)), span);
+                let moves = text.argument(at, "MOVE").is_some_and(|value| value != b"0");
+                let back = match text.number_argument(at, "MOVE_SPEED") {
+                    _ if !moves => Back::No,
+                    Ok(None) => Back::AtFeed,
+                    Ok(Some(speed)) if speed > 0.0 => Back::At(speed),
+                    _ => {
+                        Self::bad_value(run, span, "write a speed above 0");
+                        return true;
                     }
-                    None => self.restore_state(run, &state(), back.then_some(None), span),
-                    Some(_) => Self::bad_value(run, span, "write a speed above 0"),
-                }
+                };
+                self.restore_state(run, &state(), back, span);
             }
             b"SET_HEATER_TEMPERATURE" => self.set_heater(run, text, at, span),
             b"SET_FAN_SPEED" => self.set_fan(run, text, at, span),
             b"TURN_OFF_HEATERS" => self.turn_off_heaters(),
             b"SET_EXTRUDER_ROTATION_DISTANCE" => {
-                if let Some(Some(distance)) = text.number_argument(at, "DISTANCE") {
+                if let Ok(Some(distance)) = text.number_argument(at, "DISTANCE") {
                     self.steps_of(run, EXTRUDER, distance, span);
                 }
             }
@@ -121,9 +117,9 @@ impl Control<'_> {
         ];
         for (key, field) in fields {
             match text.number_argument(at, key) {
-                None => {}
-                Some(Some(value)) => *field = value,
-                Some(None) => return Self::bad_value(run, span, "write numbers behind the keys"),
+                Ok(None) => {}
+                Ok(Some(value)) => *field = value,
+                Err(_) => return Self::bad_value(run, span, "write numbers behind the keys"),
             }
         }
         self.take_retract(run, retract, span);
@@ -132,7 +128,10 @@ impl Control<'_> {
 
 fn refuse_name(run: &mut Run<'_, '_>, name: &[u8], span: Span) {
     let shown = crate::diagnostic::excerpt(name, 60);
-    if META.iter().any(|word| word.as_bytes().eq_ignore_ascii_case(name)) {
+    if META
+        .iter()
+        .any(|word| word.as_bytes().eq_ignore_ascii_case(name))
+    {
         let message = format!("`{shown}`: branches, loops and variables are not supported");
         run.report
             .error("meta-command", message, span)

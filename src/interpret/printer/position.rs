@@ -20,6 +20,16 @@ pub(super) struct SavedPosition {
     unknown: AxisSet,
 }
 
+/// Whether a state takes the axes back to its position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Back {
+    No,
+    /// At the feed in force.
+    AtFeed,
+    /// At this speed, mm/s.
+    At(f64),
+}
+
 /// What `SAVE_GCODE_STATE` keeps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SavedState {
@@ -68,7 +78,13 @@ impl Control<'_> {
             named = AxisSet(self.machine.axis_set.0 & !(1 << EXTRUDER));
         }
         let mut left = named;
-        let groups = self.machine.controller.language.printer.home_together.clone();
+        let groups = self
+            .machine
+            .controller
+            .language
+            .printer
+            .home_together
+            .clone();
         for group in groups.into_iter().chain([AxisSet(u16::MAX)]) {
             let group = AxisSet(group.0 & left.0);
             left.0 &= !group.0;
@@ -255,10 +271,18 @@ impl Control<'_> {
         span: Span,
     ) {
         let slot = slot(parameters);
-        let found = self.printer.positions.iter().find(|(other, _)| *other == slot);
+        let found = self
+            .printer
+            .positions
+            .iter()
+            .find(|(other, _)| *other == slot);
         let Some((_, saved)) = found.copied() else {
             run.report
-                .error("no-such-position", "G61 to a position that G60 has not kept", span)
+                .error(
+                    "no-such-position",
+                    "G61 to a position that G60 has not kept",
+                    span,
+                )
                 .help("write G60 before it, with the same S");
             return;
         };
@@ -267,7 +291,11 @@ impl Control<'_> {
             .filter(|axis| has(parameters, axis.letter()))
             .fold(0, |set: u16, axis| set | 1 << *axis as usize);
         let all = self.machine.axis_set.0 & !(1 << EXTRUDER);
-        let chosen = if letters & all == 0 { all } else { letters & all };
+        let chosen = if letters & all == 0 {
+            all
+        } else {
+            letters & all
+        };
         let feed = value(parameters, b'F').filter(|feed| *feed > 0.0);
         let feed = feed.map(|feed| feed * self.modal.mm_per_unit / SECONDS_PER_MINUTE);
         self.go_back(run, &saved, AxisSet(chosen), feed);
@@ -325,7 +353,7 @@ impl Control<'_> {
         &mut self,
         run: &mut Run<'_, '_>,
         name: &[u8],
-        back: Option<Option<f64>>,
+        back: Back,
         span: Span,
     ) {
         let Some(saved) = self.printer.states.get(name).copied() else {
@@ -346,7 +374,11 @@ impl Control<'_> {
         self.printer.feed_factor = saved.feed_factor;
         self.printer.flow = saved.flow;
         self.settle();
-        if let Some(speed_mm_s) = back {
+        if back != Back::No {
+            let speed_mm_s = match back {
+                Back::At(speed_mm_s) => Some(speed_mm_s),
+                _ => None,
+            };
             let axes = AxisSet(self.machine.axis_set.0 & !(1 << EXTRUDER));
             self.go_back(run, &saved.position, axes, speed_mm_s);
         }

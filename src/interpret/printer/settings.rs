@@ -88,7 +88,7 @@ impl Control<'_> {
         span: Span,
     ) {
         let diameter = value(parameters, b'D');
-        let on = value(parameters, b'S').map_or(true, |on| on != 0.0);
+        let on = value(parameters, b'S') != Some(0.0);
         match diameter {
             _ if !on => self.printer.volumetric = 1.0,
             Some(0.0) => self.printer.volumetric = 1.0,
@@ -295,7 +295,11 @@ impl Control<'_> {
         span: Span,
     ) {
         let given = [velocity_mm_s, accel_mm_s2];
-        if given.iter().flatten().any(|value| !(*value > 0.0 && *value <= 1e7)) {
+        if given
+            .iter()
+            .flatten()
+            .any(|value| !(*value > 0.0 && *value <= 1e7))
+        {
             return Self::bad_value(run, span, "write values above 0");
         }
         run.facts.turns_knob = true;

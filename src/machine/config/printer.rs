@@ -86,7 +86,10 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
     let Some(at) = &language.printer else {
         return own;
     };
-    if language.family.is_some_and(|family| family != FamilyName::Marlin) {
+    if language
+        .family
+        .is_some_and(|family| family != FamilyName::Marlin)
+    {
         let message = "`printer` belongs to family = \"marlin\"";
         findings.error("machine-kind", &at.span, message, None);
     }
@@ -135,7 +138,10 @@ fn set(letters: &[At<Letter>]) -> AxisSet {
 fn retract(table: Option<&RetractTable>) -> Retract {
     let own = Retract::default();
     let Some(table) = table else { return own };
-    let speed_mm_s = table.speed_mm_s.as_ref().map_or(own.speed_mm_s, |n| n.value);
+    let speed_mm_s = table
+        .speed_mm_s
+        .as_ref()
+        .map_or(own.speed_mm_s, |n| n.value);
     Retract {
         length_mm: table.length_mm.as_ref().map_or(own.length_mm, |n| n.value),
         speed_mm_s,
@@ -152,7 +158,9 @@ fn commands(findings: &mut Findings<'_>, list: Option<&Vec<At<String>>>) -> Vec<
         let name = text.value.trim().to_ascii_uppercase();
         let stem = name.strip_suffix('*').unwrap_or(&name);
         let fine = !stem.is_empty()
-            && stem.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+            && stem
+                .bytes()
+                .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
         if let Some((letter, number)) = word::code(&name) {
             commands.push(Command::Code(letter, number));
         } else if !fine {
