@@ -2,6 +2,7 @@
 //! with the source of its meaning.
 
 use std::fmt::Write as _;
+use std::io::Cursor;
 
 use gwatt::interpret::Move;
 use gwatt::machine::{ALL_AXES, AxisSet, Machine};
@@ -77,7 +78,7 @@ fn shown(mv: &Move) -> String {
 fn run(machine: &Machine, program: &str) -> String {
     let mut out = String::new();
     let result = pipeline::moves(
-        program.as_bytes(),
+        Cursor::new(program.as_bytes()),
         machine,
         &Options::default(),
         &mut |mv, _| {
@@ -364,9 +365,14 @@ fn klipper_velocity_limits() {
 fn raised_limits_raise_the_peak() {
     let machine = machine("klipper");
     let peak = |program: &str| {
-        pipeline::analyze(program.as_bytes(), &machine, &Options::default(), None)
-            .expect("accepted")
-            .peak_w
+        pipeline::analyze(
+            Cursor::new(program.as_bytes()),
+            &machine,
+            &Options::default(),
+            None,
+        )
+        .expect("accepted")
+        .peak_w
     };
     let own = peak("G1 X100 F60000\n");
     let raised = peak("SET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X100 F60000\n");
@@ -375,7 +381,7 @@ fn raised_limits_raise_the_peak() {
     // An arc alike, and Marlin's words for it.
     let marlin = self::machine("marlin");
     let arc = pipeline::analyze(
-        "M203 X300 Y300\nG2 X0 Y0 I1000 J0 F60000\n".as_bytes(),
+        Cursor::new("M203 X300 Y300\nG2 X0 Y0 I1000 J0 F60000\n"),
         &marlin,
         &Options::default(),
         None,
@@ -483,6 +489,7 @@ fn extended_commands() {
     assert_snapshot!(marlin("SET_VELOCITY_LIMIT ACCEL=5\n"), @"unknown-macro: `SET_VELOCITY_LIMIT` is a macro or a command that this profile does not know");
     assert_snapshot!(reprap("if x > 1\n"), @"meta-command: `if`: branches, loops and variables are not supported");
     assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file");
+    assert_snapshot!(reprap("M99\n"), @"unsupported-code: M99 belongs to a macro file");
     assert_snapshot!(reprap("G1 X{global.x}\n"), @"expression: expressions in `{ }` are not supported");
     assert_snapshot!(marlin("M502\n"), @"unsupported-code: M502 loads settings that the machine file does not describe");
     assert_snapshot!(marlin("M209 S1\n"), @"unsupported-code: M209 turns moves of the extruder into retracts");
@@ -606,7 +613,7 @@ fn real_programs_are_read() {
                 continue;
             }
             let text = std::fs::read(&path).expect("readable");
-            let result = pipeline::analyze(&*text, &machine, &Options::default(), None);
+            let result = pipeline::analyze(Cursor::new(text), &machine, &Options::default(), None);
             assert!(result.is_ok(), "{}", path.display());
         }
     }

@@ -71,7 +71,8 @@ fn text(blocks: &[Block], style: Style) -> String {
     let units = if style.inch { "G20" } else { "G21" };
     let distance = if style.relative { "G91" } else { "G90" };
     // LinuxCNC reads an F beside G20 in the unit before.
-    lines.push(vec![units.to_owned(), distance.to_owned()]);
+    lines.push(vec![units.to_owned()]);
+    lines.push(vec![distance.to_owned()]);
     lines.push(vec!["F500".to_owned()]);
     let mut motion = "";
     let mut x = 0;
@@ -242,7 +243,7 @@ fn holds(drives: &Drives, machine: &Machine, how: Run, before: &str, after: &str
     }
     assert!(time <= best * 1.001, "{time} s instead of {best} s");
     let options = super::options(how);
-    let summary = analyze(after.as_bytes(), machine, &options, None).expect("a program");
+    let summary = analyze(std::io::Cursor::new(after), machine, &options, None).expect("a program");
     assert!(summary.fits());
 }
 
@@ -305,7 +306,7 @@ proptest! {
         }
         if summary.certified {
             let options = super::options(how);
-            let after = analyze(&limited[..], &machine, &options, None).expect("a program");
+            let after = analyze(std::io::Cursor::new(&limited), &machine, &options, None).expect("a program");
             prop_assert!(after.fits());
             prop_assert_eq!(after.moves, summary.before.moves);
         }

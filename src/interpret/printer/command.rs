@@ -237,6 +237,8 @@ impl Control<'_> {
             (b'M', 2210) => self.flow_percent(run, parameters, span),
             (b'M', 5010) => self.restore_settings(run, span),
             (b'M', 980) => refuse(run, span, "M98 runs a macro file"),
+            (b'M', 990) => refuse(run, span, "M99 belongs to a macro file"),
+            (b'G', 650..=670) => refuse(run, span, "a macro call is nothing that printers know"),
             (b'M', 5020) => refuse(
                 run,
                 span,
