@@ -9,9 +9,11 @@
 mod arc;
 mod command;
 mod heat;
+mod kept;
 mod line;
 mod named;
 mod position;
+mod retract;
 mod scale;
 mod settings;
 
@@ -20,7 +22,7 @@ use std::collections::BTreeMap;
 use super::report::Report;
 use crate::machine::{AXES, AxisSet, AxisValues, Controller, Family, Machine, Retract};
 use crate::syntax::{Block, Word};
-use position::{SavedPosition, SavedState};
+use kept::{SavedPosition, SavedState};
 
 /// What a printer keeps from line to line, besides what every controller does.
 #[derive(Debug)]

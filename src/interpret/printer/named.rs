@@ -5,8 +5,8 @@
 //! "Meta commands"); they are refused by name.
 
 use super::command::{note_advance, note_levelling};
+use super::kept::Back;
 use super::line::{Parameters, Text};
-use super::position::Back;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::motion::EXTRUDER;
 use crate::interpret::moves::ActionKind;
