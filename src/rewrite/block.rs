@@ -6,7 +6,7 @@ use super::state::{FeedValue, Mark, Written};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
+use crate::machine::{AXES, AxisValues, Family, KnobTarget, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
@@ -339,6 +339,11 @@ impl<'m> Rewriter<'m> {
         }
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute {
+            // A printer reads no line without a command.
+            if words.is_empty() && self.machine.controller.language.family == Family::Marlin {
+                let digit = original.motion.digit();
+                words.extend(digit.map(|digit| format!("G{}", digit as char)));
+            }
             words.extend(
                 original
                     .feed

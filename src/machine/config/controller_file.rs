@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::machine_file::{PathModeName, RapidName};
+use super::printer::PrinterTable;
 use super::value::{At, Positive};
 
 /// What a controller reads, how it plans, and which words limit it.
@@ -61,6 +62,8 @@ pub(crate) struct LanguageTable {
     pub(crate) ignored: Option<Vec<At<String>>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
+    /// What 3D printers differ in; only with family = "marlin".
+    pub(crate) printer: Option<At<PrinterTable>>,
 }
 
 /// The family of words.
