@@ -68,18 +68,17 @@ impl Table {
             mm_per_unit_before: entry.mm_per_unit_before,
             fixed: entry.facts.fixed,
         };
-        match self.lines.get_mut(&line) {
-            Some(entered) => entered.unanimous &= entered.sight == sight,
-            None => {
-                let entered = Entered {
-                    sight,
-                    unanimous: true,
-                    decision: None,
-                    hopeless: false,
-                };
-                self.lines.insert(line, entered);
-            }
+        if let Some(entered) = self.lines.get_mut(&line) {
+            entered.unanimous &= entered.sight == sight;
+            return;
         }
+        let entered = Entered {
+            sight,
+            unanimous: true,
+            decision: None,
+            hopeless: false,
+        };
+        self.lines.insert(line, entered);
     }
 
     /// Why a line of the program may not be changed.

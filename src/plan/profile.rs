@@ -74,6 +74,7 @@ impl Phase {
 
 /// The times and the top speed of a trapezoid or triangle from rest to rest.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "the postfixes are units")]
 pub(super) struct Outline {
     /// Duration of each ramp in s.
     ramp_s: f64,
