@@ -84,7 +84,7 @@ fn moves(machine: &Machine) -> Vec<Move> {
     let (mut block, mut steps) = (Block::default(), Vec::new());
     for (text, number) in lines(program().as_bytes()).zip(1..) {
         scan_line(text, number == 1, &mut block);
-        interpreter.execute(number, text, &block, &mut steps, &mut diagnostics);
+        interpreter.execute(number, text, &mut block, &mut steps, &mut diagnostics);
     }
     assert_eq!(diagnostics.errors, 0, "{:?}", diagnostics.list);
     let moves = steps.into_iter().filter_map(|step| match step {
@@ -143,7 +143,7 @@ fn b_parse(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn c_interpret(bencher: Bencher<'_, '_>) {
     let machine = machine("vmc");
-    let blocks: Vec<(&[u8], Block)> = lines(program().as_bytes())
+    let mut blocks: Vec<(&[u8], Block)> = lines(program().as_bytes())
         .map(|text| {
             let mut block = Block::default();
             scan_line(text, false, &mut block);
@@ -154,7 +154,7 @@ fn c_interpret(bencher: Bencher<'_, '_>) {
     bencher.counter(bytes()).bench_local(|| {
         let mut interpreter = Interpreter::new(&machine, &Options::default().reading);
         let mut diagnostics = Diagnostics::default();
-        for ((text, block), number) in blocks.iter().zip(1..) {
+        for ((text, block), number) in blocks.iter_mut().zip(1..) {
             steps.clear();
             interpreter.execute(number, text, block, &mut steps, &mut diagnostics);
             black_box(&steps);
@@ -194,9 +194,14 @@ fn e_power(bencher: Bencher<'_, '_>, what: &str) {
 #[divan::bench(args = MACHINES)]
 fn f_check(bencher: Bencher<'_, '_>, name: &str) {
     let machine = machine(name);
-    bencher
-        .counter(bytes())
-        .bench_local(|| analyze(program().as_bytes(), &machine, &Options::default(), None));
+    bencher.counter(bytes()).bench_local(|| {
+        analyze(
+            std::io::Cursor::new(program()),
+            &machine,
+            &Options::default(),
+            None,
+        )
+    });
 }
 
 #[divan::bench(args = MACHINES)]
@@ -205,7 +210,7 @@ fn g_limit(bencher: Bencher<'_, '_>, name: &str) {
     let options = Options::default();
     bencher.counter(bytes()).bench_local(|| {
         limit(
-            program().as_bytes(),
+            std::io::Cursor::new(program()),
             &machine,
             &options,
             LIMIT,
@@ -221,7 +226,12 @@ fn h_report(bencher: Bencher<'_, '_>) {
     let options = Options::default();
     bencher.counter(bytes()).bench_local(|| {
         let mut rows = CsvRows::new(sink())?;
-        let summary = analyze(program().as_bytes(), &machine, &options, Some(&mut rows));
+        let summary = analyze(
+            std::io::Cursor::new(program()),
+            &machine,
+            &options,
+            Some(&mut rows),
+        );
         rows.finish().map(|_| summary)
     });
 }

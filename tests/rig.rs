@@ -74,6 +74,7 @@ fn controller() -> Controller {
         name: "rig".into(),
         description: String::new(),
         language: Language {
+            name: "rig".into(),
             family: Family::Iso,
             dwell: Vec::new(),
             metric: true,
@@ -111,6 +112,8 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
     Move {
         line: 1,
         number: None,
+        run: 1,
+        text: 0,
         kind: if feed.is_finite() {
             MoveKind::Feed
         } else {

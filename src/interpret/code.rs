@@ -40,7 +40,9 @@ pub(super) enum GCode {
     Motion(Motion),
     Dwell,
     Plane([usize; 3]),
-    Units { mm_per_unit: f64 },
+    Units {
+        mm_per_unit: f64,
+    },
     Reference,
     CompensationOff,
     ToolLengthOn,
@@ -51,10 +53,14 @@ pub(super) enum GCode {
     Absolute(bool),
     ArcAbsolute(bool),
     SetOffset,
-    ClearOffset { forget: bool },
+    ClearOffset {
+        forget: bool,
+    },
     RestoreOffset,
     FeedMode(super::FeedMode),
     MirrorX,
+    /// G65, G66 and G67.
+    MacroCall,
     Ignored,
 }
 
@@ -79,6 +85,7 @@ impl GCode {
             }
             Self::Ignored => 13,
             Self::MirrorX => 14,
+            Self::MacroCall => 15,
         }
     }
 }
@@ -101,6 +108,7 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
+        (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
         _ => common_g_code(number),

@@ -73,7 +73,7 @@ pub(super) struct Certifier<'m, 'r> {
 }
 
 /// Holds the written program against the original.
-struct Verdict<'m, 'r> {
+pub(super) struct Verdict<'m, 'r> {
     model: PowerModel,
     tally: Tally<'m, 'r>,
     /// What the original does, from the first move that is not judged.
@@ -131,14 +131,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             block: Block::default(),
             steps: Vec::new(),
             line: 0,
-            verdict: Verdict {
-                model: PowerModel::new(machine),
-                tally: Tally::new(machine, options, rows),
-                originals: Originals::default(),
-                done: 0,
-                judged: 0,
-                reasons: Reasons::default(),
-            },
+            verdict: Verdict::new(machine, options, rows),
         }
     }
 
@@ -170,12 +163,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             }
         }
         batch.bytes.clear();
-        if self.verdict.originals.get(self.verdict.done).is_some() {
-            let message = "the written program leaves something out".to_owned();
-            self.verdict
-                .reasons
-                .push(0, "changed-sequence", message, BUG, b"");
-        }
+        self.verdict.expect_nothing();
         self.verdict.tally.check()
     }
 
@@ -185,25 +173,12 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor, verdict, ..
         } = &mut self;
         assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
-        let Verdict {
-            mut tally,
-            mut reasons,
-            ..
-        } = self.verdict;
-        tally.check()?;
-        for found in &self.diagnostics.list {
-            if found.severity == Severity::Error {
-                let message = format!("the written program cannot be read: {}", found.message);
-                reasons.push(found.line, "unreadable-output", message, BUG, &found.text);
-            }
-        }
-        let mut summary = tally.finish(false);
-        summary.lines = self.line;
-        Ok(Certified { summary, reasons })
+        self.verdict.finish(&self.diagnostics.list, self.line)
     }
 }
 
-/// What the original does: what is left of earlier pieces, and the last piece.
+/// What the original does: what is left of earlier pieces, and the last piece,
+/// which stays where it was built.
 #[derive(Debug, Default)]
 struct Originals {
     left: Vec<Expected>,
@@ -211,16 +186,14 @@ struct Originals {
 }
 
 impl Originals {
-    /// Drops the first `judged`, takes the next piece, and tells how much of
-    /// earlier ones is left.
-    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
+    /// Drops the first `judged` and takes the next piece.
+    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) {
         let old = judged.min(self.left.len());
         let new = (judged - old).min(self.piece.len());
         self.left.drain(..old);
         self.left.extend(self.piece.drain(new..));
         self.piece.clear();
         std::mem::swap(&mut self.piece, next);
-        self.left.len()
     }
 
     fn get(&mut self, place: usize) -> Option<&mut Expected> {
@@ -229,17 +202,76 @@ impl Originals {
             None => self.left.get_mut(place),
         }
     }
+
+    fn len(&self) -> usize {
+        self.left.len() + self.piece.len()
+    }
 }
 
-impl Verdict<'_, '_> {
+impl<'m, 'r> Verdict<'m, 'r> {
+    pub(super) fn new(
+        machine: &'m Machine,
+        options: &Options,
+        rows: Option<&'r mut (dyn RowSink + 'r)>,
+    ) -> Self {
+        Self {
+            model: PowerModel::new(machine),
+            tally: Tally::new(machine, options, rows),
+            originals: Originals::default(),
+            done: 0,
+            judged: 0,
+            reasons: Reasons::default(),
+        }
+    }
+
+    /// What is wanted of the next move, and whether the rows could be written.
+    pub(super) fn want(&self) -> Want {
+        self.tally.want()
+    }
+
+    /// The error of the rows, if there was one.
+    pub(super) fn check(&mut self) -> Result<(), Failure> {
+        self.tally.check()
+    }
+
+    /// Whether the written program must still do something.
+    pub(super) fn expects(&self) -> bool {
+        self.done < self.originals.len()
+    }
+
+    /// All that was expected must have been done.
+    pub(super) fn expect_nothing(&mut self) {
+        if self.expects() {
+            let message = "the written program leaves something out".to_owned();
+            self.reasons.push(0, "changed-sequence", message, BUG, b"");
+        }
+    }
+
+    /// The figures of the written program, and why the certificate does not
+    /// hold.
+    pub(super) fn finish(mut self, found: &[Diagnostic], lines: u64) -> Result<Certified, Failure> {
+        self.tally.check()?;
+        let mut reasons = self.reasons;
+        for found in found {
+            if found.severity == Severity::Error {
+                let message = format!("the written program cannot be read: {}", found.message);
+                reasons.push(found.line, "unreadable-output", message, BUG, &found.text);
+            }
+        }
+        let mut summary = self.tally.finish(false);
+        summary.lines = lines;
+        Ok(Certified { summary, reasons })
+    }
+
     /// Forgets what is judged and takes more.
-    fn refill(&mut self, more: &mut Vec<Expected>) {
-        self.done = self.originals.refill(self.judged, more);
+    pub(super) fn refill(&mut self, more: &mut Vec<Expected>) {
+        self.originals.refill(self.judged, more);
+        self.done = self.originals.left.len();
         self.judged = 0;
     }
 
     /// (b): the step must be the original's next one.
-    fn compare_step(&mut self, step: &Step, text: &[u8]) {
+    pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
         let original = self.originals.get(self.done).map(|original| &*original);
         self.done += 1;
         let message = match (step, original) {
@@ -263,7 +295,7 @@ impl Verdict<'_, '_> {
     }
 
     /// (a), (c) and (d): the written move is judged.
-    fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
+    pub(super) fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
         while matches!(self.originals.get(self.judged), Some(Expected::Action(_))) {
             self.judged += 1;
         }
