@@ -9,11 +9,12 @@ use super::certify::{Batch, Expected, ExpectedMove, Reasons};
 use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
 use super::front::Front;
+use super::judge::{Flight, Judge, Queue};
 use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
-use crate::interpret::{KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Obstacle, Outcome, Waiting};
+use crate::interpret::{KnobState, MoveKind, Step};
+use crate::limit::{Change, Limiter, Obstacle, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
@@ -27,14 +28,6 @@ pub(super) struct Written {
     pub(super) before: Summary,
     pub(super) edited_lines: u64,
     pub(super) reasons: Reasons,
-}
-
-/// A move that is not decided yet.
-struct Flight {
-    /// Number of its block, and which of its steps it is.
-    entry: u64,
-    step: usize,
-    assessment: Option<Assessment>,
 }
 
 /// Analyses, changes and writes.
@@ -452,56 +445,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 row,
             }));
         }
-    }
-}
-
-/// Hands judged moves to the limiter and collects its decisions.
-struct Judge<'a, 'm> {
-    limiter: &'a mut Limiter<'m>,
-    queue: Queue<'a, 'm>,
-    judged: &'a mut usize,
-    outcomes: &'a mut Vec<Outcome>,
-}
-
-/// The moves that are not decided, and their blocks.
-struct Queue<'a, 'm> {
-    machine: &'m Machine,
-    entries: &'a VecDeque<Box<Entry>>,
-    first: u64,
-    flights: &'a mut VecDeque<Flight>,
-}
-
-impl Queue<'_, '_> {
-    /// A move with what may be changed about its block.
-    fn find(&self, flight: usize) -> Option<Waiting<'_>> {
-        let flight = self.flights.get(flight)?;
-        let entry = self.entries.get((flight.entry - self.first) as usize)?;
-        let Step::Move(mv) = entry.steps.get(flight.step)? else {
-            return None;
-        };
-        Some(entry.waiting(self.machine, mv, flight.step))
-    }
-}
-
-impl Judge<'_, '_> {
-    fn take(&mut self, mv: &Move, assessment: &Assessment) {
-        let Some(flight) = self.queue.flights.get_mut(*self.judged) else {
-            return;
-        };
-        flight.assessment = Some(*assessment);
-        *self.judged += 1;
-        let (queue, decided) = (&self.queue, self.outcomes.len());
-        let find = |place| queue.find(decided + place);
-        let mut keep = |outcome| self.outcomes.push(outcome);
-        self.limiter.push(mv, assessment, &find, &mut keep);
-    }
-
-    /// Decides what waits, at the end.
-    fn finish(&mut self) {
-        let (queue, decided) = (&self.queue, self.outcomes.len());
-        let find = |place| queue.find(decided + place);
-        let mut keep = |outcome| self.outcomes.push(outcome);
-        self.limiter.finish(&find, &mut keep);
     }
 }
 
