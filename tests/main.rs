@@ -8,5 +8,6 @@ mod power;
 mod rig;
 mod limit;
 mod machine;
+mod printers;
 mod cli;
 mod readme;

@@ -177,8 +177,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
     }
 }
 
-/// What the original does: what is left of earlier pieces, and the last piece,
-/// which stays where it was built.
+/// What the original does: what is left of earlier pieces, and the last piece.
 #[derive(Debug, Default)]
 struct Originals {
     left: Vec<Expected>,
@@ -186,14 +185,16 @@ struct Originals {
 }
 
 impl Originals {
-    /// Drops the first `judged` and takes the next piece.
-    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) {
+    /// Drops the first `judged`, takes the next piece, and tells how much of
+    /// earlier ones is left.
+    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
         let old = judged.min(self.left.len());
         let new = (judged - old).min(self.piece.len());
         self.left.drain(..old);
         self.left.extend(self.piece.drain(new..));
         self.piece.clear();
         std::mem::swap(&mut self.piece, next);
+        self.left.len()
     }
 
     fn get(&mut self, place: usize) -> Option<&mut Expected> {
@@ -201,10 +202,6 @@ impl Originals {
             Some(place) => self.piece.get_mut(place),
             None => self.left.get_mut(place),
         }
-    }
-
-    fn len(&self) -> usize {
-        self.left.len() + self.piece.len()
     }
 }
 
@@ -235,8 +232,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 
     /// Whether the written program must still do something.
-    pub(super) fn expects(&self) -> bool {
-        self.done < self.originals.len()
+    pub(super) fn expects(&mut self) -> bool {
+        self.originals.get(self.done).is_some()
     }
 
     /// All that was expected must have been done.
@@ -265,14 +262,16 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// Forgets what is judged and takes more.
     pub(super) fn refill(&mut self, more: &mut Vec<Expected>) {
-        self.originals.refill(self.judged, more);
-        self.done = self.originals.left.len();
+        self.done = self.originals.refill(self.judged, more);
         self.judged = 0;
     }
 
     /// (b): the step must be the original's next one.
     pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
         let original = self.originals.get(self.done).map(|original| &*original);
+        if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
+            return;
+        }
         self.done += 1;
         let message = match (step, original) {
             (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
@@ -299,6 +298,10 @@ impl<'m, 'r> Verdict<'m, 'r> {
         while matches!(self.originals.get(self.judged), Some(Expected::Action(_))) {
             self.judged += 1;
         }
+        let original = self.originals.get(self.judged).map(|original| &*original);
+        if added_stop(mv, original) {
+            return;
+        }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             compare(&self.model, original, mv, after, text, &mut self.reasons);
             if let Some(row) = &mut original.row {
@@ -311,6 +314,14 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.judged += 1;
         self.tally.add(mv, after, text);
     }
+}
+
+/// Whether a move is a dwell of no time that the original does not have: it
+/// only makes the axes stop.
+fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
+    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
+    is_stop(mv.kind, mv.dwell_s)
+        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
 }
 
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";

@@ -1,5 +1,4 @@
-//! Moves on their way through the limiter: kept with their blocks until they
-//! are decided.
+//! The moves that are not decided yet, on their way through the limiter.
 
 use std::collections::VecDeque;
 
@@ -46,7 +45,6 @@ impl Queue<'_, '_> {
 }
 
 impl Judge<'_, '_> {
-    /// Takes the next judged move.
     pub(super) fn take(&mut self, mv: &Move, assessment: &Assessment) {
         let Some(flight) = self.queue.flights.get_mut(*self.judged) else {
             return;

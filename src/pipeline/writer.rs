@@ -362,6 +362,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
             feeds: entry.moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
             change: change.as_ref().unwrap_or(&Change::NONE),
+            stops: entry.needs_stops(self.machine, change.as_ref()),
         };
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
@@ -378,7 +379,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     /// Keeps what was decided for a run of a line.
     fn note(&mut self, entry: &Entry, change: Option<Change>) {
         let Some(table) = &mut self.table else { return };
-        if !table.decide(entry.key, entry, change) {
+        if !table.decide(self.machine, entry.key, entry, change) {
             return;
         }
         let obstacles = entry.decided.iter();

@@ -83,12 +83,12 @@ pub(super) fn accel(mv: &Move, axis: usize, caps: &Caps) -> f64 {
 }
 
 /// Share of the rapid speed that a rapid runs at; feeds are capped by the
-/// whole rapid speed.
+/// whole rapid speed, or by more where the program raised it.
 #[inline]
 pub(super) fn rapid_factor(mv: &Move, overrides: Overrides, caps: &Caps) -> f64 {
     match mv.kind {
         MoveKind::Rapid => mv.rapid_factor * overrides.rapid * caps.rapid_factor,
-        _ => 1.0,
+        _ => mv.rapid_factor.max(1.0),
     }
 }
 

@@ -78,6 +78,8 @@ pub struct Assessor<'m> {
     spare: Option<Box<Held>>,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
+    /// The last move was a dwell.
+    dwelt: bool,
 }
 
 /// A move that waits for its successor.
@@ -88,6 +90,8 @@ struct Held {
     assessment: Assessment,
     /// Its largest speeds, its neighbours left aside.
     bound: SpeedBound,
+    /// A dwell stands before it.
+    dwelt: bool,
     /// Moves of no length behind it: controllers leave them out and blend
     /// across them.
     riders: Vec<Rider>,
@@ -138,6 +142,7 @@ impl<'m> Assessor<'m> {
             before: None,
             spare: None,
             needs_robust: false,
+            dwelt: false,
         }
     }
 
@@ -161,6 +166,7 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
+        let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
             .held
@@ -183,13 +189,13 @@ impl<'m> Assessor<'m> {
         }
         if !(assessment.blended || joined) {
             if self.held.is_some() {
-                self.release(None, sink);
+                self.release(None, mv.kind == MoveKind::Dwell, sink);
             }
             sink(mv, &assessment, text);
             return;
         }
         assessment.blended = true;
-        self.hold(mv, text, assessment, figures.as_ref(), sink);
+        self.hold(mv, text, assessment, figures.as_ref(), dwelt, sink);
     }
 
     /// Lets a move wait for its successor; the one that waited is handed on.
@@ -199,6 +205,7 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         assessment: Assessment,
         figures: Option<&PathFigures>,
+        dwelt: bool,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let bound = match figures {
@@ -212,6 +219,7 @@ impl<'m> Assessor<'m> {
                 fresh.text.extend_from_slice(text);
                 fresh.assessment = assessment;
                 fresh.bound = bound;
+                fresh.dwelt = dwelt;
                 fresh
             }
             None => Box::new(Held {
@@ -219,34 +227,41 @@ impl<'m> Assessor<'m> {
                 text: text.to_vec(),
                 assessment,
                 bound,
+                dwelt,
                 riders: Vec::new(),
             }),
         };
         let next = assessment.joined.then(|| fresh.part());
-        self.release(next, sink);
+        self.release(next, false, sink);
         self.held = Some(fresh);
     }
 
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        self.release(None, sink);
+        self.release(None, false, sink);
     }
 
-    /// Judges what is held; `next` is the move that it runs into.
+    /// Judges what is held; `next` is the move that it runs into, `dwells`
+    /// whether a dwell follows it.
     fn release(
         &mut self,
         next: Option<Part<'_>>,
+        dwells: bool,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let Some(mut held) = self.held.take() else {
             return;
         };
         let joined = held.assessment.joined;
-        // A rapid between two stops is planned like any other; feeds in a mode
-        // that blends keep the robust bound.
-        let stops = held.mv.kind == MoveKind::Rapid && !joined && next.is_none();
-        if stops && self.requested != Some(Certificate::Robust) {
+        // A rapid between two stops is planned like any other, and so is a
+        // straight feed between two dwells; other feeds in a mode that blends
+        // keep the robust bound.
+        let alone = !joined && next.is_none() && self.requested != Some(Certificate::Robust);
+        if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
+        } else if alone && dwells && held.dwelt && held.mv.arc.is_none() {
+            let figures = path_figures(self.machine, &held.mv, self.largest);
+            held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
         } else {
             let demand = {
                 let own = held.part();
