@@ -81,7 +81,7 @@ pub(super) struct Outline {
     /// Duration of the cruise in s; a triangle has none.
     cruise_s: Option<f64>,
     /// The largest speed in mm/s.
-    pub top_mm_s: f64,
+    pub top_speed: f64,
 }
 
 impl Outline {
@@ -95,13 +95,13 @@ impl Outline {
             Self {
                 ramp_s,
                 cruise_s: Some((length / v - ramp_s).max(0.0)),
-                top_mm_s: v,
+                top_speed: v,
             }
         } else {
             Self {
                 ramp_s: (length / a).sqrt(),
                 cruise_s: None,
-                top_mm_s: triangle_top,
+                top_speed: triangle_top,
             }
         }
     }
@@ -130,7 +130,7 @@ impl Profile {
         let Outline {
             ramp_s,
             cruise_s,
-            top_mm_s: v,
+            top_speed: v,
         } = Outline::new(length, speed, accel);
         let a = accel;
         let mut phases = ArrayVec::new();

@@ -205,7 +205,7 @@ impl PathFigures {
             duration_s: outline.duration_s(),
             speed_limit_mm_s: limits.speed_mm_s,
             accel_mm_s2: limits.accel_mm_s2,
-            top_speed_mm_s: outline.top_mm_s,
+            top_speed_mm_s: outline.top_speed,
         }
     }
 
