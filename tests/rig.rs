@@ -87,6 +87,8 @@ fn controller() -> Controller {
             ignored_g: Vec::new(),
             ignored_m: Vec::new(),
             block_delete: true,
+            mill_cycles: false,
+            peck_clearance_mm: 1.0,
         },
         planner: Planner {
             rapid: RapidPath::Linear,

@@ -43,6 +43,7 @@ impl Setup {
             reading: Reading {
                 start: start(reading.start.as_ref(), &machine)?,
                 block_delete: reading.block_delete,
+                ..Reading::default()
             },
             certificate: None,
             threads: threads(reading),

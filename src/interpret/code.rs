@@ -18,14 +18,17 @@ pub enum Motion {
     ArcCw,
     /// G3.
     ArcCcw,
+    /// A word that makes several moves, or moves that no word may change:
+    /// canned cycles, threads, probing. Number × 10.
+    Special(u16),
 }
 
 impl Motion {
-    /// The digit behind G; `None` has none to write.
+    /// The digit behind G; `None` where no word may be written.
     #[must_use]
     pub fn digit(self) -> Option<u8> {
         match self {
-            Self::None => None,
+            Self::None | Self::Special(_) => None,
             Self::Rapid => Some(b'0'),
             Self::Linear => Some(b'1'),
             Self::ArcCw => Some(b'2'),
@@ -40,7 +43,9 @@ pub(super) enum GCode {
     Motion(Motion),
     Dwell,
     Plane([usize; 3]),
-    Units { mm_per_unit: f64 },
+    Units {
+        mm_per_unit: f64,
+    },
     Reference,
     CompensationOff,
     ToolLengthOn,
@@ -51,10 +56,14 @@ pub(super) enum GCode {
     Absolute(bool),
     ArcAbsolute(bool),
     SetOffset,
-    ClearOffset { forget: bool },
+    ClearOffset {
+        forget: bool,
+    },
     RestoreOffset,
     FeedMode(super::FeedMode),
     MirrorX,
+    /// G98 (true): canned cycles return to the initial level; G99: to R.
+    Retract(bool),
     Ignored,
 }
 
@@ -62,6 +71,8 @@ impl GCode {
     /// The modal group, as a bit; words of one group exclude each other.
     pub(super) fn group(self) -> u32 {
         1 << match self {
+            // G80 may stand beside the word that takes over.
+            Self::Motion(Motion::None) => 16,
             Self::Motion(_) => 0,
             Self::Plane(_) => 1,
             Self::Absolute(_) => 2,
@@ -79,6 +90,7 @@ impl GCode {
             }
             Self::Ignored => 13,
             Self::MirrorX => 14,
+            Self::Retract(_) => 15,
         }
     }
 }

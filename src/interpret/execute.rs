@@ -8,6 +8,7 @@ use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::position::{Position, Reading};
 use super::report::{Diagnostics, Report};
+use super::special::Special;
 use super::words::Words;
 use crate::machine::{Family, Machine};
 use crate::source::Span;
@@ -27,6 +28,7 @@ pub(super) struct Control<'m> {
     pub(super) modal: Modal,
     pub(super) position: Position,
     pub(super) knobs: KnobState,
+    pub(super) special: Special,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
     block_delete: bool,
@@ -71,6 +73,7 @@ impl<'m> Interpreter<'m> {
             modal: Modal::power_on(machine),
             position: Position::new(reading.start),
             knobs: KnobState::new(machine),
+            special: Special::new(machine, reading),
             loads: 0,
             loads_off: 0,
             block_delete: reading.block_delete,

@@ -7,6 +7,7 @@
 mod arc;
 mod arc_words;
 mod code;
+mod cycle;
 mod execute;
 mod facts;
 mod knob;
@@ -16,9 +17,13 @@ mod modal;
 mod motion;
 mod moves;
 mod position;
+mod probe;
 mod reference;
 mod report;
 mod settings;
+mod special;
+mod thread;
+mod thread_cycle;
 mod words;
 
 pub use code::Motion;

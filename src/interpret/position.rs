@@ -22,6 +22,8 @@ pub struct Reading {
     pub start: Start,
     /// True: blocks that begin with `/` are passed over.
     pub block_delete: bool,
+    /// Moves that repetition may make in a program (`--max-moves`).
+    pub max_repeated_moves: u64,
 }
 
 impl Default for Reading {
@@ -29,6 +31,7 @@ impl Default for Reading {
         Self {
             start: Start::At([0.0; AXES]),
             block_delete: false,
+            max_repeated_moves: 10_000_000,
         }
     }
 }

@@ -54,6 +54,12 @@ pub struct Language {
     pub ignored_m: Vec<u16>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
+    /// Whether G73 to G89 are the canned cycles of a milling control, with G98
+    /// and G99 for the level that they return to.
+    pub mill_cycles: bool,
+    /// How far G73 draws back, and how far above the last depth the rapid of
+    /// G83 ends, mm; not of `Rs274`, which has it fixed.
+    pub peck_clearance_mm: f64,
 }
 
 /// The family of words.

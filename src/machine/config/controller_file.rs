@@ -61,6 +61,12 @@ pub(crate) struct LanguageTable {
     pub(crate) ignored: Option<Vec<At<String>>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
+    /// Whether G73 to G89, G98 and G99 are those of a milling control; default
+    /// false.
+    pub(crate) mill_cycles: Option<bool>,
+    /// How far G73 and G83 stay off the last depth, in mm; default 1. A
+    /// parameter of the control.
+    pub(crate) peck_clearance_mm: Option<Positive>,
 }
 
 /// The family of words.

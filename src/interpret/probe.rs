@@ -1,0 +1,47 @@
+//! G38.2 to G38.5: feeds that end where a probe touches, or lets go
+//! (`LinuxCNC` "G38.n Straight Probe").
+//!
+//! The move is that to the target: nothing is faster or longer. Where it ends
+//! is not known, and with it the place of every axis that moved.
+
+use super::execute::{Control, Run};
+use super::moves::{MoveKind, Step};
+use crate::units::MM_PER_INCH;
+
+/// Shortest way to the target that is taken for a probing move, inches.
+const SHORTEST_INCH: f64 = 0.01;
+
+impl Control<'_> {
+    /// A block under G38.2 to G38.5.
+    pub(super) fn probe(&mut self, run: &mut Run<'_, '_>) {
+        run.facts.fixed = Some("it probes");
+        self.special.active = 0;
+        let mut end = self.position.at;
+        let Some(unknown) = self.targets(run, false, &mut end) else {
+            return;
+        };
+        let before = run.steps.len();
+        self.go(run, MoveKind::Probe, &end, unknown, None);
+        let Some(Step::Move(mv)) = run.steps.get(before) else {
+            return;
+        };
+        let commanded = mv.moving.0 | mv.unknown_start.0;
+        let shortest_mm = SHORTEST_INCH * MM_PER_INCH;
+        if unknown.is_empty() && mv.length_mm < shortest_mm {
+            let whole = run.whole();
+            run.report
+                .error(
+                    "probe-length",
+                    "the probe stands at its target already",
+                    whole,
+                )
+                .help("probing needs a way of 0.254 mm (0.01 inch) at least");
+            return;
+        }
+        self.position.unknown.0 |= commanded;
+        let whole = run.whole();
+        let message = "where a probe touches is not known: the next absolute move of an axis \
+                       that probed counts at its full speed";
+        run.report.note_once("probed", message, whole);
+    }
+}
