@@ -22,6 +22,7 @@ mod reference;
 mod report;
 mod settings;
 mod special;
+mod spline;
 mod thread;
 mod thread_cycle;
 mod words;

@@ -6,6 +6,7 @@ use super::cycle::Held;
 use super::execute::{Control, Run};
 use super::moves::{ActionKind, MoveKind};
 use super::position::Reading;
+use super::spline::Spline;
 use super::words::bit;
 use crate::machine::{AxisSet, AxisValues, Family, Language, Machine};
 use crate::source::Span;
@@ -50,12 +51,13 @@ pub(super) struct Special {
     /// Number × 10 of the cycle whose values are kept; 0 outside a cycle.
     pub(super) active: u16,
     pub(super) held: Held,
+    pub(super) spline: Spline,
     /// G98 (true) or G99.
     pub(super) to_initial: bool,
     pub(super) spindle: Turning,
-    /// An axis that the control believes elsewhere than it stands (G88 of
-    /// `LinuxCNC`), and where: the next move makes up for it.
-    pub(super) left: Option<(usize, f64)>,
+    /// Where the control believes the axes to be, if they stand elsewhere (G88
+    /// of `LinuxCNC`): the next move makes up for it.
+    pub(super) left: Option<AxisValues>,
     /// The motion word before the cycle, which is in force again after G80.
     before: Motion,
     /// Speed of a move in step with the spindle, mm/s.
@@ -70,6 +72,7 @@ impl Special {
         Self {
             active: 0,
             held: Held::default(),
+            spline: Spline::default(),
             // LinuxCNC starts with G99 (as its interpreter shows), Fanuc and
             // Haas with G98.
             to_initial: machine.controller.language.family != Family::Rs274,
@@ -98,6 +101,7 @@ pub(super) fn special_code(number: u16, language: &Language) -> Option<GCode> {
     let cycles = language.mill_cycles && matches!(language.family, Family::Rs274 | Family::Iso);
     match number {
         380..=389 if rs274 && (382..=385).contains(&number) => {}
+        50..=53 if rs274 && cycles => {}
         330 | 331 if rs274 && cycles => {}
         730 | 740 | 760 if cycles => {}
         810..=890 if cycles && number.is_multiple_of(10) => {}
@@ -113,7 +117,10 @@ impl Control<'_> {
     #[inline]
     pub(super) fn enter(&mut self, motion: Motion, groups: u32) -> Option<Motion> {
         match motion {
-            Motion::Special(_) => {
+            Motion::Special(number) => {
+                if self.modal.motion != motion && number != 53 {
+                    self.special.spline.end();
+                }
                 if !matches!(self.modal.motion, Motion::Special(_)) {
                     self.special.before = self.modal.motion;
                 }
@@ -122,6 +129,7 @@ impl Control<'_> {
             Motion::None => self.cancel(groups),
             _ => {
                 self.special.active = 0;
+                self.special.spline.end();
                 Some(motion)
             }
         }
@@ -161,7 +169,12 @@ impl Control<'_> {
     /// A block under a special motion word (number × 10).
     pub(super) fn special(&mut self, number: u16, run: &mut Run<'_, '_>) {
         let iso = self.machine.controller.language.family == Family::Iso;
-        if !(run.words.has_axes() || iso && run.words.unused & bit(b'R') != 0) {
+        let moves = match number {
+            52 | 53 => run.facts.motion_word.is_some() || run.words.has_axes(),
+            _ if iso => run.words.has_axes() || run.words.unused & bit(b'R') != 0,
+            _ => run.words.has_axes(),
+        };
+        if !moves {
             if run.facts.motion_word.is_some() && !iso {
                 let span = run.whole();
                 run.report
@@ -183,6 +196,7 @@ impl Control<'_> {
         }
         let before = run.steps.len();
         match number {
+            50..=53 => self.spline(number, run),
             330 | 331 => self.thread(number, run),
             380..=389 => self.probe(run),
             760 if !iso => self.thread_cycle(run),
@@ -233,28 +247,21 @@ impl Control<'_> {
 
     /// Where the control believes the axes to be.
     pub(super) fn believed(&self) -> AxisValues {
-        let mut at = self.position.at;
-        if let Some((axis, place)) = self.special.left {
-            at[axis] = place;
-        }
-        at
+        self.special.left.unwrap_or(self.position.at)
     }
 
     /// After the stop of G88 the next move starts elsewhere than the control
-    /// believes: followed where it is a rapid, a line or another cycle.
+    /// believes: followed for straight moves and cycles.
     pub(super) fn may_follow_a_stop(&mut self, run: &mut Run<'_, '_>) -> bool {
         let other = run.words.g.iter().any(|(code, ..)| {
             matches!(
                 code,
-                GCode::Reference
-                    | GCode::SetOffset
-                    | GCode::ClearOffset { .. }
-                    | GCode::RestoreOffset
+                GCode::SetOffset | GCode::ClearOffset { .. } | GCode::RestoreOffset
             )
         });
         let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
-        let thread = matches!(self.modal.motion, Motion::Special(330..=389 | 760));
-        if !(other || (arc || thread) && run.words.has_axes()) {
+        let probe = matches!(self.modal.motion, Motion::Special(380..=389));
+        if !(other || (arc || probe) && run.words.has_axes()) {
             return true;
         }
         let whole = run.whole();

@@ -16,7 +16,7 @@ impl Control<'_> {
     pub(super) fn thread(&mut self, number: u16, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
         self.special.active = 0;
-        let start = self.position.at;
+        let start = self.believed();
         let mut end = start;
         let Some(unknown) = self.targets(run, false, &mut end) else {
             return;
@@ -57,11 +57,14 @@ impl Control<'_> {
                     .help("write how much faster it goes out");
                 return;
             }
+            // Back to where it stands, wherever the control believes it.
+            let stood = self.position.at;
             self.part(run, MoveKind::Tap, &end);
             let turning = self.special.spindle;
             self.spin(run, turning.reversed());
             self.special.speed_mm_s = Some(speed_mm_s * faster);
-            self.part(run, MoveKind::Tap, &start);
+            self.part(run, MoveKind::Tap, &stood);
+            self.special.left = (stood != start).then_some(start);
             self.spin(run, turning);
         }
         self.special.speed_mm_s = None;

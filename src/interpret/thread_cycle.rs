@@ -42,7 +42,7 @@ impl Control<'_> {
     pub(super) fn thread_cycle(&mut self, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
         self.special.active = 0;
-        let start = self.position.at;
+        let start = self.believed();
         let mut end = start;
         let whole = run.whole();
         if [X, Z]
@@ -135,7 +135,7 @@ impl Control<'_> {
         }
         let speed_mm_s = self.thread_speed(pitch, b'P', run)?;
         let tapers = taper > 0.0 && (1.0..=3.0).contains(&ends);
-        let forward = if start[Z] > end_z_mm { -1.0 } else { 1.0 };
+        let forward = if start[Z] >= end_z_mm { -1.0 } else { 1.0 };
         Some(Thread {
             side: peak.signum(),
             peak: peak.abs(),
@@ -166,7 +166,7 @@ impl Control<'_> {
         let run_out = thread.forward * along(thread.taper);
         let first_z = thread.start[Z] + along(thread.flank * depth);
         let last_z = thread.end_z_mm - along(thread.flank * (thread.full_depth - depth));
-        let mut at = self.position.at;
+        let mut at = thread.start;
         let mut to = |control: &mut Self, run: &mut Run<'_, '_>, kind, x, z| {
             at[X] = x;
             at[Z] = z;

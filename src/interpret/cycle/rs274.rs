@@ -44,7 +44,12 @@ impl Control<'_> {
         let Some(unknown) = self.targets(run, false, &mut place) else {
             return;
         };
-        let Some(repeats) = self.repeats(b'L', run) else {
+        // The interpreter takes no L with G74.
+        let repeats = match number {
+            740 => Some(1),
+            _ => self.repeats(b'L', run),
+        };
+        let Some(repeats) = repeats else {
             return;
         };
         if repeats == 0 {
@@ -186,11 +191,17 @@ impl Control<'_> {
             self.cycle_value(b'R', "R is below the bottom of the hole", run);
             return None;
         }
+        let mut r_mm = self.level(normal, r);
+        let initial_mm = self.initial_level(normal, !series);
+        if (r_mm - initial_mm).abs() < 1e-9 {
+            // The same but for rounding.
+            r_mm = initial_mm;
+        }
         let mut hole = Hole {
             number,
             r,
             bottom,
-            r_mm: self.level(normal, r),
+            r_mm,
             clear_mm: 0.0,
             dwell_s: 0.0,
             peck: 0.0,
@@ -270,7 +281,7 @@ impl Control<'_> {
                     let depth_mm = self.level(normal, depth);
                     to(self, run, Feed, depth_mm);
                     if hole.number == 830 {
-                        to(self, run, Rapid, hole.clear_mm);
+                        to(self, run, Rapid, hole.r_mm);
                     }
                     let back_mm = self.level(normal, depth + off);
                     to(self, run, Rapid, back_mm);
@@ -285,11 +296,17 @@ impl Control<'_> {
                 to(self, run, Rapid, hole.clear_mm);
             }
             740 | 840 => {
-                to(self, run, Tap, bottom_mm);
+                let into = self.rs274_tap_end(place, bottom_mm, run);
+                self.part(run, Tap, &into);
                 self.spin(run, Turning::Stopped);
                 self.spin(run, turning.reversed());
                 self.dwell(run, hole.dwell_s);
-                to(self, run, Tap, hole.clear_mm);
+                let out = self.rs274_tap_end(place, hole.clear_mm, run);
+                self.part(run, Tap, &out);
+                place[normal] = hole.clear_mm;
+                if *place != out {
+                    self.special.left = Some(*place);
+                }
                 self.spin(run, Turning::Stopped);
                 self.spin(run, turning);
             }
@@ -315,7 +332,8 @@ impl Control<'_> {
                         run.act(ActionKind::Stop, 0.0);
                         self.spin(run, turning);
                         // The operator retracts; the control counts on it.
-                        self.special.left = Some((normal, hole.clear_mm));
+                        place[normal] = hole.clear_mm;
+                        self.special.left = Some(*place);
                     }
                     890 => to(self, run, Feed, hole.clear_mm),
                     _ => to(self, run, Rapid, hole.clear_mm),
@@ -323,6 +341,38 @@ impl Control<'_> {
             }
         }
         self.within_limits(run)
+    }
+
+    /// Where a tap goes for a level of the drilling axis. Outside of G17 the
+    /// interpreter 2.9 takes the coordinates for those of other axes; its own
+    /// tests (`g84/g19`) have it so.
+    fn rs274_tap_end(
+        &self,
+        place: &AxisValues,
+        level_mm: f64,
+        run: &mut Run<'_, '_>,
+    ) -> AxisValues {
+        let [first, second, normal] = self.modal.plane;
+        let mut end = *place;
+        end[normal] = level_mm;
+        if normal == 2 {
+            return end;
+        }
+        let whole = run.whole();
+        let message = "LinuxCNC 2.9 takes the axes of G74 and G84 for others in G18 and G19: \
+                       the moves are what it makes of them";
+        run.report.note_once("mixed-axes", message, whole);
+        let number = |axis: usize| end[axis] - self.position.absolute(axis, 0.0);
+        let [aa, bb, cc] = [number(first), number(second), number(normal)];
+        let mixed = if normal == 0 {
+            [bb, cc, aa]
+        } else {
+            [cc, aa, bb]
+        };
+        for (axis, value) in mixed.into_iter().enumerate() {
+            end[axis] = self.position.absolute(axis, value);
+        }
+        end
     }
 
     /// G87: through the hole beside its axis, then a counterbore from below.
