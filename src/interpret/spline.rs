@@ -52,6 +52,9 @@ impl Control<'_> {
         if !self.spline_permits(run) {
             return;
         }
+        if number == 50 && run.facts.motion_word.is_none() {
+            return self.spline_fault("G5 has to stand in every block", run);
+        }
         match number {
             50 => self.cubic(run),
             51 => self.quadratic(run),
@@ -235,20 +238,20 @@ impl Control<'_> {
         let mut end: AxisValues = self.believed();
         let path_mode = self.modal.path_mode;
         self.modal.path_mode = PathMode::LookAhead;
-        let lines = points.len() * LINES_FOR_A_POINT;
-        for line in 1..=lines {
-            if !self.within_limits(run) {
-                break;
-            }
-            let place = if line == lines {
-                last.place
-            } else {
-                point_at(points, order, line as f64 / lines as f64)
-            };
+        let spans = (points.len() + 1 - order) as f64;
+        let step = spans / (points.len() * LINES_FOR_A_POINT) as f64;
+        // The sum decides, with its rounding, whether one line more is made.
+        let mut u = step;
+        while u < spans && self.within_limits(run) {
+            let place = point_at(points, order, u);
             end[0] = place[0];
             end[1] = place[1];
             self.part(run, MoveKind::Feed, &end);
+            u += step;
         }
+        end[0] = last.place[0];
+        end[1] = last.place[1];
+        self.part(run, MoveKind::Feed, &end);
         self.modal.path_mode = path_mode;
     }
 }
@@ -257,12 +260,11 @@ fn unweighted(place: [f64; 2]) -> ControlPoint {
     ControlPoint { place, weight: 1.0 }
 }
 
-/// The point of a NURBS at a share of its parameter: de Boor's algorithm over
+/// The point of a NURBS at the parameter `u`: de Boor's algorithm over
 /// the knots 0 … 0, 1, 2 … with the first and last repeated `order` times.
-fn point_at(points: &[ControlPoint], order: usize, share: f64) -> [f64; 2] {
+fn point_at(points: &[ControlPoint], order: usize, u: f64) -> [f64; 2] {
     let count = points.len();
     let spans = count + 1 - order.min(count);
-    let u = share * spans as f64;
     let span = (u as usize).min(spans - 1);
     let knot =
         |index: usize| -> f64 { (index as f64 - (order as f64 - 1.0)).clamp(0.0, spans as f64) };
