@@ -3,11 +3,12 @@
 //! agree with its interpreter.
 
 use std::fmt::Write as _;
+use std::io::Cursor;
 
 use gwatt::diagnostic::Severity;
 use gwatt::limit::{Law, Strategy};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Failure, LimitOptions, Options, Reading};
+use gwatt::pipeline::{self, Failure, LimitOptions, Limits, Options, Reading};
 use insta::assert_snapshot;
 
 /// A machine with X Y Z and a rotary axis A; 10 kg on each linear axis.
@@ -40,7 +41,7 @@ fn moves_with(controller: &str, program: &str, reading: Reading) -> String {
         reading,
         ..Options::default()
     };
-    let result = pipeline::moves(program.as_bytes(), &machine, &options, &mut |mv, _| {
+    let result = pipeline::moves(Cursor::new(program), &machine, &options, &mut |mv, _| {
         let round = |value: f64| (value * 1e4).round() / 1e4 + 0.0;
         let [x, y, z] = [0, 1, 2].map(|axis| round(mv.end[axis]));
         let _ = write!(out, "{} {} {x} {y} {z}", mv.line, mv.kind.name());
@@ -538,7 +539,10 @@ fn each_refusal_once() {
 #[test]
 fn repetition_is_bounded() {
     let reading = Reading {
-        max_repeated_moves: 10,
+        limits: Limits {
+            repeated_moves: 10,
+            ..Limits::default()
+        },
         ..Reading::default()
     };
     let program = format!("{SPINDLE}G99 G81 X1 Z-1 R1 L3\nX2 L3\n");
@@ -560,7 +564,7 @@ fn limit_leaves_cycles_alone() {
         b"G90 S500 M3\nG0 X300 Y300\nZ5\nG98 G81 X310 Z-1 R4 F100\nX320\nG80\nX0 Y0\nM30\n";
     let mut out = Vec::new();
     let summary = pipeline::limit(
-        &program[..],
+        Cursor::new(&program[..]),
         &machine,
         &Options::default(),
         HOW,
@@ -589,7 +593,7 @@ fn limit_says_why_a_thread_stays() {
     let program = b"G61.1 G90 S3000 M3\nG33 Z50 K1\nM2\n";
     let mut out = Vec::new();
     let summary = pipeline::limit(
-        &program[..],
+        Cursor::new(&program[..]),
         &machine,
         &Options::default(),
         HOW,

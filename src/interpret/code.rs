@@ -64,6 +64,8 @@ pub(super) enum GCode {
     MirrorX,
     /// G98 (true): canned cycles return to the initial level; G99: to R.
     Retract(bool),
+    /// G65, G66 and G67.
+    MacroCall,
     Ignored,
 }
 
@@ -90,7 +92,8 @@ impl GCode {
             }
             Self::Ignored => 13,
             Self::MirrorX => 14,
-            Self::Retract(_) => 15,
+            Self::Retract(_) => 17,
+            Self::MacroCall => 15,
         }
     }
 }
@@ -113,6 +116,7 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
+        (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
         _ => common_g_code(number),

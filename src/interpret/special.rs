@@ -81,7 +81,7 @@ impl Special {
             before: Motion::None,
             speed_mm_s: None,
             repeated: 0,
-            most: reading.max_repeated_moves,
+            most: reading.limits.repeated_moves,
         }
     }
 
