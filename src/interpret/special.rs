@@ -100,9 +100,8 @@ pub(super) fn special_code(number: u16, language: &Language) -> Option<GCode> {
     let rs274 = language.family == Family::Rs274;
     let cycles = language.mill_cycles && matches!(language.family, Family::Rs274 | Family::Iso);
     match number {
-        380..=389 if rs274 && (382..=385).contains(&number) => {}
-        50..=53 if rs274 && cycles => {}
-        330 | 331 if rs274 && cycles => {}
+        382..=385 if rs274 => {}
+        50..=53 | 330 | 331 if rs274 && cycles => {}
         730 | 740 | 760 if cycles => {}
         810..=890 if cycles && number.is_multiple_of(10) => {}
         980 | 990 if cycles => return Some(GCode::Retract(number == 980)),
@@ -214,12 +213,6 @@ impl Control<'_> {
         }
     }
 
-    /// True while the block may go on; at its limit of moves it is reported by
-    /// [`Control::special`].
-    pub(super) fn within_limits(&self, run: &Run<'_, '_>) -> bool {
-        run.steps.len() <= MOVES_OF_A_BLOCK
-    }
-
     /// Counts the moves of a repetition, made since there were `before` steps;
     /// false when there are too many.
     pub(super) fn count_repeated(&mut self, before: usize, run: &mut Run<'_, '_>) -> bool {
@@ -238,11 +231,6 @@ impl Control<'_> {
     /// A part of a special motion that moves to `end`.
     pub(super) fn part(&mut self, run: &mut Run<'_, '_>, kind: MoveKind, end: &AxisValues) {
         self.go(run, kind, end, AxisSet::default(), None);
-    }
-
-    /// The spindle, as part of a cycle.
-    pub(super) fn spin(&mut self, run: &mut Run<'_, '_>, turning: Turning) {
-        run.act(ActionKind::Spindle, turning.m_word());
     }
 
     /// Where the control believes the axes to be.
@@ -273,5 +261,18 @@ impl Control<'_> {
             )
             .help("move the axes by G0 or G1 first");
         false
+    }
+}
+
+impl Run<'_, '_> {
+    /// True while the block may go on; at its limit of moves it is reported by
+    /// [`Control::special`].
+    pub(super) fn within_limits(&self) -> bool {
+        self.steps.len() <= MOVES_OF_A_BLOCK
+    }
+
+    /// The spindle, as part of a cycle.
+    pub(super) fn spin(&mut self, turning: Turning) {
+        self.act(ActionKind::Spindle, turning.m_word());
     }
 }

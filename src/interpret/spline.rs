@@ -53,7 +53,7 @@ impl Control<'_> {
             return;
         }
         if number == 50 && run.facts.motion_word.is_none() {
-            return self.spline_fault("G5 has to stand in every block", run);
+            return run.spline_fault("G5 has to stand in every block");
         }
         match number {
             50 => self.cubic(run),
@@ -89,18 +89,11 @@ impl Control<'_> {
         ];
         match faults.into_iter().find(|(found, _)| *found) {
             Some((_, message)) => {
-                self.spline_fault(message, run);
+                run.spline_fault(message);
                 false
             }
             None => self.feed_speed(run, 1.0, true).is_some(),
         }
-    }
-
-    fn spline_fault(&self, message: &str, run: &mut Run<'_, '_>) {
-        let whole = run.whole();
-        run.report
-            .error("spline", message.to_owned(), whole)
-            .help("see G5 and G5.2 in the manual of LinuxCNC");
     }
 
     /// Two words as a vector in mm; `None` with a message if only one is there.
@@ -110,7 +103,7 @@ impl Control<'_> {
             [None, None] => Ok(None),
             _ => {
                 let [a, b] = letters.map(char::from);
-                self.spline_fault(&format!("a spline with only one of {a} and {b}"), run);
+                run.spline_fault(&format!("a spline with only one of {a} and {b}"));
                 Err(())
             }
         }
@@ -125,10 +118,8 @@ impl Control<'_> {
             return;
         };
         let (Some(first), Some(last)) = (first.or(self.special.spline.first), last) else {
-            return self.spline_fault(
-                "G5 needs P and Q, and in the first block of a series I and J",
-                run,
-            );
+            return run
+                .spline_fault("G5 needs P and Q, and in the first block of a series I and J");
         };
         let start = self.believed();
         let mut end = start;
@@ -151,7 +142,7 @@ impl Control<'_> {
             return;
         };
         let Some(first) = first else {
-            return self.spline_fault("G5.1 needs I and J", run);
+            return run.spline_fault("G5.1 needs I and J");
         };
         let start = self.believed();
         let mut end = start;
@@ -196,7 +187,7 @@ impl Control<'_> {
             ),
         ];
         if let Some((_, message)) = faults.into_iter().find(|(found, _)| *found) {
-            return self.spline_fault(message, run);
+            return run.spline_fault(message);
         }
         let mut end = self.believed();
         if begins {
@@ -225,7 +216,7 @@ impl Control<'_> {
         let order = self.special.spline.order;
         self.modal.motion = super::code::Motion::None;
         if points.is_empty() || points.len() < order {
-            return self.spline_fault("G5.3 before enough points by G5.2", run);
+            return run.spline_fault("G5.3 before enough points by G5.2");
         }
         self.curve(&points, order, run);
     }
@@ -242,7 +233,7 @@ impl Control<'_> {
         let step = spans / (points.len() * LINES_FOR_A_POINT) as f64;
         // The sum decides, with its rounding, whether one line more is made.
         let mut u = step;
-        while u < spans && self.within_limits(run) {
+        while u < spans && run.within_limits() {
             let place = point_at(points, order, u);
             end[0] = place[0];
             end[1] = place[1];
@@ -253,6 +244,15 @@ impl Control<'_> {
         end[1] = last.place[1];
         self.part(run, MoveKind::Feed, &end);
         self.modal.path_mode = path_mode;
+    }
+}
+
+impl Run<'_, '_> {
+    fn spline_fault(&mut self, message: &str) {
+        let whole = self.whole();
+        self.report
+            .error("spline", message.to_owned(), whole)
+            .help("see G5 and G5.2 in the manual of LinuxCNC");
     }
 }
 

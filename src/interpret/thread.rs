@@ -46,7 +46,7 @@ impl Control<'_> {
         } else {
             let faster = run.words.take(b'I').filter(|value| *value != 0.0);
             let faster = faster.unwrap_or(1.0);
-            if faster < 0.0 || faster > 1e3 {
+            if !(0.0..=1e3).contains(&faster) {
                 let span = run.words.span(b'I', run.block);
                 run.report
                     .error(
@@ -61,11 +61,11 @@ impl Control<'_> {
             let stood = self.position.at;
             self.part(run, MoveKind::Tap, &end);
             let turning = self.special.spindle;
-            self.spin(run, turning.reversed());
+            run.spin(turning.reversed());
             self.special.speed_mm_s = Some(speed_mm_s * faster);
             self.part(run, MoveKind::Tap, &stood);
             self.special.left = (stood != start).then_some(start);
-            self.spin(run, turning);
+            run.spin(turning);
         }
         self.special.speed_mm_s = None;
     }

@@ -69,7 +69,7 @@ impl Control<'_> {
         let mut passes = 1.0;
         let mut depth = thread.first_depth;
         while depth < thread.full_depth {
-            if !self.within_limits(run) {
+            if !run.within_limits() {
                 return;
             }
             self.thread_pass(&thread, depth, run);
@@ -78,7 +78,7 @@ impl Control<'_> {
         }
         for repeat in 0..=thread.spring_passes {
             let before = run.steps.len();
-            if !self.within_limits(run) {
+            if !run.within_limits() {
                 return;
             }
             self.thread_pass(&thread, thread.full_depth, run);

@@ -90,7 +90,7 @@ impl Control<'_> {
             } else if !self.iso_hole(&hole, &mut place, run) {
                 return;
             }
-            if !self.within_limits(run) || repeat > 0 && !self.count_repeated(before, run) {
+            if !run.within_limits() || repeat > 0 && !self.count_repeated(before, run) {
                 return;
             }
         }
@@ -99,13 +99,13 @@ impl Control<'_> {
     /// The number of repeats: K on a Fanuc, L on a Haas and on older controls.
     fn iso_repeats(&self, number: u16, run: &mut Run<'_, '_>) -> Option<u64> {
         if run.words.has(b'L') {
-            return self.repeats(b'L', run);
+            return run.repeats(b'L');
         }
         // K may be a shift outside of XY.
         if matches!(number, 760 | 870) && self.modal.plane[2] != 2 {
             return Some(1);
         }
-        self.repeats(b'K', run)
+        run.repeats(b'K')
     }
 
     /// Reads the words of a cycle.
@@ -121,7 +121,7 @@ impl Control<'_> {
             self.special.held.r = Some(base_mm + value * unit);
         }
         let Some(r) = self.special.held.r else {
-            self.cycle_needs("R", number, run);
+            run.cycle_needs("R", number);
             return None;
         };
         if let Some(value) = run.words.take(letter) {
@@ -129,14 +129,14 @@ impl Control<'_> {
             self.special.held.bottom = Some(base_mm + value * unit);
         }
         let Some(bottom) = self.special.held.bottom else {
-            self.cycle_needs((letter as char).encode_utf8(&mut [0; 4]), number, run);
+            run.cycle_needs((letter as char).encode_utf8(&mut [0; 4]), number);
             return None;
         };
         if number != 870 && bottom > r {
-            self.cycle_value(b'R', "R is below the bottom of the hole", run);
+            run.cycle_value(b'R', "R is below the bottom of the hole");
             return None;
         }
-        let dwell_s = self.iso_dwell(number, run)?;
+        let dwell_s = self.iso_dwell(number, run).ok()?;
         let mut hole = Hole {
             number,
             r_mm: self.position.absolute(normal, r),
@@ -149,7 +149,7 @@ impl Control<'_> {
         if matches!(number, 730 | 830) {
             self.special.held.q = run.words.take(b'Q').or(self.special.held.q);
             let Some(q) = self.special.held.q.filter(|q| *q != 0.0) else {
-                self.cycle_needs("Q", number, run);
+                run.cycle_needs("Q", number);
                 return None;
             };
             hole.peck_mm = q.abs() * unit;
@@ -172,15 +172,15 @@ impl Control<'_> {
             hole.shift_mm = self.iso_shift([first, second], number, run)?;
         }
         if !(hole.r_mm.abs() < 1e9 && hole.bottom_mm.abs() < 1e9) {
-            self.cycle_value(letter, "the position is beyond any machine", run);
+            run.cycle_value(letter, "the position is beyond any machine");
             return None;
         }
         Some(hole)
     }
 
-    /// The dwell that counts for this cycle, `Some(None)` without one. A number
-    /// without a decimal point means milliseconds.
-    fn iso_dwell(&mut self, number: u16, run: &mut Run<'_, '_>) -> Option<Option<f64>> {
+    /// The dwell that counts for this cycle, if any; an error where it makes no
+    /// sense. A number without a decimal point means milliseconds.
+    fn iso_dwell(&mut self, number: u16, run: &mut Run<'_, '_>) -> Result<Option<f64>, ()> {
         let word = run.words.word(b'P', run.block);
         let own = run.words.take(b'P');
         if let (Some(value), Some(word)) = (own, word) {
@@ -190,12 +190,12 @@ impl Control<'_> {
                 value * MILLISECOND_S
             };
             if !(0.0..=1e9).contains(&seconds) {
-                self.cycle_value(b'P', "the dwell is negative or beyond reason", run);
-                return None;
+                run.cycle_value(b'P', "the dwell is negative or beyond reason");
+                return Err(());
             }
             self.special.held.dwell_s = Some(seconds);
         }
-        Some(match number {
+        Ok(match number {
             740 | 760 | 820 | 840 | 880 | 890 => self.special.held.dwell_s,
             // Some controls wait here too, where P stands in the block.
             730 | 830 | 860 | 870 => self.special.held.dwell_s.filter(|_| own.is_some()),
@@ -213,7 +213,7 @@ impl Control<'_> {
             return Some(given.map(|value| value.unwrap_or(0.0) * unit));
         }
         let Some(q) = held.q else {
-            self.cycle_needs("Q, or I and J", number, run);
+            run.cycle_needs("Q, or I and J", number);
             return None;
         };
         let letter = ALL_AXES[plane[0]].letter() as char;
@@ -246,7 +246,7 @@ impl Control<'_> {
                     if depth_mm <= hole.bottom_mm + 1e-9 {
                         break;
                     }
-                    if !self.within_limits(run) {
+                    if !run.within_limits() {
                         return false;
                     }
                     to(self, run, Feed, depth_mm);
@@ -262,16 +262,16 @@ impl Control<'_> {
             }
             740 | 840 => {
                 to(self, run, Tap, hole.bottom_mm);
-                self.spin(run, Turning::Stopped);
+                run.spin(Turning::Stopped);
                 self.iso_wait(hole, run);
                 let into = if hole.number == 840 {
                     Turning::Clockwise
                 } else {
                     Turning::CounterClockwise
                 };
-                self.spin(run, into.reversed());
+                run.spin(into.reversed());
                 to(self, run, Tap, hole.r_mm);
-                self.spin(run, into);
+                run.spin(into);
                 if hole.clear_mm != hole.r_mm {
                     to(self, run, Rapid, hole.clear_mm);
                 }
@@ -287,7 +287,7 @@ impl Control<'_> {
             760 => {
                 to(self, run, Feed, hole.bottom_mm);
                 self.iso_wait(hole, run);
-                self.spin(run, Turning::Stopped);
+                run.spin(Turning::Stopped);
                 let [first, second, _] = self.modal.plane;
                 let mut beside = *place;
                 beside[first] += hole.shift_mm[0];
@@ -297,14 +297,14 @@ impl Control<'_> {
                 self.part(run, Rapid, &beside);
                 place[normal] = hole.clear_mm;
                 self.part(run, Rapid, place);
-                self.spin(run, turning);
+                run.spin(turning);
             }
             880 => {
                 to(self, run, Feed, hole.bottom_mm);
                 self.iso_wait(hole, run);
-                self.spin(run, Turning::Stopped);
+                run.spin(Turning::Stopped);
                 run.act(ActionKind::Stop, 0.0);
-                self.spin(run, turning);
+                run.spin(turning);
                 // The operator has retracted the tool to somewhere.
                 self.position.unknown.insert(normal);
                 place[normal] = hole.clear_mm;
@@ -314,11 +314,11 @@ impl Control<'_> {
                 to(self, run, Feed, hole.bottom_mm);
                 self.iso_wait(hole, run);
                 if number == 860 {
-                    self.spin(run, Turning::Stopped);
+                    run.spin(Turning::Stopped);
                 }
                 to(self, run, Rapid, hole.clear_mm);
                 if number == 860 {
-                    self.spin(run, turning);
+                    run.spin(turning);
                 }
             }
         }
@@ -341,24 +341,24 @@ impl Control<'_> {
         let mut beside = *place;
         beside[first] += hole.shift_mm[0];
         beside[second] += hole.shift_mm[1];
-        self.spin(run, Turning::Stopped);
+        run.spin(Turning::Stopped);
         self.part(run, Rapid, &beside);
         beside[normal] = hole.r_mm;
         self.part(run, Rapid, &beside);
         center[normal] = hole.r_mm;
         self.part(run, Rapid, &center);
-        self.spin(run, turning);
+        run.spin(turning);
         center[normal] = hole.bottom_mm;
         self.part(run, Feed, &center);
         self.iso_wait(hole, run);
-        self.spin(run, Turning::Stopped);
+        run.spin(Turning::Stopped);
         beside[normal] = hole.bottom_mm;
         self.part(run, Rapid, &beside);
         beside[normal] = hole.clear_mm;
         self.part(run, Rapid, &beside);
         center[normal] = hole.clear_mm;
         self.part(run, Rapid, &center);
-        self.spin(run, turning);
+        run.spin(turning);
     }
 
     fn iso_wait(&self, hole: &Hole, run: &mut Run<'_, '_>) {

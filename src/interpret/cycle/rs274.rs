@@ -47,13 +47,13 @@ impl Control<'_> {
         // The interpreter takes no L with G74.
         let repeats = match number {
             740 => Some(1),
-            _ => self.repeats(b'L', run),
+            _ => run.repeats(b'L'),
         };
         let Some(repeats) = repeats else {
             return;
         };
         if repeats == 0 {
-            return self.cycle_value(b'L', "a canned cycle cannot be repeated 0 times", run);
+            return run.cycle_value(b'L', "a canned cycle cannot be repeated 0 times");
         }
         // A feed that is missing is reported once.
         if self.feed_speed(run, 1.0, true).is_none() {
@@ -170,11 +170,11 @@ impl Control<'_> {
         let depth = run.words.take(letter).or(held.bottom.filter(|_| same));
         let level = run.words.take(b'R').or(held.r.filter(|_| same));
         let Some(level) = level else {
-            self.cycle_needs("R", number, run);
+            run.cycle_needs("R", number);
             return None;
         };
         let Some(depth) = depth else {
-            self.cycle_needs((letter as char).encode_utf8(&mut [0; 4]), number, run);
+            run.cycle_needs((letter as char).encode_utf8(&mut [0; 4]), number);
             return None;
         };
         self.special.held.r = Some(level);
@@ -188,7 +188,7 @@ impl Control<'_> {
             bottom += r;
         }
         if r < bottom {
-            self.cycle_value(b'R', "R is below the bottom of the hole", run);
+            run.cycle_value(b'R', "R is below the bottom of the hole");
             return None;
         }
         let mut r_mm = self.level(normal, r);
@@ -211,11 +211,11 @@ impl Control<'_> {
         match number {
             730 | 830 => {
                 let Some(peck) = run.words.take(b'Q').or(held.q.filter(|_| same)) else {
-                    self.cycle_needs("Q", number, run);
+                    run.cycle_needs("Q", number);
                     return None;
                 };
                 if peck <= 0.0 {
-                    self.cycle_value(b'Q', "Q must be greater than 0", run);
+                    run.cycle_value(b'Q', "Q must be greater than 0");
                     return None;
                 }
                 self.special.held.q = Some(peck);
@@ -228,11 +228,11 @@ impl Control<'_> {
                     .take(b'P')
                     .or(held.dwell_s.filter(|_| same || tap));
                 let Some(dwell_s) = dwell.or(tap.then_some(0.0)) else {
-                    self.cycle_needs("P", number, run);
+                    run.cycle_needs("P", number);
                     return None;
                 };
                 if !(0.0..=1e9).contains(&dwell_s) {
-                    self.cycle_value(b'P', "the dwell is negative or beyond reason", run);
+                    run.cycle_value(b'P', "the dwell is negative or beyond reason");
                     return None;
                 }
                 self.special.held.dwell_s = Some(dwell_s);
@@ -243,7 +243,7 @@ impl Control<'_> {
                 for (index, letter) in [(0, b'I'), (1, b'J'), (2, b'K')] {
                     let word = run.words.take(letter);
                     let Some(value) = word.or(held.ijk[index].filter(|_| same)) else {
-                        self.cycle_needs("I, J and K", number, run);
+                        run.cycle_needs("I, J and K", number);
                         return None;
                     };
                     self.special.held.ijk[index] = Some(value);
@@ -275,7 +275,7 @@ impl Control<'_> {
                 let mut depth = hole.r - hole.peck;
                 // In program units, so that it rounds as the control does.
                 while depth > hole.bottom {
-                    if !self.within_limits(run) {
+                    if !run.within_limits() {
                         return false;
                     }
                     let depth_mm = self.level(normal, depth);
@@ -287,7 +287,7 @@ impl Control<'_> {
                     to(self, run, Rapid, back_mm);
                     let next = depth - hole.peck;
                     if next >= depth {
-                        self.cycle_value(b'Q', "Q is too small for this depth", run);
+                        run.cycle_value(b'Q', "Q is too small for this depth");
                         return false;
                     }
                     depth = next;
@@ -298,8 +298,8 @@ impl Control<'_> {
             740 | 840 => {
                 let into = self.rs274_tap_end(place, bottom_mm, run);
                 self.part(run, Tap, &into);
-                self.spin(run, Turning::Stopped);
-                self.spin(run, turning.reversed());
+                run.spin(Turning::Stopped);
+                run.spin(turning.reversed());
                 self.dwell(run, hole.dwell_s);
                 let out = self.rs274_tap_end(place, hole.clear_mm, run);
                 self.part(run, Tap, &out);
@@ -307,8 +307,8 @@ impl Control<'_> {
                 if *place != out {
                     self.special.left = Some(*place);
                 }
-                self.spin(run, Turning::Stopped);
-                self.spin(run, turning);
+                run.spin(Turning::Stopped);
+                run.spin(turning);
             }
             850 => {
                 to(self, run, Feed, bottom_mm);
@@ -323,14 +323,14 @@ impl Control<'_> {
                 }
                 match hole.number {
                     860 => {
-                        self.spin(run, Turning::Stopped);
+                        run.spin(Turning::Stopped);
                         to(self, run, Rapid, hole.clear_mm);
-                        self.spin(run, turning);
+                        run.spin(turning);
                     }
                     880 => {
-                        self.spin(run, Turning::Stopped);
+                        run.spin(Turning::Stopped);
                         run.act(ActionKind::Stop, 0.0);
-                        self.spin(run, turning);
+                        run.spin(turning);
                         // The operator retracts; the control counts on it.
                         place[normal] = hole.clear_mm;
                         self.special.left = Some(*place);
@@ -340,7 +340,7 @@ impl Control<'_> {
                 }
             }
         }
-        self.within_limits(run)
+        run.within_limits()
     }
 
     /// Where a tap goes for a level of the drilling axis. Outside of G17 the
@@ -386,22 +386,22 @@ impl Control<'_> {
         beside[first] += hole.shift_mm[0];
         beside[second] += hole.shift_mm[1];
         self.part(run, Rapid, &beside);
-        self.spin(run, Turning::Stopped);
+        run.spin(Turning::Stopped);
         beside[normal] = bottom_mm;
         self.part(run, Rapid, &beside);
         place[normal] = bottom_mm;
         self.part(run, Rapid, place);
-        self.spin(run, turning);
+        run.spin(turning);
         place[normal] = middle_mm;
         self.part(run, Feed, place);
         place[normal] = bottom_mm;
         self.part(run, Feed, place);
-        self.spin(run, Turning::Stopped);
+        run.spin(Turning::Stopped);
         self.part(run, Rapid, &beside);
         beside[normal] = hole.clear_mm;
         self.part(run, Rapid, &beside);
         place[normal] = hole.clear_mm;
         self.part(run, Rapid, place);
-        self.spin(run, turning);
+        run.spin(turning);
     }
 }

@@ -35,15 +35,6 @@ impl Control<'_> {
         true
     }
 
-    /// Reports a word that a cycle needs.
-    pub(super) fn cycle_needs(&self, what: &str, number: u16, run: &mut Run<'_, '_>) {
-        let whole = run.whole();
-        let message = format!("G{} without {what}", number / 10);
-        run.report
-            .error("cycle-word", message, whole)
-            .help(format!("write {what} in the first block of the cycle"));
-    }
-
     /// Machine coordinate of a level in program units along an axis.
     pub(super) fn level(&self, axis: usize, value: f64) -> f64 {
         self.position.absolute(axis, value * self.modal.mm_per_unit)
@@ -69,17 +60,28 @@ impl Control<'_> {
         let number = (initial.at_mm - initial.offset_mm) / initial.mm_per_unit;
         self.level(axis, number)
     }
+}
+
+impl Run<'_, '_> {
+    /// Reports a word that a cycle needs.
+    pub(super) fn cycle_needs(&mut self, what: &str, number: u16) {
+        let whole = self.whole();
+        let message = format!("G{} without {what}", number / 10);
+        self.report
+            .error("cycle-word", message, whole)
+            .help(format!("write {what} in the first block of the cycle"));
+    }
 
     /// The number of repeats behind `letter`: whole, and not negative.
-    pub(super) fn repeats(&self, letter: u8, run: &mut Run<'_, '_>) -> Option<u64> {
-        let Some(value) = run.words.take(letter) else {
+    pub(super) fn repeats(&mut self, letter: u8) -> Option<u64> {
+        let Some(value) = self.words.take(letter) else {
             return Some(1);
         };
-        if value >= 0.0 && value <= 1e9 && value.fract() == 0.0 {
+        if (0.0..=1e9).contains(&value) && value.fract() == 0.0 {
             return Some(value as u64);
         }
-        let span = run.words.span(letter, run.block);
-        run.report
+        let span = self.words.span(letter, self.block);
+        self.report
             .error(
                 "cycle-repeats",
                 "the number of repeats is not a whole number from 0 to 1e9",
@@ -90,9 +92,9 @@ impl Control<'_> {
     }
 
     /// Reports a value that makes no sense.
-    pub(super) fn cycle_value(&self, letter: u8, message: &str, run: &mut Run<'_, '_>) {
-        let span = run.words.span(letter, run.block);
-        run.report
+    pub(super) fn cycle_value(&mut self, letter: u8, message: &str) {
+        let span = self.words.span(letter, self.block);
+        self.report
             .error("cycle-word", message.to_owned(), span)
             .help("check the number");
     }
