@@ -396,6 +396,17 @@ fn probing_forgets_the_position() {
     }
 }
 
+/// G31 of Fanuc and Haas is not modal: the rapid comes back.
+#[test]
+fn skipping_is_probing() {
+    assert_snapshot!(moves("iso", "G90 G0 Z10\nG31 Z-5 F60\nX1\nZ10\n"), @r"
+    1 rapid 0 0 10
+    2 probe 0 0 -5 F60
+    3 rapid 1 0 -5
+    4 rapid 1 0 10 from an unknown place
+    ");
+}
+
 /// "G5 Cubic Spline", "G5.1", "G5.2": 15 lines for each control point; the
 /// points are those of the curves' formulas.
 #[test]

@@ -62,6 +62,8 @@ pub(super) enum GCode {
     RestoreOffset,
     FeedMode(super::FeedMode),
     MirrorX,
+    /// G31 of Fanuc and Haas: a feed that a signal ends.
+    Skip,
     /// G98 (true): canned cycles return to the initial level; G99: to R.
     Retract(bool),
     /// G65, G66 and G67.
@@ -87,9 +89,11 @@ impl GCode {
             Self::PathMode => 9,
             Self::Dwell => 10,
             Self::MachineCoordinates => 11,
-            Self::Reference | Self::SetOffset | Self::ClearOffset { .. } | Self::RestoreOffset => {
-                12
-            }
+            Self::Reference
+            | Self::Skip
+            | Self::SetOffset
+            | Self::ClearOffset { .. }
+            | Self::RestoreOffset => 12,
             Self::Ignored => 13,
             Self::MirrorX => 14,
             Self::Retract(_) => 17,

@@ -24,6 +24,7 @@ impl Control<'_> {
             let (code, number, span) = run.words.g[index];
             match code {
                 GCode::Reference => return self.reference(number, span, run),
+                GCode::Skip => return self.skip(run),
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
                 GCode::RestoreOffset => self.position.restore_offset(),

@@ -1,4 +1,4 @@
-//! G38.2 to G38.5: feeds that end where a probe touches, or lets go
+//! G38.2 to G38.5, and G31: feeds that end where a probe touches, or lets go
 //! (`LinuxCNC` "G38.n Straight Probe").
 //!
 //! The move is that to the target: nothing is faster or longer. Where it ends
@@ -38,7 +38,29 @@ impl Control<'_> {
                 .help("probing needs a way of 0.254 mm (0.01 inch) at least");
             return;
         }
-        self.position.unknown.0 |= commanded;
+        self.forget(commanded, run);
+    }
+
+    /// G31, which is not modal (Fanuc "Skip function", Haas "G31 Feed until
+    /// skip").
+    pub(super) fn skip(&mut self, run: &mut Run<'_, '_>) {
+        run.facts.fixed = Some("it probes");
+        run.facts.boundary = true;
+        let mut end = self.position.at;
+        let Some(unknown) = self.targets(run, run.facts.machine_coordinates, &mut end) else {
+            return;
+        };
+        let before = run.steps.len();
+        self.go(run, MoveKind::Probe, &end, unknown, None);
+        if let Some(Step::Move(mv)) = run.steps.get(before) {
+            let commanded = mv.moving.0 | mv.unknown_start.0;
+            self.forget(commanded, run);
+        }
+    }
+
+    /// The place of these axes is not known any more.
+    fn forget(&mut self, axes: u16, run: &mut Run<'_, '_>) {
+        self.position.unknown.0 |= axes;
         let whole = run.whole();
         let message = "where a probe touches is not known: the next absolute move of an axis \
                        that probed counts at its full speed";

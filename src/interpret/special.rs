@@ -104,6 +104,7 @@ pub(super) fn special_code(number: u16, language: &Language) -> Option<GCode> {
         50..=53 | 330 | 331 if rs274 && cycles => {}
         730 | 740 | 760 if cycles => {}
         810..=890 if cycles && number.is_multiple_of(10) => {}
+        310 if cycles && !rs274 => return Some(GCode::Skip),
         980 | 990 if cycles => return Some(GCode::Retract(number == 980)),
         _ => return None,
     }
@@ -235,7 +236,10 @@ impl Control<'_> {
 
     /// Where the control believes the axes to be.
     pub(super) fn believed(&self) -> AxisValues {
-        self.special.left.unwrap_or(self.position.at)
+        match &self.special.left {
+            None => self.position.at,
+            Some(place) => *place,
+        }
     }
 
     /// After the stop of G88 the next move starts elsewhere than the control
