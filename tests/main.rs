@@ -2,6 +2,7 @@
 
 mod layers;
 mod interpret;
+mod cycles;
 mod syntax;
 mod plan;
 mod power;

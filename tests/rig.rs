@@ -91,6 +91,8 @@ fn controller() -> Controller {
             ignored_m: Vec::new(),
             block_delete: true,
             printer: gwatt::machine::Printer::default(),
+            mill_cycles: false,
+            peck_clearance_mm: 1.0,
         },
         planner: Planner {
             rapid: RapidPath::Linear,

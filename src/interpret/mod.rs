@@ -7,6 +7,7 @@
 mod arc;
 mod arc_words;
 mod code;
+mod cycle;
 mod execute;
 mod expression;
 mod facts;
@@ -20,12 +21,17 @@ mod moves;
 mod parameters;
 mod position;
 mod printer;
+mod probe;
 mod reference;
 mod report;
 mod settings;
+mod special;
+mod spline;
 mod statement;
 mod subprogram;
 mod system_parameters;
+mod thread;
+mod thread_cycle;
 mod transfer;
 mod words;
 

@@ -121,7 +121,7 @@ impl Table {
                         knobs: entry.knobs.clone(),
                         rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
                         feeds: entry
-                            .moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
+                            .moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
                         stops,
                     }));
                 }
