@@ -7,7 +7,11 @@ use super::knob::KnobState;
 use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::position::{Position, Reading};
+use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
+use super::spindle_speed::SpindleMode;
+use super::state_words::{Saved, Switches};
+use super::tools::Tools;
 use super::words::Words;
 use crate::machine::{Family, Machine};
 use crate::source::Span;
@@ -29,6 +33,19 @@ pub(super) struct Control<'m> {
     pub(super) knobs: KnobState,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
+    pub(super) tools: Tools,
+    pub(super) programmed: Programmed,
+    /// G16.
+    pub(super) polar: Option<Polar>,
+    pub(super) spindle: SpindleMode,
+    pub(super) switches: Switches,
+    /// What M70 has saved, for each subprogram that is running.
+    pub(super) saved: Vec<Option<Box<Saved>>>,
+    /// Parameters 5061 to 5070, as far as they are known; M66 has asked.
+    pub(super) probe: [Option<f64>; 10],
+    pub(super) input_unknown: bool,
+    /// Targets are more than offsets: see `targets`.
+    pub(super) special: bool,
     block_delete: bool,
     begun: bool,
     ended: bool,
@@ -66,18 +83,28 @@ impl<'m> Interpreter<'m> {
     /// Begins a program: state at power-on.
     #[must_use]
     pub fn new(machine: &'m Machine, reading: &Reading) -> Self {
-        let control = Control {
+        let mut control = Control {
             machine,
             modal: Modal::power_on(machine),
-            position: Position::new(reading.start),
+            position: Position::new(machine, reading),
             knobs: KnobState::new(machine),
             loads: 0,
             loads_off: 0,
+            tools: Tools::new(reading.tools.clone()),
+            programmed: Programmed::default(),
+            polar: None,
+            spindle: SpindleMode::default(),
+            switches: Switches::default(),
+            saved: vec![None],
+            probe: [Some(0.0); 10],
+            input_unknown: false,
+            special: false,
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
             has_program_number: false,
         };
+        control.note_special();
         Self {
             control,
             words: Words::new(),
@@ -241,8 +268,7 @@ impl Control<'_> {
             run.words.take(b'D');
             run.words.take(b'H');
         }
-        while run.words.unused != 0 {
-            let letter = b'A' + run.words.unused.trailing_zeros() as u8;
+        while let Some(letter) = run.words.left_over() {
             run.words.take(letter);
             let span = run.words.span(letter, run.block);
             let message = format!("nothing in this block uses the {} word", letter as char);

@@ -3,8 +3,10 @@
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
 use super::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use super::report::Report;
 use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
+use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Differences of position below this are rounding, not motion (mm, degrees).
@@ -12,7 +14,7 @@ const STANDSTILL_MM: f64 = 1e-9;
 /// Positions beyond this are refused (mm, degrees): no machine is that large.
 pub(super) const POSITION_MAX_MM: f64 = 1e9;
 /// Index of the extruder axis.
-const EXTRUDER: usize = 9;
+pub(super) const EXTRUDER: usize = 9;
 
 impl Control<'_> {
     /// The block's motion, with what else uses axis words.
@@ -24,6 +26,12 @@ impl Control<'_> {
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
                 GCode::RestoreOffset => self.position.restore_offset(),
+                GCode::SaveReference => self.save_reference(number, span, run),
+                GCode::DataSetting => return self.data_setting(span, run),
+                GCode::LocalOffset => return self.local_offset(span, run),
+                GCode::Rotation(on) => self.rotation(on, span, run),
+                GCode::Scaling(on) => self.scaling(on, span, run),
+                GCode::Mirror(on) => self.mirror(on, span, run),
                 _ => {}
             }
         }
@@ -76,24 +84,21 @@ impl Control<'_> {
     /// Reads the axis words into `end`, machine coordinates. Returns the axes
     /// whose start is not known; `None` when something was wrong.
     pub(super) fn targets(
-        &self,
+        &mut self,
         run: &mut Run<'_, '_>,
         machine_coordinates: bool,
         end: &mut AxisValues,
     ) -> Option<AxisSet> {
+        if self.is_special(run) {
+            return self.special_targets(run, machine_coordinates, end);
+        }
         let mut unknown = AxisSet::default();
         let mut fine = true;
         for (axis, value) in run.words.axes() {
             let letter = ALL_AXES[axis].letter();
             let Some(data) = &self.machine.axes[axis] else {
                 let span = run.words.span(letter, run.block);
-                let message = format!("the machine has no {} axis", letter as char);
-                run.report
-                    .error("no-such-axis", message, span)
-                    .help(format!(
-                        "choose a machine with it, or describe it in the machine file: [axes.{}]",
-                        letter as char
-                    ));
+                no_such_axis(letter, span, &mut run.report);
                 fine = false;
                 continue;
             };
@@ -127,6 +132,21 @@ impl Control<'_> {
         }
         run.words.unused &= !AXIS_LETTERS;
         fine.then_some(unknown)
+    }
+
+    /// Whether the machine has an axis; reported where it has not.
+    pub(super) fn axis_exists(&self, axis: usize, run: &mut Run<'_, '_>) -> bool {
+        self.axis_exists_at(axis, ALL_AXES[axis].letter(), run)
+    }
+
+    /// The same for the word of that letter.
+    pub(super) fn axis_exists_at(&self, axis: usize, letter: u8, run: &mut Run<'_, '_>) -> bool {
+        if self.machine.axes[axis].is_some() {
+            return true;
+        }
+        let span = run.words.span(letter, run.block);
+        no_such_axis(letter, span, &mut run.report);
+        false
     }
 
     fn straight(&mut self, run: &mut Run<'_, '_>) {
@@ -168,7 +188,8 @@ impl Control<'_> {
         let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
         let mut feed_mm_s = f64::INFINITY;
         if kind != MoveKind::Rapid {
-            let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else {
+            let Some(speed_mm_s) = self.feed_speed(run, end, arc.as_ref(), length_mm, linear)
+            else {
                 return;
             };
             feed_mm_s = speed_mm_s;
@@ -198,7 +219,14 @@ impl Control<'_> {
     }
 
     /// The path speed that F asks for, mm/s; reports an F that is missing.
-    fn feed_speed(&self, run: &mut Run<'_, '_>, length_mm: f64, linear: bool) -> Option<f64> {
+    fn feed_speed(
+        &self,
+        run: &mut Run<'_, '_>,
+        end: &AxisValues,
+        arc: Option<&Arc>,
+        length_mm: f64,
+        linear: bool,
+    ) -> Option<f64> {
         let span = run.whole();
         let feed = match &self.modal.feed {
             Some(feed) if feed.value > 0.0 => feed,
@@ -238,8 +266,14 @@ impl Control<'_> {
         if self.feed_mode_is(FeedMode::PerMinute) {
             return Some(per_unit);
         }
-        if self.modal.spindle_rpm > 0.0 {
-            return Some(per_unit * self.modal.spindle_rpm);
+        let rpm = self.highest_rpm(end, arc);
+        if self.spindle.surface_mm_min.is_some() {
+            let message = "under G96 a feed per revolution counts at the highest spindle speed \
+                           of its block";
+            run.report.note_once("surface-speed", message, span);
+        }
+        if rpm > 0.0 {
+            return Some(per_unit * rpm);
         }
         run.report
             .error(
@@ -250,6 +284,14 @@ impl Control<'_> {
             .help("write S before the first move under G95");
         None
     }
+}
+
+fn no_such_axis(letter: u8, span: Span, report: &mut Report<'_, '_>) {
+    let message = format!("the machine has no {} axis", letter as char);
+    report.error("no-such-axis", message, span).help(format!(
+        "choose a machine with it, or describe it in the machine file: [axes.{}]",
+        letter as char
+    ));
 }
 
 /// Length of the path that F speaks for, and whether that is a length of
