@@ -3,16 +3,17 @@
 use std::fs::File;
 use std::io::Read;
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
 
 use anyhow::{Context, Result, bail};
 use gwatt::diagnostic::Diagnostic;
-use gwatt::interpret::{Parameters, ToolTable};
+use gwatt::interpret::{ParameterFile, ToolTable};
 use gwatt::machine::{self, AXES, Machine, builtin};
-use gwatt::pipeline::{Options, Reading, Start};
+use gwatt::pipeline::{Limits, Options, Reading, Start};
 
+use super::input::Program;
 use super::terminal::{Shown, Terminal};
 use crate::cli::{MachineArgs, ProgramArgs, StartArg};
 
@@ -52,12 +53,32 @@ impl Setup {
                 start: start(reading.start.as_ref(), &machine)?,
                 block_delete: reading.block_delete,
                 tools: data_file(reading.tool_table.as_deref(), ToolTable::parse, terminal)?,
-                parameters: data_file(reading.parameters.as_deref(), Parameters::parse, terminal)?,
+                parameters: data_file(
+                    reading.parameters.as_deref(),
+                    ParameterFile::parse,
+                    terminal,
+                )?,
+                sub_paths: reading.sub_path.clone().into(),
+                limits: Limits {
+                    depth: reading.max_depth,
+                    repeated_moves: reading.max_moves,
+                    idle_lines: reading.max_idle_lines,
+                },
             },
             certificate: None,
             threads: threads(reading),
         };
         Ok(Self { machine, options })
+    }
+
+    /// The options for a program: its own folder is the first where subprograms
+    /// are looked for.
+    pub fn options_for(&self, program: &Program) -> Options {
+        let mut options = self.options.clone();
+        let folders = program.folder().into_iter();
+        let given = options.reading.sub_paths.iter().map(PathBuf::as_path);
+        options.reading.sub_paths = folders.chain(given).map(Path::to_owned).collect();
+        options
     }
 }
 

@@ -79,6 +79,8 @@ pub(super) enum GCode {
     Mirror(bool),
     FeedMode(super::FeedMode),
     MirrorX,
+    /// G65, G66 and G67.
+    MacroCall,
     Ignored,
 }
 
@@ -113,6 +115,7 @@ impl GCode {
             Self::Rotation(_) => 18,
             Self::Scaling(_) => 19,
             Self::Mirror(_) => 20,
+            Self::MacroCall => 21,
         }
     }
 }
@@ -135,6 +138,7 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
+        (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
         _ => common_g_code(number).or_else(|| coordinate_g_code(number, family)),

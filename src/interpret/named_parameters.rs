@@ -10,7 +10,6 @@ use crate::machine::Family;
 /// The version that gwatt follows: 2.9.
 const VERSION: [f64; 2] = [2.9, 0.0];
 
-#[allow(dead_code, reason = "for those who evaluate expressions")]
 impl Control<'_> {
     /// The value of a predefined parameter, by its name in small letters
     /// without `#<` and `>`; `None` for other names, and for what is not known.
@@ -95,14 +94,6 @@ impl Control<'_> {
         if absolute.is_none() {
             return self.place(axis);
         }
-        if self.position.unknown.contains(axis) {
-            return None;
-        }
-        let value = self.position.at[axis];
-        Some(if self.position.offsets().is_linear(axis) {
-            value / self.modal.mm_per_unit
-        } else {
-            value
-        })
+        self.place_in_machine(axis)
     }
 }

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::frame::{Affine, Frame};
-use super::parameter_file::Parameters;
+use super::parameter_file::ParameterFile;
 use crate::machine::{AXES, AxisId, AxisKind, AxisSet, AxisValues, Machine};
 use crate::units::MM_PER_INCH;
 
@@ -61,7 +61,7 @@ fn first_of(system: u16) -> u32 {
 }
 
 impl Offsets {
-    pub(super) fn new(machine: &Machine, parameters: Option<&Parameters>) -> Self {
+    pub(super) fn new(machine: &Machine, parameters: Option<&ParameterFile>) -> Self {
         let linear = (0..AXES).filter(|&axis| {
             // Axes that the machine lacks are what their letters usually are.
             let rotary = [AxisId::A, AxisId::B, AxisId::C]
@@ -88,7 +88,7 @@ impl Offsets {
             known: parameters.is_some(),
         };
         offsets.set_stored(SYSTEM, 1.0);
-        for (number, value) in parameters.into_iter().flat_map(Parameters::iter) {
+        for (number, value) in parameters.into_iter().flat_map(ParameterFile::iter) {
             offsets.set_stored(number, value);
         }
         if (offsets.stored(G92_ON)).is_some_and(|on| on != 0.0) {

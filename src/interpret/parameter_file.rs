@@ -12,11 +12,11 @@ const NUMBER_MAX: f64 = 5602.0;
 
 /// Values of numbered parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Parameters {
+pub struct ParameterFile {
     values: BTreeMap<u32, f64>,
 }
 
-impl Parameters {
+impl ParameterFile {
     /// Reads a parameter file.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn numbers_and_values() {
-        let parameters = Parameters::parse(b"5221\t12.500000\r\n\n  5230 -30 ;turn\n").unwrap();
+        let parameters = ParameterFile::parse(b"5221\t12.500000\r\n\n  5230 -30 ;turn\n").unwrap();
         assert_eq!(parameters.get(5221), Some(12.5));
         assert_eq!(parameters.get(5230), Some(-30.0));
         assert_eq!(parameters.get(5222), None);
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn each_error_once() {
         let message = |text: &str| {
-            let errors = Parameters::parse(text.as_bytes()).unwrap_err();
+            let errors = ParameterFile::parse(text.as_bytes()).unwrap_err();
             let found = errors.first().unwrap();
             format!("{}:{} {}", found.line, found.span.start, found.message)
         };

@@ -4,11 +4,13 @@
 //! means `value + work offset + G92 offset + tool length`, turned and scaled
 //! where the program says so.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::flow::Limits;
 use super::frame::Frame;
 use super::offsets::Offsets;
-use super::parameter_file::Parameters;
+use super::parameter_file::ParameterFile;
 use super::tool_table::ToolTable;
 use crate::machine::{AXES, AxisSet, AxisValues, Machine};
 
@@ -32,7 +34,11 @@ pub struct Reading {
     /// The tools, if they are known.
     pub tools: Option<Arc<ToolTable>>,
     /// Parameters that the control has kept, if they are known.
-    pub parameters: Option<Arc<Parameters>>,
+    pub parameters: Option<Arc<ParameterFile>>,
+    /// Folders where subprograms are looked for, in this order.
+    pub sub_paths: Arc<[PathBuf]>,
+    /// Where repetition stops.
+    pub limits: Limits,
 }
 
 impl Default for Reading {
@@ -42,6 +48,8 @@ impl Default for Reading {
             block_delete: false,
             tools: None,
             parameters: None,
+            sub_paths: Arc::default(),
+            limits: Limits::default(),
         }
     }
 }

@@ -46,8 +46,20 @@ impl Control<'_> {
             self.go(run, MoveKind::Rapid, &via, unknown, None);
         }
         let mut home = self.position.at;
-        for axis in named.iter() {
-            home[axis] = point[axis];
+        if named != self.machine.axis_set && !self.position.frame.is_plain() {
+            // LinuxCNC: the named coordinates of the program become those of
+            // the point, which in turned coordinates moves other axes too.
+            let frame = &self.position.frame;
+            let mut program = frame.program(&home);
+            let there = frame.program(&point);
+            for axis in named.iter() {
+                program[axis] = there[axis];
+            }
+            home = frame.machine(&program);
+        } else {
+            for axis in named.iter() {
+                home[axis] = point[axis];
+            }
         }
         let unknown = AxisSet(named.0 & self.position.unknown.0);
         self.go(run, MoveKind::Rapid, &home, unknown, None);

@@ -6,6 +6,7 @@ use super::execute::{Control, Run};
 use super::modal::{Feed, Modal, NumberText};
 use super::moves::ActionKind;
 use super::spindle_speed::SpindleMode;
+use super::tool_table::Tool;
 use crate::machine::Family;
 use crate::source::Span;
 
@@ -188,7 +189,10 @@ impl Control<'_> {
                 }
             }
             _ => match self.saved.last().cloned().flatten() {
-                Some(saved) => self.restore(&saved, span, run),
+                Some(saved) => {
+                    self.restore(&saved);
+                    self.settle_debts(span, run);
+                }
                 None => run
                     .report
                     .error("saved-state", "M72, but no state has been saved", span)
@@ -198,23 +202,32 @@ impl Control<'_> {
     }
 
     /// A subprogram is entered: it has a state of its own to save.
-    #[allow(dead_code, reason = "for those who run subprograms")]
     pub(super) fn enter_level(&mut self) {
         self.saved.push(None);
     }
 
     /// A subprogram returns, which restores what its M73 has saved.
-    #[allow(dead_code, reason = "for those who run subprograms")]
-    pub(super) fn leave_level(&mut self, run: &mut Run<'_, '_>) {
+    pub(super) fn leave_level(&mut self) {
         if self.saved.len() < 2 {
             return;
         }
         if let Some(Some(saved)) = self.saved.pop()
             && saved.on_return
         {
-            let span = run.whole();
-            run.facts.boundary = true;
-            self.restore(&saved, span, run);
+            self.restore(&saved);
+        }
+    }
+
+    /// Actions of a restored state, which the next block reports.
+    pub(super) fn settle_debts(&mut self, span: Span, run: &mut Run<'_, '_>) {
+        run.facts.boundary = true;
+        for (kind, value) in self.debts.drain(..) {
+            run.act(kind, value);
+        }
+        if let Some(reason) = self.lost.take() {
+            run.report
+                .error("saved-state", reason, span)
+                .help("write the words that are meant behind M72, or behind the call");
         }
     }
 
@@ -228,7 +241,7 @@ impl Control<'_> {
 
     /// What M72 does: `LinuxCNC` executes the words that lead back. F it writes
     /// with one decimal, S with none.
-    fn restore(&mut self, saved: &Saved, span: Span, run: &mut Run<'_, '_>) {
+    fn restore(&mut self, saved: &Saved) {
         let now = std::mem::replace(&mut self.modal, saved.modal.clone());
         self.modal.motion = now.motion;
         let in_unit = |feed: &Option<Feed>, unit: f64| {
@@ -250,35 +263,40 @@ impl Control<'_> {
             self.modal.spindle_rpm = now.spindle_rpm;
         } else {
             self.modal.spindle_rpm = saved.modal.spindle_rpm.round_ties_even();
-            run.act(ActionKind::SpindleSpeed, self.modal.spindle_rpm);
+            self.debts
+                .push((ActionKind::SpindleSpeed, self.modal.spindle_rpm));
         }
         match (saved.spindle.surface_mm_min, self.spindle.surface_mm_min) {
             (Some(_), None) => {
-                run.report
-                    .error("saved-state", "G96 cannot be restored: its S is lost", span)
-                    .help("write G96 with S after M72");
+                self.lost = Some("G96 cannot be restored: its S is lost");
+                self.debts.push((ActionKind::Other, 72.0));
             }
             (None, Some(_)) => self.spindle.surface_mm_min = None,
             _ => {}
         }
-        self.select_system(saved.system, span, run);
-        match (saved.tool_length, self.has_tool_length()) {
-            (true, false) => {
-                self.tool_length(super::tools::ToolLength::On, span, run);
+        let tool = if saved.tool_length {
+            // G43, of the tool that is loaded now.
+            self.tools.find(self.tools.loaded).unwrap_or_default()
+        } else {
+            Tool::default()
+        };
+        let length = self.tool_offsets_mm(&tool);
+        let changes = saved.tool_length != self.has_tool_length();
+        self.position.change(|offsets| {
+            offsets.select(saved.system);
+            if changes {
+                offsets.tool = length;
             }
-            (false, true) => {
-                self.tool_length(super::tools::ToolLength::Off, span, run);
-            }
-            _ => {}
-        }
-        self.restore_switches(saved.switches, run);
+        });
+        self.restore_switches(saved.switches);
         self.note_special();
         if now.path_mode != saved.modal.path_mode {
-            run.act(ActionKind::PathMode, 0.0);
+            self.debts.push((ActionKind::PathMode, 0.0));
         }
     }
 
-    fn restore_switches(&mut self, saved: Switches, run: &mut Run<'_, '_>) {
+    /// Spindle and coolant.
+    fn restore_switches(&mut self, saved: Switches) {
         let now = self.switches;
         let mut words: arrayvec::ArrayVec<(u16, ActionKind), 4> = arrayvec::ArrayVec::new();
         if saved.spindle != now.spindle {
@@ -303,7 +321,7 @@ impl Control<'_> {
             let value = f64::from(number) / 10.0;
             self.switches.switch(number);
             self.switch_loads(value);
-            run.act(kind, value);
+            self.debts.push((kind, value));
         }
     }
 }

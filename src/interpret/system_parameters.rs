@@ -19,7 +19,6 @@ const TOOL_LAST: u32 = 5413;
 const PLACE_FIRST: u32 = 5420;
 const PLACE_LAST: u32 = 5428;
 
-#[allow(dead_code, reason = "for those who evaluate expressions")]
 impl Control<'_> {
     /// Whether a number is one of these parameters, known or not.
     pub(super) fn is_system_parameter(&self, number: u32) -> bool {
@@ -73,8 +72,17 @@ impl Control<'_> {
     }
 
     /// A probe has moved: nobody knows what it has found.
+    #[allow(dead_code, reason = "for those who probe")]
     pub(super) fn forget_probe(&mut self) {
         self.probe = [None; 10];
+    }
+
+    /// Place of an axis in machine coordinates, in units of the program.
+    pub(super) fn place_in_machine(&self, axis: usize) -> Option<f64> {
+        if self.position.unknown.contains(axis) {
+            return None;
+        }
+        Some(self.in_unit(axis, *self.position.at.get(axis)?))
     }
 
     /// Place of an axis in program coordinates and units.
@@ -84,12 +92,16 @@ impl Control<'_> {
         if unknown.iter().any(|by| frame.depends(by, axis)) {
             return None;
         }
-        let value = self.position.program()[axis];
-        Some(if self.position.offsets().is_linear(axis) {
+        Some(self.in_unit(axis, *self.position.program().get(axis)?))
+    }
+
+    /// Millimetres in units of the program; degrees stay degrees.
+    fn in_unit(&self, axis: usize, value: f64) -> f64 {
+        if self.position.offsets().is_linear(axis) {
             value / self.modal.mm_per_unit
         } else {
             value
-        })
+        }
     }
 
     fn tool_parameter(&self, index: usize) -> Option<f64> {

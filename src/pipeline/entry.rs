@@ -1,6 +1,7 @@
 //! A block that waits to be written, and what may be changed about it.
 
 use super::front::Line;
+use super::table::LineKey;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
 use crate::limit::{Outcome, Permit};
 use crate::machine::{Machine, PathMode, RapidJoint};
@@ -10,6 +11,7 @@ use crate::syntax::Block;
 
 /// A block that waits until all its moves are decided.
 pub(super) struct Entry {
+    pub(super) key: LineKey,
     pub(super) text: Vec<u8>,
     pub(super) block: Block,
     pub(super) facts: Facts,
@@ -30,6 +32,7 @@ impl Entry {
     pub(super) fn new(line: &Line<'_, '_>) -> Self {
         let modal = line.interpreter.modal();
         Self {
+            key: line.key,
             text: Vec::new(),
             block: Block::default(),
             facts: Facts::default(),
@@ -52,6 +55,7 @@ impl Entry {
         mm_per_unit_before: f64,
     ) {
         let modal = line.interpreter.modal();
+        self.key = line.key;
         self.text.clear();
         self.text.extend_from_slice(line.text);
         std::mem::swap(&mut self.block, line.block);
@@ -109,6 +113,7 @@ impl Entry {
                 self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
                 "no F is in force that could be put back",
             ),
+            (facts.computed_feed, "its feed is worked out by the program"),
             (
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",
