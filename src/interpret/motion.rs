@@ -30,6 +30,10 @@ impl Control<'_> {
                 GCode::DataSetting => return self.data_setting(span, run),
                 GCode::LocalOffset => return self.local_offset(span, run),
                 GCode::Rotation(on) => self.rotation(on, span, run),
+                // A lathe's G50 (G-code system A) is what G92 is elsewhere.
+                GCode::Scaling(false) if run.words.has_axes() => {
+                    return self.set_offset(span, run);
+                }
                 GCode::Scaling(on) => self.scaling(on, span, run),
                 GCode::Mirror(on) => self.mirror(on, span, run),
                 _ => {}

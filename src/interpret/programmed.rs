@@ -95,8 +95,9 @@ impl Control<'_> {
                 .help("write the angle as R");
             return;
         };
-        let here = self.position.program();
-        let mut at: [f64; SPACE] = std::array::from_fn(|axis| center[axis].unwrap_or(here[axis]));
+        let Some(mut at) = self.filled(center, [first, second], run) else {
+            return;
+        };
         if let Some(scaling) = &self.programmed.scaling {
             // The centre is scaled like any point, the angle is not.
             at = scaling.apply(at);
@@ -127,7 +128,9 @@ impl Control<'_> {
             return;
         }
         let center = self.centers(run);
-        let here = self.position.program();
+        let Some(center) = self.filled(center, [0, 1, 2], run) else {
+            return;
+        };
         let common = self.factor(b'P', run);
         let each = [b'I', b'J', b'K'].map(|letter| self.factor(letter, run));
         let mut factor = [1.0; SPACE];
@@ -144,7 +147,6 @@ impl Control<'_> {
                 }
             }
         }
-        let center = std::array::from_fn(|axis| center[axis].unwrap_or(here[axis]));
         let map = Affine::scaling(center, factor);
         self.reprogram(|programmed| programmed.scaling = Some(map));
     }
@@ -216,6 +218,36 @@ impl Control<'_> {
             }
         }
         center
+    }
+
+    /// Coordinates that are not given are those of the place, which must be
+    /// known for the axes that count.
+    fn filled<const N: usize>(
+        &self,
+        center: [Option<f64>; SPACE],
+        counting: [usize; N],
+        run: &mut Run<'_, '_>,
+    ) -> Option<[f64; SPACE]> {
+        let here = self.position.program();
+        let missing = counting.iter().any(|&axis| {
+            center.get(axis).is_some_and(Option::is_none)
+                && self.machine.axes[axis].is_some()
+                && self.position.unknown.contains(axis)
+        });
+        if missing {
+            let span = run.whole();
+            run.report
+                .error(
+                    "turned-from-unknown",
+                    "a turn or a scale about a position that is not known",
+                    span,
+                )
+                .help("name its centre, or give --start X0,Y0,Z0");
+            return None;
+        }
+        Some(std::array::from_fn(|axis| {
+            center[axis].unwrap_or(here[axis])
+        }))
     }
 
     /// Changes the map. Axes whose coordinate is no longer what the program

@@ -71,6 +71,9 @@ impl Control<'_> {
             }
         }
         let whole = run.whole();
+        if machine_coordinates {
+            self.refuse_turned(named, whole, run);
+        }
         if run.words.unused & POLAR != 0 {
             if machine_coordinates {
                 run.report

@@ -117,7 +117,15 @@ impl Control<'_> {
 
     /// G43 and its kin: the axes stay, the program coordinates change.
     pub(super) fn tool_length(&mut self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
-        let rs274 = self.machine.controller.language.family == Family::Rs274;
+        let family = self.machine.controller.language.family;
+        let rs274 = family == Family::Rs274;
+        if !rs274 && family != Family::Iso {
+            // These have their lengths elsewhere than in H.
+            run.words.take(b'H');
+            let message = "the tool length is taken as 0";
+            run.report.note_once("no-tool-table", message, span);
+            return;
+        }
         let offset = match form {
             ToolLength::Off => Some([0.0; AXES]),
             ToolLength::Given => self.given_length(span, run),
