@@ -121,7 +121,7 @@ impl Control<'_> {
                 offsets.load();
             }
         });
-        self.note_special();
+        self.note_bent();
     }
 
     /// True, and reported, when the place is needed but not known.

@@ -52,7 +52,7 @@ pub(super) struct Control<'m> {
     pub(super) debts: Vec<(ActionKind, f64)>,
     pub(super) lost: Option<&'static str>,
     /// Targets are more than offsets: see `targets`.
-    pub(super) special: bool,
+    pub(super) bent: bool,
     block_delete: bool,
     begun: bool,
     ended: bool,
@@ -113,7 +113,7 @@ impl<'m> Interpreter<'m> {
             input_unknown: false,
             debts: Vec::new(),
             lost: None,
-            special: false,
+            bent: false,
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
@@ -126,7 +126,7 @@ impl<'m> Interpreter<'m> {
         if let Some(file) = &reading.parameters {
             control.parameters.keep(file);
         }
-        control.note_special();
+        control.note_bent();
         Self {
             control,
             words: Words::new(),

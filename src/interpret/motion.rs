@@ -95,8 +95,8 @@ impl Control<'_> {
         machine_coordinates: bool,
         end: &mut AxisValues,
     ) -> Option<AxisSet> {
-        if self.is_special(run) {
-            return self.special_targets(run, machine_coordinates, end);
+        if self.is_bent(run) {
+            return self.bent_targets(run, machine_coordinates, end);
         }
         let mut unknown = AxisSet::default();
         let mut fine = true;

@@ -114,6 +114,7 @@ impl Control<'_> {
             }
             return;
         }
+        let center = self.centers(run);
         if self.programmed.rotation.is_some()
             || self.programmed.scaling.is_some()
             || self.programmed.mirrored()
@@ -127,7 +128,6 @@ impl Control<'_> {
                 .help("end those before");
             return;
         }
-        let center = self.centers(run);
         let Some(center) = self.filled(center, [0, 1, 2], run) else {
             return;
         };
@@ -271,7 +271,7 @@ impl Control<'_> {
         }
         adrift.0 &= self.machine.axis_set.0;
         self.position.adrift = adrift;
-        self.note_special();
+        self.note_bent();
     }
 
     /// Turned coordinates and places of the machine do not go together.
@@ -306,7 +306,7 @@ impl Control<'_> {
             radius: 0.0,
             angle_deg: 0.0,
         });
-        self.note_special();
+        self.note_bent();
     }
 
     /// Under G16 the plane's first axis word is the radius, the second the
@@ -431,7 +431,7 @@ impl Control<'_> {
             run.report.note_once("no-offsets", message, span);
         }
         self.position.change(|offsets| offsets.select(system));
-        self.note_special();
+        self.note_bent();
     }
 
     /// Fanuc forbids new coordinate systems while the program is turned.

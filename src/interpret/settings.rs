@@ -89,7 +89,7 @@ impl Control<'_> {
             }
         }
         self.tool_length_again(run);
-        self.note_special();
+        self.note_bent();
     }
 
     /// The word of the motion group.

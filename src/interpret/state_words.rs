@@ -289,7 +289,7 @@ impl Control<'_> {
             }
         });
         self.restore_switches(saved.switches);
-        self.note_special();
+        self.note_bent();
         if now.path_mode != saved.modal.path_mode {
             self.debts.push((ActionKind::PathMode, 0.0));
         }

@@ -8,15 +8,15 @@ use crate::machine::{AXES, AxisSet, AxisValues, Family};
 use crate::source::Span;
 
 impl Control<'_> {
-    /// Whether the targets of a block need [`Self::special_targets`].
+    /// Whether the targets of a block need [`Self::bent_targets`].
     #[inline]
-    pub(super) fn is_special(&self, run: &Run<'_, '_>) -> bool {
-        self.special || run.words.present & POLAR != 0
+    pub(super) fn is_bent(&self, run: &Run<'_, '_>) -> bool {
+        self.bent || run.words.present & POLAR != 0
     }
 
-    /// Keeps the answer to what makes targets special.
-    pub(super) fn note_special(&mut self) {
-        self.special = !self.position.frame.is_plain()
+    /// Keeps the answer to what makes targets more than offsets.
+    pub(super) fn note_bent(&mut self) {
+        self.bent = !self.position.frame.is_plain()
             || self.modal.diameter
             || self.polar.is_some()
             || !self.position.adrift.is_empty();
@@ -42,7 +42,7 @@ impl Control<'_> {
     /// Reads the axis words into `end`, machine coordinates, as
     /// [`Self::targets`] does.
     #[cold]
-    pub(super) fn special_targets(
+    pub(super) fn bent_targets(
         &mut self,
         run: &mut Run<'_, '_>,
         machine_coordinates: bool,
@@ -175,16 +175,6 @@ impl Control<'_> {
         let [x, y, ..] = *program;
         let here = libm::hypot(x, y);
         let needs_place = !self.modal.absolute || angle.is_none();
-        if here == 0.0 && needs_place {
-            run.report
-                .error(
-                    "polar-origin",
-                    "a polar move that starts from the origin has no angle",
-                    span,
-                )
-                .help("write both @ and ^ under G90");
-            return;
-        }
         let known = |axis| !self.position.unknown.contains(axis);
         if !(known(0) && known(1)) && (needs_place || distance.is_none()) {
             run.report
@@ -194,6 +184,16 @@ impl Control<'_> {
                     span,
                 )
                 .help("write both @ and ^ under G90, or give --start X0,Y0,Z0");
+            return;
+        }
+        if here == 0.0 && needs_place {
+            run.report
+                .error(
+                    "polar-origin",
+                    "a polar move that starts from the origin has no angle",
+                    span,
+                )
+                .help("write both @ and ^ under G90");
             return;
         }
         let here_deg = libm::atan2(y, x).to_degrees();
@@ -237,7 +237,7 @@ impl Control<'_> {
         }
         if touches {
             self.position.adrift.0 &= !named.0;
-            self.note_special();
+            self.note_bent();
         }
     }
 }

@@ -272,6 +272,18 @@ impl Control<'_> {
         None
     }
 
+    /// Radius in mm and orientation of a tool, or of the one in the spindle;
+    /// `None` if they are not known.
+    #[allow(dead_code, reason = "for those who compensate the radius")]
+    pub(super) fn tool_edge(&self, number: Option<u32>) -> Option<(f64, u8)> {
+        let number = number.filter(|number| *number != 0);
+        let number = number.unwrap_or(self.tools.loaded);
+        let tool = self.tools.find(number)?;
+        let native = self.position.offsets().native(0);
+        let known = number != 0 || !self.tools.unknown();
+        known.then_some((tool.diameter / 2.0 * native, tool.orientation))
+    }
+
     /// Offsets of a tool in mm (degrees).
     pub(super) fn tool_offsets_mm(&self, tool: &Tool) -> AxisValues {
         let offsets = self.position.offsets();
