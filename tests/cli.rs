@@ -448,7 +448,14 @@ fn tool_tables_and_parameter_files() {
     shop.put("offset.ngc", "G43 H2\nG55 G0 X0 Z0\n");
     shop.put("tools.tbl", "T2 P1 Z12.5 ;mill\n");
     shop.put("kept.var", "5241\t30.000000\n5243\t1.000000\n");
-    let options = ["--tool-table", "tools.tbl", "--parameters", "kept.var"];
+    let options = [
+        "-m",
+        "three-axis",
+        "--tool-table",
+        "tools.tbl",
+        "--parameters",
+        "kept.var",
+    ];
     let ran = shop.run(&[&["moves", "offset.ngc"][..], &options].concat());
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     assert!(

@@ -15,6 +15,18 @@ const FIXTURE: u16 = 9;
 /// Work offsets of Fanuc and Haas that G10 L2 reaches: G54 to G59.
 const FANUC_SYSTEMS: u16 = 6;
 
+/// True, and reported, when a value is beyond any machine.
+pub(super) fn out_of_range(value: f64, letter: u8, run: &mut Run<'_, '_>) -> bool {
+    let beyond = value.abs() > POSITION_MAX_MM;
+    if beyond {
+        let span = run.words.span(letter, run.block);
+        run.report
+            .error("position-range", "the position is beyond any machine", span)
+            .help("check the number");
+    }
+    beyond
+}
+
 type AxisWords = arrayvec::ArrayVec<(usize, f64), AXES>;
 
 impl Control<'_> {
@@ -28,7 +40,7 @@ impl Control<'_> {
             let letter = ALL_AXES[axis].letter();
             run.words.take(letter);
             let value = self.length_mm(axis, value);
-            if self.out_of_range(value, letter, run) {
+            if out_of_range(value, letter, run) {
                 return;
             }
             words.push((axis, value));
@@ -50,18 +62,6 @@ impl Control<'_> {
                     });
             }
         }
-    }
-
-    /// True, and reported, when a value is beyond any machine.
-    pub(super) fn out_of_range(&self, value: f64, letter: u8, run: &mut Run<'_, '_>) -> bool {
-        let beyond = value.abs() > POSITION_MAX_MM;
-        if beyond {
-            let span = run.words.span(letter, run.block);
-            run.report
-                .error("position-range", "the position is beyond any machine", span)
-                .help("check the number");
-        }
-        beyond
     }
 
     /// G10 L2 P R and L20 P of `LinuxCNC`.

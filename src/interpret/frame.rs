@@ -158,6 +158,12 @@ impl Frame {
         self.turn.is_none()
     }
 
+    /// Machine coordinate of a program coordinate while the map is plain.
+    #[inline]
+    pub(super) fn shifted(&self, axis: usize, value: f64) -> f64 {
+        value + self.shift[axis]
+    }
+
     /// Machine coordinate of a program coordinate, for an axis that is neither
     /// turned nor scaled by another one.
     #[inline]

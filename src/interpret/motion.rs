@@ -121,7 +121,7 @@ impl Control<'_> {
             end[axis] = if machine_coordinates {
                 value
             } else if absolute {
-                self.position.absolute(axis, value)
+                self.position.frame.shifted(axis, value)
             } else {
                 self.position.at[axis] + value
             };

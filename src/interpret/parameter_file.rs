@@ -27,7 +27,7 @@ impl ParameterFile {
         let mut errors = Vec::new();
         for (text, line) in lines(bytes).zip(1..) {
             if let Err(error) = entry(text, &mut values, line) {
-                errors.push(error);
+                errors.push(*error);
             }
             if errors.len() >= 50 {
                 break;
@@ -52,11 +52,10 @@ impl ParameterFile {
     }
 }
 
-fn entry(text: &[u8], values: &mut BTreeMap<u32, f64>, line: u64) -> Result<(), Diagnostic> {
+fn entry(text: &[u8], values: &mut BTreeMap<u32, f64>, line: u64) -> Result<(), Box<Diagnostic>> {
     let error = |message: String, span: Span| {
-        Diagnostic::error("parameter-file", message)
-            .at(line, span, text)
-            .help("write a number and its value in each line, as in `5221 12.5`")
+        let found = Diagnostic::error("parameter-file", message).at(line, span, text);
+        Box::new(found.help("write a number and its value in each line, as in `5221 12.5`"))
     };
     let mut words = words(text);
     let Some(first) = words.next() else {

@@ -6,6 +6,7 @@
 //! Mirroring comes first, then scaling, then the turn; what depends on a
 //! parameter of the control is refused.
 
+use super::data_setting::out_of_range;
 use super::execute::{Control, Run};
 use super::frame::{Affine, SPACE, sin_cos_deg};
 use super::offsets::{FURTHER, FURTHER_MAX};
@@ -47,6 +48,24 @@ impl Programmed {
         }
         map
     }
+}
+
+/// A factor. Without a point it is in thousandths on one control and in
+/// units on the next.
+fn factor(letter: u8, run: &mut Run<'_, '_>) -> Option<f64> {
+    let value = run.words.take(letter)?;
+    let word = run.words.word(letter, run.block)?;
+    let text = word.number.of(run.report.text);
+    if text
+        .iter()
+        .all(|byte| byte.is_ascii_digit() || matches!(byte, b'-' | b'+'))
+    {
+        run.report
+            .error("scaling", "a scale without a decimal point", word.span)
+            .help("write it with one, as in P2.0: controls differ in its unit");
+        return None;
+    }
+    Some(value)
 }
 
 impl Control<'_> {
@@ -131,8 +150,8 @@ impl Control<'_> {
         let Some(center) = self.filled(center, [0, 1, 2], run) else {
             return;
         };
-        let common = self.factor(b'P', run);
-        let each = [b'I', b'J', b'K'].map(|letter| self.factor(letter, run));
+        let common = factor(b'P', run);
+        let each = [b'I', b'J', b'K'].map(|letter| factor(letter, run));
         let mut factor = [1.0; SPACE];
         for (axis, factor) in factor.iter_mut().enumerate() {
             let known = self.machine.axes[axis].is_some();
@@ -149,24 +168,6 @@ impl Control<'_> {
         }
         let map = Affine::scaling(center, factor);
         self.reprogram(|programmed| programmed.scaling = Some(map));
-    }
-
-    /// A factor. Without a point it is in thousandths on one control and in
-    /// units on the next.
-    fn factor(&self, letter: u8, run: &mut Run<'_, '_>) -> Option<f64> {
-        let value = run.words.take(letter)?;
-        let word = run.words.word(letter, run.block)?;
-        let text = word.number.of(run.report.text);
-        if text
-            .iter()
-            .all(|byte| byte.is_ascii_digit() || matches!(byte, b'-' | b'+'))
-        {
-            run.report
-                .error("scaling", "a scale without a decimal point", word.span)
-                .help("write it with one, as in P2.0: controls differ in its unit");
-            return None;
-        }
-        Some(value)
     }
 
     /// G51.1 (`on`) and G50.1.
@@ -203,18 +204,14 @@ impl Control<'_> {
         for (axis, value) in words {
             let letter = ALL_AXES[axis].letter();
             let value = self.length_mm(axis, value);
-            match center.get_mut(axis) {
-                Some(slot) => {
-                    run.words.take(letter);
-                    *slot = Some(value);
-                }
-                None => {
-                    let span = run.words.span(letter, run.block);
-                    run.words.take(letter);
-                    run.report
-                        .error("rotation", "only X, Y and Z are turned and scaled", span)
-                        .help("take the axis out");
-                }
+            run.words.take(letter);
+            if let Some(slot) = center.get_mut(axis) {
+                *slot = Some(value);
+            } else {
+                let span = run.words.span(letter, run.block);
+                run.report
+                    .error("rotation", "only X, Y and Z are turned and scaled", span)
+                    .help("take the axis out");
             }
         }
         center
@@ -254,9 +251,9 @@ impl Control<'_> {
     /// last said are adrift.
     fn reprogram(&mut self, change: impl FnOnce(&mut Programmed)) {
         let before = self.position.program();
-        for axis in 0..AXES {
+        for (axis, before) in before.into_iter().enumerate() {
             if !self.position.adrift.contains(axis) {
-                self.programmed.believed[axis] = before[axis];
+                self.programmed.believed[axis] = before;
             }
         }
         change(&mut self.programmed);
@@ -264,8 +261,8 @@ impl Control<'_> {
         self.position.change(|offsets| offsets.programmed = map);
         let after = self.position.program();
         let mut adrift = AxisSet::default();
-        for axis in 0..SPACE {
-            if (after[axis] - self.programmed.believed[axis]).abs() > SAME_MM {
+        for (axis, believed) in self.programmed.believed.iter().enumerate() {
+            if axis < SPACE && (after[axis] - believed).abs() > SAME_MM {
                 adrift.insert(axis);
             }
         }
@@ -390,7 +387,7 @@ impl Control<'_> {
             let letter = ALL_AXES[axis].letter();
             run.words.take(letter);
             let value = self.length_mm(axis, value);
-            if !self.axis_exists_at(axis, letter, run) || self.out_of_range(value, letter, run) {
+            if !self.axis_exists_at(axis, letter, run) || out_of_range(value, letter, run) {
                 continue;
             }
             self.position.change(|offsets| {

@@ -45,15 +45,15 @@ impl ToolTable {
         let mut table = Self::default();
         let mut errors = Vec::new();
         for (text, number) in lines(bytes).zip(1..) {
-            let mut line = Line { text, number };
+            let line = Line { text, number };
             match line.tool() {
                 Ok(Some(tool)) => {
                     if let Err(error) = table.add(tool, &line) {
-                        errors.push(error);
+                        errors.push(*error);
                     }
                 }
                 Ok(None) => {}
-                Err(error) => errors.push(error),
+                Err(error) => errors.push(*error),
             }
             if errors.len() >= 50 {
                 break;
@@ -73,7 +73,7 @@ impl ToolTable {
         self.tools.get(index.ok()?)
     }
 
-    fn add(&mut self, tool: Tool, line: &Line<'_>) -> Result<(), Diagnostic> {
+    fn add(&mut self, tool: Tool, line: &Line<'_>) -> Result<(), Box<Diagnostic>> {
         let all = Span::new(0, line.text.len());
         // Most tables are sorted, so this mostly appends.
         let at = self
@@ -85,11 +85,11 @@ impl ToolTable {
             .is_some_and(|other| other.number == tool.number)
         {
             let message = format!("tool {} is in the table twice", tool.number);
-            return Err(line.error(message, all).help("keep one of the lines"));
+            return Err(line.error(message, all, "keep one of the lines"));
         }
         if self.tools.len() >= TOOLS_MAX {
             let message = format!("more than {TOOLS_MAX} tools");
-            return Err(line.error(message, all).help("give a table of one machine"));
+            return Err(line.error(message, all, "give a table of one machine"));
         }
         self.tools.insert(at, tool);
         Ok(())
@@ -103,12 +103,13 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    fn error(&self, message: impl Into<String>, span: Span) -> Diagnostic {
-        Diagnostic::error("tool-table", message).at(self.number, span, self.text)
+    fn error(&self, message: impl Into<String>, span: Span, help: &str) -> Box<Diagnostic> {
+        let found = Diagnostic::error("tool-table", message).at(self.number, span, self.text);
+        Box::new(found.help(help))
     }
 
     /// The tool of the line; `None` for one that is empty or a comment.
-    fn tool(&mut self) -> Result<Option<Tool>, Diagnostic> {
+    fn tool(&self) -> Result<Option<Tool>, Box<Diagnostic>> {
         let mut tool = Tool::default();
         let mut given = 0_u32;
         for span in words(self.text) {
@@ -119,21 +120,20 @@ impl Line<'_> {
                 .and_then(|text| text.parse::<f64>().ok())
                 .filter(|value| value.is_finite());
             let (true, Some(value)) = (letter.is_ascii_uppercase(), value) else {
-                return Err(self
-                    .error("this is not a letter with its number", span)
-                    .help("write tools as in `T1 P1 D3.0 Z+11.0 ;comment`"));
+                let help = "write tools as in `T1 P1 D3.0 Z+11.0 ;comment`";
+                return Err(self.error("this is not a letter with its number", span, help));
             };
             let bit = 1 << (letter - b'A');
             if given & bit != 0 {
                 let message = format!("{} is given twice", letter as char);
-                return Err(self.error(message, span).help("keep one of them"));
+                return Err(self.error(message, span, "keep one of them"));
             }
             given |= bit;
             if !tool.set(letter, value) {
                 let help = "T and P are whole numbers from 0, Q is one from 0 to 9, \
                             and the others are D, I, J and the axes X Y Z A B C U V W";
                 let message = format!("{} cannot be this", letter as char);
-                return Err(self.error(message, span).help(help));
+                return Err(self.error(message, span, help));
             }
         }
         if given == 0 {
@@ -141,8 +141,8 @@ impl Line<'_> {
         }
         if given & 1 << (b'T' - b'A') == 0 {
             let all = Span::new(0, self.text.len());
-            let error = self.error("a tool without its number", all);
-            return Err(error.help("write it as T and a number"));
+            let help = "write it as T and a number";
+            return Err(self.error("a tool without its number", all, help));
         }
         Ok(Some(tool))
     }
