@@ -48,6 +48,8 @@ impl Control<'_> {
         // The numbers of these forms are whole.
         let form = if form.fract() == 0.0 { form as i64 } else { -1 };
         match (rs274, form) {
+            // Reads the tool table again, which changes no offset in force.
+            (true, 0) => {}
             (true, 2 | 20) => self.set_system(form == 20, number, &words, span, run),
             (true, 1 | 10 | 11) => self.set_tool(form, number, &words, span, run),
             (false, 2 | 20) => self.fanuc_system(form == 20, number, &words, span, run),
@@ -56,7 +58,7 @@ impl Control<'_> {
                 run.report
                     .error("data-setting", "this form of G10 is not supported", span)
                     .help(if rs274 {
-                        "supported are L1, L2, L10, L11 and L20"
+                        "supported are L0, L1, L2, L10, L11 and L20"
                     } else {
                         "supported are L2, L20 and L10 to L13"
                     });
