@@ -158,6 +158,11 @@ impl Frame {
         self.turn.is_none()
     }
 
+    /// Moves the origin of an axis that is not turned.
+    pub(super) fn nudge(&mut self, axis: usize, by: f64) {
+        self.shift[axis] += by;
+    }
+
     /// Machine coordinate of a program coordinate while the map is plain.
     #[inline]
     pub(super) fn shifted(&self, axis: usize, value: f64) -> f64 {

@@ -25,6 +25,7 @@ mod parameter_file;
 mod parameters;
 mod position;
 mod programmed;
+mod printer;
 mod reference;
 mod report;
 mod settings;

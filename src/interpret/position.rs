@@ -118,6 +118,30 @@ impl Position {
         });
     }
 
+    /// The axis moved by `by_mm` without a change of its program coordinate.
+    pub(super) fn shift(&mut self, axis: usize, by_mm: f64) {
+        // Often, and only where nothing is turned: without a new map.
+        self.offsets.g92[axis] += by_mm;
+        self.frame.nudge(axis, by_mm);
+    }
+
+    /// The axis stands at machine coordinate `at_mm`, without an offset.
+    pub(super) fn home(&mut self, axis: usize, at_mm: f64) {
+        self.at[axis] = at_mm;
+        self.change(|offsets| offsets.set_g92(axis, 0.0));
+        self.unknown.0 &= !(1 << axis);
+    }
+
+    /// The offsets of G92 in force.
+    pub(super) fn shifts(&self) -> &AxisValues {
+        &self.offsets.g92
+    }
+
+    /// Puts offsets back.
+    pub(super) fn set_shifts(&mut self, shifts: &AxisValues) {
+        self.change(|offsets| offsets.g92 = *shifts);
+    }
+
     /// G92.1 (`forget`) and G92.2.
     pub(super) fn clear_offset(&mut self, forget: bool) {
         self.change(|offsets| offsets.clear_g92(forget));

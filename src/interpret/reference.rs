@@ -120,7 +120,10 @@ impl Control<'_> {
             }
             let frame = &self.position.frame;
             let unknown = self.position.unknown;
-            if unknown.iter().any(|by| frame.depends(by, axis)) {
+            if self.machine.controller.language.family == Family::Marlin {
+                // Only differences of positions matter to a printer.
+                self.position.unknown.0 &= !(1 << axis);
+            } else if unknown.iter().any(|by| frame.depends(by, axis)) {
                 run.report
                     .error(
                         "offset-from-unknown",

@@ -93,7 +93,7 @@ impl Control<'_> {
             self.map_targets(&program, named, unknown, end, run);
         }
         if self.machine.controller.language.family == Family::Iso {
-            self.settle(named, unknown, machine_coordinates, whole, run);
+            self.name_adrift(named, unknown, machine_coordinates, whole, run);
         }
         if end
             .iter()
@@ -213,7 +213,7 @@ impl Control<'_> {
     /// After a turn has begun or ended, Fanuc goes by the last programmed
     /// coordinates of the axes that are not named, which differ from where they
     /// stand: an absolute move must name all of them first.
-    fn settle(
+    fn name_adrift(
         &mut self,
         named: AxisSet,
         absolute: AxisSet,
