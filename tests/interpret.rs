@@ -7,7 +7,7 @@ use gwatt::pipeline::{self, Failure, Options, Reading};
 use insta::assert_snapshot;
 
 /// A machine with linear axes X Y Z U and rotary axes A C.
-fn machine(controller: &str) -> Machine {
+pub(crate) fn machine(controller: &str) -> Machine {
     let mut text = format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
     );
@@ -31,12 +31,17 @@ fn machine(controller: &str) -> Machine {
 /// The moves of a program, a line each: line, kind, the axes that differ from
 /// the start, and feed in mm/min; or the messages of a refusal.
 fn moves(controller: &str, program: &str) -> String {
+    moves_with(controller, program, &Options::default())
+}
+
+/// The same with these options.
+pub(crate) fn moves_with(controller: &str, program: &str, options: &Options) -> String {
     let machine = machine(controller);
     let mut out = String::new();
     let result = pipeline::moves(
         std::io::Cursor::new(program),
         &machine,
-        &Options::default(),
+        options,
         &mut |mv, _| {
             let _ = write!(out, "{} {}", mv.line, mv.kind.name());
             for axis in mv.moving.iter() {

@@ -3,6 +3,7 @@
 mod layers;
 mod interpret;
 mod cycles;
+mod coordinates;
 mod syntax;
 mod plan;
 mod power;

@@ -13,6 +13,14 @@ pub struct ProgramArgs {
     /// Read programs as this controller does, instead of the machine's own
     #[arg(long, value_name = "CONTROLLER", help_heading = "Program")]
     pub dialect: Option<String>,
+    /// Tools of the machine, as LinuxCNC writes them (T P D Z X I J Q in a line
+    /// each); without it every tool length is 0
+    #[arg(long, value_name = "FILE", help_heading = "Program")]
+    pub tool_table: Option<PathBuf>,
+    /// Parameters that the control has kept, as LinuxCNC writes them (number
+    /// and value in a line each): work offsets, G92, points of G28 and G30
+    #[arg(long, value_name = "FILE", help_heading = "Program")]
+    pub parameters: Option<PathBuf>,
     /// Pass over blocks that begin with `/`
     #[arg(long, help_heading = "Program")]
     pub block_delete: bool,

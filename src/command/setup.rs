@@ -1,16 +1,24 @@
 //! Machine and options of a run, from its arguments.
 
+use std::fs::File;
+use std::io::Read;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread;
 
 use anyhow::{Context, Result, bail};
+use gwatt::diagnostic::Diagnostic;
+use gwatt::interpret::{ParameterFile, ToolTable};
 use gwatt::machine::{self, AXES, Machine, builtin};
 use gwatt::pipeline::{Limits, Options, Reading, Start};
 
 use super::input::Program;
 use super::terminal::{Shown, Terminal};
 use crate::cli::{MachineArgs, ProgramArgs, StartArg};
+
+/// Largest tool table or parameter file that is read.
+const DATA_BYTES_MAX: u64 = 16 << 20;
 
 /// What a program is judged with.
 #[derive(Debug)]
@@ -44,6 +52,12 @@ impl Setup {
             reading: Reading {
                 start: start(reading.start.as_ref(), &machine)?,
                 block_delete: reading.block_delete,
+                tools: data_file(reading.tool_table.as_deref(), ToolTable::parse, terminal)?,
+                parameters: data_file(
+                    reading.parameters.as_deref(),
+                    ParameterFile::parse,
+                    terminal,
+                )?,
                 sub_paths: reading.sub_path.clone().into(),
                 limits: Limits {
                     depth: reading.max_depth,
@@ -103,6 +117,32 @@ fn language(dialect: &str) -> Result<machine::Language> {
         )
     })?;
     Ok(controller.language)
+}
+
+/// Reads a file of the control's data.
+fn data_file<T>(
+    path: Option<&Path>,
+    parse: fn(&[u8]) -> Result<T, Vec<Diagnostic>>,
+    terminal: Terminal,
+) -> Result<Option<Arc<T>>> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    let name = path.display();
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(DATA_BYTES_MAX + 1).read_to_end(&mut bytes))
+        .with_context(|| format!("cannot read {name}"))?;
+    if bytes.len() as u64 > DATA_BYTES_MAX {
+        bail!("{name} is larger than a tool table or a parameter file can be");
+    }
+    match parse(&bytes) {
+        Ok(data) => Ok(Some(Arc::new(data))),
+        Err(errors) => {
+            terminal.diagnostics(&name.to_string(), &errors);
+            bail!(Shown)
+        }
+    }
 }
 
 fn start(start: Option<&StartArg>, machine: &Machine) -> Result<Start> {

@@ -69,15 +69,26 @@ impl Control<'_> {
         if run.report.diagnostics.errors != errors {
             return;
         }
+        let turned = !self.position.frame.is_plain();
+        let [start_at, end_at] = if turned {
+            self.arc_ends_in_program(&end)
+        } else {
+            [self.position.at, end]
+        };
         let ends = Ends {
             plane: [first, second],
-            start: [self.position.at[first], self.position.at[second]],
-            end: [end[first], end[second]],
+            start: [start_at[first], start_at[second]],
+            end: [end_at[first], end_at[second]],
             clockwise: self.modal.motion == Motion::ArcCw,
             turns,
             inch: self.modal.mm_per_unit == MM_PER_INCH,
         };
         match self.arc_geometry(run, &ends) {
+            Some(Ok(arc)) if turned => {
+                if let Some(arc) = self.arc_in_machine(&arc, whole, run) {
+                    self.go(run, MoveKind::Arc, &end, unknown, Some(arc));
+                }
+            }
             Some(Ok(arc)) => {
                 if self.printer.adjusts {
                     self.scale_extrusion(&mut end, unknown);
@@ -123,7 +134,11 @@ impl Control<'_> {
             if !self.modal.arc_absolute {
                 center[index] += offset.unwrap_or(0.0) * unit;
             } else if let Some(value) = offset {
-                center[index] = self.position.absolute(ends.plane[index], value * unit);
+                center[index] = if self.position.frame.is_plain() {
+                    self.position.absolute(ends.plane[index], value * unit)
+                } else {
+                    value * unit
+                };
             } else {
                 let message = format!(
                     "under G90.1 an arc needs {} and {}",

@@ -3,6 +3,7 @@
 //!
 //! Groups follow RS274/NGC (LinuxCNC G-code reference, "Modal Groups").
 
+use super::tools::ToolLength;
 use crate::machine::{Family, PathMode};
 
 /// What the motion words mean.
@@ -48,8 +49,7 @@ pub(super) enum GCode {
     },
     Reference,
     CompensationOff,
-    ToolLengthOn,
-    ToolLengthOff,
+    ToolLength(ToolLength),
     MachineCoordinates,
     WorkOffset(u8),
     PathMode,
@@ -60,6 +60,26 @@ pub(super) enum GCode {
         forget: bool,
     },
     RestoreOffset,
+    /// G28.1 and G30.1.
+    SaveReference,
+    /// G10.
+    DataSetting,
+    /// G52.
+    LocalOffset,
+    /// G54.1 P, Haas' G154 P.
+    FurtherOffset,
+    /// G7 (true) and G8.
+    Diameter(bool),
+    /// G96 and G97.
+    SurfaceSpeed,
+    /// G16 (true) and G15.
+    Polar(bool),
+    /// G68 (true) and G69.
+    Rotation(bool),
+    /// G51 (true) and G50.
+    Scaling(bool),
+    /// G51.1 (true) and G50.1.
+    Mirror(bool),
     FeedMode(super::FeedMode),
     MirrorX,
     /// G31 of Fanuc and Haas: a feed that a signal ends.
@@ -84,8 +104,8 @@ impl GCode {
             Self::FeedMode(_) => 4,
             Self::Units { .. } => 5,
             Self::CompensationOff => 6,
-            Self::ToolLengthOn | Self::ToolLengthOff => 7,
-            Self::WorkOffset(_) => 8,
+            Self::ToolLength(_) => 7,
+            Self::WorkOffset(_) | Self::FurtherOffset => 8,
             Self::PathMode => 9,
             Self::Dwell => 10,
             Self::MachineCoordinates => 11,
@@ -93,11 +113,20 @@ impl GCode {
             | Self::Skip
             | Self::SetOffset
             | Self::ClearOffset { .. }
-            | Self::RestoreOffset => 12,
+            | Self::RestoreOffset
+            | Self::SaveReference
+            | Self::DataSetting
+            | Self::LocalOffset => 12,
             Self::Ignored => 13,
             Self::MirrorX => 14,
-            Self::Retract(_) => 17,
-            Self::MacroCall => 15,
+            Self::Diameter(_) => 15,
+            Self::SurfaceSpeed => 16,
+            Self::Polar(_) => 17,
+            Self::Rotation(_) => 18,
+            Self::Scaling(_) => 19,
+            Self::Mirror(_) => 20,
+            Self::MacroCall => 21,
+            Self::Retract(_) => 22,
         }
     }
 }
@@ -123,8 +152,33 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
-        _ => common_g_code(number),
+        _ => common_g_code(number).or_else(|| coordinate_g_code(number, family)),
     }
+}
+
+/// Offsets, turned coordinates and spindle speed, which differ by family.
+fn coordinate_g_code(number: u16, family: Family) -> Option<GCode> {
+    Some(match (family, number) {
+        (Family::Rs274, 70) => GCode::Diameter(true),
+        (Family::Rs274, 80) => GCode::Diameter(false),
+        (Family::Rs274 | Family::Iso, 100) => GCode::DataSetting,
+        (Family::Rs274, 281 | 301) => GCode::SaveReference,
+        (Family::Rs274, 431) => GCode::ToolLength(ToolLength::Given),
+        (Family::Rs274, 432) => GCode::ToolLength(ToolLength::Added),
+        (Family::Iso, 440) => GCode::ToolLength(ToolLength::Reversed),
+        (Family::Rs274 | Family::Iso, 520) => GCode::LocalOffset,
+        (Family::Iso, 541 | 1540) => GCode::FurtherOffset,
+        (Family::Rs274 | Family::Iso, 960 | 970) => GCode::SurfaceSpeed,
+        (Family::Iso, 150) => GCode::Polar(false),
+        (Family::Iso, 160) => GCode::Polar(true),
+        (Family::Iso, 680) => GCode::Rotation(true),
+        (Family::Iso, 690) => GCode::Rotation(false),
+        (Family::Iso, 500) => GCode::Scaling(false),
+        (Family::Iso, 510) => GCode::Scaling(true),
+        (Family::Iso, 501) => GCode::Mirror(false),
+        (Family::Iso, 511) => GCode::Mirror(true),
+        _ => return None,
+    })
 }
 
 /// The G words that most families share.
@@ -146,8 +200,8 @@ fn common_g_code(number: u16) -> Option<GCode> {
         210 => GCode::Units { mm_per_unit: 1.0 },
         280 | 300 => GCode::Reference,
         400 => GCode::CompensationOff,
-        430 => GCode::ToolLengthOn,
-        490 => GCode::ToolLengthOff,
+        430 => GCode::ToolLength(ToolLength::On),
+        490 => GCode::ToolLength(ToolLength::Off),
         530 => GCode::MachineCoordinates,
         540..=590 if number.is_multiple_of(10) => GCode::WorkOffset((number / 10 - 53) as u8),
         591..=593 => GCode::WorkOffset((number - 591 + 7) as u8),
@@ -177,13 +231,13 @@ pub(super) fn refused_g_name(number: u16) -> &'static str {
         330 | 331 | 340..=360 => "thread cutting or tapping",
         380..=389 => "probing",
         410..=429 => "cutter compensation",
-        431..=439 => "a tool length offset of another form",
+        431..=449 => "a tool length offset of another form",
         500..=519 => "scaling",
         520 => "a local coordinate system",
         650..=670 => "a macro call",
         680..=699 => "coordinate rotation",
         700..=799 | 801..=899 => "a canned cycle",
-        960 => "constant surface speed",
+        960 | 970 => "constant surface speed",
         _ => "a word",
     }
 }

@@ -10,9 +10,13 @@ use super::moves::{Action, ActionKind, Step};
 use super::parameters::{LOCALS, Parameters};
 use super::position::{Position, Reading};
 use super::printer;
+use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
 use super::special::Special;
+use super::spindle_speed::SpindleMode;
+use super::state_words::{Saved, Switches};
 use super::statement::Unread;
+use super::tools::Tools;
 use super::transfer::Transfer;
 use super::words::Words;
 use crate::machine::{Family, Machine};
@@ -36,6 +40,22 @@ pub(super) struct Control<'m> {
     pub(super) special: Special,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
+    pub(super) tools: Tools,
+    pub(super) programmed: Programmed,
+    /// G16.
+    pub(super) polar: Option<Polar>,
+    pub(super) spindle: SpindleMode,
+    pub(super) switches: Switches,
+    /// What M70 has saved, for each subprogram that is running.
+    pub(super) saved: Vec<Option<Box<Saved>>>,
+    /// Parameters 5061 to 5070, as far as they are known; M66 has asked.
+    pub(super) probe: [Option<f64>; 10],
+    pub(super) input_unknown: bool,
+    /// What a restored state still has to do and to say.
+    pub(super) debts: Vec<(ActionKind, f64)>,
+    pub(super) lost: Option<&'static str>,
+    /// Targets are more than offsets: see `targets`.
+    pub(super) bent: bool,
     pub(super) printer: printer::State,
     block_delete: bool,
     begun: bool,
@@ -80,14 +100,25 @@ impl<'m> Interpreter<'m> {
     /// Begins a program: state at power-on.
     #[must_use]
     pub fn new(machine: &'m Machine, reading: &Reading) -> Self {
-        let control = Control {
+        let mut control = Control {
             machine,
             modal: Modal::power_on(machine),
-            position: Position::new(reading.start),
+            position: Position::new(machine, reading),
             knobs: KnobState::new(machine),
             special: Special::new(machine, reading),
             loads: 0,
             loads_off: 0,
+            tools: Tools::new(reading.tools.clone()),
+            programmed: Programmed::default(),
+            polar: None,
+            spindle: SpindleMode::default(),
+            switches: Switches::default(),
+            saved: vec![None],
+            probe: [Some(0.0); 10],
+            input_unknown: false,
+            debts: Vec::new(),
+            lost: None,
+            bent: false,
             printer: printer::State::new(machine),
             block_delete: reading.block_delete,
             begun: false,
@@ -98,6 +129,10 @@ impl<'m> Interpreter<'m> {
             parameters: Parameters::new(),
             transfer: None,
         };
+        if let Some(file) = &reading.parameters {
+            control.parameters.keep(file);
+        }
+        control.note_bent();
         Self {
             control,
             words: Words::new(),
@@ -132,11 +167,13 @@ impl<'m> Interpreter<'m> {
     pub(crate) fn enter(&mut self, arguments: Option<&[Value; LOCALS]>) {
         let arguments = arguments.copied().unwrap_or([None; LOCALS]);
         self.control.parameters.enter(arguments);
+        self.control.enter_level();
     }
 
     /// A subprogram with its own variables has ended.
     pub(crate) fn leave(&mut self) {
         self.control.parameters.leave();
+        self.control.leave_level();
     }
 
     /// A subroutine has returned a value, or none (`LinuxCNC`, "Subroutines":
@@ -298,6 +335,10 @@ impl Control<'_> {
             .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.words.checksum;
         let errors = run.report.diagnostics.errors;
+        if !self.debts.is_empty() {
+            let span = run.whole();
+            self.settle_debts(span, run);
+        }
         if run.words.is_plain_motion() {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
@@ -406,8 +447,7 @@ impl Control<'_> {
             run.words.take(b'D');
             run.words.take(b'H');
         }
-        while run.words.unused != 0 {
-            let letter = b'A' + run.words.unused.trailing_zeros() as u8;
+        while let Some(letter) = run.words.left_over() {
             run.words.take(letter);
             let span = run.words.span(letter, run.block);
             let message = format!("nothing in this block uses the {} word", letter as char);

@@ -7,6 +7,7 @@ use crate::syntax::Word;
 
 impl Control<'_> {
     pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
+        self.spindle_mode(run);
         let other = run
             .words
             .m
@@ -15,13 +16,14 @@ impl Control<'_> {
         if let Some(value) = run.words.take(b'S')
             && !other
         {
-            self.modal.spindle_rpm = value.abs();
+            self.set_speed(value, run);
             run.act(ActionKind::SpindleSpeed, value);
             self.note_spindle(run);
         }
         if let Some(tool) = run.words.take(b'T')
             && !other
         {
+            self.select_tool(tool, run);
             run.act(ActionKind::ToolSelect, tool);
             run.facts.boundary = true;
         }
@@ -72,6 +74,10 @@ impl Control<'_> {
             let (number, span) = run.words.m[index];
             let value = f64::from(number) / 10.0;
             self.switch_loads(value);
+            self.switches.switch(number);
+            if self.state_word(number, span, run) {
+                continue;
+            }
             if matches!(number, 820 | 830)
                 && self.machine.controller.language.family == Family::Marlin
             {
@@ -95,6 +101,7 @@ impl Control<'_> {
                     self.special.turn_spindle(number);
                     self.note_spindle(run);
                 }
+                ActionKind::ToolChange => self.load_tool(number, span, run),
                 // Arguments of a word that moves no axis, as in `M106 S255 P1`.
                 ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,
                 _ => {}

@@ -83,6 +83,8 @@ pub struct Modal {
     pub path_mode: PathMode,
     /// S in force, 1/min; 0 without one.
     pub spindle_rpm: f64,
+    /// G7: words of X are diameters.
+    pub diameter: bool,
 }
 
 impl Modal {
@@ -101,6 +103,7 @@ impl Modal {
             feed: None,
             path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
             spindle_rpm: 0.0,
+            diameter: false,
         }
     }
 }

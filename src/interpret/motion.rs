@@ -4,8 +4,10 @@ use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
 use super::moves::{Arc, FeedMode, Move, MoveKind, Step};
 use super::printer::Course;
+use super::report::Report;
 use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
+use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Differences of position below this are rounding, not motion (mm, degrees).
@@ -29,6 +31,16 @@ impl Control<'_> {
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
                 GCode::RestoreOffset => self.position.restore_offset(),
+                GCode::SaveReference => self.save_reference(number, span, run),
+                GCode::DataSetting => return self.data_setting(span, run),
+                GCode::LocalOffset => return self.local_offset(span, run),
+                GCode::Rotation(on) => self.rotation(on, span, run),
+                // A lathe's G50 (G-code system A) is what G92 is elsewhere.
+                GCode::Scaling(false) if run.words.has_axes() => {
+                    return self.set_offset(span, run);
+                }
+                GCode::Scaling(on) => self.scaling(on, span, run),
+                GCode::Mirror(on) => self.mirror(on, span, run),
                 _ => {}
             }
         }
@@ -87,24 +99,21 @@ impl Control<'_> {
     /// that incremental words count from. Returns the axes
     /// whose start is not known; `None` when something was wrong.
     pub(super) fn targets(
-        &self,
+        &mut self,
         run: &mut Run<'_, '_>,
         machine_coordinates: bool,
         end: &mut AxisValues,
     ) -> Option<AxisSet> {
+        if self.is_bent(run) {
+            return self.bent_targets(run, machine_coordinates, end);
+        }
         let mut unknown = AxisSet::default();
         let mut fine = true;
         for (axis, value) in run.words.axes() {
             let letter = ALL_AXES[axis].letter();
             let Some(data) = &self.machine.axes[axis] else {
                 let span = run.words.span(letter, run.block);
-                let message = format!("the machine has no {} axis", letter as char);
-                run.report
-                    .error("no-such-axis", message, span)
-                    .help(format!(
-                        "choose a machine with it, or describe it in the machine file: [axes.{}]",
-                        letter as char
-                    ));
+                no_such_axis(letter, span, &mut run.report);
                 fine = false;
                 continue;
             };
@@ -121,7 +130,7 @@ impl Control<'_> {
             end[axis] = if machine_coordinates {
                 value
             } else if absolute {
-                self.position.absolute(axis, value)
+                self.position.frame.shifted(axis, value)
             } else {
                 end[axis] + value
             };
@@ -138,6 +147,21 @@ impl Control<'_> {
         }
         run.words.unused &= !AXIS_LETTERS;
         fine.then_some(unknown)
+    }
+
+    /// Whether the machine has an axis; reported where it has not.
+    pub(super) fn axis_exists(&self, axis: usize, run: &mut Run<'_, '_>) -> bool {
+        self.axis_exists_at(axis, ALL_AXES[axis].letter(), run)
+    }
+
+    /// The same for the word of that letter.
+    pub(super) fn axis_exists_at(&self, axis: usize, letter: u8, run: &mut Run<'_, '_>) -> bool {
+        if self.machine.axes[axis].is_some() {
+            return true;
+        }
+        let span = run.words.span(letter, run.block);
+        no_such_axis(letter, span, &mut run.report);
+        false
     }
 
     fn straight(&mut self, run: &mut Run<'_, '_>) {
@@ -202,7 +226,8 @@ impl Control<'_> {
         if let Some(given_mm_s) = given {
             feed_mm_s = given_mm_s;
         } else if kind != MoveKind::Rapid {
-            let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else {
+            let Some(speed_mm_s) = self.feed_speed(run, end, arc.as_ref(), length_mm, linear)
+            else {
                 return;
             };
             feed_mm_s = speed_mm_s;
@@ -258,6 +283,8 @@ impl Control<'_> {
     pub(super) fn feed_speed(
         &self,
         run: &mut Run<'_, '_>,
+        end: &AxisValues,
+        arc: Option<&Arc>,
         length_mm: f64,
         linear: bool,
     ) -> Option<f64> {
@@ -300,8 +327,14 @@ impl Control<'_> {
         if self.feed_mode_is(FeedMode::PerMinute) {
             return Some(per_unit);
         }
-        if self.modal.spindle_rpm > 0.0 {
-            return Some(per_unit * self.modal.spindle_rpm);
+        let rpm = self.highest_rpm(end, arc);
+        if self.spindle.surface_mm_min.is_some() {
+            let message = "under G96 a feed per revolution counts at the highest spindle speed \
+                           of its block";
+            run.report.note_once("surface-speed", message, span);
+        }
+        if rpm > 0.0 {
+            return Some(per_unit * rpm);
         }
         run.report
             .error(
@@ -312,6 +345,14 @@ impl Control<'_> {
             .help("write S before the first move under G95");
         None
     }
+}
+
+fn no_such_axis(letter: u8, span: Span, report: &mut Report<'_, '_>) {
+    let message = format!("the machine has no {} axis", letter as char);
+    report.error("no-such-axis", message, span).help(format!(
+        "choose a machine with it, or describe it in the machine file: [axes.{}]",
+        letter as char
+    ));
 }
 
 /// Length of the path that F speaks for, and whether that is a length of

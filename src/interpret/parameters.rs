@@ -10,6 +10,7 @@ use std::collections::HashMap;
 
 use super::execute::Control;
 use super::expression::{Name, Read, Value, Variables};
+use super::parameter_file::ParameterFile;
 use crate::machine::Family;
 
 /// Numbers that belong to the subroutine that runs, and 0.
@@ -43,6 +44,14 @@ impl Parameters {
             named: HashMap::new(),
             local_names: HashMap::new(),
             callers: Vec::new(),
+        }
+    }
+
+    /// Takes over what the control has kept; what shows its state is not here.
+    pub(super) fn keep(&mut self, file: &ParameterFile) {
+        for (number, value) in file.iter() {
+            // The file has as many as there are numbers, which is not too many.
+            let _ = self.set(&Name::Number(number), Some(value));
         }
     }
 
@@ -123,6 +132,8 @@ impl Variables for Control<'_> {
         match number {
             5061..=5070 => Read::Unknown("the result of probing"),
             5399 => Read::Unknown("an input (M66)"),
+            5400..=5413 => Read::Unknown("the tool, without a tool table"),
+            5420..=5428 => Read::Unknown("the start position"),
             0 | 5603.. => Read::Missing,
             _ => Read::Value(Some(
                 self.parameters.number(number).flatten().unwrap_or(0.0),
@@ -160,11 +171,9 @@ impl Control<'_> {
             100..=199 | 500..=999 => return Read::Value(None),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
-            5001..=5009 if self.position.unknown.is_empty() => self.program_position(axis(5001)),
-            5021..=5029 if self.position.unknown.is_empty() => {
-                Some(self.position.at[axis(5021)] / self.modal.mm_per_unit)
-            }
-            5041..=5049 if self.position.unknown.is_empty() => self.program_position(axis(5041)),
+            5001..=5009 => self.place(axis(5001)),
+            5021..=5029 => self.place_in_machine(axis(5021)),
+            5041..=5049 => self.place(axis(5041)),
             _ => None,
         };
         match known {
@@ -172,12 +181,6 @@ impl Control<'_> {
             None if number >= 1000 => Read::Unknown("the state of the control"),
             None => Read::Missing,
         }
-    }
-
-    /// Where an axis stands, in program units and coordinates.
-    fn program_position(&self, axis: usize) -> Option<f64> {
-        let origin = self.position.absolute(axis, 0.0);
-        Some((self.position.at.get(axis)? - origin) / self.modal.mm_per_unit)
     }
 
     /// Gives a parameter a value; the reason where it cannot have one.
@@ -190,6 +193,9 @@ impl Control<'_> {
                 }
                 if self.set_system_parameter(*number, value.unwrap_or(0.0)) {
                     return Ok(());
+                }
+                if self.is_system_parameter(*number) {
+                    return Err("it can only be read");
                 }
             }
             Name::Number(3000) => return Err("#3000 raises an alarm, which ends the program"),

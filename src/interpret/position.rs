@@ -1,13 +1,18 @@
 //! Positions: program coordinates to machine coordinates.
 //!
 //! Everything is kept in machine coordinates (mm, degrees); an absolute word
-//! means `value + work offset + G92 offset + tool length`.
+//! means `value + work offset + G92 offset + tool length`, turned and scaled
+//! where the program says so.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::flow::Limits;
-use crate::machine::{AXES, AxisSet, AxisValues};
+use super::frame::Frame;
+use super::offsets::Offsets;
+use super::parameter_file::ParameterFile;
+use super::tool_table::ToolTable;
+use crate::machine::{AXES, AxisSet, AxisValues, Machine};
 
 /// Where the axes stand at the beginning of a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +31,10 @@ pub struct Reading {
     pub start: Start,
     /// True: blocks that begin with `/` are passed over.
     pub block_delete: bool,
+    /// The tools, if they are known.
+    pub tools: Option<Arc<ToolTable>>,
+    /// Parameters that the control has kept, if they are known.
+    pub parameters: Option<Arc<ParameterFile>>,
     /// Folders where subprograms are looked for, in this order.
     pub sub_paths: Arc<[PathBuf]>,
     /// Where repetition stops.
@@ -37,6 +46,8 @@ impl Default for Reading {
         Self {
             start: Start::At([0.0; AXES]),
             block_delete: false,
+            tools: None,
+            parameters: None,
             sub_paths: Arc::default(),
             limits: Limits::default(),
         }
@@ -50,69 +61,94 @@ pub(super) struct Position {
     pub(super) at: AxisValues,
     /// Axes whose place is not known.
     pub(super) unknown: AxisSet,
-    /// G92 offset in force, and the one that G92.3 restores.
-    offset: AxisValues,
-    stored: AxisValues,
+    /// The map from program to machine that the offsets make.
+    pub(super) frame: Frame,
+    offsets: Offsets,
+    /// Axes whose last programmed coordinate is no longer the place where they
+    /// stand, since a turn or a scale has begun or ended (Fanuc).
+    pub(super) adrift: AxisSet,
 }
 
 impl Position {
-    pub(super) fn new(start: Start) -> Self {
-        let (at, unknown) = match start {
+    pub(super) fn new(machine: &Machine, reading: &Reading) -> Self {
+        let (at, unknown) = match reading.start {
             Start::At(at) => (at, AxisSet::default()),
             Start::Unknown => ([0.0; AXES], AxisSet((1 << AXES) - 1)),
         };
+        let offsets = Offsets::new(machine, reading.parameters.as_deref());
         Self {
             at,
             unknown,
-            offset: [0.0; AXES],
-            stored: [0.0; AXES],
+            frame: offsets.frame(),
+            offsets,
+            adrift: AxisSet::default(),
         }
     }
 
-    /// Machine coordinate of an absolute program coordinate.
+    /// Machine coordinate of an absolute program coordinate, for an axis that
+    /// is not turned with another one.
+    #[inline]
     pub(super) fn absolute(&self, axis: usize, value: f64) -> f64 {
-        value + self.offset[axis]
+        self.frame.absolute(axis, value)
+    }
+
+    /// Where the axes stand, in program coordinates (mm, degrees).
+    pub(super) fn program(&self) -> AxisValues {
+        self.frame.program(&self.at)
+    }
+
+    pub(super) fn offsets(&self) -> &Offsets {
+        &self.offsets
+    }
+
+    /// Changes the offsets; the axes stay where they are.
+    pub(super) fn change<T>(&mut self, change: impl FnOnce(&mut Offsets) -> T) -> T {
+        let result = change(&mut self.offsets);
+        self.frame = self.offsets.frame();
+        result
     }
 
     /// G92: the place where the axis stands is called `value` from now on.
     pub(super) fn set_offset(&mut self, axis: usize, value: f64) {
-        self.offset[axis] = self.at[axis] - value;
-        self.stored[axis] = self.offset[axis];
+        // A shift of the program coordinates lies within everything else.
+        let difference = self.program()[axis] - value;
+        self.change(|offsets| {
+            let offset = offsets.g92[axis] + difference;
+            offsets.set_g92(axis, offset);
+        });
     }
 
     /// The axis moved by `by_mm` without a change of its program coordinate.
     pub(super) fn shift(&mut self, axis: usize, by_mm: f64) {
-        self.offset[axis] += by_mm;
+        // Often, and only where nothing is turned: without a new map.
+        self.offsets.g92[axis] += by_mm;
+        self.frame.nudge(axis, by_mm);
     }
 
     /// The axis stands at machine coordinate `at_mm`, without an offset.
     pub(super) fn home(&mut self, axis: usize, at_mm: f64) {
         self.at[axis] = at_mm;
-        self.offset[axis] = 0.0;
-        self.stored[axis] = 0.0;
+        self.change(|offsets| offsets.set_g92(axis, 0.0));
         self.unknown.0 &= !(1 << axis);
     }
 
     /// The offsets of G92 in force.
-    pub(super) fn offsets(&self) -> &AxisValues {
-        &self.offset
+    pub(super) fn shifts(&self) -> &AxisValues {
+        &self.offsets.g92
     }
 
     /// Puts offsets back.
-    pub(super) fn set_offsets(&mut self, offsets: AxisValues) {
-        self.offset = offsets;
+    pub(super) fn set_shifts(&mut self, shifts: &AxisValues) {
+        self.change(|offsets| offsets.g92 = *shifts);
     }
 
     /// G92.1 (`forget`) and G92.2.
     pub(super) fn clear_offset(&mut self, forget: bool) {
-        self.offset = [0.0; AXES];
-        if forget {
-            self.stored = [0.0; AXES];
-        }
+        self.change(|offsets| offsets.clear_g92(forget));
     }
 
     /// G92.3.
     pub(super) fn restore_offset(&mut self) {
-        self.offset = self.stored;
+        self.change(Offsets::restore_g92);
     }
 }

@@ -3,7 +3,9 @@
 use super::execute::{Control, Run};
 use super::motion::POSITION_MAX_MM;
 use super::moves::MoveKind;
-use crate::machine::{ALL_AXES, AXES, AxisKind, AxisSet, Family};
+use super::offsets::REFERENCE;
+use super::words::bit;
+use crate::machine::{ALL_AXES, AXES, AxisSet, Family};
 use crate::source::Span;
 use arrayvec::ArrayVec;
 
@@ -15,10 +17,19 @@ impl Control<'_> {
             // Its place is a setting of the control; P2 to P4 name further ones.
             run.words.take(b'P');
         }
-        let message = "the reference points of G28 and G30 are taken as machine zero";
-        run.report.note_once("reference-point", message, span);
+        let offsets = self.position.offsets();
+        let second = usize::from(number == 300);
+        let mut point = [0.0; AXES];
+        if self.machine.controller.language.family == Family::Rs274 {
+            point = offsets.axes_from(REFERENCE[second]);
+        }
+        if !offsets.known && point == [0.0; AXES] {
+            let message = "the reference points of G28 and G30 are taken as machine zero";
+            run.report.note_once("reference-point", message, span);
+        }
         let mut named = AxisSet::default();
         run.words.axes().for_each(|(axis, _)| named.insert(axis));
+        self.refuse_turned(named, span, run);
         if named.is_empty() {
             if self.machine.controller.language.family == Family::Iso {
                 run.report
@@ -35,16 +46,58 @@ impl Control<'_> {
             self.go(run, MoveKind::Rapid, &via, unknown, None);
         }
         let mut home = self.position.at;
-        for axis in named.iter() {
-            home[axis] = 0.0;
+        if named != self.machine.axis_set && !self.position.frame.is_plain() {
+            // LinuxCNC: the named coordinates of the program become those of
+            // the point, which in turned coordinates moves other axes too.
+            let frame = &self.position.frame;
+            let mut program = frame.program(&home);
+            let there = frame.program(&point);
+            for axis in named.iter() {
+                program[axis] = there[axis];
+            }
+            home = frame.machine(&program);
+        } else {
+            for axis in named.iter() {
+                home[axis] = point[axis];
+            }
         }
         let unknown = AxisSet(named.0 & self.position.unknown.0);
         self.go(run, MoveKind::Rapid, &home, unknown, None);
     }
 
+    /// G28.1 and G30.1: the place becomes the point that G28 or G30 goes to.
+    pub(super) fn save_reference(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+        let first = REFERENCE[usize::from(number == 301)];
+        if self.position.unknown.0 & self.machine.axis_set.0 != 0 {
+            run.report
+                .error(
+                    "offset-from-unknown",
+                    "a reference point at a position that is not known",
+                    span,
+                )
+                .help("give --start, or move the axes to a known position first");
+            return;
+        }
+        let at = self.position.at;
+        self.position.change(|offsets| {
+            for (axis, value) in at.into_iter().enumerate() {
+                offsets.store_axis(first, axis, value);
+            }
+        });
+    }
+
     pub(super) fn set_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
         let mut words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
+        if self.refuse_while_turned(span, run) {
+            return;
+        }
         if words.is_empty() {
+            if run.words.present & bit(b'S') != 0
+                && self.machine.controller.language.family == Family::Iso
+            {
+                // G92 S: the clamp of the spindle.
+                return;
+            }
             if self.machine.controller.language.family != Family::Marlin {
                 run.report
                     .error("offset-axes", "G92 without axes", span)
@@ -62,17 +115,15 @@ impl Control<'_> {
             let letter = ALL_AXES[axis].letter();
             run.words.take(letter);
             let at = run.words.span(letter, run.block);
-            let Some(data) = &self.machine.axes[axis] else {
-                let message = format!("the machine has no {} axis", letter as char);
-                run.report
-                    .error("no-such-axis", message, at)
-                    .help("describe it in the machine file, or take it out");
+            if !self.axis_exists_at(axis, letter, run) {
                 continue;
-            };
+            }
+            let frame = &self.position.frame;
+            let unknown = self.position.unknown;
             if self.machine.controller.language.family == Family::Marlin {
                 // Only differences of positions matter to a printer.
                 self.position.unknown.0 &= !(1 << axis);
-            } else if self.position.unknown.contains(axis) {
+            } else if unknown.iter().any(|by| frame.depends(by, axis)) {
                 run.report
                     .error(
                         "offset-from-unknown",
@@ -82,11 +133,7 @@ impl Control<'_> {
                     .help("give --start, or move the axis to a known position first");
                 continue;
             }
-            let value = if data.kind == AxisKind::Linear {
-                value * self.modal.mm_per_unit
-            } else {
-                value
-            };
+            let value = self.length_mm(axis, value);
             if value.abs() > POSITION_MAX_MM {
                 run.report
                     .error("position-range", "the position is beyond any machine", at)

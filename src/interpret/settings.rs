@@ -72,11 +72,9 @@ impl Control<'_> {
             match code {
                 GCode::Plane(plane) => self.modal.plane = plane,
                 GCode::Units { mm_per_unit } => self.modal.mm_per_unit = mm_per_unit,
-                GCode::ToolLengthOn => {
-                    run.words.take(b'H');
-                    let message = "without a tool table the tool length is taken as 0";
-                    run.report.note_once("no-tool-table", message, span);
-                }
+                GCode::ToolLength(form) => self.tool_length(form, span, run),
+                GCode::Diameter(on) => self.modal.diameter = on,
+                GCode::Polar(on) => self.polar_mode(on, span, run),
                 GCode::PathMode => self.path_mode(number, run),
                 GCode::MirrorX => self.mirror_x(span, run),
                 GCode::Retract(initial) => self.retract_level(initial, span, run),
@@ -86,13 +84,13 @@ impl Control<'_> {
                 }
                 GCode::ArcAbsolute(absolute) => self.modal.arc_absolute = absolute,
                 GCode::MachineCoordinates => run.facts.machine_coordinates = true,
-                GCode::WorkOffset(offset) if offset > 1 => {
-                    let message = "without a parameter file all work offsets are taken as 0";
-                    run.report.note_once("no-offsets", message, span);
-                }
+                GCode::WorkOffset(system) => self.select_system(u16::from(system), span, run),
+                GCode::FurtherOffset => self.further_offset(span, run),
                 _ => {}
             }
         }
+        self.tool_length_again(run);
+        self.note_bent();
     }
 
     /// The word of the motion group.

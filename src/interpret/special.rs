@@ -194,6 +194,16 @@ impl Control<'_> {
                 .help("use work coordinates here");
             return;
         }
+        if !self.suits_frame(number) {
+            run.report
+                .error(
+                    "special-in-frame",
+                    "turned, scaled or mirrored coordinates, or diameters, under this motion word",
+                    whole,
+                )
+                .help("end them before, or write the moves out");
+            return;
+        }
         let before = run.steps.len();
         match number {
             50..=53 => self.spline(number, run),
@@ -212,6 +222,18 @@ impl Control<'_> {
                 )
                 .help("check Q and the number of repeats");
         }
+    }
+
+    /// Whether the coordinates in force are such that a motion word is followed.
+    /// A cycle may have its holes placed in a turned plane, as long as its own
+    /// axis is left alone; G76 and G87 shift in that plane.
+    fn suits_frame(&self, number: u16) -> bool {
+        let frame = &self.position.frame;
+        if self.modal.diameter {
+            return false;
+        }
+        let follows = matches!(number, 380..=389 | 730 | 740 | 800..=860 | 880 | 890);
+        frame.is_plain() || follows && frame.leaves_alone(self.modal.plane[2])
     }
 
     /// Counts the moves of a repetition, made since there were `before` steps;

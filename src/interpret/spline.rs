@@ -92,7 +92,9 @@ impl Control<'_> {
                 run.spline_fault(message);
                 false
             }
-            None => self.feed_speed(run, 1.0, true).is_some(),
+            None => self
+                .feed_speed(run, &self.position.at, None, 1.0, true)
+                .is_some(),
         }
     }
 

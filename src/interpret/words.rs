@@ -5,14 +5,38 @@ use arrayvec::ArrayVec;
 use super::code::{GCode, code_number, g_code};
 use super::report::Report;
 use super::special::special_code;
-use crate::machine::Controller;
+use crate::machine::{Controller, Family};
 use crate::source::Span;
 use crate::syntax::{Block, Word};
 
+/// Words that have a place of their own: the letters, `@` and `^`.
+const SLOTS: usize = 28;
+
+/// Place of a letter in the tables of this module.
+const fn slot(letter: u8) -> usize {
+    match letter {
+        b'@' => 26,
+        b'^' => 27,
+        _ => (letter - b'A') as usize,
+    }
+}
+
+/// The letter at a place.
+fn letter_of(slot: u32) -> u8 {
+    match slot {
+        26 => b'@',
+        27 => b'^',
+        _ => b'A' + slot as u8,
+    }
+}
+
 /// Bit of a letter in the masks of this module.
 pub(super) const fn bit(letter: u8) -> u32 {
-    1 << (letter - b'A')
+    1 << slot(letter)
 }
+
+/// Polar coordinates: distance and angle.
+pub(super) const POLAR: u32 = bit(b'@') | bit(b'^');
 
 /// Letters that name axes.
 pub(super) const AXIS_LETTERS: u32 = bit(b'X')
@@ -32,9 +56,9 @@ const MOTION_GROUP: u32 = 1;
 /// The words of a block by letter. A buffer, filled again for each block.
 #[derive(Debug)]
 pub(super) struct Words {
-    values: [f64; 26],
+    values: [f64; SLOTS],
     /// Index in `Block::words` of each letter's word.
-    index: [u16; 26],
+    index: [u16; SLOTS],
     /// Letters that stand in the block.
     pub(super) present: u32,
     /// Letters that no code has used yet.
@@ -54,8 +78,8 @@ pub(super) struct Words {
 impl Words {
     pub(super) fn new() -> Self {
         Self {
-            values: [0.0; 26],
-            index: [0; 26],
+            values: [0.0; SLOTS],
+            index: [0; SLOTS],
             present: 0,
             unused: 0,
             g: ArrayVec::new(),
@@ -102,6 +126,9 @@ impl Words {
                     }
                 }
                 b'A'..=b'Z' => self.add(index, *word, report),
+                b'@' | b'^' if controller.language.family == Family::Rs274 => {
+                    self.add(index, *word, report);
+                }
                 b'*' if block.number.is_some() => {
                     self.checksum = true;
                     super::printer::verify_checksum(*word, controller, report);
@@ -132,7 +159,7 @@ impl Words {
 
     fn add(&mut self, index: usize, word: Word, report: &mut Report<'_, '_>) {
         let mask = bit(word.letter);
-        let slot = usize::from(word.letter - b'A');
+        let slot = slot(word.letter);
         if self.groups & GCode::MacroCall.group() != 0 {
             // Arguments: the macro call reads them itself.
             return;
@@ -230,7 +257,7 @@ impl Words {
     pub(super) fn take(&mut self, letter: u8) -> Option<f64> {
         let free = self.unused & bit(letter) != 0;
         self.unused &= !bit(letter);
-        free.then(|| self.values[usize::from(letter - b'A')])
+        free.then(|| self.values[slot(letter)])
     }
 
     /// The letter's word in its block.
@@ -238,7 +265,7 @@ impl Words {
         self.has(letter).then(|| {
             block
                 .words
-                .get(usize::from(self.index[usize::from(letter - b'A')]))
+                .get(usize::from(self.index[slot(letter)]))
                 .copied()
         })?
     }
@@ -263,16 +290,21 @@ impl Words {
         }
     }
 
+    /// The first letter that no code has used.
+    pub(super) fn left_over(&self) -> Option<u8> {
+        (self.unused != 0).then(|| letter_of(self.unused.trailing_zeros()))
+    }
+
     /// True when an axis letter is left.
     pub(super) fn has_axes(&self) -> bool {
-        self.unused & AXIS_LETTERS != 0
+        self.unused & (AXIS_LETTERS | POLAR) != 0
     }
 }
 
 /// Axes and values of the axis words of a block.
 pub(super) struct Axes<'a> {
     letters: u32,
-    values: &'a [f64; 26],
+    values: &'a [f64; SLOTS],
 }
 
 impl Iterator for Axes<'_> {

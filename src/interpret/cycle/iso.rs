@@ -58,7 +58,11 @@ impl Control<'_> {
         let Some(unknown) = self.targets(run, false, &mut place) else {
             return;
         };
-        if repeats == 0 || self.feed_speed(run, 1.0, true).is_none() {
+        if repeats == 0
+            || self
+                .feed_speed(run, &self.position.at, None, 1.0, true)
+                .is_none()
+        {
             // K0 and L0 only take the values over.
             return;
         }

@@ -56,7 +56,10 @@ impl Control<'_> {
             return run.cycle_value(b'L', "a canned cycle cannot be repeated 0 times");
         }
         // A feed that is missing is reported once.
-        if self.feed_speed(run, 1.0, true).is_none() {
+        if self
+            .feed_speed(run, &self.position.at, None, 1.0, true)
+            .is_none()
+        {
             return;
         }
         let from = self.believed();

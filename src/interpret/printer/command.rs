@@ -6,6 +6,7 @@ use crate::interpret::code::{GCode, Motion, g_code};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::moves::{ActionKind, Step};
 use crate::interpret::report::Report;
+use crate::interpret::tools::ToolLength;
 use crate::machine::{Command, ExtruderMode, Family};
 use crate::source::Span;
 use crate::syntax::{Block, Word};
@@ -142,7 +143,7 @@ impl Control<'_> {
             Some(GCode::Absolute(absolute)) => absolute == self.modal.absolute,
             Some(GCode::Units { mm_per_unit }) => mm_per_unit == self.modal.mm_per_unit,
             Some(GCode::Plane(plane)) => plane == self.modal.plane,
-            Some(GCode::CompensationOff | GCode::ToolLengthOff) => true,
+            Some(GCode::CompensationOff | GCode::ToolLength(ToolLength::Off)) => true,
             _ => false,
         }
     }

@@ -140,7 +140,7 @@ impl Control<'_> {
         }
         let state = SavedState {
             position: self.saved_position(),
-            offsets: *self.position.offsets(),
+            offsets: *self.position.shifts(),
             absolute: self.modal.absolute,
             extruder_absolute: self.printer.extruder_absolute,
             feed: self.modal.feed,
@@ -173,7 +173,7 @@ impl Control<'_> {
         run.facts.boundary = true;
         let mut offsets = saved.offsets;
         offsets[EXTRUDER] += self.position.at[EXTRUDER] - saved.position.at[EXTRUDER];
-        self.position.set_offsets(offsets);
+        self.position.set_shifts(&offsets);
         self.position.unknown.0 |= saved.position.unknown.0;
         self.modal.absolute = saved.absolute;
         self.printer.extruder_absolute = saved.extruder_absolute;
