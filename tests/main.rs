@@ -1,6 +1,7 @@
 //! Tests.
 
 mod layers;
+mod conformance;
 mod interpret;
 mod syntax;
 mod plan;
