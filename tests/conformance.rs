@@ -57,15 +57,18 @@ fn programs(folder: &Path, into: &mut Vec<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else {
         panic!("{} cannot be read", folder.display());
     };
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
     paths.sort();
     for path in paths {
         if path.is_dir() {
             programs(&path, into);
-        } else if path
-            .extension()
-            .is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
-        {
+        } else if path.extension().is_some_and(|ending| {
+            ENDINGS
+                .iter()
+                .any(|known| ending.eq_ignore_ascii_case(known))
+        }) {
             into.push(path);
         }
     }
@@ -78,14 +81,15 @@ fn judge(program: &Path, theirs: &Run, subs: &[PathBuf], machine: &Machine) -> (
             (Verdict::BothRefuse, format!("{message} | {rule} {ours}"))
         }
         (Run::Failed(message), Ok(_)) => (Verdict::Fails, message.clone()),
-        (Run::Events(theirs), Err((rule, message))) if theirs.is_empty() && rule == "no-program" => {
+        (Run::Open(_), Err((rule, message))) if rule == "o-word" => (Verdict::BothRefuse, message),
+        (Run::Events(theirs) | Run::Open(theirs), Err((rule, message)))
+            if theirs.is_empty() && rule == "no-program" =>
+        {
             (Verdict::Nothing, message)
         }
-        (Run::Unclear(_), Err((rule, message))) | (Run::Events(_), Err((rule, message))) => {
-            (Verdict::Refused(rule), message)
-        }
+        (_, Err((rule, message))) => (Verdict::Refused(rule), message),
         (Run::Unclear(call), Ok(_)) => (Verdict::Unclear(call.clone()), String::new()),
-        (Run::Events(theirs), Ok(ours)) => match compare(theirs, &ours) {
+        (Run::Events(theirs) | Run::Open(theirs), Ok(ours)) => match compare(theirs, &ours) {
             Ok(()) => (Verdict::Equal, format!("{} moves", ours.len())),
             Err(difference) => (Verdict::Differs, difference),
         },
@@ -131,6 +135,7 @@ fn own_programs_as_rs274_reads_them() {
             if write {
                 let lines = match &now {
                     Run::Events(events) => text(events),
+                    Run::Open(events) => format!("open\n{}", text(events)),
                     Run::Failed(_) => "error\n".to_owned(),
                     Run::Unclear(call) => panic!("{}: {call}", path.display()),
                 };
@@ -142,7 +147,10 @@ fn own_programs_as_rs274_reads_them() {
         let lines = fs::read_to_string(&kept).expect("what rs274 printed");
         let then = match lines.as_str() {
             "error\n" => Run::Failed(String::new()),
-            lines => Run::Events(parse(lines)),
+            lines => match lines.strip_prefix("open\n") {
+                Some(lines) => Run::Open(parse(lines)),
+                None => Run::Events(parse(lines)),
+            },
         };
         let (verdict, message) = judge(&path, &then, &subs, &machine);
         verdicts.push((path, verdict, message));

@@ -2,6 +2,8 @@
 
 mod layers;
 mod conformance;
+mod expressions;
+mod flow;
 mod interpret;
 mod syntax;
 mod plan;

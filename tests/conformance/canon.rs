@@ -47,7 +47,9 @@ pub fn events(printed: &str) -> Result<Vec<Event>, String> {
     for line in printed.lines() {
         // "   12 N..... STRAIGHT_FEED(1.0000, …)"
         let mut parts = line.trim_start().splitn(3, ' ');
-        let numbered = parts.next().is_some_and(|number| number.parse::<u64>().is_ok());
+        let numbered = parts
+            .next()
+            .is_some_and(|number| number.parse::<u64>().is_ok());
         let call = parts.nth(1).unwrap_or_default().trim_start();
         let Some((name, rest)) = call.split_once('(').filter(|_| numbered) else {
             continue;
@@ -59,7 +61,10 @@ pub fn events(printed: &str) -> Result<Vec<Event>, String> {
 
 fn numbers<const N: usize>(text: &str) -> [f64; N] {
     let mut values = [0.0; N];
-    for (value, part) in values.iter_mut().zip(text.split(|c| c == ',' || c == ' ').filter(|part| !part.is_empty())) {
+    for (value, part) in values.iter_mut().zip(
+        text.split(|c| c == ',' || c == ' ')
+            .filter(|part| !part.is_empty()),
+    ) {
         *value = part.parse().unwrap_or(f64::NAN);
     }
     values
@@ -69,7 +74,11 @@ impl Canon {
     fn call(&mut self, name: &str, arguments: &str) -> Result<(), String> {
         match name {
             "USE_LENGTH_UNITS" => {
-                self.mm_per_unit = if arguments.contains("INCH") { 25.4 } else { 1.0 };
+                self.mm_per_unit = if arguments.contains("INCH") {
+                    25.4
+                } else {
+                    1.0
+                };
             }
             "SELECT_PLANE" => {
                 self.plane = match arguments.rsplit('_').next() {

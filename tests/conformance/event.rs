@@ -71,7 +71,12 @@ impl Event {
             if self.plane != ours.plane || self.turns != ours.turns {
                 return Some("turns");
             }
-            if !self.center.iter().zip(ours.center).all(|(a, b)| near(*a, b)) {
+            if !self
+                .center
+                .iter()
+                .zip(ours.center)
+                .all(|(a, b)| near(*a, b))
+            {
                 return Some("center");
             }
         }
@@ -145,7 +150,11 @@ fn line(event: &Event, before: &[f64; 6]) -> String {
     if event.kind == Kind::Arc {
         let plane = event.plane.map(|axis| AXES[axis] as char);
         let [i, j] = event.center;
-        let _ = write!(out, " {}{} I{i:.5} J{j:.5} R{}", plane[0], plane[1], event.turns);
+        let _ = write!(
+            out,
+            " {}{} I{i:.5} J{j:.5} R{}",
+            plane[0], plane[1], event.turns
+        );
     }
     if let Some(feed) = event.feed {
         let _ = write!(out, " F{feed:.4}");

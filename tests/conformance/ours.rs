@@ -77,7 +77,9 @@ fn event(mv: &Move) -> Event {
     if let Some(arc) = &mv.arc {
         let axis = |axis: usize| {
             let letter = ALL_AXES[axis].letter();
-            AXES.iter().position(|known| *known == letter).expect("an axis")
+            AXES.iter()
+                .position(|known| *known == letter)
+                .expect("an axis")
         };
         event.plane = arc.plane.map(axis);
         event.center = arc.center;

@@ -11,6 +11,9 @@ use super::event::Event;
 /// What `rs274` made of a program.
 pub enum Run {
     Events(Vec<Event>),
+    /// The same of a program without an end, or of one where something is not
+    /// closed: it says no more.
+    Open(Vec<Event>),
     /// It stopped with this message.
     Failed(String),
     /// It printed a call that says too little to compare.
@@ -45,7 +48,9 @@ pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
     );
     fs::write(at("lab.ini"), ini).expect("a file");
     let mut child = Command::new("rs274")
-        .args(["-g", "-n", "2", "-i", "lab.ini", "-t", "tool.tbl", "-v", "par.var"])
+        .args([
+            "-g", "-n", "2", "-i", "lab.ini", "-t", "tool.tbl", "-v", "par.var",
+        ])
         .arg(program)
         .current_dir(&folder)
         // Its map of the tool table lies in the home folder.
@@ -76,12 +81,15 @@ pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
         String::from_utf8_lossy(&bytes).into_owned()
     };
     let said = read("err");
-    let message = said.lines().find(|line| !line.trim().is_empty() && *line != "executing");
+    let message = said
+        .lines()
+        .find(|line| !line.trim().is_empty() && *line != "executing");
     if !status.success() && !said.contains(NO_END) {
         return Run::Failed(message.unwrap_or("without a word").to_owned());
     }
     match canon::events(&read("out")) {
-        Ok(events) => Run::Events(events),
+        Ok(events) if status.success() => Run::Events(events),
+        Ok(events) => Run::Open(events),
         Err(call) => Run::Unclear(call),
     }
 }
