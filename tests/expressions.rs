@@ -3,6 +3,7 @@
 //! RS274/NGC: LinuxCNC, "G-Code Overview" (Parameters, Expressions, Binary
 //! Operators, Functions); Fanuc: B-63944EN, "Custom Macro".
 
+use std::fmt::Write as _;
 use std::io::Cursor;
 
 use gwatt::machine::Machine;
@@ -14,7 +15,10 @@ fn machine(controller: &str) -> Machine {
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e9\n"
     );
     for axis in ["X", "Y", "Z"] {
-        text += &format!("[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n");
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n"
+        );
     }
     Machine::from_toml("test.toml", &text).expect("a machine").0
 }
@@ -377,7 +381,7 @@ impl Chain {
     fn text(&self) -> String {
         let mut text = self.first.text();
         for (operator, operand) in &self.rest {
-            text += &format!(" {operator} {}", operand.text());
+            let _ = write!(text, " {operator} {}", operand.text());
         }
         text
     }

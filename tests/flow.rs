@@ -18,8 +18,10 @@ fn machine(controller: &str, peak_w: f64) -> Machine {
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = {peak_w:?}\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n"
     );
     for axis in ["X", "Y"] {
-        text +=
-            &format!("[axes.{axis}]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n");
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n"
+        );
     }
     Machine::from_toml("test.toml", &text).expect("a machine").0
 }
@@ -177,6 +179,11 @@ fn every_message_of_o_words() {
         "o1 sub\nm99\no1 endsub\no1 call\n",
         "2 subprogram: M99 ends a program that M98 has called",
     );
+}
+
+#[test]
+fn every_message_of_subroutines_and_labels() {
+    let fails = |program: &str, expected: &str| fails("linuxcnc", program, expected);
     fails(
         "m98 p1 g0 x1\n",
         "1 subprogram: LinuxCNC does not execute the other words of this block",
@@ -357,7 +364,7 @@ impl Writer {
                 Statement::If(variable, than, yes, no) => {
                     writeln!(out, "o{label} if [#{} gt {than}]", 101 + variable).expect("memory");
                     self.block(yes);
-                    self.text += &format!("o{label} else\n");
+                    let _ = writeln!(self.text, "o{label} else");
                     self.block(no);
                     writeln!(self.text, "o{label} endif")
                 }
@@ -395,11 +402,11 @@ fn unrolled(statements: &[Statement], variables: &mut [i32; VARIABLES], out: &mu
         match statement {
             Statement::Go(x, feed) => {
                 let feed = feed.map_or(String::new(), |feed| format!(" f{feed}"));
-                *out += &format!("g1 x{}{feed}\n", x + variables[0] * 10);
+                let _ = writeln!(out, "g1 x{}{feed}", x + variables[0] * 10);
             }
             Statement::Add(variable, by) => variables[*variable] += by,
             Statement::Call(by) => {
-                *out += &format!("g0 x{}\n", variables[0] + by);
+                let _ = writeln!(out, "g0 x{}", variables[0] + by);
                 variables[0] += 1;
             }
             Statement::If(variable, than, yes, no) => {

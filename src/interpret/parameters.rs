@@ -60,12 +60,12 @@ impl Parameters {
 
     /// A subprogram begins, with these values in #1 and so on if they are its
     /// own.
-    pub(super) fn enter(&mut self, scope: Scope, arguments: [Value; LOCALS]) {
+    pub(super) fn enter(&mut self, scope: Scope, arguments: &[Value; LOCALS]) {
         if scope == Scope::Shared {
             return;
         }
         let locals = if scope == Scope::Own {
-            arguments
+            *arguments
         } else {
             self.locals
         };
@@ -179,8 +179,7 @@ impl Control<'_> {
         }
         let axis = |first: u32| (number - first) as usize;
         let known = match number {
-            0 => return Read::Value(None),
-            100..=199 | 500..=999 => return Read::Value(None),
+            0 | 100..=199 | 500..=999 => return Read::Value(None),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
             5001..=5009 if self.position.unknown.is_empty() => self.program_position(axis(5001)),

@@ -61,10 +61,10 @@ pub fn events(printed: &str) -> Result<Vec<Event>, String> {
 
 fn numbers<const N: usize>(text: &str) -> [f64; N] {
     let mut values = [0.0; N];
-    for (value, part) in values.iter_mut().zip(
-        text.split(|c| c == ',' || c == ' ')
-            .filter(|part| !part.is_empty()),
-    ) {
+    for (value, part) in values
+        .iter_mut()
+        .zip(text.split([',', ' ']).filter(|part| !part.is_empty()))
+    {
         *value = part.parse().unwrap_or(f64::NAN);
     }
     values

@@ -1,5 +1,6 @@
 //! What gwatt makes of a program.
 
+use std::fmt::Write as _;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -15,10 +16,14 @@ pub fn machine() -> Machine {
         "schema = 1\nname = \"conformance\"\ncontroller = \"linuxcnc\"\n[converter]\npeak_power_w = 1e9\n",
     );
     for axis in ["X", "Y", "Z", "U", "V", "W"] {
-        text += &format!("[axes.{axis}]\nrapid_mm_min = 1e5\naccel_mm_s2 = 1e4\nmass_kg = 10\n");
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 1e5\naccel_mm_s2 = 1e4\nmass_kg = 10\n"
+        );
     }
     for axis in ["A", "B", "C"] {
-        text += &format!(
+        let _ = write!(
+            text,
             "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 1e5\naccel_deg_s2 = 1e4\ninertia_kg_m2 = 1\n"
         );
     }

@@ -21,7 +21,7 @@ pub enum Run {
 }
 
 /// A program that never ends is given up after this.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 const PRINTED_MAX: u64 = 1 << 28;
 
 /// A message that does not end a program early.

@@ -54,7 +54,7 @@ impl Flow {
             Verb::Repeat(times) => {
                 // As LinuxCNC rounds: 2.5 is 2.
                 let times = times.round_ties_even();
-                if !(times.abs() <= REPEATS_MAX) {
+                if times.abs() > REPEATS_MAX {
                     let message = format!("{times} is too many repetitions");
                     return Err(Trouble::new("endless", message, "write a smaller number"));
                 }

@@ -78,7 +78,7 @@ impl Control<'_> {
                     statement.assignments.push((name, value, span));
                 }
                 b'O' if family == Family::Rs274 => {
-                    self.o_word(&mut reader, &mut statement, block)?
+                    self.o_word(&mut reader, &mut statement, block)?;
                 }
                 b'A'..=b'Z'
                     if family == Family::Iso && self.keyword(&mut reader, &mut statement)? => {}

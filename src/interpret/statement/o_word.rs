@@ -43,16 +43,16 @@ impl Control<'_> {
             }
             Label::Number(value.round() as u32)
         };
-        if reader.peek().is_none() {
-            if let Label::Number(value) = label {
-                block.words.push(Word {
-                    letter: b'O',
-                    value: f64::from(value),
-                    span: Span::new(start, reader.at),
-                    number: Span::new(number, reader.at),
-                });
-                return Ok(());
-            }
+        if reader.peek().is_none()
+            && let Label::Number(value) = label
+        {
+            block.words.push(Word {
+                letter: b'O',
+                value: f64::from(value),
+                span: Span::new(start, reader.at),
+                number: Span::new(number, reader.at),
+            });
+            return Ok(());
         }
         let Some(verb) = self.verb(reader)? else {
             let message = "this O-word says nothing that is known";
