@@ -1,6 +1,9 @@
 //! Tests.
 
 mod layers;
+mod conformance;
+mod expressions;
+mod flow;
 mod interpret;
 mod cycles;
 mod coordinates;

@@ -71,6 +71,7 @@ fuzz_target!(|bytes: &[u8]| {
                 Start::Unknown
             },
             block_delete: options & 2 != 0,
+            ..Reading::default()
         },
         certificate: match options >> 2 & 3 {
             0 | 1 => None,

@@ -7,7 +7,7 @@ use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
-use super::parameters::{LOCALS, Parameters};
+use super::parameters::{LOCALS, Parameters, Scope};
 use super::position::{Position, Reading};
 use super::printer;
 use super::programmed::{Polar, Programmed};
@@ -126,7 +126,7 @@ impl<'m> Interpreter<'m> {
             has_program_number: false,
             run: 1,
             text: 0,
-            parameters: Parameters::new(),
+            parameters: Parameters::new(machine.controller.language.family),
             transfer: None,
         };
         if let Some(file) = &reading.parameters {
@@ -164,16 +164,27 @@ impl<'m> Interpreter<'m> {
     }
 
     /// A subprogram begins, with these variables of its own.
-    pub(crate) fn enter(&mut self, arguments: Option<&[Value; LOCALS]>) {
-        let arguments = arguments.copied().unwrap_or([None; LOCALS]);
-        self.control.parameters.enter(arguments);
+    pub(super) fn enter(&mut self, scope: Scope, arguments: Option<&[Value; LOCALS]>) {
+        let none = [None; LOCALS];
+        let arguments = arguments.unwrap_or(&none);
+        self.control.parameters.enter(scope, arguments);
         self.control.enter_level();
     }
 
     /// A subprogram with its own variables has ended.
-    pub(crate) fn leave(&mut self) {
-        self.control.parameters.leave();
+    pub(super) fn leave(&mut self, scope: Scope) {
+        self.control.parameters.leave(scope);
         self.control.leave_level();
+    }
+
+    /// Whether programs are written in RS274/NGC.
+    pub(super) fn rs274(&self) -> bool {
+        self.control.machine.controller.language.family == Family::Rs274
+    }
+
+    /// Whether the program has begun with an O number.
+    pub(super) fn in_program(&self) -> bool {
+        self.control.has_program_number
     }
 
     /// A subroutine has returned a value, or none (`LinuxCNC`, "Subroutines":
@@ -245,6 +256,9 @@ impl<'m> Interpreter<'m> {
         }
         let transfers = !block.issues.is_empty() && self.control.beyond_words(block, &mut report);
         if !block.issues.is_empty() || block.words.is_empty() {
+            if block.words.is_empty() {
+                self.control.abort(block, &mut report);
+            }
             return Facts {
                 transfers,
                 ..Facts::default()
@@ -326,6 +340,25 @@ impl Control<'_> {
             return false;
         }
         self.block_delete
+    }
+
+    /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").
+    fn abort(&self, block: &Block, report: &mut Report<'_, '_>) {
+        let text = report.text.get(..block.text_end as usize);
+        let comment = text.and_then(|text| Some((text, memchr::memrchr(b'(', text)?)));
+        let Some((text, start)) =
+            comment.filter(|_| self.machine.controller.language.family == Family::Rs274)
+        else {
+            return;
+        };
+        let inside = text.get(start + 1..).unwrap_or_default();
+        let letters = inside.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
+        if letters.map(u8::to_ascii_lowercase).take(6).eq(*b"abort,") {
+            let message = "the program ends itself with an error here";
+            report
+                .error("abort", message, Span::new(start, text.len()))
+                .help("see why it comes to this line");
+        }
     }
 
     #[inline]

@@ -27,6 +27,17 @@ pub(super) struct Parameters {
     /// Names of the subroutine that runs.
     local_names: HashMap<String, f64>,
     callers: Vec<Saved>,
+    /// Numbers below this one belong to the subroutine that runs.
+    own: u32,
+}
+
+/// Which variables a subprogram has of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scope {
+    Own,
+    /// Names; its numbers are those of the caller.
+    OwnNames,
+    Shared,
 }
 
 /// What a caller goes on with.
@@ -37,13 +48,14 @@ struct Saved {
 }
 
 impl Parameters {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(family: Family) -> Self {
         Self {
             numbered: HashMap::new(),
             locals: [None; LOCALS],
             named: HashMap::new(),
             local_names: HashMap::new(),
             callers: Vec::new(),
+            own: if family == Family::Rs274 { 31 } else { 34 },
         }
     }
 
@@ -55,18 +67,32 @@ impl Parameters {
         }
     }
 
-    /// A subroutine begins with these values in #1 and so on.
-    pub(super) fn enter(&mut self, arguments: [Value; LOCALS]) {
+    /// A subprogram begins, with these values in #1 and so on if they are its
+    /// own.
+    pub(super) fn enter(&mut self, scope: Scope, arguments: &[Value; LOCALS]) {
+        if scope == Scope::Shared {
+            return;
+        }
+        let locals = if scope == Scope::Own {
+            *arguments
+        } else {
+            self.locals
+        };
         self.callers.push(Saved {
-            locals: std::mem::replace(&mut self.locals, arguments),
+            locals: std::mem::replace(&mut self.locals, locals),
             names: std::mem::take(&mut self.local_names),
         });
     }
 
-    /// A subroutine has ended.
-    pub(super) fn leave(&mut self) {
+    /// A subprogram with this scope has ended.
+    pub(super) fn leave(&mut self, scope: Scope) {
+        if scope == Scope::Shared {
+            return;
+        }
         if let Some(saved) = self.callers.pop() {
-            self.locals = saved.locals;
+            if scope == Scope::Own {
+                self.locals = saved.locals;
+            }
             self.local_names = saved.names;
         }
     }
@@ -74,8 +100,8 @@ impl Parameters {
     /// A value that was assigned; `None` if none was.
     pub(super) fn number(&self, number: u32) -> Option<Value> {
         match self.locals.get(number as usize) {
-            Some(value) => Some(*value),
-            None => self.numbered.get(&number).copied(),
+            Some(value) if number < self.own => Some(*value),
+            _ => self.numbered.get(&number).copied(),
         }
     }
 
@@ -83,13 +109,10 @@ impl Parameters {
     #[must_use]
     pub(super) fn set(&mut self, name: &Name<'_>, value: Value) -> bool {
         match name {
-            Name::Number(number) => {
-                if let Some(local) = self.locals.get_mut(*number as usize) {
-                    *local = value;
-                } else {
-                    self.numbered.insert(*number, value);
-                }
-            }
+            Name::Number(number) => match self.locals.get_mut(*number as usize) {
+                Some(local) if *number < self.own => *local = value,
+                _ => drop(self.numbered.insert(*number, value)),
+            },
             Name::Text(name) => {
                 let names = if name.starts_with('_') {
                     &mut self.named
@@ -134,7 +157,7 @@ impl Variables for Control<'_> {
             5399 => Read::Unknown("an input (M66)"),
             5400..=5413 => Read::Unknown("the tool, without a tool table"),
             5420..=5428 => Read::Unknown("the start position"),
-            0 | 5603.. => Read::Missing,
+            0 | 5602.. => Read::Missing,
             _ => Read::Value(Some(
                 self.parameters.number(number).flatten().unwrap_or(0.0),
             )),
@@ -167,8 +190,7 @@ impl Control<'_> {
         }
         let axis = |first: u32| (number - first) as usize;
         let known = match number {
-            0 => return Read::Value(None),
-            100..=199 | 500..=999 => return Read::Value(None),
+            0 | 100..=199 | 500..=999 => return Read::Value(None),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
             5001..=5009 => self.place(axis(5001)),
@@ -188,8 +210,8 @@ impl Control<'_> {
         match name {
             Name::Number(0) => return Err("#0 is always null"),
             Name::Number(number) if !self.fanuc() => {
-                if *number > 5602 {
-                    return Err("there are parameters up to #5602");
+                if *number > 5601 {
+                    return Err("there are parameters up to #5601");
                 }
                 if self.set_system_parameter(*number, value.unwrap_or(0.0)) {
                     return Ok(());

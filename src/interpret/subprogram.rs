@@ -10,6 +10,7 @@ use super::parameters::LOCALS;
 use super::transfer::{Call, Label, Target, Transfer};
 use crate::machine::Family;
 use crate::source::Span;
+use crate::syntax::Word;
 
 /// Repetitions that one call may ask for.
 const TIMES_MAX: f64 = 1e6;
@@ -48,6 +49,17 @@ impl Control<'_> {
         run: &mut Run<'_, '_>,
     ) -> bool {
         let family = self.machine.controller.language.family;
+        let calls = matches!(number, 980 | 990);
+        if calls && family == Family::Rs274 && run.block.words.iter().any(other_word) {
+            run.report
+                .error(
+                    "subprogram",
+                    "LinuxCNC does not execute the other words of this block",
+                    span,
+                )
+                .help("write M98 and M99 in blocks of their own");
+            return true;
+        }
         match (family, number) {
             (Family::Rs274 | Family::Iso, 980) | (Family::Iso, 970) => {
                 let local = number == 970;
@@ -56,7 +68,11 @@ impl Control<'_> {
                 }
             }
             (Family::Rs274 | Family::Iso, 990) => {
-                let block = run.words.take(b'P').map(|block| block.max(0.0) as u64);
+                // LinuxCNC returns to behind the call only.
+                let block = match family {
+                    Family::Rs274 => None,
+                    _ => run.words.take(b'P').map(|block| block.max(0.0) as u64),
+                };
                 self.transfer = Some(Transfer::Return { block });
             }
             _ => return false,
@@ -170,6 +186,11 @@ impl Control<'_> {
         });
         true
     }
+}
+
+/// What M98 and M99 of LinuxCNC do not use.
+fn other_word(word: &Word) -> bool {
+    !matches!(word.letter, b'M' | b'P' | b'L')
 }
 
 fn set(arguments: &mut [Value; LOCALS], variable: usize, value: f64) {

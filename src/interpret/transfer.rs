@@ -2,6 +2,7 @@
 
 use super::expression::Value;
 use super::parameters::LOCALS;
+use super::statement::Keyword;
 use crate::source::Span;
 
 /// The name of an O-word or of a subprogram.
@@ -60,6 +61,29 @@ pub(crate) enum Verb {
     EndRepeat,
     Break,
     Continue,
+}
+
+impl Verb {
+    /// The word it was read from.
+    pub(super) fn keyword(&self) -> Keyword {
+        match self {
+            Self::Sub => Keyword::Sub,
+            Self::EndSub(_) => Keyword::EndSub,
+            Self::Return(_) => Keyword::Return,
+            Self::Call(_) => Keyword::Call,
+            Self::If(_) => Keyword::If,
+            Self::ElseIf(_) => Keyword::ElseIf,
+            Self::Else => Keyword::Else,
+            Self::EndIf => Keyword::EndIf,
+            Self::While(_) => Keyword::While,
+            Self::EndWhile => Keyword::EndWhile,
+            Self::Do => Keyword::Do,
+            Self::Repeat(_) => Keyword::Repeat,
+            Self::EndRepeat => Keyword::EndRepeat,
+            Self::Break => Keyword::Break,
+            Self::Continue => Keyword::Continue,
+        }
+    }
 }
 
 /// A call of a subprogram.

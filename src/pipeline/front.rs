@@ -157,6 +157,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
 
     #[cold]
     #[inline(never)]
+    #[allow(clippy::unnecessary_wraps, reason = "the same as `next_line`")]
     fn next_of_flow(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
         let Some(flow) = &mut self.flow else {
             return Ok(None);

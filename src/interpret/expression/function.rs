@@ -1,5 +1,8 @@
 //! Functions of one value.
 
+/// Where the integers of LinuxCNC end.
+const ROUND_MAX: f64 = 2_147_483_647.0;
+
 /// A function by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Function {
@@ -20,40 +23,49 @@ pub(super) enum Function {
     Tan,
 }
 
-const NAMES: [(&[u8], Function); 20] = [
-    (b"ABS", Function::Abs),
-    (b"ACOS", Function::Acos),
-    (b"ACS", Function::Acos),
-    (b"ASIN", Function::Asin),
-    (b"ASN", Function::Asin),
-    (b"ATAN", Function::Atan),
-    (b"ATN", Function::Atan),
-    (b"COS", Function::Cos),
-    (b"EXISTS", Function::Exists),
-    (b"EXP", Function::Exp),
-    (b"FIX", Function::Fix),
-    (b"FUP", Function::Fup),
-    (b"LN", Function::Ln),
-    (b"POW", Function::Power),
-    (b"ROUND", Function::Round),
-    (b"SIN", Function::Sin),
-    (b"SQRT", Function::Sqrt),
-    (b"SQR", Function::Sqrt),
-    (b"TAN", Function::Tan),
-    (b"RND", Function::Round),
+/// Which language has a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    Both,
+    Rs274,
+    /// Fanuc custom macro B.
+    Macro,
+}
+
+/// A name that another begins with stands behind it.
+const NAMES: [(&[u8], Function, Of); 20] = [
+    (b"ABS", Function::Abs, Of::Both),
+    (b"ACOS", Function::Acos, Of::Both),
+    (b"ACS", Function::Acos, Of::Macro),
+    (b"ASIN", Function::Asin, Of::Both),
+    (b"ASN", Function::Asin, Of::Macro),
+    (b"ATAN", Function::Atan, Of::Both),
+    (b"ATN", Function::Atan, Of::Macro),
+    (b"COS", Function::Cos, Of::Both),
+    (b"EXISTS", Function::Exists, Of::Rs274),
+    (b"EXP", Function::Exp, Of::Both),
+    (b"FIX", Function::Fix, Of::Both),
+    (b"FUP", Function::Fup, Of::Both),
+    (b"LN", Function::Ln, Of::Both),
+    (b"POW", Function::Power, Of::Macro),
+    (b"ROUND", Function::Round, Of::Both),
+    (b"SIN", Function::Sin, Of::Both),
+    (b"SQRT", Function::Sqrt, Of::Both),
+    (b"SQR", Function::Sqrt, Of::Macro),
+    (b"TAN", Function::Tan, Of::Both),
+    (b"RND", Function::Round, Of::Macro),
 ];
 
 impl Function {
     /// The function whose name `text` begins with, and the name's length.
-    pub(super) fn read(text: &[u8]) -> Option<(Self, usize)> {
-        let begins = |name: &[u8]| {
-            text.get(..name.len())
-                .is_some_and(|front| front.eq_ignore_ascii_case(name))
-        };
+    /// `text` has no blanks.
+    pub(super) fn read(text: &[u8], fanuc: bool) -> Option<(Self, usize)> {
+        let other = if fanuc { Of::Rs274 } else { Of::Macro };
         NAMES
             .iter()
-            .find(|(name, _)| begins(name))
-            .map(|(name, function)| (*function, name.len()))
+            .filter(|(_, _, of)| *of != other)
+            .find(|(name, _, _)| text.starts_with(name))
+            .map(|(name, function, _)| (*function, name.len()))
     }
 
     /// The value for `x`, or what is wrong. Angles in degrees.
@@ -74,6 +86,10 @@ impl Function {
             Self::Fup => x.ceil(),
             Self::Ln if x <= 0.0 => return Err("LN of a number that is not positive"),
             Self::Ln => libm::log(x),
+            // LinuxCNC rounds by way of an integer, beyond which it gives nonsense.
+            Self::Round if !fanuc && x.abs() >= ROUND_MAX => {
+                return Err("ROUND of a number beyond 2147483647");
+            }
             Self::Round => x.round(),
             Self::Sin => libm::sin(x.to_radians()),
             Self::Sqrt if x < 0.0 => return Err("SQRT of a negative number"),

@@ -22,18 +22,20 @@ pub(super) enum Operator {
     ExclusiveOr,
 }
 
-/// How far two values may differ and yet be equal: `LinuxCNC` compares so.
-const EQUAL_TOLERANCE: f64 = 1e-5;
+/// How far two values may differ and yet be equal: `LinuxCNC` compares so with
+/// EQ and NE, and exactly with the others.
+const EQUAL_TOLERANCE: f64 = 1e-4;
 
 impl Operator {
-    /// The operator that `text` begins with, and its length.
+    /// The operator that `text`, upper case without blanks, begins with, and its
+    /// length.
     pub(super) fn read(text: &[u8]) -> Option<(Self, usize)> {
         use Operator::{
             And, Divide, Equal, ExclusiveOr, Greater, GreaterEqual, Less, LessEqual, Minus, Modulo,
             NotEqual, Or, Plus, Power, Times,
         };
-        let upper = |at: usize| text.get(at).map_or(0, u8::to_ascii_uppercase);
-        Some(match [upper(0), upper(1), upper(2)] {
+        let at = |at: usize| text.get(at).copied().unwrap_or_default();
+        Some(match [at(0), at(1), at(2)] {
             [b'*', b'*', _] => (Power, 2),
             [b'*', ..] => (Times, 1),
             [b'/', ..] => (Divide, 1),

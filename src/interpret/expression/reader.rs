@@ -11,12 +11,22 @@ use crate::source::Span;
 /// Brackets and signs inside one another.
 const DEPTH_MAX: u32 = 64;
 
+/// Letters of the longest keyword.
+const AHEAD: usize = 9;
+
 /// A place in the text of a block, which moves on as the text is understood.
 #[derive(Debug)]
 pub(in crate::interpret) struct Reader<'t> {
     pub(in crate::interpret) text: &'t [u8],
     pub(in crate::interpret) at: usize,
     depth: u32,
+}
+
+/// The next few bytes without blanks, and where each ends.
+#[derive(Debug, Default)]
+struct Ahead {
+    bytes: [u8; AHEAD],
+    ends: [usize; AHEAD],
 }
 
 /// Names one parameter.
@@ -64,16 +74,38 @@ impl<'t> Reader<'t> {
         next
     }
 
+    /// What comes next without its blanks, upper case: LinuxCNC reads past blanks
+    /// wherever they stand, and so do Fanuc's controls.
+    fn ahead(&mut self) -> Ahead {
+        self.peek();
+        let mut ahead = Ahead::default();
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let seen = rest
+            .iter()
+            .enumerate()
+            .filter(|(_, byte)| !matches!(byte, b' ' | b'\t'));
+        for (slot, (offset, byte)) in ahead.bytes.iter_mut().zip(&mut ahead.ends).zip(seen) {
+            *slot.0 = byte.to_ascii_uppercase();
+            *slot.1 = self.at + offset + 1;
+        }
+        ahead
+    }
+
+    /// Takes as many bytes of what [`Self::ahead`] gave.
+    fn take_ahead(&mut self, ahead: &Ahead, length: usize) {
+        let last = length.checked_sub(1).and_then(|last| ahead.ends.get(last));
+        self.at = last.copied().unwrap_or(self.at);
+    }
+
     /// Takes a word of letters if it is next, in either case.
     pub(in crate::interpret) fn take_name(&mut self, name: &[u8]) -> bool {
-        self.peek();
-        let end = self.at + name.len();
-        let next = self
-            .text
-            .get(self.at..end)
+        let ahead = self.ahead();
+        let next = ahead
+            .bytes
+            .get(..name.len())
             .is_some_and(|text| text.eq_ignore_ascii_case(name));
         if next {
-            self.at = end;
+            self.take_ahead(&ahead, name.len());
         }
         next
     }
@@ -116,7 +148,7 @@ impl<'t> Reader<'t> {
                 self.at += 1;
                 self.value(variables)
             }
-            Some(b'0'..=b'9' | b'.') => self.number().map(Some),
+            Some(b'0'..=b'9' | b'.') => self.number(!variables.fanuc()).map(Some),
             Some(b'A'..=b'Z') => self.function(variables).map(Some),
             _ => {
                 let start = self.at;
@@ -160,9 +192,8 @@ impl<'t> Reader<'t> {
         let mut left = self.value(variables)?;
         let fanuc = variables.fanuc();
         loop {
-            self.peek();
-            let rest = self.text.get(self.at..).unwrap_or_default();
-            let Some((operator, length)) = Operator::read(rest) else {
+            let ahead = self.ahead();
+            let Some((operator, length)) = Operator::read(&ahead.bytes) else {
                 return Ok(left);
             };
             let precedence = operator.precedence(fanuc);
@@ -170,7 +201,7 @@ impl<'t> Reader<'t> {
                 return Ok(left);
             }
             let start = self.at;
-            self.at += length;
+            self.take_ahead(&ahead, length);
             self.depth += 1;
             let right = self.operators(precedence, variables)?;
             self.depth -= 1;
@@ -181,21 +212,23 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// An unsigned number. Blanks may stand between its digits.
-    pub(in crate::interpret) fn number(&mut self) -> Outcome<f64> {
+    /// An unsigned number; `blanks` may stand between its digits.
+    pub(in crate::interpret) fn number(&mut self, blanks: bool) -> Outcome<f64> {
         let start = self.at;
-        let digits = |reader: &mut Self| {
-            while reader.text.get(reader.at).is_some_and(u8::is_ascii_digit) {
-                reader.at += 1;
-            }
+        let rest = self.text.get(start..).unwrap_or_default();
+        let of_number = |byte: &u8| {
+            byte.is_ascii_digit() || *byte == b'.' || blanks && matches!(byte, b' ' | b'\t')
         };
-        digits(self);
-        if self.text.get(self.at) == Some(&b'.') {
-            self.at += 1;
-            digits(self);
-        }
-        let text = self.text.get(start..self.at).unwrap_or_default();
-        let value = std::str::from_utf8(text)
+        let length = rest.iter().take_while(|byte| of_number(byte)).count();
+        let text = rest.get(..length).unwrap_or_default().trim_ascii_end();
+        self.at = start + text.len();
+        let plain = if text.contains(&b' ') || text.contains(&b'\t') {
+            let digits = text.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
+            Cow::Owned(digits.copied().collect::<Vec<u8>>())
+        } else {
+            Cow::Borrowed(text)
+        };
+        let value = std::str::from_utf8(&plain)
             .ok()
             .and_then(|text| text.parse::<f64>().ok());
         match value {
@@ -282,8 +315,10 @@ impl<'t> Reader<'t> {
     /// A function with its argument in brackets.
     fn function(&mut self, variables: &impl Variables) -> Outcome<f64> {
         let start = self.at;
-        let rest = self.text.get(start..).unwrap_or_default();
-        let Some((function, length)) = Function::read(rest) else {
+        let ahead = self.ahead();
+        let fanuc = variables.fanuc();
+        let Some((function, length)) = Function::read(&ahead.bytes, fanuc) else {
+            let rest = self.text.get(start..).unwrap_or_default();
             let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic());
             self.at += letters.count();
             let name = excerpt(self.text.get(start..self.at).unwrap_or_default(), 40);
@@ -292,17 +327,16 @@ impl<'t> Reader<'t> {
                 "the functions are ABS ACOS ASIN ATAN COS EXISTS EXP FIX FUP LN ROUND SIN SQRT TAN";
             return Err(self.fault("expression", message, help, start));
         };
-        self.at += length;
+        self.take_ahead(&ahead, length);
         if function == Function::Exists {
             return self.exists(variables);
         }
-        let fanuc = variables.fanuc();
         if !self.take(b'[') {
             let message = "the argument of a function stands in brackets";
             return Err(self.fault("expression", message, "write SIN[…]", start));
         }
         let x = self.expression(variables)?.unwrap_or(0.0);
-        let second = if self.take(b',') {
+        let second = if fanuc && self.take(b',') {
             Some(self.expression(variables)?.unwrap_or(0.0))
         } else {
             None
@@ -323,6 +357,7 @@ impl<'t> Reader<'t> {
                 let across = self.brackets(variables)?.unwrap_or(0.0);
                 Ok(libm::atan2(x, across).to_degrees())
             }
+            (Function::Atan, None) if !fanuc => Err("ATAN[…] without /[…] behind it"),
             (function, None) => function.apply(x, fanuc),
         };
         let result = result.map_err(|wrong| self.impossible(wrong, start))?;

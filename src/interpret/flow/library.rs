@@ -33,8 +33,18 @@ impl Library {
         &self.loaded
     }
 
-    /// The contents of the file that holds a subprogram.
-    pub(super) fn load(&mut self, label: &Label) -> Result<Vec<u8>, Trouble> {
+    /// That there is no such subprogram.
+    pub(super) fn nothing(label: &Label) -> Trouble {
+        let message = format!("there is no subprogram {label}");
+        let help = format!(
+            "define it in the program, or put {} into its folder or one given by --sub-path",
+            names(label).first().map_or("its file", String::as_str)
+        );
+        Trouble::new("no-such-subprogram", message, help)
+    }
+
+    /// The contents of the file that holds a subprogram, if there is one.
+    pub(super) fn load(&mut self, label: &Label) -> Result<Option<Vec<u8>>, Trouble> {
         let names = names(label);
         let found = self.folders.iter().find_map(|folder| {
             names
@@ -42,14 +52,7 @@ impl Library {
                 .map(|name| folder.join(name))
                 .find(|path| path.is_file())
         });
-        let Some(path) = found else {
-            let message = format!("there is no subprogram {label}");
-            let help = format!(
-                "define it in the program, or put {} into its folder or one given by --sub-path",
-                names.first().map_or("its file", String::as_str)
-            );
-            return Err(Trouble::new("no-such-subprogram", message, help));
-        };
+        let Some(path) = found else { return Ok(None) };
         let shown = path.display().to_string();
         let unreadable = |why: String| {
             let message = format!("the subprogram file {shown} cannot be read: {why}");
@@ -66,7 +69,7 @@ impl Library {
         }
         let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
         self.loaded.push(shown);
-        Ok(bytes)
+        Ok(Some(bytes))
     }
 }
 

@@ -1,7 +1,7 @@
 //! GOTO, WHILE and M99.
 
 use super::text::Search;
-use super::{Flow, Place, Trouble};
+use super::{Flow, Place, Style, Trouble};
 use crate::interpret::execute::Interpreter;
 
 impl Flow {
@@ -48,6 +48,15 @@ impl Flow {
         block: Option<u64>,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), Trouble> {
+        if self
+            .calls
+            .last()
+            .is_some_and(|frame| frame.style == Style::Sub)
+        {
+            let message = "M99 ends a program that M98 has called";
+            let help = "end what `o… call` has called with endsub or return";
+            return Err(Trouble::new("subprogram", message, help));
+        }
         if let Some(back) = self.leave(interpreter) {
             if let Some(block) = block
                 && self.next == back

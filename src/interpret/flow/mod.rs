@@ -6,13 +6,15 @@ mod macro_b;
 mod o_word;
 mod text;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use self::library::Library;
 use self::text::{Search, Text};
 use super::execute::Interpreter;
-use super::parameters::LOCALS;
+use super::parameters::{LOCALS, Scope};
 use super::position::Reading;
+use super::statement::Keyword;
 use super::transfer::{Call, Label, Target, Transfer};
 use crate::diagnostic::Diagnostic;
 use crate::source::{Span, split_line_end};
@@ -38,6 +40,14 @@ pub(crate) struct Flow {
     now: Place,
     calls: Vec<Frame>,
     loops: Vec<Loop>,
+    /// Subroutines that were passed or called: LinuxCNC looks for others in files
+    /// first, and only then further down.
+    subs: HashMap<Label, Place>,
+    /// Labels of branches and loops, by where their subroutine begins.
+    labels: HashMap<(Option<Place>, Label), (Keyword, usize)>,
+    /// A `break` has left a `while` loop: LinuxCNC 2.9 remembers it until the next
+    /// `while` that ends a `do` loop, and leaves that.
+    broke: bool,
     /// An ELSEIF that decides by its own condition: none before was taken.
     undecided: Option<Label>,
     /// The macro that each block which moves calls (G66).
@@ -78,10 +88,19 @@ struct Frame {
     /// Runs that are still to come.
     again: u64,
     arguments: Option<Box<[Option<f64>; LOCALS]>>,
-    /// Its variables are its own.
-    own: bool,
+    style: Style,
+    scope: Scope,
     /// Loops of its callers.
     loops: usize,
+}
+
+/// How a subprogram was called, and so how it ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Style {
+    /// `o… call`, to `endsub` or `return`.
+    Sub,
+    /// M98, M97, G65, to M99.
+    Program,
 }
 
 /// A loop that runs.
@@ -136,6 +155,9 @@ impl Flow {
             now,
             calls: Vec::new(),
             loops: Vec::new(),
+            subs: HashMap::new(),
+            labels: HashMap::new(),
+            broke: false,
             undecided: None,
             modal: None,
             repeated_moves: 0,
@@ -304,7 +326,21 @@ impl Flow {
             Target::Program(label) => self.find_program(label)?,
             Target::Block(block) => self.find_block(*block, self.next)?,
         };
-        self.enter(begin, call.times, call.arguments, false, interpreter)
+        if interpreter.rs274() && self.is_sub(begin) {
+            let message = "M98 calls a subroutine that begins with `sub`";
+            return Err(Trouble::new(
+                "subprogram",
+                message,
+                "call it with `o… call`",
+            ));
+        }
+        self.enter(
+            begin,
+            call.times,
+            call.arguments,
+            Style::Program,
+            interpreter,
+        )
     }
 
     /// Begins a subprogram.
@@ -313,7 +349,7 @@ impl Flow {
         begin: Place,
         times: u64,
         arguments: Option<Box<[Option<f64>; LOCALS]>>,
-        own: bool,
+        style: Style,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), Trouble> {
         if self.calls.len() >= self.limits.depth {
@@ -321,16 +357,21 @@ impl Flow {
             let help = "look for a subprogram that calls itself; --max-depth sets this limit";
             return Err(Trouble::new("call-depth", message, help));
         }
-        let own = own || arguments.is_some();
-        if own {
-            interpreter.enter(arguments.as_deref());
-        }
+        // LinuxCNC ("M98 and M99"): the program has its own names, and the
+        // numbers of its caller.
+        let scope = match &arguments {
+            Some(_) => Scope::Own,
+            None if interpreter.rs274() => Scope::OwnNames,
+            None => Scope::Shared,
+        };
+        interpreter.enter(scope, arguments.as_deref());
         self.calls.push(Frame {
             back: self.next,
             begin,
             again: times - 1,
             arguments,
-            own,
+            style,
+            scope,
             loops: self.loops.len(),
         });
         self.begin(begin, interpreter);
@@ -352,15 +393,11 @@ impl Flow {
     fn leave(&mut self, interpreter: &mut Interpreter<'_>) -> Option<Place> {
         let mut frame = self.calls.pop()?;
         self.loops.truncate(frame.loops);
-        if frame.own {
-            interpreter.leave();
-        }
+        interpreter.leave(frame.scope);
         let back = frame.back;
         if frame.again > 0 {
             frame.again -= 1;
-            if frame.own {
-                interpreter.enter(frame.arguments.as_deref());
-            }
+            interpreter.enter(frame.scope, frame.arguments.as_deref());
             self.begin(frame.begin, interpreter);
             self.calls.push(frame);
         } else {
@@ -381,12 +418,29 @@ impl Flow {
                 return Ok(Place { text, line });
             }
         }
-        let bytes = self.library.load(label)?;
-        let mut text = Text::new(bytes);
+        let Some(text) = self.load(label)? else {
+            return Err(Library::nothing(label));
+        };
         // A file may hold its program without an O word.
-        let line = text.begin(label).unwrap_or(0);
-        self.texts.push(text);
-        Ok(Place { text: count, line })
+        let begins = self.texts.get_mut(text).and_then(|it| it.begin(label));
+        let line = begins.unwrap_or(0);
+        Ok(Place { text, line })
+    }
+
+    /// Reads the file of a subprogram, if there is one; gives its text.
+    fn load(&mut self, label: &Label) -> Result<Option<usize>, Trouble> {
+        let Some(bytes) = self.library.load(label)? else {
+            return Ok(None);
+        };
+        self.texts.push(Text::new(bytes));
+        Ok(Some(self.texts.len() - 1))
+    }
+
+    /// Whether a subroutine begins there with `sub`.
+    fn is_sub(&self, place: Place) -> bool {
+        let text = self.texts.get(place.text);
+        let keyword = text.and_then(|text| text.keyword(place.line));
+        keyword == Some(Keyword::Sub)
     }
 
     /// A block of the program that `from` belongs to, looked for from there on.

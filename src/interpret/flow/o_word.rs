@@ -1,7 +1,8 @@
 //! O-words: subroutines, branches and loops (`LinuxCNC`, "O Codes").
 
-use super::text::Search;
-use super::{Flow, Loop, LoopKind, Trouble};
+use super::library::Library;
+use super::text::{Search, Text};
+use super::{Flow, Loop, LoopKind, Place, Style, Trouble};
 use crate::interpret::execute::Interpreter;
 use crate::interpret::statement::Keyword;
 use crate::interpret::transfer::{Label, Verb};
@@ -18,15 +19,15 @@ impl Flow {
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), Trouble> {
         let undecided = self.undecided.take();
+        self.check_label(&label, &verb)?;
         match verb {
-            // Not called: passed over.
-            Verb::Sub => self.behind(&label, &[Keyword::EndSub], "endsub"),
+            Verb::Sub => self.pass_sub(label, interpreter),
             Verb::EndSub(value) | Verb::Return(value) => self.return_from(value, interpreter),
             Verb::Call(arguments) => {
-                let mut begin = self.find_program(&label)?;
+                let mut begin = self.find_sub(label)?;
                 // Behind its `sub`.
                 begin.line += 1;
-                self.enter(begin, 1, Some(arguments), true, interpreter)
+                self.enter(begin, 1, Some(arguments), Style::Sub, interpreter)
             }
             Verb::If(true) | Verb::EndIf => Ok(()),
             Verb::If(false) => self.next_branch(label),
@@ -51,8 +52,9 @@ impl Flow {
                 Ok(())
             }
             Verb::Repeat(times) => {
-                let times = times.round();
-                if !(times.abs() <= REPEATS_MAX) {
+                // As LinuxCNC rounds: 2.5 is 2.
+                let times = times.round_ties_even();
+                if times.abs() > REPEATS_MAX {
                     let message = format!("{times} is too many repetitions");
                     return Err(Trouble::new("endless", message, "write a smaller number"));
                 }
@@ -66,6 +68,86 @@ impl Flow {
             Verb::EndRepeat => self.end_repeat(&label),
             Verb::Break => self.break_loop(&label),
             Verb::Continue => self.continue_loop(&label),
+        }
+    }
+
+    /// A subroutine that is not called is passed over.
+    fn pass_sub(&mut self, label: Label, interpreter: &Interpreter<'_>) -> Result<(), Trouble> {
+        if !self.calls.is_empty() {
+            return Err(nested());
+        }
+        if interpreter.in_program() {
+            let message = "a subroutine begins inside a program with an O number";
+            let help = "end the program with M2 or M30 before it";
+            return Err(Trouble::new("o-word", message, help));
+        }
+        if let Some(known) = self.subs.get(&label)
+            && *known != self.now
+        {
+            return Err(duplicate(&label, known.line));
+        }
+        self.behind(&label, &[Keyword::EndSub], "endsub")?;
+        self.subs.insert(label, self.now);
+        Ok(())
+    }
+
+    /// Where a subroutine begins: one that was passed, one in a file of its own,
+    /// or one further down, in this order as in `LinuxCNC`.
+    fn find_sub(&mut self, label: Label) -> Result<Place, Trouble> {
+        if let Some(place) = self.subs.get(&label) {
+            return Ok(*place);
+        }
+        let search = Search::OWord(label.clone(), &[Keyword::Sub]);
+        let (text, from) = match self.load(&label)? {
+            Some(text) => (text, 0),
+            None => (self.now.text, self.now.line + 1),
+        };
+        let begins = |text: &mut Text| {
+            let line = text.find(&search, from)?;
+            (text.keyword(line) == Some(Keyword::Sub)).then_some(line)
+        };
+        let Some(line) = self.texts.get_mut(text).and_then(begins) else {
+            let program = self.texts.get_mut(text).and_then(|text| text.begin(&label));
+            if program.is_some_and(|line| line >= from) {
+                let message = format!("`call` calls the program {label}, which has no `sub`");
+                return Err(Trouble::new("o-word", message, "call it with M98"));
+            }
+            return Err(Library::nothing(&label));
+        };
+        let place = Place { text, line };
+        self.subs.insert(label, place);
+        Ok(place)
+    }
+
+    /// Each branch and loop of a subroutine has its own label, and what belongs
+    /// to it comes behind it.
+    fn check_label(&mut self, label: &Label, verb: &Verb) -> Result<(), Trouble> {
+        let keyword = verb.keyword();
+        let text = self.texts.get(self.now.text);
+        let runs = text.and_then(|text| text.runs.get(self.now.line));
+        if runs.is_none_or(|runs| *runs > 1) {
+            return Ok(());
+        }
+        let line = self.now.line;
+        let key = (self.calls.last().map(|frame| frame.begin), label.clone());
+        let known = self.labels.get(&key).copied();
+        let matches = |of: &[Keyword]| known.is_some_and(|(keyword, _)| of.contains(&keyword));
+        match keyword {
+            Keyword::While if matches(&[Keyword::Do]) => Ok(()),
+            _ if keyword.opens() => match known {
+                Some((_, before)) if before != line => Err(duplicate(label, before)),
+                _ => {
+                    self.labels.insert(key, (keyword, line));
+                    Ok(())
+                }
+            },
+            Keyword::ElseIf | Keyword::Else | Keyword::EndIf if !matches(&[Keyword::If]) => {
+                Err(stray(keyword.name()))
+            }
+            Keyword::Break | Keyword::Continue if !matches(&[Keyword::While, Keyword::Do]) => {
+                Err(stray(keyword.name()))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -88,13 +170,23 @@ impl Flow {
     ) -> Result<usize, Trouble> {
         let search = Search::OWord(label.clone(), keywords);
         let from = self.now.line + 1;
-        self.texts
-            .get_mut(self.now.text)
-            .and_then(|text| text.find(&search, from))
-            .ok_or_else(|| {
+        let found = self.texts.get_mut(self.now.text).and_then(|text| {
+            let line = text.find(&search, from)?;
+            Some((line, text.keyword(line)?))
+        });
+        match found {
+            Some((line, keyword)) if keywords.contains(&keyword) => Ok(line),
+            Some((_, Keyword::Sub)) => Err(nested()),
+            Some(_) => Err(duplicate(label, self.now.line)),
+            None => {
                 let message = format!("there is no `{label} {name}` behind this");
-                Trouble::new("o-word", message, "give each O-word its counterpart")
-            })
+                Err(Trouble::new(
+                    "o-word",
+                    message,
+                    "give each O-word its counterpart",
+                ))
+            }
+        }
     }
 
     /// Goes on at the next branch of an IF.
@@ -125,9 +217,15 @@ impl Flow {
         value: Option<f64>,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), Trouble> {
-        if self.leave(interpreter).is_none() {
-            return Err(stray("endsub"));
+        match self.calls.last().map(|frame| frame.style) {
+            Some(Style::Sub) => {}
+            Some(Style::Program) => {
+                let message = "a program that M98 has called ends with M99";
+                return Err(Trouble::new("o-word", message, "write M99"));
+            }
+            None => return Err(stray("endsub")),
         }
+        self.leave(interpreter);
         interpreter.returned(value);
         Ok(())
     }
@@ -135,6 +233,12 @@ impl Flow {
     fn begin_while(&mut self, label: Label, holds: bool) -> Result<(), Trouble> {
         // The end of a DO loop.
         if self.running(&label) == Some(LoopKind::Do) {
+            if std::mem::take(&mut self.broke) && holds {
+                let message = "a break has left a while loop before, which ends this do loop \
+                               on LinuxCNC 2.9";
+                let help = "write the loop with while and endwhile";
+                return Err(Trouble::new("o-word", message, help));
+            }
             if let Some(running) = self.take_loop(&label)
                 && holds
             {
@@ -176,6 +280,7 @@ impl Flow {
         let Some(running) = self.take_loop(label) else {
             return Err(stray("break"));
         };
+        self.broke |= running.kind == LoopKind::While;
         let (keywords, name) = end_of(running.kind);
         self.behind(label, keywords, name)
     }
@@ -190,8 +295,20 @@ impl Flow {
             }
             return Ok(());
         }
-        let (keywords, name) = end_of(kind);
-        self.next.line = self.find_o_word(label, keywords, name)?;
+        let ends: &[Keyword] = match kind {
+            LoopKind::Do => &[Keyword::Break, Keyword::While],
+            _ => end_of(kind).0,
+        };
+        let line = self.find_o_word(label, ends, end_of(kind).1)?;
+        let text = self.texts.get(self.now.text);
+        if text.and_then(|text| text.keyword(line)) == Some(Keyword::Break) {
+            // It goes on at the next line with the label, whatever that says.
+            let message = "behind this continue stands a break of the same do loop, \
+                           which LinuxCNC would take";
+            let help = "write the break before the continue, or the loop with while and endwhile";
+            return Err(Trouble::new("o-word", message, help));
+        }
+        self.next.line = line;
         Ok(())
     }
 
@@ -222,6 +339,18 @@ fn end_of(kind: LoopKind) -> (&'static [Keyword], &'static str) {
         LoopKind::Do => (&[Keyword::While], "while"),
         LoopKind::Repeat { .. } => (&[Keyword::EndRepeat], "endrepeat"),
     }
+}
+
+fn nested() -> Trouble {
+    let message = "a subroutine begins inside another";
+    Trouble::new("o-word", message, "end each subroutine before the next")
+}
+
+fn duplicate(label: &Label, line: usize) -> Trouble {
+    let line = line + 1;
+    let message = format!("the label {label} is used for two things, before in line {line}");
+    let help = "give each branch and loop of a subroutine a label of its own";
+    Trouble::new("o-word", message, help)
 }
 
 fn stray(name: &str) -> Trouble {

@@ -34,7 +34,8 @@ struct Index {
 /// What is looked for from some line on.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) enum Search {
-    /// The next of these O-words with this label.
+    /// The next of these O-words with this label; or one that begins something
+    /// with it, which is wrong there.
     OWord(Label, &'static [Keyword]),
     /// A block number.
     Block(u64),
@@ -102,6 +103,11 @@ impl Text {
         }
     }
 
+    /// What the O-word at the beginning of a line does.
+    pub(super) fn keyword(&self, line: usize) -> Option<Keyword> {
+        glance(self.line(line))?.1
+    }
+
     /// Whether that line is an O number alone.
     pub(super) fn is_program(&mut self, line: usize) -> bool {
         self.index().borders.binary_search(&line).is_ok()
@@ -157,8 +163,13 @@ impl Text {
     fn look(&mut self, search: &Search, from: usize) -> Option<usize> {
         match search {
             Search::OWord(label, keywords) => (from..self.len()).find(|line| {
-                matches!(glance(self.line(*line)), Some((found, Some(keyword)))
-                    if found == *label && keywords.contains(&keyword))
+                let Some((found, Some(keyword))) = glance(self.line(*line)) else {
+                    return false;
+                };
+                let wanted = keywords.contains(&keyword) || keyword.opens();
+                // A subroutine begins inside another.
+                let nested = keyword == Keyword::Sub && keywords.contains(&Keyword::EndSub);
+                found == *label && wanted || nested
             }),
             Search::Block(number) => {
                 // From here to the end of the program, then from its beginning.

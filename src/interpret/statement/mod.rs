@@ -7,7 +7,7 @@ mod o_word;
 pub(super) use o_word::{Keyword, glance};
 
 use super::execute::Control;
-use super::expression::{Fault, Name, Reader, Value};
+use super::expression::{Fault, Name, Reader, Value, Variables};
 use super::transfer::Transfer;
 use crate::machine::Family;
 use crate::source::Span;
@@ -78,7 +78,7 @@ impl Control<'_> {
                     statement.assignments.push((name, value, span));
                 }
                 b'O' if family == Family::Rs274 => {
-                    self.o_word(&mut reader, &mut statement, block)?
+                    self.o_word(&mut reader, &mut statement, block)?;
                 }
                 b'A'..=b'Z'
                     if family == Family::Iso && self.keyword(&mut reader, &mut statement)? => {}
@@ -100,13 +100,10 @@ impl Control<'_> {
             if reader.take(b'/') && reader.peek().is_some_and(|byte| byte.is_ascii_digit()) {
                 reader.at += 1;
             }
-            if let Some(number) = block
-                .number
-                .filter(|word| word.span.start as usize >= reader.at)
-            {
-                if reader.peek() == Some(b'N') {
-                    reader.at = number.span.end as usize;
-                }
+            if block.number.is_some() && reader.take(b'N') {
+                // The blanks in it are no end of it.
+                reader.peek();
+                let _ = reader.number(!self.fanuc());
             }
         }
     }

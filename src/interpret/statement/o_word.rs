@@ -20,6 +20,12 @@ impl Control<'_> {
         block: &mut Block,
     ) -> Result<(), Unread> {
         let start = reader.at;
+        if !block.words.is_empty() || !statement.assignments.is_empty() {
+            let message = "an O-word stands behind other words";
+            let help = "write it first in a block of its own";
+            reader.at += 1;
+            return Err(reader.fault("o-word", message, help, start).into());
+        }
         reader.at += 1;
         let number = {
             reader.peek();
@@ -37,16 +43,16 @@ impl Control<'_> {
             }
             Label::Number(value.round() as u32)
         };
-        if reader.peek().is_none() {
-            if let Label::Number(value) = label {
-                block.words.push(Word {
-                    letter: b'O',
-                    value: f64::from(value),
-                    span: Span::new(start, reader.at),
-                    number: Span::new(number, reader.at),
-                });
-                return Ok(());
-            }
+        if reader.peek().is_none()
+            && let Label::Number(value) = label
+        {
+            block.words.push(Word {
+                letter: b'O',
+                value: f64::from(value),
+                span: Span::new(start, reader.at),
+                number: Span::new(number, reader.at),
+            });
+            return Ok(());
         }
         let Some(verb) = self.verb(reader)? else {
             let message = "this O-word says nothing that is known";
@@ -146,29 +152,43 @@ pub(in crate::interpret) enum Keyword {
     Continue,
 }
 
+impl Keyword {
+    /// Whether it begins a branch or a loop; `while` may also end one.
+    pub(in crate::interpret) fn opens(self) -> bool {
+        matches!(self, Self::If | Self::While | Self::Do | Self::Repeat)
+    }
+
+    /// As it is written.
+    pub(in crate::interpret) fn name(self) -> &'static str {
+        let found = KEYWORDS.iter().find(|(_, keyword)| *keyword == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+// What begins like another stands behind it.
+const KEYWORDS: [(&str, Keyword); 15] = [
+    ("sub", Keyword::Sub),
+    ("endsub", Keyword::EndSub),
+    ("return", Keyword::Return),
+    ("call", Keyword::Call),
+    ("if", Keyword::If),
+    ("elseif", Keyword::ElseIf),
+    ("else", Keyword::Else),
+    ("endif", Keyword::EndIf),
+    ("while", Keyword::While),
+    ("endwhile", Keyword::EndWhile),
+    ("do", Keyword::Do),
+    ("repeat", Keyword::Repeat),
+    ("endrepeat", Keyword::EndRepeat),
+    ("break", Keyword::Break),
+    ("continue", Keyword::Continue),
+];
+
 /// Takes the keyword that is next.
 fn keyword(reader: &mut Reader<'_>) -> Option<Keyword> {
-    // What begins like another stands behind it.
-    const KEYWORDS: [(&[u8], Keyword); 15] = [
-        (b"sub", Keyword::Sub),
-        (b"endsub", Keyword::EndSub),
-        (b"return", Keyword::Return),
-        (b"call", Keyword::Call),
-        (b"if", Keyword::If),
-        (b"elseif", Keyword::ElseIf),
-        (b"else", Keyword::Else),
-        (b"endif", Keyword::EndIf),
-        (b"while", Keyword::While),
-        (b"endwhile", Keyword::EndWhile),
-        (b"do", Keyword::Do),
-        (b"repeat", Keyword::Repeat),
-        (b"endrepeat", Keyword::EndRepeat),
-        (b"break", Keyword::Break),
-        (b"continue", Keyword::Continue),
-    ];
     KEYWORDS
         .iter()
-        .find(|(name, _)| reader.take_name(name))
+        .find(|(name, _)| reader.take_name(name.as_bytes()))
         .map(|(_, keyword)| *keyword)
 }
 
@@ -176,7 +196,7 @@ fn keyword(reader: &mut Reader<'_>) -> Option<Keyword> {
 /// it does not have to be worked out, and what it does.
 pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword>)> {
     let mut reader = Reader::new(line, 0);
-    while matches!(reader.peek(), Some(b'/' | b'N' | b'0'..=b'9')) {
+    while matches!(reader.peek(), Some(b'/' | b'N' | b'0'..=b'9' | b'.')) {
         reader.at += 1;
     }
     if !reader.take(b'O') {
@@ -184,7 +204,7 @@ pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword
     }
     let label = match reader.peek()? {
         b'<' => Label::Name(reader.angle_name().ok()?.into_owned()),
-        b'0'..=b'9' => Label::Number(reader.number().ok()? as u32),
+        b'0'..=b'9' => Label::Number(reader.number(true).ok()? as u32),
         _ => return None,
     };
     Some((label, keyword(&mut reader)))

@@ -1,0 +1,488 @@
+//! The order of execution: calls, branches, loops, and where they stop.
+//!
+//! O-words: LinuxCNC, "O Codes"; M98, M99 and macros: B-63944EN, "Custom Macro".
+//! What LinuxCNC makes of O-words is held against it in `conformance.rs`; here
+//! stand the messages, the limits and what must hold for any program.
+
+use std::fmt::Write as _;
+use std::io::Cursor;
+
+use gwatt::machine::Machine;
+use gwatt::pipeline::{
+    Failure, LimitOptions, Limits, Options, Strategy as How, analyze, limit, moves,
+};
+use proptest::prelude::*;
+
+fn machine(controller: &str, peak_w: f64) -> Machine {
+    let mut text = format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = {peak_w:?}\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n"
+    );
+    for axis in ["X", "Y"] {
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n"
+        );
+    }
+    Machine::from_toml("test.toml", &text).expect("a machine").0
+}
+
+fn options(depth: usize, repeated_moves: u64, idle_lines: u64) -> Options {
+    let mut options = Options::default();
+    options.reading.limits = Limits {
+        depth,
+        repeated_moves,
+        idle_lines,
+    };
+    options
+}
+
+/// X and feed at the end of each move; or line, rule and message of the first
+/// error.
+fn run(controller: &str, program: &str, options: &Options) -> Result<Vec<(f64, f64)>, String> {
+    let mut ends = Vec::new();
+    let result = moves(
+        Cursor::new(program),
+        &machine(controller, 1e9),
+        options,
+        &mut |mv, _| {
+            ends.push((mv.end[0], mv.feed_mm_s));
+            Ok(())
+        },
+    );
+    match result {
+        Ok(_) => Ok(ends),
+        Err(Failure::Refused { diagnostics, .. }) => {
+            let found = &diagnostics[0];
+            Err(format!("{} {}: {}", found.line, found.rule, found.message))
+        }
+        Err(other) => panic!("{other}"),
+    }
+}
+
+/// X at the end of each move.
+fn ends(controller: &str, program: &str) -> Vec<f64> {
+    let found = run(controller, program, &options(20, 1000, 1000));
+    let ends = found.unwrap_or_else(|error| panic!("{error}\n{program}"));
+    ends.into_iter().map(|(x, _)| x).collect()
+}
+
+#[track_caller]
+fn fails(controller: &str, program: &str, expected: &str) {
+    let found = run(controller, program, &options(20, 1000, 1000));
+    assert_eq!(found, Err(expected.to_owned()), "{program}");
+}
+
+#[test]
+fn loops_and_jumps_of_macros() {
+    let program = "#1=1\nWHILE[#1 LE 3]DO1\nG0 X#1\n#1=#1+1\nEND1\nX9\nM30\n";
+    assert_eq!(ends("iso", program), [1.0, 2.0, 3.0, 9.0]);
+    let program = "#1=1\nWHILE[#1 LE 2]DO1\n#2=1\nWHILE[#2 LE 2]DO2\nG0 X[#1*10+#2]\n#2=#2+1\nEND2\n#1=#1+1\nEND1\nM30\n";
+    assert_eq!(ends("iso", program), [11.0, 12.0, 21.0, 22.0]);
+    let program = "#1=0\nN10 #1=#1+1\nG0 X#1\nIF[#1 LT 3]GOTO10\nGOTO30\nX99\nN30 X7\nM30\n";
+    assert_eq!(ends("iso", program), [1.0, 2.0, 3.0, 7.0]);
+    let program = "G0 X1\nDO1\n#1=#1+1\nIF[#1 GT 2]GOTO5\nX[#1*2]\nEND1\nN5 X0\nM30\n";
+    assert_eq!(ends("iso", program), [1.0, 2.0, 4.0, 0.0]);
+}
+
+#[test]
+fn calls_of_programs_and_macros() {
+    let program = "O1\nG0 X1\nM98 P2 L2\nX5\nM30\nO2\nG91 X10\nG90\nM99\n";
+    assert_eq!(ends("iso", program), [1.0, 11.0, 21.0, 5.0]);
+    let program = "O1\nG65 P9000 A3 B4\nG0 X[#1+1]\nM30\nO9000\nG0 X[#1*10+#2]\nM99\n";
+    assert_eq!(ends("iso", program)[0], 34.0);
+    // Without a value for #1 its caller reads 0 in brackets.
+    assert_eq!(ends("iso", program)[1], 1.0);
+    // M99 with a block number: the caller goes on there.
+    let program = "O1\nM98 P2\nG0 X1\nN50 G0 X2\nM30\nO2\nG0 X9\nM99 P50\n";
+    assert_eq!(ends("iso", program), [9.0, 2.0]);
+}
+
+#[test]
+fn every_message_of_o_words() {
+    let fails = |program: &str, expected: &str| fails("linuxcnc", program, expected);
+    fails(
+        "o-1 sub\n",
+        "1 o-word: -1 is not the number of a subroutine",
+    );
+    fails(
+        "o1 loop\n",
+        "1 o-word: this O-word says nothing that is known",
+    );
+    fails(
+        "o1 if [1] x5\n",
+        "1 o-word: nothing may follow an O-word in its block",
+    );
+    fails(
+        "g0 x5 o1 call\n",
+        "1 o-word: an O-word stands behind other words",
+    );
+    fails("o1 if\n", "1 expression: `[` is missing here");
+    let call = format!("o1 call {}\n", "[1]".repeat(31));
+    fails(&call, "1 o-word: a call has at most 30 arguments");
+    fails(
+        "o1 if [0]\n",
+        "1 o-word: there is no `O1 endif` behind this",
+    );
+    fails(
+        "o<a> while [0]\n",
+        "1 o-word: there is no `o<a> endwhile` behind this",
+    );
+    fails("o1 sub\n", "1 o-word: there is no `O1 endsub` behind this");
+    fails(
+        "o1 repeat [0]\n",
+        "1 o-word: there is no `O1 endrepeat` behind this",
+    );
+    fails("o1 repeat [1e13]\n", "1 expression: `]` is missing here");
+    fails(
+        "o1 repeat [10**13]\n",
+        "1 endless: 10000000000000 is too many repetitions",
+    );
+    for stray in [
+        "endif",
+        "else",
+        "elseif [1]",
+        "endwhile",
+        "endrepeat",
+        "endsub",
+        "return",
+        "break",
+        "continue",
+    ] {
+        let name = match stray {
+            "return" => "endsub",
+            other => other.split(' ').next().unwrap_or_default(),
+        };
+        let expected = format!("1 o-word: {name} without what it belongs to");
+        fails(&format!("o1 {stray}\n"), &expected);
+    }
+    fails(
+        "o1 call\n",
+        "1 no-such-subprogram: there is no subprogram O1",
+    );
+    fails(
+        "o<a/b> call\n",
+        "1 no-such-subprogram: there is no subprogram o<a/b>",
+    );
+    fails(
+        "o1 call\nm2\no1\nm99\n",
+        "1 o-word: `call` calls the program O1, which has no `sub`",
+    );
+    fails(
+        "m98 p1\nm2\no1 sub\no1 endsub\n",
+        "1 subprogram: M98 calls a subroutine that begins with `sub`",
+    );
+    fails(
+        "m98 p1\nm2\no1\no1 endsub\n",
+        "4 o-word: a program that M98 has called ends with M99",
+    );
+    fails(
+        "o1 sub\nm99\no1 endsub\no1 call\n",
+        "2 subprogram: M99 ends a program that M98 has called",
+    );
+}
+
+#[test]
+fn every_message_of_subroutines_and_labels() {
+    let fails = |program: &str, expected: &str| fails("linuxcnc", program, expected);
+    fails(
+        "m98 p1 g0 x1\n",
+        "1 subprogram: LinuxCNC does not execute the other words of this block",
+    );
+    fails(
+        "m98\n",
+        "1 subprogram: a call without the number of a program",
+    );
+    fails(
+        "m98 p1 l10000000\n",
+        "1 subprogram: a call that is repeated less than 0 or more than 1000000 times",
+    );
+    fails(
+        "o1 sub\no2 sub\no2 endsub\no1 endsub\n",
+        "1 o-word: a subroutine begins inside another",
+    );
+    fails(
+        "o1 call\nm2\no1 sub\no2 sub\no2 endsub\no1 endsub\n",
+        "4 o-word: a subroutine begins inside another",
+    );
+    fails(
+        "o7\no1 sub\no1 endsub\n",
+        "2 o-word: a subroutine begins inside a program with an O number",
+    );
+    fails(
+        "o1 sub\no1 endsub\no1 sub\no1 endsub\n",
+        "3 o-word: the label O1 is used for two things, before in line 1",
+    );
+    fails(
+        "o1 if [1]\no1 endif\no1 do\no1 while [0]\n",
+        "3 o-word: the label O1 is used for two things, before in line 1",
+    );
+    fails(
+        "o1 if [0]\no1 if [1]\no1 endif\no1 endif\n",
+        "1 o-word: the label O1 is used for two things, before in line 1",
+    );
+    fails(
+        "o1 do\no1 continue\no1 break\no1 while [0]\n",
+        "2 o-word: behind this continue stands a break of the same do loop, which LinuxCNC would take",
+    );
+    fails(
+        "o1 while [1]\no1 break\no1 endwhile\no2 do\no2 while [1]\n",
+        "5 o-word: a break has left a while loop before, which ends this do loop on LinuxCNC 2.9",
+    );
+    fails(
+        "m98 p1\nm2\no1\n",
+        "3 subprogram: the subprogram ends without a return",
+    );
+    fails(
+        "(abort, enough)\n",
+        "1 abort: the program ends itself with an error here",
+    );
+}
+
+#[test]
+fn every_message_of_macros() {
+    let fails = |program: &str, expected: &str| fails("iso", program, expected);
+    fails("IF[1]\n", "1 macro: IF without THEN or GOTO");
+    fails("WHILE[1]\n", "1 macro: WHILE without DO");
+    fails("IF[1]THEN#1\n", "1 macro: THEN takes an assignment");
+    fails("GOTO1.5\n", "1 macro: GOTO needs the number of a block");
+    fails("DO4\n", "1 macro: loops are numbered 1, 2 and 3");
+    fails(
+        "GOTO5\n",
+        "1 no-such-block: there is no block N5 in this program",
+    );
+    fails("WHILE[0]DO1\n", "1 loop: there is no END1 for this loop");
+    fails("END1\n", "1 loop: there is no DO1 for this END");
+    fails(
+        "M98 P7\n",
+        "1 no-such-subprogram: there is no subprogram O7",
+    );
+    fails(
+        "G65 A1\n",
+        "1 subprogram: a macro call without the number of a program",
+    );
+    fails(
+        "O1\nM98 P2\nM30\nO2\nG0 X1\n",
+        "5 subprogram: the subprogram ends without a return",
+    );
+}
+
+#[test]
+fn what_runs_away_is_stopped() {
+    let limited = |program: &str| run("linuxcnc", program, &options(5, 20, 50));
+    let error = |text: &str| Err(text.to_owned());
+    let deep = "o1 sub\no1 call\no1 endsub\no1 call\n";
+    assert_eq!(
+        limited(deep),
+        error("2 call-depth: more than 5 calls inside one another")
+    );
+    let idle = "o1 while [1]\no1 endwhile\n";
+    let found = limited(idle).expect_err("endless");
+    assert!(
+        found.ends_with("endless: 50 lines in a row have been executed without a move"),
+        "{found}"
+    );
+    let moving = "g91\no1 while [1]\ng0 x1\no1 endwhile\n";
+    assert_eq!(
+        limited(moving),
+        error("3 endless: more than 20 moves by repetition")
+    );
+    let repeat = "g91\no1 repeat [1000]\ng0 x1\no1 endrepeat\n";
+    assert_eq!(
+        limited(repeat),
+        error("3 endless: more than 20 moves by repetition")
+    );
+    // Just as many as are allowed: the first run of a line is none.
+    let repeat = "g91\no1 repeat [21]\ng0 x1\no1 endrepeat\n";
+    assert_eq!(limited(repeat).map(|moves| moves.len()), Ok(21));
+    // A flat program is not limited.
+    let flat = format!("g91\n{}", "g0 x1\n".repeat(100));
+    assert_eq!(limited(&flat).map(|moves| moves.len()), Ok(100));
+    let found = run("iso", "N1 #1=1\nGOTO1\n", &options(5, 20, 50)).expect_err("endless");
+    assert!(found.contains("endless: 50 lines in a row"), "{found}");
+    let found = run("iso", "O1\nM98 P1\nM30\n", &options(5, 20, 50)).expect_err("deep");
+    assert_eq!(found, "2 call-depth: more than 5 calls inside one another");
+    // A main program that ends with M99 begins again; once is enough.
+    assert_eq!(ends("iso", "O1\nG0 X1\nX2\nM99\n"), [1.0, 2.0, 1.0, 2.0]);
+}
+
+/// A statement of a random program.
+#[derive(Debug, Clone)]
+enum Statement {
+    /// To this X, in steps of the number of variables that are set.
+    Go(i32, Option<u16>),
+    Add(usize, i32),
+    If(usize, i32, Vec<Statement>, Vec<Statement>),
+    Repeat(u8, Vec<Statement>),
+    While(u8, Vec<Statement>),
+    Call(i32),
+}
+
+/// Variables that statements use; loops use others.
+const VARIABLES: usize = 3;
+
+fn statement() -> impl Strategy<Value = Statement> {
+    let leaf = prop_oneof![
+        4 => (-3000..3000_i32, prop::option::of(50..30_000_u16))
+            .prop_map(|(x, feed)| Statement::Go(x, feed)),
+        2 => (0..VARIABLES, -5..6_i32).prop_map(|(variable, by)| Statement::Add(variable, by)),
+        1 => (-50..50_i32).prop_map(Statement::Call),
+    ];
+    leaf.prop_recursive(4, 24, 4, |inner| {
+        let some = || prop::collection::vec(inner.clone(), 0..4);
+        prop_oneof![
+            (0..VARIABLES, -4..5_i32, some(), some())
+                .prop_map(|(variable, than, yes, no)| Statement::If(variable, than, yes, no)),
+            (0..4_u8, some()).prop_map(|(times, body)| Statement::Repeat(times, body)),
+            (0..4_u8, some()).prop_map(|(times, body)| Statement::While(times, body)),
+        ]
+    })
+}
+
+/// Writes a random program, and the same without flow.
+#[derive(Default)]
+struct Writer {
+    text: String,
+    labels: usize,
+}
+
+impl Writer {
+    fn block(&mut self, statements: &[Statement]) {
+        for statement in statements {
+            self.labels += 1;
+            let label = self.labels;
+            let out = &mut self.text;
+            match statement {
+                Statement::Go(x, feed) => {
+                    let feed = feed.map_or(String::new(), |feed| format!(" f{feed}"));
+                    writeln!(out, "g1 x[{x}+#101*10]{feed}")
+                }
+                Statement::Add(variable, by) => {
+                    let number = 101 + variable;
+                    writeln!(out, "#{number}=[#{number}+[{by}]]")
+                }
+                Statement::Call(by) => writeln!(out, "o<step> call [{by}]"),
+                Statement::If(variable, than, yes, no) => {
+                    writeln!(out, "o{label} if [#{} gt {than}]", 101 + variable).expect("memory");
+                    self.block(yes);
+                    let _ = writeln!(self.text, "o{label} else");
+                    self.block(no);
+                    writeln!(self.text, "o{label} endif")
+                }
+                Statement::Repeat(times, body) => {
+                    writeln!(out, "o{label} repeat [{times}]").expect("memory");
+                    self.block(body);
+                    writeln!(self.text, "o{label} endrepeat")
+                }
+                Statement::While(times, body) => {
+                    let count = 1000 + label;
+                    writeln!(
+                        out,
+                        "#{count}=0\no{label} while [#{count} lt {times}]\n#{count}=[#{count}+1]"
+                    )
+                    .expect("memory");
+                    self.block(body);
+                    writeln!(self.text, "o{label} endwhile")
+                }
+            }
+            .expect("memory");
+        }
+    }
+}
+
+fn program(statements: &[Statement]) -> String {
+    let mut writer = Writer::default();
+    writer.text += "g21 g90 f3000\no<step> sub\ng0 x[#101+#1]\n#101=[#101+1]\no<step> endsub\n";
+    writer.block(statements);
+    writer.text + "m2\n"
+}
+
+/// The same program written out.
+fn unrolled(statements: &[Statement], variables: &mut [i32; VARIABLES], out: &mut String) {
+    for statement in statements {
+        match statement {
+            Statement::Go(x, feed) => {
+                let feed = feed.map_or(String::new(), |feed| format!(" f{feed}"));
+                let _ = writeln!(out, "g1 x{}{feed}", x + variables[0] * 10);
+            }
+            Statement::Add(variable, by) => variables[*variable] += by,
+            Statement::Call(by) => {
+                let _ = writeln!(out, "g0 x{}", variables[0] + by);
+                variables[0] += 1;
+            }
+            Statement::If(variable, than, yes, no) => {
+                let taken = if variables[*variable] > *than {
+                    yes
+                } else {
+                    no
+                };
+                unrolled(taken, variables, out);
+            }
+            Statement::Repeat(times, body) | Statement::While(times, body) => {
+                for _ in 0..*times {
+                    unrolled(body, variables, out);
+                }
+            }
+        }
+    }
+}
+
+fn flat(statements: &[Statement]) -> String {
+    let mut out = "g21 g90 f3000\n".to_owned();
+    unrolled(statements, &mut [0; VARIABLES], &mut out);
+    out + "m2\n"
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn a_program_and_its_unrolled_twin_move_alike(statements in prop::collection::vec(statement(), 1..8)) {
+        let (program, flat) = (program(&statements), flat(&statements));
+        let options = options(20, 100_000, 100_000);
+        prop_assert_eq!(
+            run("linuxcnc", &program, &options),
+            run("linuxcnc", &flat, &options),
+            "{}\n{}", program, flat
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    /// What is certified fits in every run, and no feed has gone up.
+    #[test]
+    fn loops_that_are_limited_fit(
+        statements in prop::collection::vec(statement(), 1..6),
+        peak_w in 200.0..1500.0_f64,
+        by_speed in any::<bool>(),
+    ) {
+        let program = program(&statements);
+        let machine = machine("linuxcnc", peak_w);
+        let options = options(20, 100_000, 100_000);
+        let how = LimitOptions {
+            strategy: if by_speed { How::Speed } else { How::Optimal },
+            law: gwatt::pipeline::Law::Exact,
+            allow_feed: true,
+        };
+        let mut text = Vec::new();
+        let summary = limit(Cursor::new(&program), &machine, &options, how, &mut text, None).expect("a program");
+        if !summary.certified {
+            prop_assert!(!summary.reasons.is_empty(), "{}", program);
+            return Ok(());
+        }
+        let text = String::from_utf8(text).expect("text");
+        let after = analyze(Cursor::new(&text), &machine, &options, None).expect("a program");
+        prop_assert!(after.fits(), "{}\n{}", program, text);
+        prop_assert_eq!(after.moves, summary.before.moves);
+        let old = run("linuxcnc", &program, &options).expect("a program");
+        let new = run("linuxcnc", &text, &options).expect("a program");
+        for (old, new) in old.iter().zip(&new) {
+            prop_assert_eq!(old.0, new.0);
+            prop_assert!(new.1 <= old.1 * (1.0 + 1e-9), "{:?} {:?}\n{}\n{}", old, new, program, text);
+        }
+        // Each change is one line changed, and at most one that puts it back.
+        let changed = text.lines().filter(|line| !program.lines().any(|other| other == *line)).count();
+        prop_assert!(changed as u64 <= 2 * summary.edited_lines, "{}\n{}", program, text);
+    }
+}
