@@ -40,9 +40,16 @@ pub(super) enum GCode {
     Motion(Motion),
     Dwell,
     Plane([usize; 3]),
-    Units { mm_per_unit: f64 },
+    Units {
+        mm_per_unit: f64,
+    },
     Reference,
     CompensationOff,
+    /// G41, G42; `by_diameter`: G41.1 and G42.1.
+    CompensationOn {
+        left: bool,
+        by_diameter: bool,
+    },
     ToolLengthOn,
     ToolLengthOff,
     MachineCoordinates,
@@ -51,7 +58,9 @@ pub(super) enum GCode {
     Absolute(bool),
     ArcAbsolute(bool),
     SetOffset,
-    ClearOffset { forget: bool },
+    ClearOffset {
+        forget: bool,
+    },
     RestoreOffset,
     FeedMode(super::FeedMode),
     MirrorX,
@@ -68,7 +77,7 @@ impl GCode {
             Self::ArcAbsolute(_) => 3,
             Self::FeedMode(_) => 4,
             Self::Units { .. } => 5,
-            Self::CompensationOff => 6,
+            Self::CompensationOff | Self::CompensationOn { .. } => 6,
             Self::ToolLengthOn | Self::ToolLengthOff => 7,
             Self::WorkOffset(_) => 8,
             Self::PathMode => 9,
@@ -101,6 +110,10 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
+        (Family::Rs274, 410 | 411 | 420 | 421) => Some(GCode::CompensationOn {
+            left: number < 420,
+            by_diameter: number % 10 == 1,
+        }),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
         _ => common_g_code(number),

@@ -2,6 +2,7 @@
 //! tool change, spindle, coolant, dwell, plane, units, offsets, path mode,
 //! distance mode, reference points and offsets, motion, stop.
 
+use super::compensation::Compensation;
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
@@ -29,9 +30,11 @@ pub(super) struct Control<'m> {
     pub(super) knobs: KnobState,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
+    /// Cutter compensation, while it is on or being left.
+    pub(super) compensation: Option<Box<Compensation>>,
     block_delete: bool,
     begun: bool,
-    ended: bool,
+    pub(super) ended: bool,
     has_program_number: bool,
 }
 
@@ -73,6 +76,7 @@ impl<'m> Interpreter<'m> {
             knobs: KnobState::new(machine),
             loads: 0,
             loads_off: 0,
+            compensation: None,
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
@@ -100,6 +104,27 @@ impl<'m> Interpreter<'m> {
     #[must_use]
     pub fn ended(&self) -> bool {
         self.control.ended
+    }
+
+    /// The text of an earlier line whose moves were given with the last block
+    /// or are held back still; cut if it is long.
+    #[must_use]
+    pub fn held_text(&self, line: u64) -> Option<&[u8]> {
+        self.control.compensation.as_ref()?.text_of(line)
+    }
+
+    /// True while cutter compensation is on, and for the block that ends it.
+    #[must_use]
+    pub fn compensates(&self) -> bool {
+        self.control.compensation.is_some()
+    }
+
+    /// True while moves are held back: cutter compensation needs the next one
+    /// to know where they end.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.holds())
     }
 
     /// Executes one block: appends what it does to `steps`. What is not
@@ -139,6 +164,9 @@ impl<'m> Interpreter<'m> {
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
         self.control.run(&mut run);
+        if self.control.compensation.is_some() {
+            self.control.compensate(&mut run, before, errors);
+        }
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
         }

@@ -8,7 +8,7 @@ use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Differences of position below this are rounding, not motion (mm, degrees).
-const STANDSTILL_MM: f64 = 1e-9;
+pub(super) const STANDSTILL_MM: f64 = 1e-9;
 /// Positions beyond this are refused (mm, degrees): no machine is that large.
 pub(super) const POSITION_MAX_MM: f64 = 1e9;
 /// Index of the extruder axis.
@@ -198,7 +198,12 @@ impl Control<'_> {
     }
 
     /// The path speed that F asks for, mm/s; reports an F that is missing.
-    fn feed_speed(&self, run: &mut Run<'_, '_>, length_mm: f64, linear: bool) -> Option<f64> {
+    pub(super) fn feed_speed(
+        &self,
+        run: &mut Run<'_, '_>,
+        length_mm: f64,
+        linear: bool,
+    ) -> Option<f64> {
         let span = run.whole();
         let feed = match &self.modal.feed {
             Some(feed) if feed.value > 0.0 => feed,
@@ -255,7 +260,7 @@ impl Control<'_> {
 /// Length of the path that F speaks for, and whether that is a length of
 /// linear axes: XYZ if any of them moves, else UVW, else the rotary axes, else
 /// the extruder (RS274/NGC, "Feed Rate").
-fn path_length(
+pub(super) fn path_length(
     start: &AxisValues,
     end: &AxisValues,
     moving: AxisSet,

@@ -10,7 +10,10 @@ use crate::syntax::Block;
 
 /// A block that waits until all its moves are decided.
 pub(super) struct Entry {
+    pub(super) line: u64,
     pub(super) text: Vec<u8>,
+    /// Earlier lines, of which this block gives moves that were held back.
+    earlier: Vec<(u64, Vec<u8>)>,
     pub(super) block: Block,
     pub(super) facts: Facts,
     pub(super) steps: Vec<Step>,
@@ -30,7 +33,9 @@ impl Entry {
     pub(super) fn new(line: &Line<'_, '_>) -> Self {
         let modal = line.interpreter.modal();
         Self {
+            line: 0,
             text: Vec::new(),
+            earlier: Vec::new(),
             block: Block::default(),
             facts: Facts::default(),
             steps: Vec::new(),
@@ -57,6 +62,11 @@ impl Entry {
         std::mem::swap(&mut self.block, line.block);
         self.facts = line.facts;
         std::mem::swap(&mut self.steps, line.steps);
+        self.line = line.number;
+        self.earlier.clear();
+        if line.facts.compensated {
+            self.take_earlier(line);
+        }
         self.moves = self
             .steps
             .iter()
@@ -68,6 +78,23 @@ impl Entry {
         self.mode_before = mode_before;
         self.mm_per_unit_before = mm_per_unit_before;
         self.decided.clear();
+    }
+
+    /// Keeps the texts of the earlier lines that its moves belong to.
+    fn take_earlier(&mut self, line: &Line<'_, '_>) {
+        for step in &self.steps {
+            let Step::Move(mv) = step else { continue };
+            let known = mv.line == self.line || self.earlier.iter().any(|it| it.0 == mv.line);
+            if !known && let Some(text) = line.interpreter.held_text(mv.line) {
+                self.earlier.push((mv.line, text.to_vec()));
+            }
+        }
+    }
+
+    /// The text of the line that one of its moves belongs to.
+    pub(super) fn text_of(&self, line: u64) -> &[u8] {
+        let earlier = self.earlier.iter().find(|it| it.0 == line);
+        earlier.map_or(self.text.as_slice(), |(_, text)| text.as_slice())
     }
 
     /// Whether it moves by a kind that is wanted.

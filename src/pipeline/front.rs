@@ -11,6 +11,7 @@ use crate::syntax::{Block, scan_line};
 
 /// A line that has just been executed.
 pub(super) struct Line<'f, 'm> {
+    pub(super) number: u64,
     /// Its bytes, line end included.
     pub(super) text: &'f [u8],
     /// Buffers: they may be exchanged for others.
@@ -19,6 +20,17 @@ pub(super) struct Line<'f, 'm> {
     pub(super) facts: Facts,
     /// The state behind it.
     pub(super) interpreter: &'f Interpreter<'m>,
+}
+
+impl Line<'_, '_> {
+    /// The text of the line that a move belongs to: this one, or an earlier one
+    /// whose moves were held back.
+    pub(super) fn text_of(&self, line: u64) -> &[u8] {
+        if line == self.number {
+            return self.text;
+        }
+        self.interpreter.held_text(line).unwrap_or(self.text)
+    }
 }
 
 /// A stream of executed lines.
@@ -80,6 +92,7 @@ impl<'m, R: Read> Front<'m, R> {
             ..
         } = self;
         Ok(Some(Line {
+            number,
             text,
             block,
             steps,
@@ -94,6 +107,14 @@ impl<'m, R: Read> Front<'m, R> {
             let message = "there is no program in this file: no block does anything";
             self.diagnostics
                 .push(Diagnostic::error("no-program", message).help("give a part program"));
+        }
+        if self.interpreter.holds() && self.diagnostics.errors == 0 {
+            let message =
+                "the program ends under cutter compensation: where its last move ends is not known";
+            self.diagnostics.push(
+                Diagnostic::error("compensation", message)
+                    .help("write G40 and a move, or the end of the program: M2 or M30"),
+            );
         }
         refuse_on_errors(self.diagnostics)
     }

@@ -205,7 +205,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 flights,
                 outcomes,
             };
-            assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
+            assessor.push(mv, entry.text_of(mv.line), &mut |mv, assessment, text| {
                 tally.add(mv, assessment, text);
                 judge.take(mv, assessment);
             });
@@ -228,13 +228,17 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, &entry_ref.text, &mut |mv, assessment, text| {
-                tally.add(mv, assessment, text);
-                let permit = || entry_ref.permit(machine, mv, step);
-                limiter.push(mv, assessment, permit, &mut |outcome| {
-                    decided.push((*assessment, outcome));
-                });
-            });
+            assessor.push(
+                mv,
+                entry_ref.text_of(mv.line),
+                &mut |mv, assessment, text| {
+                    tally.add(mv, assessment, text);
+                    let permit = || entry_ref.permit(machine, mv, step);
+                    limiter.push(mv, assessment, permit, &mut |outcome| {
+                        decided.push((*assessment, outcome));
+                    });
+                },
+            );
         }
         entry.decided = decided;
     }
@@ -326,7 +330,8 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
     /// Tells the certifier what the block must do.
     fn expect(&mut self, entry: &mut Entry, change: Option<Change>) {
         let feed_before = entry.feed_before();
-        let mut decided = entry.decided.drain(..);
+        let mut list = std::mem::take(&mut entry.decided);
+        let mut decided = list.drain(..);
         for step in &entry.steps {
             let mv = match step {
                 Step::Action(action) => {
@@ -345,8 +350,8 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                     message,
                     help,
                 } = *obstacle;
-                self.reasons
-                    .push(mv.line, rule, message, &help, &entry.text);
+                let text = entry.text_of(mv.line);
+                self.reasons.push(mv.line, rule, message, &help, text);
             }
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);
@@ -377,6 +382,8 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 row,
             }));
         }
+        drop(decided);
+        entry.decided = list;
     }
 }
 
