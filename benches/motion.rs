@@ -31,6 +31,8 @@ fn feed() -> Move {
     Move {
         line: 1,
         number: None,
+        run: 1,
+        text: 0,
         kind: MoveKind::Feed,
         start: [0.0; 10],
         end,

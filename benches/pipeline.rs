@@ -84,7 +84,7 @@ fn moves(machine: &Machine) -> Vec<Move> {
     let (mut block, mut steps) = (Block::default(), Vec::new());
     for (text, number) in lines(program().as_bytes()).zip(1..) {
         scan_line(text, number == 1, &mut block);
-        interpreter.execute(number, text, &block, &mut steps, &mut diagnostics);
+        interpreter.execute(number, text, &mut block, &mut steps, &mut diagnostics);
     }
     assert_eq!(diagnostics.errors, 0, "{:?}", diagnostics.list);
     let moves = steps.into_iter().filter_map(|step| match step {
@@ -194,9 +194,14 @@ fn e_power(bencher: Bencher<'_, '_>, what: &str) {
 #[divan::bench(args = MACHINES)]
 fn f_check(bencher: Bencher<'_, '_>, name: &str) {
     let machine = machine(name);
-    bencher
-        .counter(bytes())
-        .bench_local(|| analyze(program().as_bytes(), &machine, &Options::default(), None));
+    bencher.counter(bytes()).bench_local(|| {
+        analyze(
+            std::io::Cursor::new(program()),
+            &machine,
+            &Options::default(),
+            None,
+        )
+    });
 }
 
 #[divan::bench(args = MACHINES)]
@@ -205,7 +210,7 @@ fn g_limit(bencher: Bencher<'_, '_>, name: &str) {
     let options = Options::default();
     bencher.counter(bytes()).bench_local(|| {
         limit(
-            program().as_bytes(),
+            std::io::Cursor::new(program()),
             &machine,
             &options,
             LIMIT,
@@ -221,7 +226,12 @@ fn h_report(bencher: Bencher<'_, '_>) {
     let options = Options::default();
     bencher.counter(bytes()).bench_local(|| {
         let mut rows = CsvRows::new(sink())?;
-        let summary = analyze(program().as_bytes(), &machine, &options, Some(&mut rows));
+        let summary = analyze(
+            std::io::Cursor::new(program()),
+            &machine,
+            &options,
+            Some(&mut rows),
+        );
         rows.finish().map(|_| summary)
     });
 }

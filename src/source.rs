@@ -131,6 +131,8 @@ pub struct LineReader<R> {
     buffer: Vec<u8>,
     /// First byte that was not handed out yet.
     start: usize,
+    /// First byte of the line that was handed out last.
+    last: usize,
     /// End of what was read.
     end: usize,
     /// End of what is known to hold neither a line end nor a lone last CR.
@@ -149,12 +151,24 @@ impl<R: Read> LineReader<R> {
             reader,
             buffer: vec![0; BUFFER_BYTES],
             start: 0,
+            last: 0,
             end: 0,
             searched: 0,
             nul: None,
             line: 0,
             at_end: false,
         }
+    }
+
+    /// The line that was handed out last.
+    #[inline]
+    pub fn last_line(&self) -> &[u8] {
+        self.buffer.get(self.last..self.start).unwrap_or_default()
+    }
+
+    /// What lines are read from; what was read ahead is gone.
+    pub fn get_mut(&mut self) -> &mut R {
+        &mut self.reader
     }
 
     /// The next line with its number from 1, its line end included; `None`
@@ -180,6 +194,7 @@ impl<R: Read> LineReader<R> {
         }
         let bytes = self.buffer.get(self.start..end).unwrap_or_default();
         self.line = line;
+        self.last = self.start;
         self.start = end;
         Ok(Some((line, bytes)))
     }

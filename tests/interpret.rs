@@ -34,7 +34,7 @@ fn moves(controller: &str, program: &str) -> String {
     let machine = machine(controller);
     let mut out = String::new();
     let result = pipeline::moves(
-        program.as_bytes(),
+        std::io::Cursor::new(program),
         &machine,
         &Options::default(),
         &mut |mv, _| {
@@ -173,10 +173,15 @@ fn block_delete_and_tape_marks() {
     };
     let mut lines = Vec::new();
     let program = b"%\nG0 X1\n/X2\n/2 X3\nX4\n%\nX5\n";
-    pipeline::moves(&program[..], &machine, &options, &mut |mv, _| {
-        lines.push(mv.line);
-        Ok(())
-    })
+    pipeline::moves(
+        std::io::Cursor::new(program),
+        &machine,
+        &options,
+        &mut |mv, _| {
+            lines.push(mv.line);
+            Ok(())
+        },
+    )
     .expect("accepted");
     assert_eq!(lines, [2, 5]);
 }

@@ -125,7 +125,14 @@ pub(crate) fn run(
         allow_feed: run.allow_feed,
     };
     let mut text = Vec::new();
-    let summary = limit(program, machine, &options(run), how, &mut text, None)?;
+    let summary = limit(
+        std::io::Cursor::new(program),
+        machine,
+        &options(run),
+        how,
+        &mut text,
+        None,
+    )?;
     Ok((text, summary))
 }
 

@@ -111,6 +111,8 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
     Move {
         line: 1,
         number: None,
+        run: 1,
+        text: 0,
         kind: if feed.is_finite() {
             MoveKind::Feed
         } else {

@@ -81,7 +81,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let run = |program: &[u8], options: &Options| -> Option<(Vec<u8>, LimitSummary)> {
         let mut output = Vec::new();
-        let summary = limit(program, machine, options, how, &mut output, None).ok()?;
+        let summary = limit(std::io::Cursor::new(program), machine, options, how, &mut output, None).ok()?;
         Some((output, summary))
     };
     let Some((output, summary)) = run(program, &options) else {
@@ -115,7 +115,7 @@ fuzz_target!(|bytes: &[u8]| {
         }
         return;
     }
-    match analyze(&output[..], machine, &options, None) {
+    match analyze(std::io::Cursor::new(&output), machine, &options, None) {
         Ok(after) => {
             assert!(after.fits(), "the result does not fit: {:?}", after.worst);
             let (told, found) = (summary.after.duration_s, after.duration_s);

@@ -1,6 +1,7 @@
 //! Options of every command that reads programs.
 
 use std::num::NonZeroUsize;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
@@ -24,6 +25,33 @@ pub struct ProgramArgs {
         allow_hyphen_values = true
     )]
     pub start: Option<StartArg>,
+    /// Folder where subprograms are looked for, behind the program's own
+    #[arg(long, value_name = "DIR", help_heading = "Program")]
+    pub sub_path: Vec<PathBuf>,
+    /// Moves that loops and calls may repeat
+    #[arg(
+        long,
+        value_name = "N",
+        help_heading = "Program",
+        default_value_t = 10_000_000
+    )]
+    pub max_moves: u64,
+    /// Lines in a row that may be executed without a move
+    #[arg(
+        long,
+        value_name = "N",
+        help_heading = "Program",
+        default_value_t = 10_000_000
+    )]
+    pub max_idle_lines: u64,
+    /// Calls inside one another
+    #[arg(
+        long,
+        value_name = "N",
+        help_heading = "Program",
+        default_value_t = 100
+    )]
+    pub max_depth: usize,
     /// How many threads to use [default: all cores]
     #[arg(long, value_name = "N", help_heading = "Program")]
     pub threads: Option<NonZeroUsize>,

@@ -42,9 +42,9 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
 }
 
 fn check_program(program: &Program, setup: &Setup) -> Checked {
-    let outcome = program
-        .open()
-        .and_then(|input| pipeline::analyze(input, &setup.machine, &setup.options, None));
+    let outcome = program.open().and_then(|input| {
+        pipeline::analyze(input, &setup.machine, &setup.options_for(program), None)
+    });
     Checked {
         program: program.name.clone(),
         outcome,

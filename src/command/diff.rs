@@ -120,7 +120,12 @@ fn analyze(
         sender,
     };
     let input = program.open()?;
-    let summary = pipeline::analyze(input, &setup.machine, &setup.options, Some(&mut rows))?;
+    let summary = pipeline::analyze(
+        input,
+        &setup.machine,
+        &setup.options_for(program),
+        Some(&mut rows),
+    )?;
     rows.send().map_err(Failure::Output)?;
     Ok(summary)
 }

@@ -1,7 +1,7 @@
 //! Programs to read: files, or standard input.
 
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use gwatt::diagnostic::excerpt;
@@ -53,13 +53,24 @@ impl Program {
         }
     }
 
-    /// Opens it for reading from the beginning.
-    pub fn open(&self) -> Result<Box<dyn Read + Send>, Failure> {
+    /// Opens it for reading from the beginning. What cannot be jumped about in
+    /// is copied first: programs with calls and loops need that.
+    pub fn open(&self) -> Result<File, Failure> {
         match &self.source {
-            Source::Stdin => Ok(Box::new(io::stdin())),
+            Source::Stdin => copied(&mut io::stdin().lock()),
             Source::File(path) => open_file(path),
             Source::Kept(file) => open_file(file.path()),
         }
+    }
+
+    /// The folder that it lies in.
+    pub fn folder(&self) -> Option<&Path> {
+        let folder = self.path()?.parent()?;
+        Some(if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        })
     }
 
     /// Makes sure that it can be opened several times.
@@ -83,14 +94,26 @@ impl Program {
     }
 }
 
-fn open_file(path: &Path) -> Result<Box<dyn Read + Send>, Failure> {
-    let file = File::open(path).map_err(Failure::Input)?;
+fn open_file(path: &Path) -> Result<File, Failure> {
+    let mut file = File::open(path).map_err(Failure::Input)?;
+    let kind = file.metadata().map_err(Failure::Input)?.file_type();
     // Some systems open a directory and fail later with a riddle.
-    if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
+    if kind.is_dir() {
         let error = io::Error::new(io::ErrorKind::IsADirectory, "it is a directory");
         return Err(Failure::Input(error));
     }
-    Ok(Box::new(file))
+    if kind.is_file() {
+        return Ok(file);
+    }
+    copied(&mut file)
+}
+
+/// A file with what is left to read.
+fn copied(input: &mut dyn Read) -> Result<File, Failure> {
+    let mut file = tempfile::tempfile().map_err(Failure::Output)?;
+    io::copy(input, &mut file).map_err(Failure::Input)?;
+    file.rewind().map_err(Failure::Input)?;
+    Ok(file)
 }
 
 /// True for `-`.

@@ -40,7 +40,8 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
         let sink = rows.sink();
         let how = options(args);
         let input = program.open()?;
-        pipeline::limit(input, &setup.machine, &setup.options, how, &mut spool, sink)
+        let options = setup.options_for(&program);
+        pipeline::limit(input, &setup.machine, &options, how, &mut spool, sink)
     })();
     let summary = match done {
         Ok(summary) => summary,

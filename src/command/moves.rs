@@ -20,7 +20,8 @@ pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
     let mut out = BufWriter::new(Target::Stdout.spool()?);
     let axes = setup.machine.axis_set;
     let outcome = program.open().and_then(|input| {
-        pipeline::moves(input, &setup.machine, &setup.options, &mut |mv, seconds| {
+        let options = setup.options_for(&program);
+        pipeline::moves(input, &setup.machine, &options, &mut |mv, seconds| {
             write_move(mv, seconds, axes, &mut out)
         })
     });

@@ -5,12 +5,13 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use gwatt::pipeline::Restart;
 use tempfile::NamedTempFile;
 
 use super::input::is_dash;
 
 /// Where a result is to go.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub enum Target {
     /// Standard output.
     Stdout,
@@ -110,6 +111,17 @@ pub struct Spool {
 enum Body {
     Apart(File),
     Beside(NamedTempFile),
+}
+
+impl Restart for Spool {
+    fn restart(&mut self) -> io::Result<()> {
+        let mut file = match &self.body {
+            Body::Apart(file) => file,
+            Body::Beside(file) => file.as_file(),
+        };
+        file.set_len(0)?;
+        file.rewind()
+    }
 }
 
 impl Spool {

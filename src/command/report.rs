@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use gwatt::pipeline;
+use gwatt::pipeline::{self, RowSink};
 use gwatt::report::{Checked, Verdict, check_text, report_json};
 
 use super::clash::refuse_clashes;
@@ -34,9 +34,10 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     };
     let mut rows = Rows::new(csv, args.json.as_deref())?;
 
-    let outcome = program
-        .open()
-        .and_then(|input| pipeline::analyze(input, &setup.machine, &setup.options, rows.sink()));
+    let outcome = program.open().and_then(|input| {
+        let sink = rows.sink().map(|rows| rows as &mut dyn RowSink);
+        pipeline::analyze(input, &setup.machine, &setup.options_for(&program), sink)
+    });
     let summary = match outcome {
         Ok(summary) => summary,
         Err(failure) => {

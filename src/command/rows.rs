@@ -2,10 +2,10 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use gwatt::pipeline::{Row, RowSink};
+use gwatt::pipeline::{Restart, RestartRows, Row, RowSink};
 use gwatt::report::{CsvRows, JsonRows};
 
 use super::output::{Spool, Target};
@@ -15,11 +15,13 @@ use super::output::{Spool, Target};
 pub struct Rows {
     csv: Option<CsvRows<Spool>>,
     json: Option<(JsonRows<BufWriter<File>>, Spool)>,
+    targets: (Option<Target>, Option<PathBuf>),
 }
 
 impl Rows {
     /// Opens what is asked for.
     pub fn new(csv: Option<Target>, json: Option<&Path>) -> Result<Self> {
+        let targets = (csv.clone(), json.map(Path::to_owned));
         let csv = match csv {
             Some(target) => Some(CsvRows::new(target.spool()?)?),
             None => None,
@@ -32,12 +34,12 @@ impl Rows {
             }
             None => None,
         };
-        Ok(Self { csv, json })
+        Ok(Self { csv, json, targets })
     }
 
     /// Where rows go; `None` where nobody wants them, which saves their making.
-    pub fn sink(&mut self) -> Option<&mut dyn RowSink> {
-        (self.csv.is_some() || self.json.is_some()).then_some(self as &mut dyn RowSink)
+    pub fn sink(&mut self) -> Option<&mut dyn RestartRows> {
+        (self.csv.is_some() || self.json.is_some()).then_some(self as &mut dyn RestartRows)
     }
 
     /// Delivers the reports; `write_json` puts the rows into their object.
@@ -71,6 +73,14 @@ impl RowSink for Rows {
         if let Some((json, _)) = &mut self.json {
             json.row(row)?;
         }
+        Ok(())
+    }
+}
+
+impl Restart for Rows {
+    fn restart(&mut self) -> io::Result<()> {
+        let (csv, json) = self.targets.clone();
+        *self = Self::new(csv, json.as_deref()).map_err(io::Error::other)?;
         Ok(())
     }
 }

@@ -1,13 +1,14 @@
 //! Machine and options of a run, from its arguments.
 
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::thread;
 
 use anyhow::{Context, Result, bail};
 use gwatt::machine::{self, AXES, Machine, builtin};
-use gwatt::pipeline::{Options, Reading, Start};
+use gwatt::pipeline::{Limits, Options, Reading, Start};
 
+use super::input::Program;
 use super::terminal::{Shown, Terminal};
 use crate::cli::{MachineArgs, ProgramArgs, StartArg};
 
@@ -43,11 +44,27 @@ impl Setup {
             reading: Reading {
                 start: start(reading.start.as_ref(), &machine)?,
                 block_delete: reading.block_delete,
+                sub_paths: reading.sub_path.clone().into(),
+                limits: Limits {
+                    depth: reading.max_depth,
+                    repeated_moves: reading.max_moves,
+                    idle_lines: reading.max_idle_lines,
+                },
             },
             certificate: None,
             threads: threads(reading),
         };
         Ok(Self { machine, options })
+    }
+
+    /// The options for a program: its own folder is the first where subprograms
+    /// are looked for.
+    pub fn options_for(&self, program: &Program) -> Options {
+        let mut options = self.options.clone();
+        let folders = program.folder().into_iter();
+        let given = options.reading.sub_paths.iter().map(PathBuf::as_path);
+        options.reading.sub_paths = folders.chain(given).map(Path::to_owned).collect();
+        options
     }
 }
 

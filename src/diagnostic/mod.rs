@@ -29,6 +29,8 @@ pub struct Diagnostic {
     pub message: String,
     /// What to do about it.
     pub help: Option<String>,
+    /// The file, where it is not the one that is being read.
+    pub file: Option<String>,
     /// Line number from 1; 0 when the finding concerns the whole file.
     pub line: u64,
     /// Column of the span's first character, from 1, in characters of the
@@ -71,6 +73,7 @@ impl Diagnostic {
             rule,
             message,
             help: None,
+            file: None,
             line: 0,
             column: 0,
             span: Span::default(),

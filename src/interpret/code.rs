@@ -64,6 +64,8 @@ pub(super) enum GCode {
     RestoreOffset,
     FeedMode(super::FeedMode),
     MirrorX,
+    /// G65, G66 and G67.
+    MacroCall,
     Ignored,
 }
 
@@ -88,6 +90,7 @@ impl GCode {
             }
             Self::Ignored => 13,
             Self::MirrorX => 14,
+            Self::MacroCall => 15,
         }
     }
 }
@@ -114,6 +117,7 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
             left: number < 420,
             by_diameter: number % 10 == 1,
         }),
+        (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),
         _ => common_g_code(number),

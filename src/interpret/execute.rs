@@ -3,12 +3,16 @@
 //! distance mode, reference points and offsets, motion, stop.
 
 use super::compensation::Compensation;
+use super::expression::{Fault, Name, Reader, Value};
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Step};
+use super::moves::{Action, ActionKind, Move, Step};
+use super::parameters::{LOCALS, Parameters};
 use super::position::{Position, Reading};
 use super::report::{Diagnostics, Report};
+use super::statement::Unread;
+use super::transfer::Transfer;
 use super::words::Words;
 use crate::machine::{Family, Machine};
 use crate::source::Span;
@@ -36,6 +40,12 @@ pub(super) struct Control<'m> {
     begun: bool,
     pub(super) ended: bool,
     has_program_number: bool,
+    /// Which run of the line this is, from 1.
+    pub(super) run: u32,
+    /// Which text it stands in; 0 is the program itself.
+    pub(super) text: u16,
+    pub(super) parameters: Parameters,
+    pub(super) transfer: Option<Transfer>,
 }
 
 /// The block that is being executed.
@@ -81,6 +91,10 @@ impl<'m> Interpreter<'m> {
             begun: false,
             ended: false,
             has_program_number: false,
+            run: 1,
+            text: 0,
+            parameters: Parameters::new(),
+            transfer: None,
         };
         Self {
             control,
@@ -100,17 +114,79 @@ impl<'m> Interpreter<'m> {
         &self.control.knobs
     }
 
+    /// Where the program goes on, if the last block said so.
+    pub(crate) fn transfer(&mut self) -> Option<Transfer> {
+        self.control.transfer.take()
+    }
+
+    /// A line of a program that is held whole begins: which run of it, and in
+    /// which text it stands.
+    pub(crate) fn begin_line(&mut self, run: u32, text: usize) {
+        self.control.run = run;
+        self.control.text = text as u16;
+    }
+
+    /// A subprogram begins, with these variables of its own.
+    pub(crate) fn enter(&mut self, arguments: Option<&[Value; LOCALS]>) {
+        let arguments = arguments.copied().unwrap_or([None; LOCALS]);
+        self.control.parameters.enter(arguments);
+    }
+
+    /// A subprogram with its own variables has ended.
+    pub(crate) fn leave(&mut self) {
+        self.control.parameters.leave();
+    }
+
+    /// A subroutine has returned a value, or none (`LinuxCNC`, "Subroutines":
+    /// `#<_value>` and `#<_value_returned>`).
+    pub(crate) fn returned(&mut self, value: Option<f64>) {
+        let returned = f64::from(u8::from(value.is_some()));
+        for (name, value) in [
+            ("_value", value.unwrap_or(0.0)),
+            ("_value_returned", returned),
+        ] {
+            // Two names cannot be too many.
+            let _ = self
+                .control
+                .parameters
+                .set(&Name::Text(name.into()), Some(value));
+        }
+    }
+
+    /// The O number that comes next is that of a program which is called.
+    pub(crate) fn expect_program_number(&mut self) {
+        self.control.has_program_number = false;
+    }
+
+    /// The program begins again.
+    pub(crate) fn begin_again(&mut self) {
+        self.control.begun = false;
+        self.control.has_program_number = false;
+    }
+
+    /// The program ends here.
+    pub(crate) fn end(&mut self) {
+        self.control.ended = true;
+    }
+
+    /// The truth of a condition that stands in a line.
+    pub(super) fn condition(&self, text: &[u8], span: Span) -> Result<bool, Fault> {
+        let text = text.get(..span.end as usize).unwrap_or(text);
+        let mut reader = Reader::new(text, span.start as usize);
+        Ok(reader.brackets(&self.control)?.unwrap_or(0.0) != 0.0)
+    }
+
     /// True once the program has ended (M2, M30, closing `%`).
     #[must_use]
     pub fn ended(&self) -> bool {
         self.control.ended
     }
 
-    /// The text of an earlier line whose moves were given with the last block
-    /// or are held back still; cut if it is long.
+    /// The text of the line of a move that was given with the last block, if
+    /// that line came before it; cut if it is long.
     #[must_use]
-    pub fn held_text(&self, line: u64) -> Option<&[u8]> {
-        self.control.compensation.as_ref()?.text_of(line)
+    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
+        self.control.compensation.as_ref()?.text_of(mv)
     }
 
     /// True while cutter compensation is on, and for the block that ends it.
@@ -128,15 +204,31 @@ impl<'m> Interpreter<'m> {
     }
 
     /// Executes one block: appends what it does to `steps`. What is not
-    /// understood is reported, and the block then does nothing.
+    /// understood is reported, and the block then does nothing. Words whose
+    /// values are worked out get them in `block`.
     pub fn execute(
         &mut self,
         line: u64,
         text: &[u8],
-        block: &Block,
+        block: &mut Block,
         steps: &mut Vec<Step>,
         diagnostics: &mut Diagnostics,
     ) -> Facts {
+        let mut report = Report {
+            diagnostics,
+            line,
+            text,
+        };
+        if self.control.passes_over(block, &mut report) {
+            return Facts::default();
+        }
+        let transfers = !block.issues.is_empty() && self.control.beyond_words(block, &mut report);
+        if !block.issues.is_empty() || block.words.is_empty() {
+            return Facts {
+                transfers,
+                ..Facts::default()
+            };
+        }
         // Built once in its place: moving parts of it costs more than it seems.
         let mut run = Run {
             line,
@@ -144,32 +236,20 @@ impl<'m> Interpreter<'m> {
             words: &mut self.words,
             facts: Facts::default(),
             steps,
-            report: Report {
-                diagnostics,
-                line,
-                text,
-            },
+            report,
         };
-        if self.control.passes_over(block, &mut run.report) {
-            return run.facts;
-        }
-        for issue in &block.issues {
-            let found = issue.diagnostic(line, text);
-            run.report.diagnostics.push(found);
-        }
-        if !block.issues.is_empty() || block.words.is_empty() {
-            return run.facts;
-        }
         let before = run.steps.len();
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
-        self.control.run(&mut run);
+        self.control.execute(&mut run);
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
         }
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
+            self.control.transfer = None;
         }
+        run.facts.transfers = self.control.transfer.is_some();
         run.facts
     }
 }
@@ -211,7 +291,7 @@ impl Control<'_> {
     }
 
     #[inline]
-    fn run(&mut self, run: &mut Run<'_, '_>) {
+    fn execute(&mut self, run: &mut Run<'_, '_>) {
         self.begun = true;
         run.words
             .fill(run.block, &self.machine.controller, &mut run.report);
@@ -227,7 +307,13 @@ impl Control<'_> {
             }
             return;
         }
-        self.program_number(run);
+        if self.macro_call(run) {
+            return;
+        }
+        if self.program_number(run) {
+            run.words.unused = 0;
+            return;
+        }
         let dwell_s = self.dwell_time(run);
         self.feed_mode(run);
         self.read_feed(run);
@@ -245,21 +331,59 @@ impl Control<'_> {
         self.end_of_block(run);
     }
 
-    fn program_number(&mut self, run: &mut Run<'_, '_>) {
-        if run.words.take(b'O').is_none() {
-            return;
+    /// Reads a block that is more than plain words: values that are worked out,
+    /// assignments, flow. True when the program does not go on at the next line.
+    /// What is not understood stays in the block's issues and is reported.
+    #[cold]
+    fn beyond_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
+        let text = report.text;
+        let statement = match self.statement(text, block) {
+            Ok(statement) => statement,
+            Err(Unread::Fault(fault)) => {
+                report
+                    .error(fault.rule, fault.message, fault.span)
+                    .help(fault.help);
+                return false;
+            }
+            Err(Unread::Foreign) => {
+                for issue in &block.issues {
+                    let found = issue.diagnostic(report.line, text);
+                    report.diagnostics.push(found);
+                }
+                return false;
+            }
+        };
+        self.begun = true;
+        for (name, value, span) in &statement.assignments {
+            if let Err(reason) = self.assign(name, *value) {
+                report
+                    .error(
+                        "assignment",
+                        format!("this cannot be assigned: {reason}"),
+                        *span,
+                    )
+                    .help("use another parameter");
+            }
         }
-        let span = run.words.span(b'O', run.block);
-        if self.has_program_number {
-            run.report
-                .error(
-                    "several-programs",
-                    "a second program number: several programs in one file",
-                    span,
-                )
-                .help("give one program at a time; subprograms are not supported");
+        self.transfer = statement.transfer;
+        self.transfer.is_some()
+    }
+
+    /// Takes an O number; true when it ends the program.
+    fn program_number(&mut self, run: &mut Run<'_, '_>) -> bool {
+        if run.words.take(b'O').is_none() {
+            return false;
+        }
+        let another = self.has_program_number;
+        if another {
+            let span = run.words.span(b'O', run.block);
+            let message = "a second program number ends the program; \
+                           programs behind it run where they are called";
+            run.report.note_once("several-programs", message, span);
+            self.ended = true;
         }
         self.has_program_number = true;
+        another
     }
 
     /// Words that no code has used: they might mean motion.

@@ -32,6 +32,11 @@ pub struct Facts {
     pub executed: bool,
     /// The block turns a knob.
     pub turns_knob: bool,
+    /// The F word is not a plain number: its value is worked out.
+    pub computed_feed: bool,
+    /// The program does not go on at the next line: see
+    /// [`Interpreter::transfer`](super::Interpreter).
+    pub transfers: bool,
     /// Millimetres in a program unit when the block's F is read, or would be.
     pub feed_mm_per_unit: f64,
 }

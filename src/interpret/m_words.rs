@@ -78,6 +78,9 @@ impl Control<'_> {
                 self.modal.extruder_absolute = number == 820;
                 continue;
             }
+            if self.subprogram_word(number, span, run) {
+                continue;
+            }
             let Some(kind) = self.m_kind(number) else {
                 run.report.refused_m(Word {
                     letter: b'M',

@@ -55,6 +55,8 @@ impl Control<'_> {
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),
+            run: self.run,
+            text: self.text,
             kind: MoveKind::Dwell,
             start: self.position.at,
             end: self.position.at,
@@ -177,6 +179,8 @@ impl Control<'_> {
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),
+            run: self.run,
+            text: self.text,
             kind,
             start: self.position.at,
             end: *end,

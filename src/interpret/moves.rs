@@ -59,6 +59,11 @@ pub struct Move {
     pub line: u64,
     /// Block number without N, if there is one.
     pub number: Option<f64>,
+    /// Which run of its line this is, from 1.
+    pub run: u32,
+    /// Which text its line stands in: 0 is the program itself, others are files
+    /// of subprograms.
+    pub text: u16,
     /// What it is.
     pub kind: MoveKind,
     /// Where it starts.

@@ -3,6 +3,10 @@
 //! Everything is kept in machine coordinates (mm, degrees); an absolute word
 //! means `value + work offset + G92 offset + tool length`.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::flow::Limits;
 use crate::machine::{AXES, AxisSet, AxisValues};
 
 /// Where the axes stand at the beginning of a program.
@@ -22,6 +26,10 @@ pub struct Reading {
     pub start: Start,
     /// True: blocks that begin with `/` are passed over.
     pub block_delete: bool,
+    /// Folders where subprograms are looked for, in this order.
+    pub sub_paths: Arc<[PathBuf]>,
+    /// Where repetition stops.
+    pub limits: Limits,
 }
 
 impl Default for Reading {
@@ -29,6 +37,8 @@ impl Default for Reading {
         Self {
             start: Start::At([0.0; AXES]),
             block_delete: false,
+            sub_paths: Arc::default(),
+            limits: Limits::default(),
         }
     }
 }

@@ -46,6 +46,16 @@ impl Control<'_> {
             return;
         }
         let text = word.number.of(run.report.text);
+        let plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'+' | b'-' | b' ' | b'\t');
+        run.facts.computed_feed = !text.iter().all(plain);
+        let shown;
+        let text = if run.facts.computed_feed {
+            // Put back elsewhere, the expression might have another value.
+            shown = word.value.to_string();
+            shown.as_bytes()
+        } else {
+            text
+        };
         run.facts.feed_word = Some(word);
         self.modal.feed = Some(Feed {
             value: word.value,

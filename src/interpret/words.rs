@@ -129,6 +129,10 @@ impl Words {
     fn add(&mut self, index: usize, word: Word, report: &mut Report<'_, '_>) {
         let mask = bit(word.letter);
         let slot = usize::from(word.letter - b'A');
+        if self.groups & GCode::MacroCall.group() != 0 {
+            // Arguments: the macro call reads them itself.
+            return;
+        }
         if self.present & mask != 0 {
             let message = format!("the block has two {} words", word.letter as char);
             report

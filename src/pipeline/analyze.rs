@@ -1,6 +1,6 @@
 //! A program's figures, and its moves.
 
-use std::io::Read;
+use std::io::{Read, Seek};
 
 use super::advice::Adviser;
 use super::conditions::conditions;
@@ -16,7 +16,7 @@ use crate::power::{Assessor, Want};
 ///
 /// # Errors
 /// See [`Failure`].
-pub fn analyze<R: Read + Send>(
+pub fn analyze<R: Read + Seek + Send>(
     input: R,
     machine: &Machine,
     options: &Options,
@@ -28,10 +28,11 @@ pub fn analyze<R: Read + Send>(
     let mut tally = Tally::new(machine, options, rows);
     let adviser = Adviser::new(machine);
     while let Some(line) = front.next_line()? {
+        tally.learn_files(line.files);
         for step in &*line.steps {
             if let Step::Move(mv) = step {
                 assessor.want = tally.want();
-                assessor.push(mv, line.text_of(mv.line), &mut |mv, assessment, text| {
+                assessor.push(mv, line.text_of(mv), &mut |mv, assessment, text| {
                     let help = || adviser.help(mv, assessment, line.interpreter);
                     tally.take(mv, assessment, text, help);
                 });
@@ -61,7 +62,7 @@ pub fn analyze<R: Read + Send>(
 ///
 /// # Errors
 /// See [`Failure`]; an error of `each` becomes [`Failure::Output`].
-pub fn moves<R: Read + Send>(
+pub fn moves<R: Read + Seek + Send>(
     input: R,
     machine: &Machine,
     options: &Options,

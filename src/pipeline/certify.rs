@@ -73,7 +73,7 @@ pub(super) struct Certifier<'m, 'r> {
 }
 
 /// Holds the written program against the original.
-struct Verdict<'m, 'r> {
+pub(super) struct Verdict<'m, 'r> {
     model: PowerModel,
     tally: Tally<'m, 'r>,
     /// What the original does, from the first move that is not judged.
@@ -131,14 +131,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             block: Block::default(),
             steps: Vec::new(),
             line: 0,
-            verdict: Verdict {
-                model: PowerModel::new(machine),
-                tally: Tally::new(machine, options, rows),
-                expected: Vec::new(),
-                done: 0,
-                judged: 0,
-                reasons: Reasons::default(),
-            },
+            verdict: Verdict::new(machine, options, rows),
         }
     }
 
@@ -164,7 +157,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 if let Step::Move(mv) = step
                     && mv.line != *line
                 {
-                    text = interpreter.held_text(mv.line).unwrap_or(text);
+                    text = interpreter.held_text(mv).unwrap_or(text);
                 }
                 verdict.compare_step(step, text);
                 if let Step::Move(mv) = step {
@@ -176,12 +169,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             }
         }
         batch.bytes.clear();
-        if self.verdict.done < self.verdict.expected.len() {
-            let message = "the written program leaves something out".to_owned();
-            self.verdict
-                .reasons
-                .push(0, "changed-sequence", message, BUG, b"");
-        }
+        self.verdict.expect_nothing();
         self.verdict.tally.check()
     }
 
@@ -191,27 +179,67 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor, verdict, ..
         } = &mut self;
         assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
-        let Verdict {
-            mut tally,
-            mut reasons,
-            ..
-        } = self.verdict;
-        tally.check()?;
-        for found in &self.diagnostics.list {
+        self.verdict.finish(&self.diagnostics.list, self.line)
+    }
+}
+
+impl<'m, 'r> Verdict<'m, 'r> {
+    pub(super) fn new(
+        machine: &'m Machine,
+        options: &Options,
+        rows: Option<&'r mut (dyn RowSink + 'r)>,
+    ) -> Self {
+        Self {
+            model: PowerModel::new(machine),
+            tally: Tally::new(machine, options, rows),
+            expected: Vec::new(),
+            done: 0,
+            judged: 0,
+            reasons: Reasons::default(),
+        }
+    }
+
+    /// What is wanted of the next move, and whether the rows could be written.
+    pub(super) fn want(&self) -> Want {
+        self.tally.want()
+    }
+
+    /// The error of the rows, if there was one.
+    pub(super) fn check(&mut self) -> Result<(), Failure> {
+        self.tally.check()
+    }
+
+    /// Whether the written program must still do something.
+    pub(super) fn expects(&self) -> bool {
+        self.done < self.expected.len()
+    }
+
+    /// All that was expected must have been done.
+    pub(super) fn expect_nothing(&mut self) {
+        if self.expects() {
+            let message = "the written program leaves something out".to_owned();
+            self.reasons.push(0, "changed-sequence", message, BUG, b"");
+        }
+    }
+
+    /// The figures of the written program, and why the certificate does not
+    /// hold.
+    pub(super) fn finish(mut self, found: &[Diagnostic], lines: u64) -> Result<Certified, Failure> {
+        self.tally.check()?;
+        let mut reasons = self.reasons;
+        for found in found {
             if found.severity == Severity::Error {
                 let message = format!("the written program cannot be read: {}", found.message);
                 reasons.push(found.line, "unreadable-output", message, BUG, &found.text);
             }
         }
-        let mut summary = tally.finish(false);
-        summary.lines = self.line;
+        let mut summary = self.tally.finish(false);
+        summary.lines = lines;
         Ok(Certified { summary, reasons })
     }
-}
 
-impl Verdict<'_, '_> {
     /// Forgets what is judged and takes more.
-    fn refill(&mut self, more: &mut Vec<Expected>) {
+    pub(super) fn refill(&mut self, more: &mut Vec<Expected>) {
         self.expected.drain(..self.judged.min(self.expected.len()));
         self.done = self.expected.len();
         self.judged = 0;
@@ -223,7 +251,7 @@ impl Verdict<'_, '_> {
     }
 
     /// (b): the step must be the original's next one.
-    fn compare_step(&mut self, step: &Step, text: &[u8]) {
+    pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
         let original = self.expected.get(self.done);
         self.done += 1;
         let message = match (step, original) {
@@ -247,7 +275,7 @@ impl Verdict<'_, '_> {
     }
 
     /// (a), (c) and (d): the written move is judged.
-    fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
+    pub(super) fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
         while matches!(self.expected.get(self.judged), Some(Expected::Action(_))) {
             self.judged += 1;
         }

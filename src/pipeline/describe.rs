@@ -19,6 +19,8 @@ pub(super) fn row(
     let limit_w = model.limit_w(demand.converter);
     Row {
         line: mv.line,
+        run: mv.run,
+        file: String::new(),
         n_word: mv.number,
         kind: mv.kind,
         axes: axes(mv),

@@ -1,6 +1,7 @@
 //! A block that waits to be written, and what may be changed about it.
 
 use super::front::Line;
+use super::table::LineKey;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
 use crate::limit::{Outcome, Permit};
 use crate::machine::{Machine, PathMode, RapidJoint};
@@ -10,10 +11,10 @@ use crate::syntax::Block;
 
 /// A block that waits until all its moves are decided.
 pub(super) struct Entry {
-    pub(super) line: u64,
+    pub(super) key: LineKey,
     pub(super) text: Vec<u8>,
     /// Earlier lines, of which this block gives moves that were held back.
-    earlier: Vec<(u64, Vec<u8>)>,
+    earlier: Vec<(LineKey, Vec<u8>)>,
     pub(super) block: Block,
     pub(super) facts: Facts,
     pub(super) steps: Vec<Step>,
@@ -33,7 +34,7 @@ impl Entry {
     pub(super) fn new(line: &Line<'_, '_>) -> Self {
         let modal = line.interpreter.modal();
         Self {
-            line: 0,
+            key: line.key,
             text: Vec::new(),
             earlier: Vec::new(),
             block: Block::default(),
@@ -57,12 +58,12 @@ impl Entry {
         mm_per_unit_before: f64,
     ) {
         let modal = line.interpreter.modal();
+        self.key = line.key;
         self.text.clear();
         self.text.extend_from_slice(line.text);
         std::mem::swap(&mut self.block, line.block);
         self.facts = line.facts;
         std::mem::swap(&mut self.steps, line.steps);
-        self.line = line.number;
         self.earlier.clear();
         if line.facts.compensated {
             self.take_earlier(line);
@@ -84,16 +85,18 @@ impl Entry {
     fn take_earlier(&mut self, line: &Line<'_, '_>) {
         for step in &self.steps {
             let Step::Move(mv) = step else { continue };
-            let known = mv.line == self.line || self.earlier.iter().any(|it| it.0 == mv.line);
-            if !known && let Some(text) = line.interpreter.held_text(mv.line) {
-                self.earlier.push((mv.line, text.to_vec()));
+            let key = (mv.text, mv.line);
+            let known = key == self.key || self.earlier.iter().any(|it| it.0 == key);
+            if !known && let Some(text) = line.interpreter.held_text(mv) {
+                self.earlier.push((key, text.to_vec()));
             }
         }
     }
 
     /// The text of the line that one of its moves belongs to.
-    pub(super) fn text_of(&self, line: u64) -> &[u8] {
-        let earlier = self.earlier.iter().find(|it| it.0 == line);
+    pub(super) fn text_of(&self, mv: &Move) -> &[u8] {
+        let key = (mv.text, mv.line);
+        let earlier = self.earlier.iter().find(|it| it.0 == key);
         earlier.map_or(self.text.as_slice(), |(_, text)| text.as_slice())
     }
 
@@ -136,6 +139,7 @@ impl Entry {
                 self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
                 "no F is in force that could be put back",
             ),
+            (facts.computed_feed, "its feed is worked out by the program"),
             (
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",

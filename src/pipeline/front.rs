@@ -1,23 +1,34 @@
 //! Bytes to steps, line by line: what every run over a program begins with.
+//!
+//! Lines are read and executed one after another and forgotten. A program whose
+//! lines are executed in another order, because of calls, branches or loops, is
+//! held whole from the first of these on.
 
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom};
 
+use super::table::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Interpreter, Step};
+use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, scan_line};
 
+/// Bytes that a program may have which must be held whole.
+const WHOLE_BYTES_MAX: u64 = 1 << 30;
+
 /// A line that has just been executed.
 pub(super) struct Line<'f, 'm> {
-    pub(super) number: u64,
+    /// Which text it stands in, and its number there from 1.
+    pub(super) key: LineKey,
     /// Its bytes, line end included.
     pub(super) text: &'f [u8],
     /// Buffers: they may be exchanged for others.
     pub(super) block: &'f mut Block,
     pub(super) steps: &'f mut Vec<Step>,
     pub(super) facts: Facts,
+    /// Names of the files of subprograms so far.
+    pub(super) files: &'f [String],
     /// The state behind it.
     pub(super) interpreter: &'f Interpreter<'m>,
 }
@@ -25,17 +36,18 @@ pub(super) struct Line<'f, 'm> {
 impl Line<'_, '_> {
     /// The text of the line that a move belongs to: this one, or an earlier one
     /// whose moves were held back.
-    pub(super) fn text_of(&self, line: u64) -> &[u8] {
-        if line == self.number {
+    pub(super) fn text_of(&self, mv: &Move) -> &[u8] {
+        if (mv.text, mv.line) == self.key {
             return self.text;
         }
-        self.interpreter.held_text(line).unwrap_or(self.text)
+        self.interpreter.held_text(mv).unwrap_or(self.text)
     }
 }
 
 /// A stream of executed lines.
 pub(super) struct Front<'m, R> {
     reader: LineReader<R>,
+    reading: Reading,
     block: Block,
     interpreter: Interpreter<'m>,
     pub(super) diagnostics: Diagnostics,
@@ -44,24 +56,36 @@ pub(super) struct Front<'m, R> {
     pub(super) lines: u64,
     /// How many of them did something.
     executed: u64,
+    /// The program, once it has to be held whole.
+    flow: Option<Box<Flow>>,
+    /// What is wrong with the flow: nothing more is executed.
+    stuck: bool,
 }
 
-impl<'m, R: Read> Front<'m, R> {
+impl<'m, R: Read + Seek> Front<'m, R> {
     pub(super) fn new(input: R, machine: &'m Machine, options: &Options) -> Self {
         Self {
             reader: LineReader::new(input),
+            reading: options.reading.clone(),
             block: Block::default(),
             interpreter: Interpreter::new(machine, &options.reading),
             diagnostics: Diagnostics::default(),
             steps: Vec::new(),
             lines: 0,
             executed: 0,
+            flow: None,
+            stuck: false,
         }
     }
 
     /// The state behind the last line.
     pub(super) fn interpreter(&self) -> &Interpreter<'m> {
         &self.interpreter
+    }
+
+    /// Whether lines are executed in another order than they stand in.
+    pub(super) fn flows(&self) -> bool {
+        self.flow.is_some()
     }
 
     /// Reads and executes the next line.
@@ -71,6 +95,9 @@ impl<'m, R: Read> Front<'m, R> {
     )]
     #[inline(always)]
     pub(super) fn next_line(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
+        if self.flow.is_some() {
+            return self.next_of_flow();
+        }
         let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else {
             return Ok(None);
         };
@@ -80,23 +107,132 @@ impl<'m, R: Read> Front<'m, R> {
         let facts = self.interpreter.execute(
             number,
             text,
-            &self.block,
+            &mut self.block,
             &mut self.steps,
             &mut self.diagnostics,
         );
         self.executed += u64::from(facts.executed);
+        if facts.transfers {
+            return self.begin_flow(facts);
+        }
         let Self {
+            reader,
             block,
             steps,
             interpreter,
             ..
         } = self;
         Ok(Some(Line {
-            number,
-            text,
+            key: (0, number),
+            text: reader.last_line(),
             block,
             steps,
             facts,
+            files: &[],
+            interpreter,
+        }))
+    }
+
+    /// Reads the program again, whole, since the line that was just executed
+    /// does not go on at the next.
+    #[cold]
+    fn begin_flow(&mut self, facts: Facts) -> Result<Option<Line<'_, 'm>>, Failure> {
+        let input = self.reader.get_mut();
+        let mut program = Vec::new();
+        input
+            .seek(SeekFrom::Start(0))
+            .and_then(|_| input.take(WHOLE_BYTES_MAX + 1).read_to_end(&mut program))
+            .map_err(Failure::Input)?;
+        if program.len() as u64 > WHOLE_BYTES_MAX {
+            let message = "a program with calls or loops of more than 1 GiB";
+            let help = "call the large part from a program of its own, or write the calls out";
+            return Err(Failure::Refused {
+                diagnostics: vec![Diagnostic::error("program-size", message).help(help)],
+                more: 0,
+            });
+        }
+        let line = self.lines as usize - 1;
+        let flow = self
+            .flow
+            .insert(Box::new(Flow::new(program, line, &self.reading)));
+        self.lines = flow.lines();
+        self.conclude(facts, 1)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn next_of_flow(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
+        let Some(flow) = &mut self.flow else {
+            return Ok(None);
+        };
+        if self.stuck || self.interpreter.ended() {
+            return Ok(None);
+        }
+        let place = match flow.advance() {
+            Ok(Some(place)) => place,
+            Ok(None) => return Ok(None),
+            Err(trouble) => {
+                self.stuck = true;
+                self.diagnostics.push(*trouble);
+                return Ok(None);
+            }
+        };
+        let run = flow.begin_line();
+        let text = flow.text();
+        let number = place.line as u64 + 1;
+        scan_line(text, number == 1, &mut self.block);
+        self.steps.clear();
+        self.interpreter.begin_line(run, place.text);
+        let said = self.diagnostics.list.len();
+        let facts = self.interpreter.execute(
+            number,
+            text,
+            &mut self.block,
+            &mut self.steps,
+            &mut self.diagnostics,
+        );
+        for found in self.diagnostics.list.iter_mut().skip(said) {
+            found.file = flow.file().map(str::to_owned);
+        }
+        self.executed += u64::from(facts.executed);
+        self.conclude(facts, run)
+    }
+
+    /// Lets the flow go on behind a line, and hands the line over.
+    fn conclude(&mut self, facts: Facts, run: u32) -> Result<Option<Line<'_, 'm>>, Failure> {
+        let Self {
+            block,
+            steps,
+            interpreter,
+            diagnostics,
+            flow,
+            stuck,
+            ..
+        } = self;
+        let Some(flow) = flow else { return Ok(None) };
+        // What is wrong in a loop is wrong in each of its runs.
+        *stuck |= diagnostics.errors > 0 && run > 1;
+        let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
+        let mut done = flow.end_line(run, moves.clone().count());
+        if done.is_ok()
+            && let Some(transfer) = interpreter.transfer()
+        {
+            done = flow.follow(transfer, interpreter);
+        } else if done.is_ok() && moves.count() > 0 {
+            done = flow.after_move(interpreter);
+        }
+        if let Err(trouble) = done {
+            *stuck = true;
+            diagnostics.push(*trouble);
+        }
+        let place = flow.now();
+        Ok(Some(Line {
+            key: (place.text as u16, place.line as u64 + 1),
+            text: flow.text(),
+            block,
+            steps,
+            facts,
+            files: flow.files(),
             interpreter,
         }))
     }

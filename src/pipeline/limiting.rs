@@ -1,13 +1,16 @@
 //! A program that fits: analysed, changed, written, and handed to the
 //! certifier piece by piece, so that nothing of it is held for long.
 
-use std::io::{Read, Write};
+use std::io::{Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::certify::{Batch, Certified, Certifier};
 use super::conditions::conditions;
+use super::whole::limit_whole;
 use super::writer::{Writer, Written};
-use super::{Failure, LimitOptions, LimitSummary, Options, RowSink, Strategy, Summary};
+use super::{
+    Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
+};
 use crate::limit::Law;
 use crate::machine::{KnobArgument, KnobTarget, Machine};
 
@@ -22,32 +25,60 @@ const BATCHES: usize = 2;
 /// # Errors
 /// See [`Failure`]. A program that cannot be made to fit is no error: see
 /// [`LimitSummary::certified`].
-pub fn limit<R: Read + Send, W: Write + Send>(
-    input: R,
+pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
+    mut input: R,
     machine: &Machine,
     options: &Options,
     how: LimitOptions,
-    output: W,
-    rows: Option<&mut dyn RowSink>,
+    mut output: W,
+    mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
     let exact = rows.is_some();
-    let mut certifier = Certifier::new(machine, options, rows);
-    let writer = Writer::new(input, machine, options, how, exact, output);
-    let (written, certified) = if options.threads > 1 {
+    let mut certifier = Certifier::new(
+        machine,
+        options,
+        rows.as_mut().map(|rows| as_sink(&mut **rows)),
+    );
+    let writer = Writer::new(&mut input, machine, options, how, exact, &mut output, None);
+    let streamed = if options.threads > 1 {
         side_by_side(writer, certifier)?
     } else {
         let written = writer.run(&mut |batch| certifier.take(batch))?;
-        (written, certifier.finish()?)
+        match written {
+            Some(written) => Some((written, certifier.finish()?)),
+            None => None,
+        }
+    };
+    let (written, certified) = match streamed {
+        Some(done) => done,
+        None => {
+            output.restart().map_err(Failure::Output)?;
+            if let Some(rows) = &mut rows {
+                rows.restart().map_err(Failure::Output)?;
+            }
+            limit_whole(
+                input,
+                machine,
+                options,
+                how,
+                output,
+                rows.map(|rows| as_sink(rows)),
+            )?
+        }
     };
     Ok(conclude(machine, options, written, certified))
 }
 
+fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
+    rows
+}
+
 /// Writes in this thread and certifies in another.
-fn side_by_side<R: Read + Send, W: Write + Send>(
+fn side_by_side<R: Read + Seek + Send, W: Write + Send>(
     writer: Writer<'_, R, W>,
     certifier: Certifier<'_, '_>,
-) -> Result<(Written, Certified), Failure> {
+) -> Result<Option<(Written, Certified)>, Failure> {
     std::thread::scope(|scope| {
         let (sender, receiver) = sync_channel(BATCHES);
         let (back, empty) = sync_channel(BATCHES + 2);
@@ -64,7 +95,7 @@ fn side_by_side<R: Read + Send, W: Write + Send>(
             (Err(refused @ Failure::Refused { .. }), _) => Err(refused),
             (written, certified) => {
                 let certified = certified?;
-                Ok((written?, certified))
+                Ok(written?.map(|written| (written, certified)))
             }
         }
     })

@@ -9,14 +9,18 @@ mod entry;
 mod front;
 mod limiting;
 mod options;
+mod restart;
 mod row;
 mod summary;
+mod table;
 mod tally;
+mod whole;
 mod writer;
 
 pub use analyze::{analyze, moves};
 pub use limiting::limit;
-pub use options::{Law, LimitOptions, Options, Reading, Start, Strategy};
+pub use options::{Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
+pub use restart::{Restart, RestartRows};
 pub use row::{Certificate, Row, RowSink};
 pub use summary::{LimitSummary, Summary, Unfit};
 

@@ -1,6 +1,6 @@
 //! What a run is asked to do.
 
-pub use crate::interpret::{Reading, Start};
+pub use crate::interpret::{Limits, Reading, Start};
 
 use super::row::Certificate;
 pub use crate::limit::{Law, LimitOptions, Strategy};

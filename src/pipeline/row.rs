@@ -12,6 +12,10 @@ pub use crate::power::Certificate;
 pub struct Row {
     /// Line from 1.
     pub line: u64,
+    /// Which run of the line, from 1.
+    pub run: u32,
+    /// The file that the line stands in; empty for the program itself.
+    pub file: String,
     /// Block number without N.
     pub n_word: Option<f64>,
     /// What kind of move.

@@ -22,6 +22,8 @@ pub(super) struct Tally<'m, 'r> {
     summary: Summary,
     energy_j: f64,
     failed: Option<io::Error>,
+    /// Names of the files of subprograms, by number less 1.
+    files: Vec<String>,
 }
 
 impl<'m, 'r> Tally<'m, 'r> {
@@ -42,6 +44,7 @@ impl<'m, 'r> Tally<'m, 'r> {
             summary,
             energy_j: 0.0,
             failed: None,
+            files: Vec::new(),
         }
     }
 
@@ -71,16 +74,30 @@ impl<'m, 'r> Tally<'m, 'r> {
         help: impl FnOnce() -> String,
     ) {
         if self.rows.is_some() {
-            let row = row(
+            let mut row = row(
                 self.machine,
                 &self.model,
                 mv,
                 assessment,
                 self.summary.duration_s,
             );
+            row.file = self.file(mv);
             self.write(&row);
         }
         self.count(mv, assessment, text, help);
+    }
+
+    /// Learns the names of files of subprograms.
+    pub(super) fn learn_files(&mut self, names: &[String]) {
+        let known = self.files.len();
+        self.files.extend(names.iter().skip(known).cloned());
+    }
+
+    /// The file that a move's line stands in; empty for the program itself.
+    pub(super) fn file(&self, mv: &Move) -> String {
+        let index = usize::from(mv.text).checked_sub(1);
+        let name = index.and_then(|index| self.files.get(index));
+        name.cloned().unwrap_or_default()
     }
 
     /// Writes a row.

@@ -2,13 +2,14 @@
 //! decided, are written with their changes, and go to the certifier in pieces.
 
 use std::collections::VecDeque;
-use std::io::{Read, Write};
+use std::io::{Read, Seek, Write};
 
 use super::analyze::refuse_planned;
 use super::certify::{Batch, Expected, ExpectedMove, Reasons};
 use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
 use super::front::Front;
+use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
@@ -68,9 +69,12 @@ pub(super) struct Writer<'m, R, W> {
     model: PowerModel,
     /// Time of the original so far, s.
     start_s: f64,
+    /// Decisions by line, for a program with calls or loops: nothing is written
+    /// before all its runs are known.
+    table: Option<Table>,
 }
 
-impl<'m, R: Read, W: Write> Writer<'m, R, W> {
+impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     pub(super) fn new(
         input: R,
         machine: &'m Machine,
@@ -78,6 +82,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         how: LimitOptions,
         exact: bool,
         output: W,
+        table: Option<Table>,
     ) -> Self {
         let front = Front::new(input, machine, options);
         Self {
@@ -103,15 +108,21 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
             exact,
             model: PowerModel::new(machine),
             start_s: 0.0,
+            table,
         }
     }
 
-    /// Reads and writes the whole program; `deliver` takes the pieces.
+    /// Reads and writes the whole program; `deliver` takes the pieces. `None`
+    /// where lines are executed in another order than they stand in: such a
+    /// program is limited whole.
     pub(super) fn run(
         mut self,
         deliver: &mut impl FnMut(&mut Batch) -> Result<(), Failure>,
-    ) -> Result<Written, Failure> {
+    ) -> Result<Option<Written>, Failure> {
         while self.read_block()? {
+            if self.front.flows() {
+                return Ok(None);
+            }
             // Not before there is another block: what is added at the end of a
             // program depends on its last one.
             if self.batch.bytes.len() >= BATCH_BYTES {
@@ -132,17 +143,38 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         }
         self.deliver(deliver)?;
         self.output.flush().map_err(Failure::Output)?;
+        self.conclude().map(|(written, _)| Some(written))
+    }
+
+    /// Reads the whole program and decides for its lines, without writing.
+    pub(super) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
+        while self.read_block()? {
+            if let Some(entry) = self.ready.take() {
+                self.write(entry);
+            } else {
+                self.decide();
+                self.write_decided();
+            }
+        }
+        self.finish_moves();
+        self.write_decided();
+        self.conclude()
+    }
+
+    /// The figures of the original, and what was decided.
+    fn conclude(self) -> Result<(Written, Table), Failure> {
         let lines = self.front.lines;
         let notes = self.front.finish()?;
         refuse_planned(&self.assessor, self.machine)?;
         let mut before = self.tally.finish(self.exact);
         before.lines = lines;
         before.notes = notes;
-        Ok(Written {
+        let written = Written {
             before,
             edited_lines: self.rewriter.edited_lines,
             reasons: self.reasons,
-        })
+        };
+        Ok((written, self.table.unwrap_or_default()))
     }
 
     /// Writes the piece, and hands it on.
@@ -165,6 +197,11 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         self.mm_per_unit = entry.mark.mm_per_unit;
+        if let Some(table) = &self.table
+            && entry.facts.fixed.is_none()
+        {
+            entry.facts.fixed = table.fixed(entry.key);
+        }
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
@@ -205,7 +242,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 flights,
                 outcomes,
             };
-            assessor.push(mv, entry.text_of(mv.line), &mut |mv, assessment, text| {
+            assessor.push(mv, entry.text_of(mv), &mut |mv, assessment, text| {
                 tally.add(mv, assessment, text);
                 judge.take(mv, assessment);
             });
@@ -228,17 +265,13 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(
-                mv,
-                entry_ref.text_of(mv.line),
-                &mut |mv, assessment, text| {
-                    tally.add(mv, assessment, text);
-                    let permit = || entry_ref.permit(machine, mv, step);
-                    limiter.push(mv, assessment, permit, &mut |outcome| {
-                        decided.push((*assessment, outcome));
-                    });
-                },
-            );
+            assessor.push(mv, entry_ref.text_of(mv), &mut |mv, assessment, text| {
+                tally.add(mv, assessment, text);
+                let permit = || entry_ref.permit(machine, mv, step);
+                limiter.push(mv, assessment, permit, &mut |outcome| {
+                    decided.push((*assessment, outcome));
+                });
+            });
         }
         entry.decided = decided;
     }
@@ -304,6 +337,11 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
     /// Writes a block whose moves are decided, and keeps its buffers.
     fn write(&mut self, mut entry: Box<Entry>) {
         let change = merge(&entry.decided);
+        if self.table.is_some() {
+            self.note(&entry, change);
+            self.spare.push(entry);
+            return;
+        }
         let view = BlockView {
             text: &entry.text,
             block: &entry.block,
@@ -325,6 +363,26 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
         self.spare.push(entry);
+    }
+
+    /// Keeps what was decided for a run of a line.
+    fn note(&mut self, entry: &Entry, change: Option<Change>) {
+        let Some(table) = &mut self.table else { return };
+        if !table.decide(entry.key, entry, change) {
+            return;
+        }
+        let moves = entry.steps.iter().filter_map(|step| match step {
+            Step::Move(mv) => Some(mv),
+            Step::Action(_) => None,
+        });
+        for (mv, (_, outcome)) in moves.zip(&entry.decided) {
+            if let Some(obstacle) = outcome.obstacle.as_deref() {
+                let message = obstacle.message.clone();
+                let text = entry.text_of(mv);
+                self.reasons
+                    .push(mv.line, obstacle.rule, message, &obstacle.help, text);
+            }
+        }
     }
 
     /// Tells the certifier what the block must do.
@@ -350,7 +408,7 @@ impl<'m, R: Read, W: Write> Writer<'m, R, W> {
                     message,
                     help,
                 } = *obstacle;
-                let text = entry.text_of(mv.line);
+                let text = entry.text_of(mv);
                 self.reasons.push(mv.line, rule, message, &help, text);
             }
             // What a block gets, all its moves get, but not its dwell.

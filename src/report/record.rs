@@ -10,7 +10,7 @@ use crate::machine::{AXES, AxisSet};
 use crate::pipeline::Row;
 
 /// Names of the columns of a report, in their order.
-pub const COLUMNS: [&str; 21] = [
+pub const COLUMNS: [&str; 23] = [
     "line",
     "n_word",
     "move",
@@ -32,6 +32,8 @@ pub const COLUMNS: [&str; 21] = [
     "regen_limit_w",
     "certificate",
     "converter",
+    "run",
+    "file",
 ];
 
 /// A row with its names; the fields are [`COLUMNS`].
@@ -59,6 +61,8 @@ pub(super) struct Record<'a> {
     regen_limit_w: Option<Figure>,
     certificate: &'static str,
     converter: &'a str,
+    run: u32,
+    file: &'a str,
 }
 
 impl<'a> From<&'a Row> for Record<'a> {
@@ -85,6 +89,8 @@ impl<'a> From<&'a Row> for Record<'a> {
             regen_limit_w: row.regen_limit_w.map(Figure),
             certificate: row.certificate.name(),
             converter: &row.converter,
+            run: row.run,
+            file: &row.file,
         }
     }
 }
@@ -108,6 +114,8 @@ pub(super) fn example() -> Row {
     use crate::pipeline::Certificate;
     Row {
         line: 3,
+        run: 2,
+        file: "sub.nc".into(),
         n_word: Some(101.0),
         kind: MoveKind::Rapid,
         axes: AxisSet(0b111),

@@ -107,6 +107,20 @@ impl<'m> Rewriter<'m> {
         apply(view.text, &mut self.edits, out)
     }
 
+    /// Writes a block by itself: what it changes is put back right behind it, so
+    /// that it does not matter where the program comes from or goes on. False
+    /// when its edits contradict each other.
+    #[must_use]
+    pub fn write_alone(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
+        self.written = Written {
+            motion: view.after.motion,
+            feed: view.after.feed_value(),
+        };
+        let written = self.write(view, out);
+        self.finish(view.after, view.knobs, out);
+        written
+    }
+
     /// Puts the state right at the end of a program that has no end word.
     pub fn finish(&mut self, last: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
         let mut lines = Vec::new();

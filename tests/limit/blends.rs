@@ -11,7 +11,13 @@ const LINUXCNC: Rig = Rig {
 /// Peak and certificate of a program.
 fn peak(rig: Rig, program: &str) -> (f64, Option<Certificate>) {
     let options = super::options(rig.options);
-    let summary = analyze(program.as_bytes(), &rig.machine(), &options, None).expect("a program");
+    let summary = analyze(
+        std::io::Cursor::new(program),
+        &rig.machine(),
+        &options,
+        None,
+    )
+    .expect("a program");
     (summary.peak_w, summary.certificate)
 }
 

@@ -242,7 +242,7 @@ fn holds(drives: &Drives, machine: &Machine, how: Run, before: &str, after: &str
     }
     assert!(time <= best * 1.001, "{time} s instead of {best} s");
     let options = super::options(how);
-    let summary = analyze(after.as_bytes(), machine, &options, None).expect("a program");
+    let summary = analyze(std::io::Cursor::new(after), machine, &options, None).expect("a program");
     assert!(summary.fits());
 }
 
@@ -305,7 +305,7 @@ proptest! {
         }
         if summary.certified {
             let options = super::options(how);
-            let after = analyze(&limited[..], &machine, &options, None).expect("a program");
+            let after = analyze(std::io::Cursor::new(&limited), &machine, &options, None).expect("a program");
             prop_assert!(after.fits());
             prop_assert_eq!(after.moves, summary.before.moves);
         }

@@ -1,7 +1,7 @@
 //! The rows of `limit` are those of `report`, with what became of each move.
 
 use super::RIG;
-use gwatt::pipeline::{Law, LimitOptions, Row, RowSink, Strategy, analyze, limit};
+use gwatt::pipeline::{Law, LimitOptions, Restart, Row, RowSink, Strategy, analyze, limit};
 
 #[derive(Default)]
 struct Rows(Vec<Row>);
@@ -9,6 +9,13 @@ struct Rows(Vec<Row>);
 impl RowSink for Rows {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
         self.0.push(row.clone());
+        Ok(())
+    }
+}
+
+impl Restart for Rows {
+    fn restart(&mut self) -> std::io::Result<()> {
+        self.0.clear();
         Ok(())
     }
 }
@@ -23,14 +30,20 @@ fn peaks_are_exact_in_every_row() {
     let machine = rig.machine();
     let options = super::options(rig.options);
     let (mut report, mut limited) = (Rows::default(), Rows::default());
-    analyze(&program[..], &machine, &options, Some(&mut report)).expect("a program");
+    analyze(
+        std::io::Cursor::new(program),
+        &machine,
+        &options,
+        Some(&mut report),
+    )
+    .expect("a program");
     let how = LimitOptions {
         strategy: Strategy::Optimal,
         law: Law::Exact,
         allow_feed: true,
     };
     limit(
-        &program[..],
+        std::io::Cursor::new(program),
         &machine,
         &options,
         how,

@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::Fault;
-use super::vector::{Vector, add, along, cross, dot, left, length, scale, sub, unit};
+use super::vector::{Vector, along, cross, dot, left, length, scale, sub, unit};
 
 /// Bends below it are passed as if the path were smooth, rad.
 const SMOOTH_RAD: f64 = 0.05;
@@ -17,13 +17,20 @@ const SMOOTH_RAD: f64 = 0.05;
 pub(super) enum Track {
     /// A line through a point of it, with its direction of length 1.
     Line { through: Vector, along: Vector },
-    /// A circle; `inside`: the tool is on the side of its centre.
-    Circle {
-        center: Vector,
-        radius: f64,
-        counterclockwise: bool,
-        inside: bool,
-    },
+    /// A circle.
+    Circle(Circle),
+}
+
+/// A shifted arc.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Circle {
+    pub(super) center: Vector,
+    pub(super) radius: f64,
+    pub(super) counterclockwise: bool,
+    /// The tool is on the side of its centre.
+    pub(super) inside: bool,
+    /// Programmed radius at the end over that at the start: 1 but for rounding.
+    pub(super) ratio: f64,
 }
 
 /// How a path bends, seen from the tool's side.
@@ -59,10 +66,10 @@ pub(super) fn bend(
         // Back along where it came from: a line that leaves an arc which the
         // tool went round, and an arc that the tool goes round, are met from
         // above and not by another turn about the corner.
-        let round = |track: &Track| matches!(track, Track::Circle { inside: false, .. });
+        let round = |track: &Track| matches!(track, Track::Circle(circle) if !circle.inside);
         let met = match after {
             Track::Line { .. } => round(before),
-            Track::Circle { .. } => round(after),
+            Track::Circle(_) => round(after),
         };
         if met {
             return Bend::Inside;
@@ -75,93 +82,70 @@ pub(super) fn bend(
     }
 }
 
-/// Where the tool changes from one track to the next in an inside corner.
-pub(super) fn meet(before: &Track, after: &Track) -> Result<Vector, Fault> {
-    match (*before, *after) {
+/// Where the tool changes from one track to the next in an inside corner;
+/// `shift` is how far the tracks lie to the left of the programmed path.
+pub(super) fn meet(before: &Track, after: &Track, shift: f64) -> Result<Vector, Fault> {
+    match (before, after) {
         (
-            Track::Line {
-                through,
-                along: first,
-            },
+            Track::Line { through, along },
             Track::Line {
                 through: other,
-                along: second,
+                along: next,
             },
-        ) => {
-            let turn = cross(first, second);
-            if turn == 0.0 {
-                return Err(Fault::NoCorner);
-            }
-            let way = cross(sub(other, through), second) / turn;
-            Ok(along(through, first, way))
+        ) => lines(*through, *along, *other, *next).ok_or(Fault::NoCorner),
+        (Track::Circle(circle), Track::Line { through, along }) => {
+            let aside = cross(*along, sub(circle.center, *through));
+            circle
+                .cross_line(*along, aside, !circle.inside)
+                .ok_or(Fault::ArcToLine)
         }
-        (
-            Track::Circle {
-                center,
-                radius,
-                inside,
-                ..
-            },
-            Track::Line { through, along },
-        ) => line_and_circle(through, along, center, radius, !inside).ok_or(Fault::ArcToLine),
-        (
-            Track::Line { through, along },
-            Track::Circle {
-                center,
-                radius,
-                inside,
-                ..
-            },
-        ) => line_and_circle(through, along, center, radius, inside).ok_or(Fault::LineToArc),
-        (
-            Track::Circle {
-                center,
-                radius,
-                inside,
-                ..
-            },
-            Track::Circle {
-                center: other,
-                radius: other_radius,
-                counterclockwise,
-                ..
-            },
-        ) => {
-            let between = sub(other, center);
-            let apart = length(between);
-            let Some(toward) = unit(between).filter(|_| radius != 0.0) else {
-                return Err(Fault::SameCenter);
-            };
-            let way =
-                (radius * radius + apart * apart - other_radius * other_radius) / (2.0 * apart);
-            let square = radius * radius - way * way;
-            if !(square >= 0.0) {
-                return Err(Fault::ArcToArc);
-            }
-            let aside = square.sqrt()
-                * if inside == counterclockwise {
-                    1.0
-                } else {
-                    -1.0
-                };
-            Ok(add(along(center, toward, way), scale(left(toward), aside)))
+        (Track::Line { through, along }, Track::Circle(circle)) => {
+            // LinuxCNC measures the programmed line by the radius at the arc's
+            // end, which may differ from that at its start by rounding.
+            let aside = cross(*along, sub(circle.center, *through)) + shift;
+            circle
+                .cross_line(*along, aside * circle.ratio - shift, circle.inside)
+                .ok_or(Fault::LineToArc)
         }
+        (Track::Circle(circle), Track::Circle(next)) => circle.cross_circle(next),
     }
 }
 
-/// Where a line crosses a circle: the later point, or the earlier one.
-fn line_and_circle(
-    through: Vector,
-    direction: Vector,
-    center: Vector,
-    radius: f64,
-    later: bool,
-) -> Option<Vector> {
-    let foot = along(through, direction, dot(sub(center, through), direction));
-    let off = length(sub(center, foot));
-    let square = radius * radius - off * off;
-    (square >= 0.0).then(|| {
-        let half = square.sqrt();
-        along(foot, direction, if later { half } else { -half })
-    })
+fn lines(through: Vector, direction: Vector, other: Vector, next: Vector) -> Option<Vector> {
+    let turn = cross(direction, next);
+    (turn != 0.0).then(|| along(through, direction, cross(sub(other, through), next) / turn))
+}
+
+impl Circle {
+    /// The later or the earlier of the points that a line of this direction
+    /// passes, from which the centre lies `aside` to the left.
+    fn cross_line(&self, direction: Vector, aside: f64, later: bool) -> Option<Vector> {
+        let square = self.radius * self.radius - aside * aside;
+        (square >= 0.0).then(|| {
+            let half = if later { square.sqrt() } else { -square.sqrt() };
+            let foot = along(self.center, left(direction), -aside);
+            along(foot, direction, half)
+        })
+    }
+
+    fn cross_circle(&self, next: &Self) -> Result<Vector, Fault> {
+        let between = sub(next.center, self.center);
+        let apart = length(between);
+        let toward = unit(between)
+            .filter(|_| self.radius != 0.0)
+            .ok_or(Fault::SameCenter)?;
+        let square = self.radius * self.radius;
+        let way = (square + apart * apart - next.radius * next.radius) / (2.0 * apart);
+        let aside = square - way * way;
+        if aside.is_nan() || aside < 0.0 {
+            return Err(Fault::ArcToArc);
+        }
+        let side = if self.inside == next.counterclockwise {
+            1.0
+        } else {
+            -1.0
+        };
+        let foot = along(self.center, toward, way);
+        Ok(along(foot, left(toward), side * aside.sqrt()))
+    }
 }

@@ -21,10 +21,12 @@ pub(super) enum Fault {
     InverseTime,
     UnknownStart,
     TooMany,
+    OtherMotion,
 }
 
 impl Fault {
-    /// Message and help. LinuxCNC stops at all but the last three.
+    /// Message and help. LinuxCNC stops at all of them but `ArcFirst`,
+    /// `InverseTime`, `UnknownStart` and `TooMany`.
     fn words(self) -> (&'static str, &'static str) {
         const SMALLER: &str =
             "use a smaller tool, or round the corner by an arc larger than the tool";
@@ -88,6 +90,10 @@ impl Fault {
             Self::UnknownStart => (
                 "cutter compensation begins at a position that is not known",
                 "move the axes of the plane to a known position first, or give --start X0,Y0,Z0",
+            ),
+            Self::OtherMotion => (
+                "this motion under cutter compensation: the controller stops here",
+                "switch the compensation off before: G40",
             ),
             Self::TooMany => (
                 "more than a thousand steps without motion in the plane of the compensation",

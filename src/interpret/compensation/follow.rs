@@ -1,6 +1,6 @@
 //! The tool's centre beside the programmed moves.
 
-use super::corner::{Bend, Track, bend, meet};
+use super::corner::{Bend, Circle, Track, bend, meet};
 use super::hold::Guard;
 use super::vector::{Vector, add, along, distance, dot, left, scale, sub, unit};
 use super::{Compensation, Fault, State};
@@ -28,6 +28,9 @@ impl Compensation {
                 return Ok(());
             }
         };
+        if !matches!(mv.kind, MoveKind::Rapid | MoveKind::Feed | MoveKind::Arc) {
+            return Err(Fault::OtherMotion);
+        }
         if mv.feed_mode == FeedMode::InverseTime && mv.kind != MoveKind::Rapid {
             return Err(Fault::InverseTime);
         }
@@ -52,7 +55,7 @@ impl Compensation {
         match bend(self.side, offset, element.tangent, &before, &element.track) {
             Bend::Smooth => self.hold.release(out)?,
             Bend::Inside => {
-                let end = meet(&before, &element.track)?;
+                let end = meet(&before, &element.track, self.side * self.radius_mm)?;
                 self.hold.release_at(end, out)?;
             }
             Bend::Outside => {
@@ -102,27 +105,20 @@ impl Compensation {
     /// end, where it runs in the programmed direction (measured with LinuxCNC).
     fn enter_by_arc(&self, arc: &Arc, from: Vector, to: Vector) -> Result<(Track, Vector), Fault> {
         let shifted = self.element_of_arc(arc, from, to)?;
-        let Track::Circle {
-            center,
-            counterclockwise,
-            inside,
-            ..
-        } = shifted.track
-        else {
+        let Track::Circle(circle) = shifted.track else {
             return Err(Fault::EntryArc);
         };
-        let inward = unit(sub(center, to)).ok_or(Fault::EntryArc)?;
+        let inward = unit(sub(circle.center, to)).ok_or(Fault::EntryArc)?;
         let chord = sub(shifted.end, from);
         let radius = -dot(chord, chord) / (2.0 * dot(chord, inward));
         if radius == 0.0 || !radius.is_finite() {
             return Err(Fault::EntryArc);
         }
-        let track = Track::Circle {
+        let track = Track::Circle(Circle {
             center: along(shifted.end, inward, radius),
             radius: radius.abs(),
-            counterclockwise,
-            inside,
-        };
+            ..circle
+        });
         Ok((track, shifted.end))
     }
 
@@ -163,12 +159,13 @@ impl Compensation {
         let first = unit(sub(from, center)).ok_or(Fault::SmallArc)?;
         let last = unit(sub(to, center)).ok_or(Fault::SmallArc)?;
         Ok(Element {
-            track: Track::Circle {
+            track: Track::Circle(Circle {
                 center,
                 radius: radius + outward,
                 counterclockwise,
                 inside,
-            },
+                ratio: radius / distance(center, from),
+            }),
             start: along(from, first, outward),
             end: along(to, last, outward),
             tangent: scale(left(first), if counterclockwise { 1.0 } else { -1.0 }),

@@ -141,7 +141,7 @@ impl Hold {
             self.track.take()
         };
         let arc = match track {
-            Some(Track::Circle { center, .. }) => Some(self.arc(mv, center, from, to)?),
+            Some(Track::Circle(circle)) => Some(self.arc(mv, circle.center, from, to)?),
             _ => None,
         };
         let from = if track.is_some() { from } else { to };
@@ -246,7 +246,9 @@ pub(super) fn place(
     }
     moving.0 &= !mv.unknown_start.0;
     if arc.is_some() {
-        plane.into_iter().for_each(|axis| moving.insert(axis));
+        for axis in plane {
+            moving.insert(axis);
+        }
     }
     let (length_mm, linear) = path_length(&mv.start, &mv.end, moving, arc.as_ref());
     mv.moving = moving;

@@ -58,7 +58,7 @@ pub(super) struct Compensation {
     straight_first: bool,
     hold: Hold,
     /// Lines whose moves are held back, or were until this block.
-    texts: Vec<(u64, Vec<u8>)>,
+    texts: Vec<((u16, u64), Vec<u8>)>,
     /// The steps of a block: a buffer.
     own: Vec<Step>,
 }
@@ -70,8 +70,9 @@ impl Compensation {
     }
 
     /// The line of a move that was held back.
-    pub(super) fn text_of(&self, line: u64) -> Option<&[u8]> {
-        let found = self.texts.iter().find(|(held, _)| *held == line);
+    pub(super) fn text_of(&self, mv: &Move) -> Option<&[u8]> {
+        let key = (mv.text, mv.line);
+        let found = self.texts.iter().find(|(held, _)| *held == key);
         found.map(|(_, text)| text.as_slice())
     }
 
@@ -81,23 +82,24 @@ impl Compensation {
     }
 
     /// Keeps the text of a line while its moves wait, and no longer.
-    fn remember(&mut self, line: u64, text: &[u8]) {
-        if self.holds() {
+    fn remember(&mut self, key: (u16, u64), text: &[u8]) {
+        let known = self.texts.iter().any(|(held, _)| *held == key);
+        if self.holds() && !known {
             let (text, _) = crate::source::split_line_end(text);
             self.texts
-                .push((line, text.get(..TEXT_MAX).unwrap_or(text).to_vec()));
+                .push((key, text.get(..TEXT_MAX).unwrap_or(text).to_vec()));
         }
     }
 
     /// Forgets the lines whose moves have been handed on before this block.
     fn forget(&mut self) {
-        let waits = |line: u64| {
+        let waits = |key: (u16, u64)| {
             self.hold
                 .steps
                 .iter()
-                .any(|step| matches!(step, Step::Move(mv) if mv.line == line))
+                .any(|step| matches!(step, Step::Move(mv) if (mv.text, mv.line) == key))
         };
-        self.texts.retain(|(line, _)| waits(*line));
+        self.texts.retain(|(key, _)| waits(*key));
     }
 
     /// The first move behind G40 begins where the tool is. True where its
@@ -134,7 +136,7 @@ impl Control<'_> {
             }
             own.clear();
             compensation.own = own;
-            compensation.remember(run.line, run.report.text);
+            compensation.remember((self.text, run.line), run.report.text);
         }
         self.compensation = Some(compensation);
     }
@@ -147,6 +149,10 @@ impl Control<'_> {
     ) -> Result<(), Fault> {
         if !compensation.is_on() {
             compensation.hold.finish(run.steps)?;
+        }
+        let path = |step: &&Step| matches!(step, Step::Move(mv) if mv.kind != MoveKind::Dwell);
+        if compensation.is_on() && own.iter().filter(path).count() > 1 {
+            return Err(Fault::OtherMotion);
         }
         for mut step in own.drain(..) {
             match (compensation.state, &mut step) {

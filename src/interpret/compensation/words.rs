@@ -58,7 +58,7 @@ impl Control<'_> {
     }
 
     /// Whether G41 or G42 is in force.
-    fn is_compensating(&self) -> bool {
+    pub(in crate::interpret) fn is_compensating(&self) -> bool {
         self.compensation.as_ref().is_some_and(|it| it.is_on())
     }
 

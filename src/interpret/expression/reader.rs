@@ -1,0 +1,370 @@
+//! Reads a text from the left and works out its value on the way.
+
+use std::borrow::Cow;
+
+use super::function::Function;
+use super::operator::Operator;
+use super::value::{Fault, Read, Value, Variables};
+use crate::diagnostic::excerpt;
+use crate::source::Span;
+
+/// Brackets and signs inside one another.
+const DEPTH_MAX: u32 = 64;
+
+/// A place in the text of a block, which moves on as the text is understood.
+#[derive(Debug)]
+pub(in crate::interpret) struct Reader<'t> {
+    pub(in crate::interpret) text: &'t [u8],
+    pub(in crate::interpret) at: usize,
+    depth: u32,
+}
+
+/// Names one parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::interpret) enum Name<'t> {
+    Number(u32),
+    Text(Cow<'t, str>),
+}
+
+impl std::fmt::Display for Name<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "#{number}"),
+            Self::Text(name) => write!(f, "#<{name}>"),
+        }
+    }
+}
+
+type Outcome<T> = Result<T, Fault>;
+
+impl<'t> Reader<'t> {
+    pub(in crate::interpret) fn new(text: &'t [u8], at: usize) -> Self {
+        Self { text, at, depth: 0 }
+    }
+
+    /// The next byte behind blanks and comments, upper case; it stays.
+    pub(in crate::interpret) fn peek(&mut self) -> Option<u8> {
+        loop {
+            match self.text.get(self.at)? {
+                b' ' | b'\t' => self.at += 1,
+                b'(' => {
+                    let rest = self.text.get(self.at..)?;
+                    self.at += memchr::memchr(b')', rest)? + 1;
+                }
+                b';' => return None,
+                byte => return Some(byte.to_ascii_uppercase()),
+            }
+        }
+    }
+
+    /// Takes `byte` if it is next.
+    pub(in crate::interpret) fn take(&mut self, byte: u8) -> bool {
+        let next = self.peek() == Some(byte);
+        self.at += usize::from(next);
+        next
+    }
+
+    /// Takes a word of letters if it is next, in either case.
+    pub(in crate::interpret) fn take_name(&mut self, name: &[u8]) -> bool {
+        self.peek();
+        let end = self.at + name.len();
+        let next = self
+            .text
+            .get(self.at..end)
+            .is_some_and(|text| text.eq_ignore_ascii_case(name));
+        if next {
+            self.at = end;
+        }
+        next
+    }
+
+    /// What stands at the place, and where.
+    pub(in crate::interpret) fn fault(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        help: &'static str,
+        start: usize,
+    ) -> Fault {
+        let end = self.at.max(start + 1).min(self.text.len());
+        Fault::new(rule, message, help, Span::new(start.min(end), end))
+    }
+
+    /// A number, a parameter, a function or brackets, with signs before it: what
+    /// may stand behind the letter of a word.
+    pub(in crate::interpret) fn value(&mut self, variables: &impl Variables) -> Outcome<Value> {
+        let start = self.at;
+        self.depth += 1;
+        if self.depth > DEPTH_MAX {
+            let message = format!("more than {DEPTH_MAX} brackets and signs in one another");
+            return Err(self.fault("expression", message, "take the expression apart", start));
+        }
+        let value = self.operand(variables);
+        self.depth -= 1;
+        value
+    }
+
+    fn operand(&mut self, variables: &impl Variables) -> Outcome<Value> {
+        match self.peek() {
+            Some(b'[') => self.brackets(variables),
+            Some(b'#') => self.parameter(variables),
+            Some(b'-') => {
+                self.at += 1;
+                Ok(self.value(variables)?.map(|value| -value))
+            }
+            Some(b'+') => {
+                self.at += 1;
+                self.value(variables)
+            }
+            Some(b'0'..=b'9' | b'.') => self.number().map(Some),
+            Some(b'A'..=b'Z') => self.function(variables).map(Some),
+            _ => {
+                let start = self.at;
+                self.at += 1;
+                Err(self.fault(
+                    "expression",
+                    "a value is missing here",
+                    "write a number, a parameter such as #1, or an expression in brackets",
+                    start,
+                ))
+            }
+        }
+    }
+
+    /// `[ … ]`.
+    pub(in crate::interpret) fn brackets(&mut self, variables: &impl Variables) -> Outcome<Value> {
+        let start = self.at;
+        if !self.take(b'[') {
+            let message = "`[` is missing here";
+            return Err(self.fault("expression", message, "write [ … ]", start));
+        }
+        let value = self.expression(variables)?;
+        if !self.take(b']') {
+            let message = "`]` is missing here";
+            let help = "close each bracket, and write operators between values";
+            return Err(self.fault("expression", message, help, self.at));
+        }
+        Ok(value)
+    }
+
+    /// Operands with operators between them.
+    pub(in crate::interpret) fn expression(
+        &mut self,
+        variables: &impl Variables,
+    ) -> Outcome<Value> {
+        self.operators(0, variables)
+    }
+
+    /// Operators that bind tighter than `least`, from the left.
+    fn operators(&mut self, least: u8, variables: &impl Variables) -> Outcome<Value> {
+        let mut left = self.value(variables)?;
+        let fanuc = variables.fanuc();
+        loop {
+            self.peek();
+            let rest = self.text.get(self.at..).unwrap_or_default();
+            let Some((operator, length)) = Operator::read(rest) else {
+                return Ok(left);
+            };
+            let precedence = operator.precedence(fanuc);
+            if precedence <= least {
+                return Ok(left);
+            }
+            let start = self.at;
+            self.at += length;
+            self.depth += 1;
+            let right = self.operators(precedence, variables)?;
+            self.depth -= 1;
+            let result = operator
+                .apply(left, right, fanuc)
+                .map_err(|wrong| self.impossible(wrong, start))?;
+            left = Some(self.finite(result, start)?);
+        }
+    }
+
+    /// An unsigned number. Blanks may stand between its digits.
+    pub(in crate::interpret) fn number(&mut self) -> Outcome<f64> {
+        let start = self.at;
+        let digits = |reader: &mut Self| {
+            while reader.text.get(reader.at).is_some_and(u8::is_ascii_digit) {
+                reader.at += 1;
+            }
+        };
+        digits(self);
+        if self.text.get(self.at) == Some(&b'.') {
+            self.at += 1;
+            digits(self);
+        }
+        let text = self.text.get(start..self.at).unwrap_or_default();
+        let value = std::str::from_utf8(text)
+            .ok()
+            .and_then(|text| text.parse::<f64>().ok());
+        match value {
+            Some(value) if value.is_finite() => Ok(value),
+            _ => Err(self.fault(
+                "expression",
+                format!("`{}` is not a number", excerpt(text, 40)),
+                "write digits with at most one point",
+                start,
+            )),
+        }
+    }
+
+    /// `#5`, `##5`, `#[…]` or `#<name>` and what it holds.
+    fn parameter(&mut self, variables: &impl Variables) -> Outcome<Value> {
+        let start = self.at;
+        let name = self.parameter_name(variables)?;
+        let read = match &name {
+            Name::Number(number) => variables.numbered(*number),
+            Name::Text(text) => variables.named(text),
+        };
+        match read {
+            Read::Value(value) => Ok(value),
+            Read::Unknown(reason) => Err(self.fault(
+                "unknown-value",
+                format!("{name} depends on {reason}, which only the machine knows"),
+                "give it a value in the program, or take what depends on it out",
+                start,
+            )),
+            Read::Missing => Err(self.fault(
+                "no-such-parameter",
+                format!("{name} has no value"),
+                "assign it before it is used",
+                start,
+            )),
+        }
+    }
+
+    /// `#` and what names the parameter.
+    pub(in crate::interpret) fn parameter_name(
+        &mut self,
+        variables: &impl Variables,
+    ) -> Outcome<Name<'t>> {
+        let start = self.at;
+        if !self.take(b'#') {
+            let message = "`#` is missing here";
+            return Err(self.fault("expression", message, "write a parameter, as #1", start));
+        }
+        if self.peek() == Some(b'<') {
+            return self.angle_name().map(Name::Text);
+        }
+        let value = self.value(variables)?.unwrap_or(0.0);
+        let number = value.round();
+        if (value - number).abs() > 1e-4 || !(0.0..=1e9).contains(&number) {
+            let message = format!("{value} is not the number of a parameter");
+            let help = "parameters have whole positive numbers";
+            return Err(self.fault("no-such-parameter", message, help, start));
+        }
+        Ok(Name::Number(number as u32))
+    }
+
+    /// `<name>`: lower case, blanks left out.
+    pub(in crate::interpret) fn angle_name(&mut self) -> Outcome<Cow<'t, str>> {
+        let start = self.at;
+        let inside = self
+            .text
+            .get(start + 1..)
+            .and_then(|rest| Some((rest, memchr::memchr(b'>', rest)?)))
+            .and_then(|(rest, end)| rest.get(..end))
+            .and_then(|name| std::str::from_utf8(name).ok());
+        let Some(name) = inside else {
+            let message = "a name in < > is not closed";
+            return Err(self.fault("expression", message, "write <name>", start));
+        };
+        self.at = start + name.len() + 2;
+        let plain = |byte: u8| !byte.is_ascii_uppercase() && byte != b' ' && byte != b'\t';
+        if name.bytes().all(plain) {
+            return Ok(Cow::Borrowed(name));
+        }
+        let letters = name.chars().filter(|letter| !matches!(letter, ' ' | '\t'));
+        Ok(Cow::Owned(letters.collect::<String>().to_ascii_lowercase()))
+    }
+
+    /// A function with its argument in brackets.
+    fn function(&mut self, variables: &impl Variables) -> Outcome<f64> {
+        let start = self.at;
+        let rest = self.text.get(start..).unwrap_or_default();
+        let Some((function, length)) = Function::read(rest) else {
+            let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic());
+            self.at += letters.count();
+            let name = excerpt(self.text.get(start..self.at).unwrap_or_default(), 40);
+            let message = format!("`{name}` is no function");
+            let help =
+                "the functions are ABS ACOS ASIN ATAN COS EXISTS EXP FIX FUP LN ROUND SIN SQRT TAN";
+            return Err(self.fault("expression", message, help, start));
+        };
+        self.at += length;
+        if function == Function::Exists {
+            return self.exists(variables);
+        }
+        let fanuc = variables.fanuc();
+        if !self.take(b'[') {
+            let message = "the argument of a function stands in brackets";
+            return Err(self.fault("expression", message, "write SIN[…]", start));
+        }
+        let x = self.expression(variables)?.unwrap_or(0.0);
+        let second = if self.take(b',') {
+            Some(self.expression(variables)?.unwrap_or(0.0))
+        } else {
+            None
+        };
+        if !self.take(b']') {
+            let message = "`]` is missing here";
+            let help = "close each bracket, and write operators between values";
+            return Err(self.fault("expression", message, help, self.at));
+        }
+        let result = match (function, second) {
+            (Function::Power, Some(exponent)) => {
+                Operator::Power.apply(Some(x), Some(exponent), fanuc)
+            }
+            (Function::Atan, Some(across)) => Ok(libm::atan2(x, across).to_degrees()),
+            (_, Some(_)) => Err("a second argument of a function that takes one"),
+            // ATAN[y]/[x] is one function of two values.
+            (Function::Atan, None) if self.slash_bracket() => {
+                let across = self.brackets(variables)?.unwrap_or(0.0);
+                Ok(libm::atan2(x, across).to_degrees())
+            }
+            (function, None) => function.apply(x, fanuc),
+        };
+        let result = result.map_err(|wrong| self.impossible(wrong, start))?;
+        self.finite(result, start)
+    }
+
+    /// `/[` is next: the slash is taken.
+    fn slash_bracket(&mut self) -> bool {
+        let before = self.at;
+        if self.take(b'/') && self.peek() == Some(b'[') {
+            return true;
+        }
+        self.at = before;
+        false
+    }
+
+    /// `EXISTS[#<name>]`: whether the parameter has a value.
+    fn exists(&mut self, variables: &impl Variables) -> Outcome<f64> {
+        let start = self.at;
+        let open = self.take(b'[');
+        self.peek();
+        let name = self.parameter_name(variables)?;
+        if !open || !self.take(b']') {
+            let message = "EXISTS takes one parameter in brackets";
+            return Err(self.fault("expression", message, "write EXISTS[#<name>]", start));
+        }
+        let read = match &name {
+            Name::Number(number) => variables.numbered(*number),
+            Name::Text(name) => variables.named(name),
+        };
+        Ok(f64::from(u8::from(read != Read::Missing)))
+    }
+
+    fn impossible(&self, wrong: &'static str, start: usize) -> Fault {
+        let help = "check the values that go into it";
+        self.fault("arithmetic", wrong, help, start)
+    }
+
+    fn finite(&self, value: f64, start: usize) -> Outcome<f64> {
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(self.impossible("a result beyond all numbers", start))
+    }
+}

@@ -1,0 +1,51 @@
+//! Values, and where those of parameters come from.
+
+use crate::source::Span;
+
+/// A value; `None` is Fanuc's null, a variable that was never given one.
+pub(in crate::interpret) type Value = Option<f64>;
+
+/// What is known of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::interpret) enum Read {
+    Value(Value),
+    /// It depends on something that only the machine knows, named here.
+    Unknown(&'static str),
+    /// There is no such parameter.
+    Missing,
+}
+
+/// The parameters that expressions may use.
+pub(in crate::interpret) trait Variables {
+    /// `#number`.
+    fn numbered(&self, number: u32) -> Read;
+    /// `#<name>`, lower case without blanks.
+    fn named(&self, name: &str) -> Read;
+    /// Fanuc's rules for null, precedence and rounding; else those of RS274/NGC.
+    fn fanuc(&self) -> bool;
+}
+
+/// Why a text has no value.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::interpret) struct Fault {
+    pub(in crate::interpret) rule: &'static str,
+    pub(in crate::interpret) message: String,
+    pub(in crate::interpret) help: &'static str,
+    pub(in crate::interpret) span: Span,
+}
+
+impl Fault {
+    pub(in crate::interpret) fn new(
+        rule: &'static str,
+        message: impl Into<String>,
+        help: &'static str,
+        span: Span,
+    ) -> Self {
+        Self {
+            rule,
+            message: message.into(),
+            help,
+            span,
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Subprograms in files of their own.
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::Trouble;
+use crate::interpret::transfer::Label;
+
+/// Bytes that all files of subprograms may have together.
+const BYTES_MAX: u64 = 64 << 20;
+
+/// The folders where subprograms are looked for.
+#[derive(Debug)]
+pub(super) struct Library {
+    folders: Arc<[PathBuf]>,
+    bytes: u64,
+    /// Names of the files that were loaded.
+    loaded: Vec<String>,
+}
+
+impl Library {
+    pub(super) fn new(folders: Arc<[PathBuf]>) -> Self {
+        Self {
+            folders,
+            bytes: 0,
+            loaded: Vec::new(),
+        }
+    }
+
+    /// Names of the files that were loaded, in order.
+    pub(super) fn loaded(&self) -> &[String] {
+        &self.loaded
+    }
+
+    /// The contents of the file that holds a subprogram.
+    pub(super) fn load(&mut self, label: &Label) -> Result<Vec<u8>, Trouble> {
+        let names = names(label);
+        let found = self.folders.iter().find_map(|folder| {
+            names
+                .iter()
+                .map(|name| folder.join(name))
+                .find(|path| path.is_file())
+        });
+        let Some(path) = found else {
+            let message = format!("there is no subprogram {label}");
+            let help = format!(
+                "define it in the program, or put {} into its folder or one given by --sub-path",
+                names.first().map_or("its file", String::as_str)
+            );
+            return Err(Trouble::new("no-such-subprogram", message, help));
+        };
+        let shown = path.display().to_string();
+        let unreadable = |why: String| {
+            let message = format!("the subprogram file {shown} cannot be read: {why}");
+            Trouble::new("no-such-subprogram", message, "check the file")
+        };
+        let size = fs::metadata(&path)
+            .map_err(|error| unreadable(error.to_string()))?
+            .len();
+        self.bytes += size;
+        if self.bytes > BYTES_MAX {
+            return Err(unreadable(
+                "the subprograms have more than 64 MiB".to_owned(),
+            ));
+        }
+        let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+        self.loaded.push(shown);
+        Ok(bytes)
+    }
+}
+
+/// File names that a subprogram may have.
+fn names(label: &Label) -> Vec<String> {
+    match label {
+        // A name is no path.
+        Label::Name(name) if name.contains(['/', '\\']) || name.starts_with('.') => Vec::new(),
+        Label::Name(name) => vec![format!("{name}.ngc"), name.clone()],
+        Label::Number(number) => {
+            let stems = [
+                format!("{number}"),
+                format!("O{number:04}"),
+                format!("O{number}"),
+                format!("o{number:04}"),
+                format!("o{number}"),
+            ];
+            let endings = [".ngc", ".nc", ".NC", ".cnc", ".txt", ".tap", ""];
+            stems
+                .iter()
+                .flat_map(|stem| endings.map(|ending| format!("{stem}{ending}")))
+                .collect()
+        }
+    }
+}

@@ -1,0 +1,399 @@
+//! The order of execution: calls, branches and loops over programs that are
+//! held whole.
+
+mod library;
+mod macro_b;
+mod o_word;
+mod text;
+
+use std::sync::Arc;
+
+use self::library::Library;
+use self::text::{Search, Text};
+use super::execute::Interpreter;
+use super::parameters::LOCALS;
+use super::position::Reading;
+use super::transfer::{Call, Label, Target, Transfer};
+use crate::diagnostic::Diagnostic;
+use crate::source::{Span, split_line_end};
+
+/// A line of one of the texts, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Place {
+    /// Which text; 0 is the program itself.
+    pub(crate) text: usize,
+    pub(crate) line: usize,
+}
+
+/// Runs through a program in the order of its execution.
+#[derive(Debug)]
+pub(crate) struct Flow {
+    texts: Vec<Text>,
+    library: Library,
+    limits: Limits,
+    /// The line to execute next.
+    next: Place,
+    /// The line that is being executed.
+    now: Place,
+    calls: Vec<Frame>,
+    loops: Vec<Loop>,
+    /// An ELSEIF that decides by its own condition: none before was taken.
+    undecided: Option<Label>,
+    /// The macro that each block which moves calls (G66).
+    modal: Option<Call>,
+    repeated_moves: u64,
+    idle_lines: u64,
+    /// The program has begun again (M99 in the main program).
+    again: bool,
+}
+
+/// Where repetition stops.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Calls inside one another.
+    pub depth: usize,
+    /// Moves of lines that have been executed before.
+    pub repeated_moves: u64,
+    /// Lines in a row that move nothing.
+    pub idle_lines: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            depth: 100,
+            repeated_moves: 10_000_000,
+            idle_lines: 10_000_000,
+        }
+    }
+}
+
+/// A call that has not returned.
+#[derive(Debug)]
+struct Frame {
+    /// The line to go on at, and where the subprogram begins.
+    back: Place,
+    begin: Place,
+    /// Runs that are still to come.
+    again: u64,
+    arguments: Option<Box<[Option<f64>; LOCALS]>>,
+    /// Its variables are its own.
+    own: bool,
+    /// Loops of its callers.
+    loops: usize,
+}
+
+/// A loop that runs.
+#[derive(Debug)]
+struct Loop {
+    label: Label,
+    kind: LoopKind,
+    line: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum LoopKind {
+    While,
+    Do,
+    Repeat { left: u64 },
+}
+
+/// What went wrong, at the line that is being executed.
+pub(super) struct Trouble {
+    rule: &'static str,
+    message: String,
+    help: String,
+}
+
+impl Trouble {
+    fn new(rule: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self {
+            rule,
+            message: message.into(),
+            help: help.into(),
+        }
+    }
+}
+
+impl Flow {
+    /// Takes over a program whose first lines have been executed; line `line`
+    /// from 0 is the one that did not go on at the next.
+    pub(crate) fn new(program: Vec<u8>, line: usize, reading: &Reading) -> Self {
+        let mut main = Text::new(program);
+        for run in main.runs.iter_mut().take(line + 1) {
+            *run = 1;
+        }
+        let now = Place { text: 0, line };
+        Self {
+            texts: vec![main],
+            library: Library::new(Arc::clone(&reading.sub_paths)),
+            limits: reading.limits,
+            next: Place {
+                text: 0,
+                line: line + 1,
+            },
+            now,
+            calls: Vec::new(),
+            loops: Vec::new(),
+            undecided: None,
+            modal: None,
+            repeated_moves: 0,
+            idle_lines: 0,
+            again: false,
+        }
+    }
+
+    /// Goes to the next line; `None` at the end of the program.
+    pub(crate) fn advance(&mut self) -> Result<Option<Place>, Box<Diagnostic>> {
+        loop {
+            let Some(text) = self.texts.get_mut(self.next.text) else {
+                return Ok(None);
+            };
+            if self.next.line >= text.len() {
+                if self.calls.is_empty() {
+                    return Ok(None);
+                }
+                let message = "the subprogram ends without a return";
+                let help = "end it with M99, or endsub";
+                return Err(self.trouble(Trouble::new("subprogram", message, help)));
+            }
+            let tape = text
+                .line(self.next.line)
+                .trim_ascii_start()
+                .starts_with(b"%");
+            if tape && self.next.text > 0 {
+                self.next.line += 1;
+                continue;
+            }
+            self.now = self.next;
+            self.next.line += 1;
+            return Ok(Some(self.now));
+        }
+    }
+
+    /// Where the line that is being executed stands.
+    pub(crate) fn now(&self) -> Place {
+        self.now
+    }
+
+    /// Names of the files of subprograms; they are texts 1 and so on.
+    pub(crate) fn files(&self) -> &[String] {
+        self.library.loaded()
+    }
+
+    /// Lines of the program itself.
+    pub(crate) fn lines(&self) -> u64 {
+        self.texts.first().map_or(0, |text| text.len() as u64)
+    }
+
+    /// The line that is being executed.
+    pub(crate) fn text(&self) -> &[u8] {
+        self.texts
+            .get(self.now.text)
+            .map_or(&[], |text| text.line(self.now.line))
+    }
+
+    /// The name of its file, unless it is the program itself.
+    pub(crate) fn file(&self) -> Option<&str> {
+        let index = self.now.text.checked_sub(1)?;
+        self.files().get(index).map(String::as_str)
+    }
+
+    /// Counts a run of the line; gives its number from 1.
+    pub(crate) fn begin_line(&mut self) -> u32 {
+        let runs = self
+            .texts
+            .get_mut(self.now.text)
+            .and_then(|text| text.runs.get_mut(self.now.line));
+        runs.map_or(1, |runs| {
+            *runs = runs.saturating_add(1);
+            *runs
+        })
+    }
+
+    /// Counts what the line did, and stops what runs away.
+    pub(crate) fn end_line(&mut self, run: u32, moves: usize) -> Result<(), Box<Diagnostic>> {
+        if moves == 0 {
+            self.idle_lines += 1;
+            if self.idle_lines > self.limits.idle_lines {
+                let message = format!(
+                    "{} lines in a row have been executed without a move",
+                    self.limits.idle_lines
+                );
+                let help = "look for a loop that does not end; --max-idle-lines sets this limit";
+                return Err(self.trouble(Trouble::new("endless", message, help)));
+            }
+            return Ok(());
+        }
+        self.idle_lines = 0;
+        if run > 1 {
+            self.repeated_moves += moves as u64;
+            if self.repeated_moves > self.limits.repeated_moves {
+                let message = format!(
+                    "more than {} moves by repetition",
+                    self.limits.repeated_moves
+                );
+                let help = "look for a loop that does not end; --max-moves sets this limit";
+                return Err(self.trouble(Trouble::new("endless", message, help)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls the macro that G66 has set, behind a block that moved.
+    pub(crate) fn after_move(
+        &mut self,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), Box<Diagnostic>> {
+        let Some(call) = &self.modal else {
+            return Ok(());
+        };
+        // Moves of the macro itself do not call it.
+        if !self.calls.is_empty() {
+            return Ok(());
+        }
+        let call = call.clone();
+        self.call(call, interpreter)
+            .map_err(|trouble| self.trouble(trouble))
+    }
+
+    /// Goes on where the last block says.
+    pub(crate) fn follow(
+        &mut self,
+        transfer: Transfer,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), Box<Diagnostic>> {
+        let done = match transfer {
+            Transfer::Structure { label, verb } => self.structure(label, verb, interpreter),
+            Transfer::Call(call) => self.call(call, interpreter),
+            Transfer::ModalCall(call) => {
+                self.modal = call;
+                Ok(())
+            }
+            Transfer::Return { block } => self.end_of_subprogram(block, interpreter),
+            Transfer::Goto(block) => self.go_to(block),
+            Transfer::Loop { number, holds } => self.begin_loop(number, holds),
+            Transfer::EndLoop(number) => self.end_loop(number),
+        };
+        done.map_err(|trouble| self.trouble(trouble))
+    }
+
+    fn trouble(&self, trouble: Trouble) -> Box<Diagnostic> {
+        let text = self.text();
+        let span = Span::new(0, split_line_end(text).0.len());
+        let mut diagnostic = Diagnostic::error(trouble.rule, trouble.message)
+            .at(self.now.line as u64 + 1, span, text)
+            .help(trouble.help);
+        diagnostic.file = self.file().map(str::to_owned);
+        Box::new(diagnostic)
+    }
+
+    fn call(&mut self, call: Call, interpreter: &mut Interpreter<'_>) -> Result<(), Trouble> {
+        if call.times == 0 {
+            return Ok(());
+        }
+        let begin = match &call.target {
+            Target::Program(label) => self.find_program(label)?,
+            Target::Block(block) => self.find_block(*block, self.next)?,
+        };
+        self.enter(begin, call.times, call.arguments, false, interpreter)
+    }
+
+    /// Begins a subprogram.
+    fn enter(
+        &mut self,
+        begin: Place,
+        times: u64,
+        arguments: Option<Box<[Option<f64>; LOCALS]>>,
+        own: bool,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), Trouble> {
+        if self.calls.len() >= self.limits.depth {
+            let message = format!("more than {} calls inside one another", self.limits.depth);
+            let help = "look for a subprogram that calls itself; --max-depth sets this limit";
+            return Err(Trouble::new("call-depth", message, help));
+        }
+        let own = own || arguments.is_some();
+        if own {
+            interpreter.enter(arguments.as_deref());
+        }
+        self.calls.push(Frame {
+            back: self.next,
+            begin,
+            again: times - 1,
+            arguments,
+            own,
+            loops: self.loops.len(),
+        });
+        self.begin(begin, interpreter);
+        Ok(())
+    }
+
+    fn begin(&mut self, begin: Place, interpreter: &mut Interpreter<'_>) {
+        self.next = begin;
+        let program = self
+            .texts
+            .get_mut(begin.text)
+            .is_some_and(|text| text.is_program(begin.line));
+        if program {
+            interpreter.expect_program_number();
+        }
+    }
+
+    /// Ends the subprogram that runs, or begins it again.
+    fn leave(&mut self, interpreter: &mut Interpreter<'_>) -> Option<Place> {
+        let mut frame = self.calls.pop()?;
+        self.loops.truncate(frame.loops);
+        if frame.own {
+            interpreter.leave();
+        }
+        let back = frame.back;
+        if frame.again > 0 {
+            frame.again -= 1;
+            if frame.own {
+                interpreter.enter(frame.arguments.as_deref());
+            }
+            self.begin(frame.begin, interpreter);
+            self.calls.push(frame);
+        } else {
+            self.next = back;
+        }
+        Some(back)
+    }
+
+    /// Where a program or subroutine begins, in the texts that are there or in
+    /// a file of its own.
+    fn find_program(&mut self, label: &Label) -> Result<Place, Trouble> {
+        // In this text first, then in the program, then in the others.
+        let here = self.now.text;
+        let count = self.texts.len();
+        let order = std::iter::once(here).chain((0..count).filter(|text| *text != here));
+        for text in order {
+            if let Some(line) = self.texts.get_mut(text).and_then(|text| text.begin(label)) {
+                return Ok(Place { text, line });
+            }
+        }
+        let bytes = self.library.load(label)?;
+        let mut text = Text::new(bytes);
+        // A file may hold its program without an O word.
+        let line = text.begin(label).unwrap_or(0);
+        self.texts.push(text);
+        Ok(Place { text: count, line })
+    }
+
+    /// A block of the program that `from` belongs to, looked for from there on.
+    fn find_block(&mut self, block: u64, from: Place) -> Result<Place, Trouble> {
+        self.texts
+            .get_mut(from.text)
+            .and_then(|text| text.find(&Search::Block(block), from.line))
+            .map(|line| Place { line, ..from })
+            .ok_or_else(|| {
+                let message = format!("there is no block N{block} in this program");
+                Trouble::new(
+                    "no-such-block",
+                    message,
+                    "write the number of a block that exists",
+                )
+            })
+    }
+}

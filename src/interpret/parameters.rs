@@ -1,0 +1,210 @@
+//! Parameters: what programs keep in `#1`, `#<name>` and `#<_name>`.
+//!
+//! RS274/NGC (`LinuxCNC`, "Numbered Parameters", "Named Parameters"): #1 to #30
+//! belong to the subroutine that runs, all are 0 until they are set; names
+//! without `_` in front belong to it too. Fanuc (B-63944EN, "Variables"): #1 to
+//! #33 belong to the macro that runs, #100 to #199 and #500 to #999 to all, and
+//! each is null until it is set; from #1000 on they belong to the control.
+
+use std::collections::HashMap;
+
+use super::execute::Control;
+use super::expression::{Name, Read, Value, Variables};
+use crate::machine::Family;
+
+/// Numbers that belong to the subroutine that runs, and 0.
+pub(super) const LOCALS: usize = 34;
+/// Parameters that a program may keep: beyond, something runs away.
+const COUNT_MAX: usize = 100_000;
+
+/// What a program has assigned.
+#[derive(Debug)]
+pub(super) struct Parameters {
+    numbered: HashMap<u32, Value>,
+    locals: [Value; LOCALS],
+    named: HashMap<String, f64>,
+    /// Names of the subroutine that runs.
+    local_names: HashMap<String, f64>,
+    callers: Vec<Saved>,
+}
+
+/// What a caller goes on with.
+#[derive(Debug)]
+struct Saved {
+    locals: [Value; LOCALS],
+    names: HashMap<String, f64>,
+}
+
+impl Parameters {
+    pub(super) fn new() -> Self {
+        Self {
+            numbered: HashMap::new(),
+            locals: [None; LOCALS],
+            named: HashMap::new(),
+            local_names: HashMap::new(),
+            callers: Vec::new(),
+        }
+    }
+
+    /// A subroutine begins with these values in #1 and so on.
+    pub(super) fn enter(&mut self, arguments: [Value; LOCALS]) {
+        self.callers.push(Saved {
+            locals: std::mem::replace(&mut self.locals, arguments),
+            names: std::mem::take(&mut self.local_names),
+        });
+    }
+
+    /// A subroutine has ended.
+    pub(super) fn leave(&mut self) {
+        if let Some(saved) = self.callers.pop() {
+            self.locals = saved.locals;
+            self.local_names = saved.names;
+        }
+    }
+
+    /// A value that was assigned; `None` if none was.
+    pub(super) fn number(&self, number: u32) -> Option<Value> {
+        match self.locals.get(number as usize) {
+            Some(value) => Some(*value),
+            None => self.numbered.get(&number).copied(),
+        }
+    }
+
+    /// Keeps a value; false when there are too many.
+    #[must_use]
+    pub(super) fn set(&mut self, name: &Name<'_>, value: Value) -> bool {
+        match name {
+            Name::Number(number) => {
+                if let Some(local) = self.locals.get_mut(*number as usize) {
+                    *local = value;
+                } else {
+                    self.numbered.insert(*number, value);
+                }
+            }
+            Name::Text(name) => {
+                let names = if name.starts_with('_') {
+                    &mut self.named
+                } else {
+                    &mut self.local_names
+                };
+                let value = value.unwrap_or(0.0);
+                if let Some(known) = names.get_mut(name.as_ref()) {
+                    *known = value;
+                } else {
+                    names.insert(name.clone().into_owned(), value);
+                }
+            }
+        }
+        self.numbered
+            .len()
+            .max(self.named.len())
+            .max(self.local_names.len())
+            <= COUNT_MAX
+    }
+
+    fn named(&self, name: &str) -> Option<f64> {
+        let names = if name.starts_with('_') {
+            &self.named
+        } else {
+            &self.local_names
+        };
+        names.get(name).copied()
+    }
+}
+
+impl Variables for Control<'_> {
+    fn numbered(&self, number: u32) -> Read {
+        if self.fanuc() {
+            return self.fanuc_variable(number);
+        }
+        if let Some(value) = self.system_parameter(number) {
+            return Read::Value(Some(value));
+        }
+        match number {
+            5061..=5070 => Read::Unknown("the result of probing"),
+            5399 => Read::Unknown("an input (M66)"),
+            0 | 5603.. => Read::Missing,
+            _ => Read::Value(Some(
+                self.parameters.number(number).flatten().unwrap_or(0.0),
+            )),
+        }
+    }
+
+    fn named(&self, name: &str) -> Read {
+        if let Some(value) = self.parameters.named(name) {
+            return Read::Value(Some(value));
+        }
+        if let Some(value) = self.named_parameter(name) {
+            return Read::Value(Some(value));
+        }
+        if name.starts_with("_hal[") || name.starts_with("_ini[") {
+            return Read::Unknown("the machine's configuration");
+        }
+        Read::Missing
+    }
+
+    fn fanuc(&self) -> bool {
+        self.machine.controller.language.family != Family::Rs274
+    }
+}
+
+impl Control<'_> {
+    /// B-63944EN, "System Variables": what the program itself decides is known.
+    fn fanuc_variable(&self, number: u32) -> Read {
+        if let Some(value) = self.parameters.number(number) {
+            return Read::Value(value);
+        }
+        let axis = |first: u32| (number - first) as usize;
+        let known = match number {
+            0 => return Read::Value(None),
+            100..=199 | 500..=999 => return Read::Value(None),
+            4109 => self.modal.feed.as_ref().map(|feed| feed.value),
+            4119 => Some(self.modal.spindle_rpm),
+            5001..=5009 if self.position.unknown.is_empty() => self.program_position(axis(5001)),
+            5021..=5029 if self.position.unknown.is_empty() => {
+                Some(self.position.at[axis(5021)] / self.modal.mm_per_unit)
+            }
+            5041..=5049 if self.position.unknown.is_empty() => self.program_position(axis(5041)),
+            _ => None,
+        };
+        match known {
+            Some(value) => Read::Value(Some(value)),
+            None if number >= 1000 => Read::Unknown("the state of the control"),
+            None => Read::Missing,
+        }
+    }
+
+    /// Where an axis stands, in program units and coordinates.
+    fn program_position(&self, axis: usize) -> Option<f64> {
+        let origin = self.position.absolute(axis, 0.0);
+        Some((self.position.at.get(axis)? - origin) / self.modal.mm_per_unit)
+    }
+
+    /// Gives a parameter a value; the reason where it cannot have one.
+    pub(super) fn assign(&mut self, name: &Name<'_>, value: Value) -> Result<(), &'static str> {
+        match name {
+            Name::Number(0) => return Err("#0 is always null"),
+            Name::Number(number) if !self.fanuc() => {
+                if *number > 5602 {
+                    return Err("there are parameters up to #5602");
+                }
+                if self.set_system_parameter(*number, value.unwrap_or(0.0)) {
+                    return Ok(());
+                }
+            }
+            Name::Number(3000) => return Err("#3000 raises an alarm, which ends the program"),
+            Name::Number(number @ 1000..) if !(3000..4000).contains(number) => {
+                return Err("it belongs to the control, and may change offsets");
+            }
+            Name::Text(name) if self.named_parameter(name).is_some() => {
+                return Err("it can only be read");
+            }
+            _ => {}
+        }
+        if self.parameters.set(name, value) {
+            Ok(())
+        } else {
+            Err("there are more than 100000 of them")
+        }
+    }
+}

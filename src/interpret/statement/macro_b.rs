@@ -1,0 +1,135 @@
+//! Statements of Fanuc custom macro B (B-63944EN, "Branch and Repetition").
+
+use super::{Statement, Unread};
+use crate::interpret::execute::Control;
+use crate::interpret::expression::{Reader, Value};
+use crate::interpret::transfer::Transfer;
+use crate::source::Span;
+
+impl Control<'_> {
+    /// Takes a control statement if one is next.
+    pub(super) fn keyword<'t>(
+        &self,
+        reader: &mut Reader<'t>,
+        statement: &mut Statement<'t>,
+    ) -> Result<bool, Unread> {
+        if reader.take_name(b"GOTO") {
+            statement.transfer = Some(Transfer::Goto(self.block_number(reader)?));
+        } else if takes_if(reader) {
+            let holds = self.macro_condition(reader)?;
+            if reader.take_name(b"THEN") {
+                self.then(holds, reader, statement)?;
+            } else if reader.take_name(b"GOTO") {
+                let block = self.block_number(reader)?;
+                statement.transfer = holds.then_some(Transfer::Goto(block));
+            } else {
+                let message = "IF without THEN or GOTO";
+                let help = "write IF [ … ] THEN #1=… or IF [ … ] GOTO 100";
+                return Err(reader.fault("macro", message, help, reader.at).into());
+            }
+        } else if reader.take_name(b"WHILE") {
+            let holds = self.macro_condition(reader)?;
+            if !reader.take_name(b"DO") {
+                let message = "WHILE without DO";
+                return Err(reader
+                    .fault("macro", message, "write WHILE [ … ] DO1", reader.at)
+                    .into());
+            }
+            let number = self.loop_number(reader)?;
+            statement.transfer = Some(Transfer::Loop { number, holds });
+        } else if reader.take_name(b"DO") {
+            let number = self.loop_number(reader)?;
+            let holds = true;
+            statement.transfer = Some(Transfer::Loop { number, holds });
+        } else if reader.take_name(b"END") {
+            statement.transfer = Some(Transfer::EndLoop(self.loop_number(reader)?));
+        } else if [&b"DPRNT"[..], b"BPRNT", b"POPEN", b"PCLOS"]
+            .iter()
+            .any(|name| reader.take_name(name))
+        {
+            // Output to a printer or a file.
+            reader.at = reader.text.len();
+        } else {
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// What stands behind THEN: an assignment.
+    fn then<'t>(
+        &self,
+        holds: bool,
+        reader: &mut Reader<'t>,
+        statement: &mut Statement<'t>,
+    ) -> Result<(), Unread> {
+        reader.peek();
+        let start = reader.at;
+        let name = reader.parameter_name(self)?;
+        if !reader.take(b'=') {
+            let message = "THEN takes an assignment";
+            return Err(reader
+                .fault("macro", message, "write THEN #1=…", start)
+                .into());
+        }
+        if holds {
+            let value = reader.expression(self)?;
+            let span = Span::new(start, reader.at);
+            statement.assignments.push((name, value, span));
+        } else {
+            // What is not assigned need not have a value.
+            reader.at = reader.text.len();
+        }
+        Ok(())
+    }
+
+    fn macro_condition(&self, reader: &mut Reader<'_>) -> Result<bool, Unread> {
+        Ok(reader.brackets(self)?.unwrap_or(0.0) != 0.0)
+    }
+
+    fn block_number(&self, reader: &mut Reader<'_>) -> Result<u64, Unread> {
+        let start = reader.at;
+        match whole(reader.value(self)?, 1e9) {
+            Some(number) => Ok(number),
+            None => Err(reader
+                .fault(
+                    "macro",
+                    "GOTO needs the number of a block",
+                    "write GOTO 100",
+                    start,
+                )
+                .into()),
+        }
+    }
+
+    fn loop_number(&self, reader: &mut Reader<'_>) -> Result<u8, Unread> {
+        let start = reader.at;
+        match whole(reader.value(self)?, 3.0).filter(|number| *number > 0) {
+            Some(number) => Ok(number as u8),
+            None => Err(reader
+                .fault(
+                    "macro",
+                    "loops are numbered 1, 2 and 3",
+                    "write DO1 … END1",
+                    start,
+                )
+                .into()),
+        }
+    }
+}
+
+/// Takes IF with a condition behind it; `IFIX[#1]` is an I word.
+fn takes_if(reader: &mut Reader<'_>) -> bool {
+    let before = reader.at;
+    if reader.take_name(b"IF") && reader.peek() == Some(b'[') {
+        return true;
+    }
+    reader.at = before;
+    false
+}
+
+/// A whole number from 0 to `most`.
+fn whole(value: Value, most: f64) -> Option<u64> {
+    let value = value?;
+    let number = value.round();
+    ((0.0..=most).contains(&number) && (value - number).abs() < 1e-4).then_some(number as u64)
+}

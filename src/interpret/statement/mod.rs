@@ -1,0 +1,147 @@
+//! Blocks that are more than plain words: values that are worked out,
+//! assignments, and flow.
+
+mod macro_b;
+mod o_word;
+
+pub(super) use o_word::{Keyword, glance};
+
+use super::execute::Control;
+use super::expression::{Fault, Name, Reader, Value};
+use super::transfer::Transfer;
+use crate::machine::Family;
+use crate::source::Span;
+use crate::syntax::{Block, IssueKind, Word};
+
+/// Most assignments in one block.
+const ASSIGNMENTS_MAX: usize = 64;
+
+/// What a block says besides its words.
+#[derive(Debug, Default)]
+pub(super) struct Statement<'t> {
+    /// They take effect when the whole block has been read.
+    pub(super) assignments: Vec<(Name<'t>, Value, Span)>,
+    pub(super) transfer: Option<Transfer>,
+}
+
+/// Why a block could not be read.
+pub(super) enum Unread {
+    /// This is wrong with it.
+    Fault(Fault),
+    /// It is no statement of this language: its issues say it best.
+    Foreign,
+}
+
+impl From<Fault> for Unread {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+impl Control<'_> {
+    /// Reads a block that plain words could not express. Its words get their
+    /// values, and its issues go.
+    pub(super) fn statement<'t>(
+        &self,
+        text: &'t [u8],
+        block: &mut Block,
+    ) -> Result<Statement<'t>, Unread> {
+        let family = self.machine.controller.language.family;
+        if !matches!(family, Family::Rs274 | Family::Iso) {
+            return Err(Unread::Foreign);
+        }
+        let hopeless = |kind| matches!(kind, IssueKind::UnclosedComment | IssueKind::NotFinite);
+        if block.issues.iter().any(|issue| hopeless(issue.kind)) {
+            return Err(Unread::Foreign);
+        }
+        let text = text.get(..block.text_end as usize).unwrap_or(text);
+        let mut reader = Reader::new(text, 0);
+        self.skip_front(&mut reader, block);
+        let mut statement = Statement::default();
+        block.words.clear();
+        while let Some(byte) = reader.peek() {
+            let start = reader.at;
+            match byte {
+                b'#' => {
+                    let name = reader.parameter_name(self)?;
+                    if !reader.take(b'=') {
+                        return Err(Unread::Foreign);
+                    }
+                    let value = reader.expression(self)?;
+                    let span = Span::new(start, reader.at);
+                    if statement.assignments.len() == ASSIGNMENTS_MAX {
+                        let message = "more than 64 assignments in a block";
+                        return Err(reader
+                            .fault("expression", message, "write two blocks", start)
+                            .into());
+                    }
+                    statement.assignments.push((name, value, span));
+                }
+                b'O' if family == Family::Rs274 => {
+                    self.o_word(&mut reader, &mut statement, block)?
+                }
+                b'A'..=b'Z'
+                    if family == Family::Iso && self.keyword(&mut reader, &mut statement)? => {}
+                b'A'..=b'Z' | b'@' | b'^' => self.word(byte, &mut reader, block)?,
+                _ => return Err(Unread::Foreign),
+            }
+            block.words_end = reader.at as u32;
+        }
+        block.issues.clear();
+        Ok(statement)
+    }
+
+    /// Passes over the byte order mark, the block delete and the block number.
+    fn skip_front(&self, reader: &mut Reader<'_>, block: &Block) {
+        if reader.text.starts_with(b"\xEF\xBB\xBF") {
+            reader.at = 3;
+        }
+        for _ in 0..2 {
+            if reader.take(b'/') && reader.peek().is_some_and(|byte| byte.is_ascii_digit()) {
+                reader.at += 1;
+            }
+            if let Some(number) = block
+                .number
+                .filter(|word| word.span.start as usize >= reader.at)
+            {
+                if reader.peek() == Some(b'N') {
+                    reader.at = number.span.end as usize;
+                }
+            }
+        }
+    }
+
+    /// A letter with its value.
+    fn word(&self, letter: u8, reader: &mut Reader<'_>, block: &mut Block) -> Result<(), Unread> {
+        let start = reader.at;
+        reader.at += 1;
+        // Two letters in a row are a name that this language does not have,
+        // unless the second begins a function.
+        reader.peek();
+        let number = reader.at;
+        let before = reader.at;
+        let value = match reader.value(self) {
+            Ok(value) => value,
+            Err(fault) if fault.rule == "expression" && fault.span.start as usize == before => {
+                return Err(Unread::Foreign);
+            }
+            Err(fault) => return Err(fault.into()),
+        };
+        // Fanuc: an address with a null variable is as if not written.
+        let Some(value) = value else { return Ok(()) };
+        let word = Word {
+            letter,
+            value,
+            span: Span::new(start, reader.at),
+            number: Span::new(number, reader.at),
+        };
+        if block.words.len() >= 256 {
+            let message = "more than 256 words in a block";
+            return Err(reader
+                .fault("too-many-words", message, "write two blocks", start)
+                .into());
+        }
+        block.words.push(word);
+        Ok(())
+    }
+}

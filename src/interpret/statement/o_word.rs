@@ -1,0 +1,191 @@
+//! O-words: subroutines, branches and loops (`LinuxCNC`, "O Codes").
+
+use super::{Statement, Unread};
+use crate::interpret::execute::Control;
+use crate::interpret::expression::Reader;
+use crate::interpret::parameters::LOCALS;
+use crate::interpret::transfer::{Label, Transfer, Verb};
+use crate::source::Span;
+use crate::syntax::{Block, Word};
+
+/// Arguments that a call may have.
+const ARGUMENTS_MAX: usize = 30;
+
+impl Control<'_> {
+    /// An O-word with what it does, or a plain O word.
+    pub(super) fn o_word(
+        &self,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+        block: &mut Block,
+    ) -> Result<(), Unread> {
+        let start = reader.at;
+        reader.at += 1;
+        let number = {
+            reader.peek();
+            reader.at
+        };
+        let label = if reader.peek() == Some(b'<') {
+            Label::Name(reader.angle_name()?.into_owned())
+        } else {
+            let value = reader.value(self)?.unwrap_or(0.0);
+            if !(0.0..4e9).contains(&value) || (value - value.round()).abs() > 1e-4 {
+                let message = format!("{value} is not the number of a subroutine");
+                return Err(reader
+                    .fault("o-word", message, "write a whole positive number", start)
+                    .into());
+            }
+            Label::Number(value.round() as u32)
+        };
+        if reader.peek().is_none() {
+            if let Label::Number(value) = label {
+                block.words.push(Word {
+                    letter: b'O',
+                    value: f64::from(value),
+                    span: Span::new(start, reader.at),
+                    number: Span::new(number, reader.at),
+                });
+                return Ok(());
+            }
+        }
+        let Some(verb) = self.verb(reader)? else {
+            let message = "this O-word says nothing that is known";
+            let help = "write sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue behind it";
+            reader.at = reader.text.len();
+            return Err(reader.fault("o-word", message, help, start).into());
+        };
+        if reader.peek().is_some() {
+            let at = reader.at;
+            reader.at = reader.text.len();
+            let message = "nothing may follow an O-word in its block";
+            return Err(reader
+                .fault("o-word", message, "write two blocks", at)
+                .into());
+        }
+        statement.transfer = Some(Transfer::Structure { label, verb });
+        Ok(())
+    }
+
+    fn verb(&self, reader: &mut Reader<'_>) -> Result<Option<Verb>, Unread> {
+        let Some(keyword) = keyword(reader) else {
+            return Ok(None);
+        };
+        Ok(Some(match keyword {
+            Keyword::Sub => Verb::Sub,
+            Keyword::EndSub => Verb::EndSub(self.optional(reader)?),
+            Keyword::Return => Verb::Return(self.optional(reader)?),
+            Keyword::Call => {
+                let mut arguments = [Some(0.0); LOCALS];
+                let mut count = 0;
+                while reader.peek() == Some(b'[') {
+                    let start = reader.at;
+                    let value = reader.brackets(self)?;
+                    count += 1;
+                    match arguments.get_mut(count) {
+                        Some(argument) if count <= ARGUMENTS_MAX => *argument = value,
+                        _ => {
+                            let message = "a call has at most 30 arguments";
+                            return Err(reader
+                                .fault("o-word", message, "pass them in #<_names>", start)
+                                .into());
+                        }
+                    }
+                }
+                Verb::Call(Box::new(arguments))
+            }
+            Keyword::If => Verb::If(self.condition(reader)?),
+            Keyword::ElseIf => {
+                let start = {
+                    reader.peek();
+                    reader.at
+                };
+                reader.at = reader.text.len();
+                Verb::ElseIf(Span::new(start, reader.text.len()))
+            }
+            Keyword::Else => Verb::Else,
+            Keyword::EndIf => Verb::EndIf,
+            Keyword::While => Verb::While(self.condition(reader)?),
+            Keyword::EndWhile => Verb::EndWhile,
+            Keyword::Do => Verb::Do,
+            Keyword::Repeat => Verb::Repeat(reader.brackets(self)?.unwrap_or(0.0)),
+            Keyword::EndRepeat => Verb::EndRepeat,
+            Keyword::Break => Verb::Break,
+            Keyword::Continue => Verb::Continue,
+        }))
+    }
+
+    fn condition(&self, reader: &mut Reader<'_>) -> Result<bool, Unread> {
+        Ok(reader.brackets(self)?.unwrap_or(0.0) != 0.0)
+    }
+
+    fn optional(&self, reader: &mut Reader<'_>) -> Result<Option<f64>, Unread> {
+        if reader.peek() == Some(b'[') {
+            return Ok(reader.brackets(self)?);
+        }
+        Ok(None)
+    }
+}
+
+/// The words that make an O-word flow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(in crate::interpret) enum Keyword {
+    Sub,
+    EndSub,
+    Return,
+    Call,
+    If,
+    ElseIf,
+    Else,
+    EndIf,
+    While,
+    EndWhile,
+    Do,
+    Repeat,
+    EndRepeat,
+    Break,
+    Continue,
+}
+
+/// Takes the keyword that is next.
+fn keyword(reader: &mut Reader<'_>) -> Option<Keyword> {
+    // What begins like another stands behind it.
+    const KEYWORDS: [(&[u8], Keyword); 15] = [
+        (b"sub", Keyword::Sub),
+        (b"endsub", Keyword::EndSub),
+        (b"return", Keyword::Return),
+        (b"call", Keyword::Call),
+        (b"if", Keyword::If),
+        (b"elseif", Keyword::ElseIf),
+        (b"else", Keyword::Else),
+        (b"endif", Keyword::EndIf),
+        (b"while", Keyword::While),
+        (b"endwhile", Keyword::EndWhile),
+        (b"do", Keyword::Do),
+        (b"repeat", Keyword::Repeat),
+        (b"endrepeat", Keyword::EndRepeat),
+        (b"break", Keyword::Break),
+        (b"continue", Keyword::Continue),
+    ];
+    KEYWORDS
+        .iter()
+        .find(|(name, _)| reader.take_name(name))
+        .map(|(_, keyword)| *keyword)
+}
+
+/// The O-word at the beginning of a line that is passed over: its label, where
+/// it does not have to be worked out, and what it does.
+pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword>)> {
+    let mut reader = Reader::new(line, 0);
+    while matches!(reader.peek(), Some(b'/' | b'N' | b'0'..=b'9')) {
+        reader.at += 1;
+    }
+    if !reader.take(b'O') {
+        return None;
+    }
+    let label = match reader.peek()? {
+        b'<' => Label::Name(reader.angle_name().ok()?.into_owned()),
+        b'0'..=b'9' => Label::Number(reader.number().ok()? as u32),
+        _ => return None,
+    };
+    Some((label, keyword(&mut reader)))
+}

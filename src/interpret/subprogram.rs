@@ -1,0 +1,201 @@
+//! M97, M98, M99, G65, G66 and G67: calls of subprograms and macros.
+//!
+//! Fanuc B-63944EN ("Subprogram Function", "Macro Call"), Haas mill operator's
+//! manual (M97, M98, M99, G65), `LinuxCNC` ("M98 and M99").
+
+use super::code::GCode;
+use super::execute::{Control, Run};
+use super::expression::Value;
+use super::parameters::LOCALS;
+use super::transfer::{Call, Label, Target, Transfer};
+use crate::machine::Family;
+use crate::source::Span;
+
+/// Repetitions that one call may ask for.
+const TIMES_MAX: f64 = 1e6;
+
+/// Variables that the letters of a macro call set: argument specification I.
+const ARGUMENT_I: [(u8, usize); 21] = [
+    (b'A', 1),
+    (b'B', 2),
+    (b'C', 3),
+    (b'D', 7),
+    (b'E', 8),
+    (b'F', 9),
+    (b'H', 11),
+    (b'I', 4),
+    (b'J', 5),
+    (b'K', 6),
+    (b'M', 13),
+    (b'Q', 17),
+    (b'R', 18),
+    (b'S', 19),
+    (b'T', 20),
+    (b'U', 21),
+    (b'V', 22),
+    (b'W', 23),
+    (b'X', 24),
+    (b'Y', 25),
+    (b'Z', 26),
+];
+
+impl Control<'_> {
+    /// M97, M98 and M99; false for other words.
+    pub(super) fn subprogram_word(
+        &mut self,
+        number: u16,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> bool {
+        let family = self.machine.controller.language.family;
+        match (family, number) {
+            (Family::Rs274 | Family::Iso, 980) | (Family::Iso, 970) => {
+                let local = number == 970;
+                if let Some(call) = self.call(local, span, run) {
+                    self.transfer = Some(Transfer::Call(call));
+                }
+            }
+            (Family::Rs274 | Family::Iso, 990) => {
+                let block = run.words.take(b'P').map(|block| block.max(0.0) as u64);
+                self.transfer = Some(Transfer::Return { block });
+            }
+            _ => return false,
+        }
+        run.facts.fixed = Some("it calls a subprogram or returns from one");
+        true
+    }
+
+    /// The call of M97 and M98.
+    fn call(&self, local: bool, span: Span, run: &mut Run<'_, '_>) -> Option<Call> {
+        let program = run.words.take(b'P');
+        let times = run.words.take(b'L');
+        let Some(mut program) = program.and_then(whole) else {
+            run.report
+                .error("subprogram", "a call without the number of a program", span)
+                .help("write the number behind P, as in M98 P1000");
+            return None;
+        };
+        let mut repeat = times;
+        if times.is_none()
+            && !local
+            && program > 9999
+            && self.machine.controller.language.family == Family::Iso
+        {
+            // The short form: repetitions before the four digits of the number.
+            repeat = Some((program / 10_000) as f64);
+            program %= 10_000;
+        }
+        let target = if local {
+            Target::Block(program)
+        } else {
+            Target::Program(Label::Number(u32::try_from(program).ok()?))
+        };
+        Some(Call {
+            target,
+            times: repetitions(repeat, span, run)?,
+            arguments: None,
+        })
+    }
+
+    /// G65, G66 and G67: takes the whole block.
+    pub(super) fn macro_call(&mut self, run: &mut Run<'_, '_>) -> bool {
+        let found = run.words.g.iter().find_map(|(code, number, span)| {
+            (*code == GCode::MacroCall).then_some((*number, *span))
+        });
+        let Some((number, span)) = found else {
+            return false;
+        };
+        run.facts.fixed = Some("it calls a macro");
+        run.words.unused = 0;
+        if number == 670 {
+            self.transfer = Some(Transfer::ModalCall(None));
+            return true;
+        }
+        let mut arguments = [None; LOCALS];
+        let (mut program, mut times) = (None, None);
+        let mut behind = false;
+        // The second and further I J K are #7 to #9, #10 to #12 and so on.
+        let mut sets = 0;
+        let mut last = b'K';
+        for word in &run.block.words {
+            if !behind {
+                behind = word.span == span;
+                continue;
+            }
+            match word.letter {
+                b'P' => program = Some(word.value),
+                b'L' => times = Some(word.value),
+                b'G' | b'N' | b'O' => {}
+                letter @ (b'I' | b'J' | b'K') => {
+                    if letter <= last {
+                        sets += 1;
+                    }
+                    last = letter;
+                    let variable = 3 * sets + 1 + usize::from(letter - b'I');
+                    set(&mut arguments, variable, word.value);
+                }
+                letter => {
+                    if let Some((_, variable)) = ARGUMENT_I.iter().find(|(name, _)| *name == letter)
+                    {
+                        set(&mut arguments, *variable, word.value);
+                    }
+                }
+            }
+        }
+        let Some(program) = program
+            .and_then(whole)
+            .and_then(|program| u32::try_from(program).ok())
+        else {
+            run.report
+                .error(
+                    "subprogram",
+                    "a macro call without the number of a program",
+                    span,
+                )
+                .help("write the number behind P, as in G65 P9010");
+            return true;
+        };
+        let Some(times) = repetitions(times, span, run) else {
+            return true;
+        };
+        let call = Call {
+            target: Target::Program(Label::Number(program)),
+            times,
+            arguments: Some(Box::new(arguments)),
+        };
+        self.transfer = Some(if number == 650 {
+            Transfer::Call(call)
+        } else {
+            Transfer::ModalCall(Some(call))
+        });
+        true
+    }
+}
+
+fn set(arguments: &mut [Value; LOCALS], variable: usize, value: f64) {
+    if let Some(argument) = arguments.get_mut(variable) {
+        *argument = Some(value);
+    }
+}
+
+fn repetitions(times: Option<f64>, span: Span, run: &mut Run<'_, '_>) -> Option<u64> {
+    match times {
+        None => Some(1),
+        Some(times) if (0.0..=TIMES_MAX).contains(&times) => Some(times as u64),
+        Some(_) => {
+            run.report
+                .error(
+                    "subprogram",
+                    "a call that is repeated less than 0 or more than 1000000 times",
+                    span,
+                )
+                .help("write a smaller number of repetitions");
+            None
+        }
+    }
+}
+
+/// A whole number that is not negative.
+fn whole(value: f64) -> Option<u64> {
+    ((0.0..1e9).contains(&value) && value.fract() == 0.0).then_some(value as u64)
+}

@@ -1,0 +1,81 @@
+//! Where a program goes on, when that is not the next line.
+
+use super::expression::Value;
+use super::parameters::LOCALS;
+use crate::source::Span;
+
+/// The name of an O-word or of a subprogram.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Label {
+    /// `o100`, `O1000`.
+    Number(u32),
+    /// `o<name>`, lower case without blanks.
+    Name(String),
+}
+
+impl std::fmt::Display for Label {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "O{number}"),
+            Self::Name(name) => write!(f, "o<{name}>"),
+        }
+    }
+}
+
+/// What a block says about the order of execution.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Transfer {
+    /// An O-word of RS274/NGC.
+    Structure { label: Label, verb: Verb },
+    /// M98, M97, G65: a subprogram, and back.
+    Call(Call),
+    /// G66: the same after each block that moves; `None` for G67.
+    ModalCall(Option<Call>),
+    /// M99, with the block that the caller goes on at.
+    Return { block: Option<u64> },
+    /// GOTO a block number.
+    Goto(u64),
+    /// `WHILE [ … ] DO n`: whether the condition holds.
+    Loop { number: u8, holds: bool },
+    /// `END n`.
+    EndLoop(u8),
+}
+
+/// What an O-word does.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Verb {
+    Sub,
+    EndSub(Option<f64>),
+    Return(Option<f64>),
+    Call(Box<[Value; LOCALS]>),
+    If(bool),
+    /// Its condition counts only where the branches before were not taken.
+    ElseIf(Span),
+    Else,
+    EndIf,
+    While(bool),
+    EndWhile,
+    Do,
+    Repeat(f64),
+    EndRepeat,
+    Break,
+    Continue,
+}
+
+/// A call of a subprogram.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Call {
+    pub(crate) target: Target,
+    pub(crate) times: u64,
+    /// Values for #1 to #33; `None`: the variables stay those of the caller.
+    pub(crate) arguments: Option<Box<[Value; LOCALS]>>,
+}
+
+/// What is called.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Target {
+    /// A program.
+    Program(Label),
+    /// A block of the same program (M97).
+    Block(u64),
+}

@@ -1,0 +1,138 @@
+//! What is known and decided about the lines of a program that has calls or
+//! loops: a line gets one change, which must suit each of its runs.
+
+use std::collections::HashMap;
+
+use super::entry::Entry;
+use crate::interpret::{Facts, FeedMode, KnobState, MoveKind};
+use crate::limit::Change;
+use crate::rewrite::Mark;
+use crate::syntax::Block;
+
+/// A line: which text it stands in (0 is the program itself, others are files of
+/// subprograms), and its number from 1.
+pub(super) type LineKey = (u16, u64);
+
+/// The lines that move, by number.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    lines: HashMap<LineKey, Entered>,
+}
+
+#[derive(Debug)]
+struct Entered {
+    sight: Sight,
+    /// All runs so far were alike.
+    unanimous: bool,
+    decision: Option<Box<Decision>>,
+    hopeless: bool,
+}
+
+/// What an edit of a line depends on.
+#[derive(Debug, Clone, PartialEq)]
+struct Sight {
+    after: Mark,
+    knobs: Option<KnobState>,
+    feed_mode: FeedMode,
+    mm_per_unit: f64,
+    mm_per_unit_before: f64,
+    fixed: Option<&'static str>,
+}
+
+/// What a line gets.
+#[derive(Debug, Clone)]
+pub(super) struct Decision {
+    pub(super) change: Change,
+    pub(super) block: Block,
+    pub(super) facts: Facts,
+    pub(super) after: Mark,
+    pub(super) knobs: Option<KnobState>,
+    pub(super) rapids: bool,
+    pub(super) feeds: bool,
+}
+
+impl Table {
+    /// Takes note of a run of a line.
+    pub(super) fn see(&mut self, line: LineKey, entry: &Entry) {
+        // A line whose moves are held back counts too: they obey its words.
+        if entry.moves == 0 && !entry.facts.compensated {
+            return;
+        }
+        let sight = Sight {
+            after: entry.mark,
+            knobs: entry.knobs.clone(),
+            feed_mode: entry.feed_mode,
+            mm_per_unit: entry.facts.feed_mm_per_unit,
+            mm_per_unit_before: entry.mm_per_unit_before,
+            fixed: entry.facts.fixed,
+        };
+        match self.lines.get_mut(&line) {
+            Some(entered) => entered.unanimous &= entered.sight == sight,
+            None => {
+                let entered = Entered {
+                    sight,
+                    unanimous: true,
+                    decision: None,
+                    hopeless: false,
+                };
+                self.lines.insert(line, entered);
+            }
+        }
+    }
+
+    /// Why a line of the program may not be changed.
+    pub(super) fn fixed(&self, line: LineKey) -> Option<&'static str> {
+        if line.0 > 0 {
+            return Some("it stands in a file of subprograms, which other programs may call");
+        }
+        let unanimous = self
+            .lines
+            .get(&line)
+            .is_none_or(|entered| entered.unanimous);
+        (!unanimous).then_some("it runs several times, under feeds or modes that differ")
+    }
+
+    /// Takes what was decided for a run: the lowest of all runs counts. True
+    /// where it is the first time that the line turns out to be hopeless.
+    pub(super) fn decide(&mut self, line: LineKey, entry: &Entry, change: Option<Change>) -> bool {
+        let Some(entered) = self.lines.get_mut(&line) else {
+            return false;
+        };
+        if let Some(change) = change {
+            match &mut entered.decision {
+                Some(decision) => decision.change = decision.change.lower(&change),
+                None => {
+                    entered.decision = Some(Box::new(Decision {
+                        change,
+                        block: entry.block.clone(),
+                        facts: entry.facts,
+                        after: entry.mark,
+                        knobs: entry.knobs.clone(),
+                        rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
+                        feeds: entry
+                            .moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
+                    }));
+                }
+            }
+        }
+        let hopeless = entry
+            .decided
+            .iter()
+            .any(|(_, outcome)| outcome.obstacle.is_some());
+        let first = hopeless && !entered.hopeless;
+        entered.hopeless |= hopeless;
+        first
+    }
+
+    /// What a line of the program gets.
+    pub(super) fn decision(&self, line: LineKey) -> Option<&Decision> {
+        self.lines.get(&line)?.decision.as_deref()
+    }
+
+    /// Whether a line does not fit and cannot be helped.
+    pub(super) fn hopeless(&self, line: LineKey) -> bool {
+        self.lines
+            .get(&line)
+            .is_some_and(|entered| entered.hopeless)
+    }
+}

@@ -1,0 +1,334 @@
+//! Programs whose lines are executed in another order than they stand in,
+//! limited: the program is held whole, each line gets the lowest change of all
+//! its runs, and the certificate compares both programs run by run.
+
+use std::collections::VecDeque;
+use std::io::{Cursor, Read, Seek, Write};
+
+use super::certify::{Certified, Expected, ExpectedMove, Verdict};
+use super::describe::{describe, row};
+use super::entry::Entry;
+use super::front::Front;
+use super::table::{LineKey, Table};
+use super::writer::{Writer, Written};
+use super::{Failure, LimitOptions, Options, RowSink};
+use crate::interpret::{Move, MoveKind, Step};
+use crate::machine::Machine;
+use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::rewrite::{BlockView, Rewriter};
+use crate::source::lines;
+
+/// Steps of the original that are held at a time while they are compared.
+const STEPS: usize = 4096;
+
+/// Limits a program that is held whole, and certifies what was written.
+pub(super) fn limit_whole<R: Read + Seek>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+    mut output: impl Write,
+    rows: Option<&mut dyn RowSink>,
+) -> Result<(Written, Certified), Failure> {
+    let mut program = Vec::new();
+    input
+        .rewind()
+        .and_then(|()| input.read_to_end(&mut program))
+        .map_err(Failure::Input)?;
+    let exact = rows.is_some();
+    let table = survey(&program, machine, options)?;
+    let source = Cursor::new(&program);
+    let writer = Writer::new(
+        source,
+        machine,
+        options,
+        how,
+        exact,
+        std::io::sink(),
+        Some(table),
+    );
+    let (mut written, table) = writer.decide_all()?;
+    let (text, edited_lines) = write(&program, machine, &table);
+    written.edited_lines = edited_lines;
+    let original = Original::new(&program, machine, options, &table, exact);
+    let certified = certify(original, &text, machine, options, rows)?;
+    output.write_all(&text).map_err(Failure::Output)?;
+    output.flush().map_err(Failure::Output)?;
+    Ok((written, certified))
+}
+
+/// What each line meets in its runs.
+fn survey(program: &[u8], machine: &Machine, options: &Options) -> Result<Table, Failure> {
+    let mut table = Table::default();
+    let mut front = Front::new(Cursor::new(program), machine, options);
+    let modal = front.interpreter().modal();
+    let (mut mode, mut mm_per_unit) = (modal.path_mode, modal.mm_per_unit);
+    let mut entry: Option<Entry> = None;
+    while let Some(mut line) = front.next_line()? {
+        let entry = entry.get_or_insert_with(|| Entry::new(&line));
+        entry.fill(&mut line, machine, mode, mm_per_unit);
+        mm_per_unit = entry.mark.mm_per_unit;
+        for step in &entry.steps {
+            if let Step::Move(mv) = step {
+                mode = mv.path_mode;
+            }
+        }
+        table.see(entry.key, entry);
+    }
+    front.finish()?;
+    Ok(table)
+}
+
+/// The program with its changes, and how many lines were edited.
+fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
+    let mut rewriter = Rewriter::new(machine);
+    let mut out = Vec::with_capacity(program.len() + program.len() / 8);
+    for (number, text) in lines(program).enumerate() {
+        let Some(decision) = table.decision((0, number as u64 + 1)) else {
+            out.extend_from_slice(text);
+            continue;
+        };
+        let view = BlockView {
+            text,
+            block: &decision.block,
+            facts: &decision.facts,
+            before: &decision.after,
+            after: &decision.after,
+            knobs: decision.knobs.as_ref(),
+            rapids: decision.rapids,
+            feeds: decision.feeds,
+            change: &decision.change,
+        };
+        // Contradicting edits leave the line as it was, which the certificate
+        // then finds.
+        if !rewriter.write_alone(&view, &mut out) {
+            out.extend_from_slice(text);
+        }
+    }
+    (out, rewriter.edited_lines)
+}
+
+/// The original, run once more for the comparison.
+struct Original<'m, 'p> {
+    machine: &'m Machine,
+    front: Front<'m, Cursor<&'p [u8]>>,
+    assessor: Assessor<'m>,
+    model: PowerModel,
+    table: &'p Table,
+    exact: bool,
+    waiting: Waiting,
+    /// Lines executed so far.
+    ordinal: u64,
+    /// Names of the files of subprograms, by number less 1.
+    files: Vec<String>,
+    start_s: f64,
+}
+
+/// Steps that are not judged yet, in order.
+#[derive(Default)]
+struct Waiting {
+    steps: VecDeque<Held>,
+    /// Steps from the front on that are actions or judged.
+    judged: usize,
+}
+
+/// A step of the original.
+struct Held {
+    step: Step,
+    key: LineKey,
+    /// Which of the executed lines it belongs to.
+    ordinal: u64,
+    feed: Option<f64>,
+    assessment: Option<Assessment>,
+}
+
+impl Waiting {
+    fn judge(&mut self, assessment: &Assessment) {
+        self.pass_actions();
+        if let Some(held) = self.steps.get_mut(self.judged) {
+            held.assessment = Some(*assessment);
+            self.judged += 1;
+        }
+        self.pass_actions();
+    }
+
+    fn pass_actions(&mut self) {
+        while matches!(self.steps.get(self.judged), Some(held) if matches!(held.step, Step::Action(_)))
+        {
+            self.judged += 1;
+        }
+    }
+
+    /// Takes the next step of a line all of whose steps are judged.
+    fn take(&mut self) -> Option<Held> {
+        self.pass_actions();
+        let front = self.steps.front()?.ordinal;
+        if self
+            .steps
+            .get(self.judged)
+            .is_some_and(|next| next.ordinal == front)
+        {
+            return None;
+        }
+        self.judged -= 1;
+        self.steps.pop_front()
+    }
+}
+
+impl<'m, 'p> Original<'m, 'p> {
+    fn new(
+        program: &'p [u8],
+        machine: &'m Machine,
+        options: &Options,
+        table: &'p Table,
+        exact: bool,
+    ) -> Self {
+        let want = if exact { Want::ALL } else { Want::PEAKS };
+        let mut assessor = Assessor::new(machine, options.certificate, want);
+        assessor.want = want;
+        Self {
+            machine,
+            front: Front::new(Cursor::new(program), machine, options),
+            assessor,
+            model: PowerModel::new(machine),
+            table,
+            exact,
+            waiting: Waiting::default(),
+            ordinal: 0,
+            files: Vec::new(),
+            start_s: 0.0,
+        }
+    }
+
+    /// Adds what the next lines do to `expected`; false at the end.
+    fn read(&mut self, expected: &mut Vec<Expected>) -> Result<bool, Failure> {
+        let mut more = true;
+        while more && expected.len() < STEPS {
+            let Self {
+                front,
+                assessor,
+                waiting,
+                ordinal,
+                files,
+                ..
+            } = self;
+            match front.next_line()? {
+                Some(line) => {
+                    let feed = line
+                        .interpreter
+                        .modal()
+                        .feed
+                        .as_ref()
+                        .map(|feed| feed.value);
+                    *ordinal += 1;
+                    let known = files.len();
+                    files.extend(line.files.iter().skip(known).cloned());
+                    for step in &*line.steps {
+                        waiting.steps.push_back(Held {
+                            step: step.clone(),
+                            key: line.key,
+                            ordinal: *ordinal,
+                            feed,
+                            assessment: None,
+                        });
+                        if let Step::Move(mv) = step {
+                            assessor.push(mv, line.text_of(mv), &mut |_, assessment, _| {
+                                waiting.judge(assessment);
+                            });
+                        }
+                    }
+                }
+                None => {
+                    assessor.finish(&mut |_, assessment, _| waiting.judge(assessment));
+                    more = false;
+                }
+            }
+            while let Some(held) = self.waiting.take() {
+                expected.push(match (&held.step, held.assessment) {
+                    (Step::Move(mv), Some(assessment)) => self.expect(mv, &held, &assessment),
+                    (Step::Action(action), _) => Expected::Action(*action),
+                    (Step::Move(_), None) => continue,
+                });
+            }
+        }
+        Ok(more)
+    }
+
+    fn expect(&mut self, mv: &Move, held: &Held, assessment: &Assessment) -> Expected {
+        let decision = self
+            .table
+            .decision(held.key)
+            .filter(|_| mv.kind != MoveKind::Dwell);
+        let change = decision.map(|decision| &decision.change);
+        let hopeless = self.table.hopeless(held.key);
+        let row = self.exact.then(|| {
+            let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
+            row.file = self
+                .files
+                .get(usize::from(mv.text).wrapping_sub(1))
+                .cloned()
+                .unwrap_or_default();
+            describe(self.machine, mv, change, held.feed, &mut row);
+            if hopeless && !self.model.fits(&assessment.demand) {
+                row.action = "none possible";
+            }
+            Box::new(row)
+        });
+        self.start_s += assessment.duration_s;
+        Expected::Move(ExpectedMove {
+            line: mv.line,
+            kind: mv.kind,
+            end: mv.end,
+            arc: mv.arc,
+            unknown_start: mv.unknown_start,
+            path_mode: mv.path_mode,
+            loads: mv.loads,
+            dwell_s: mv.dwell_s,
+            axis_accel_mm_s2: mv.accel_mm_s2,
+            speed_mm_s: assessment.speed_mm_s,
+            accel_mm_s2: assessment.accel_mm_s2,
+            changed: change.is_some(),
+            as_feed: change.is_some_and(|change| change.as_feed),
+            hopeless,
+            row,
+        })
+    }
+}
+
+/// Runs both programs side by side.
+fn certify(
+    mut original: Original<'_, '_>,
+    text: &[u8],
+    machine: &Machine,
+    options: &Options,
+    rows: Option<&mut dyn RowSink>,
+) -> Result<Certified, Failure> {
+    let mut verdict = Verdict::new(machine, options, rows);
+    let mut written = Front::new(Cursor::new(text), machine, options);
+    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL);
+    let mut expected = Vec::new();
+    let mut more = true;
+    while more {
+        more = original.read(&mut expected)?;
+        verdict.refill(&mut expected);
+        while verdict.expects() || !more {
+            let Some(line) = written.next_line()? else {
+                break;
+            };
+            for step in &*line.steps {
+                verdict.compare_step(step, line.text);
+                if let Step::Move(mv) = step {
+                    assessor.want = verdict.want();
+                    assessor.push(mv, line.text_of(mv), &mut |mv, after, text| {
+                        verdict.judge(mv, after, text);
+                    });
+                }
+            }
+        }
+        verdict.check()?;
+    }
+    assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+    verdict.expect_nothing();
+    let lines = written.lines;
+    verdict.finish(&written.diagnostics.list, lines)
+}
