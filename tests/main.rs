@@ -2,6 +2,7 @@
 
 mod layers;
 mod interpret;
+mod compensation;
 mod syntax;
 mod plan;
 mod power;

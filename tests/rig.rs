@@ -87,6 +87,7 @@ fn controller() -> Controller {
             ignored_g: Vec::new(),
             ignored_m: Vec::new(),
             block_delete: true,
+            cutter_compensation: false,
         },
         planner: Planner {
             rapid: RapidPath::Linear,

@@ -113,10 +113,12 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
-        (Family::Rs274, 410 | 411 | 420 | 421) => Some(GCode::CompensationOn {
-            left: number < 420,
-            by_diameter: number % 10 == 1,
-        }),
+        (Family::Rs274, 410 | 411 | 420 | 421) | (Family::Iso | Family::Isg, 410 | 420) => {
+            Some(GCode::CompensationOn {
+                left: number < 420,
+                by_diameter: number % 10 == 1,
+            })
+        }
         (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),

@@ -54,6 +54,8 @@ pub struct Language {
     pub ignored_m: Vec<u16>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
+    /// Whether G41 and G42 shift the path, as LinuxCNC does.
+    pub cutter_compensation: bool,
 }
 
 /// The family of words.

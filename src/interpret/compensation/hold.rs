@@ -20,6 +20,8 @@ const SWEEP_TOLERANCE_RAD: [f64; 2] = [0.0254, 0.001];
 pub(super) struct Hold {
     /// The first is a move along `track`; all behind it stay in their place.
     pub(super) steps: Vec<Step>,
+    /// Something was handed on since this was last asked.
+    pub(super) handed_on: bool,
     /// What the first move runs on.
     track: Option<Track>,
     /// What it must not be turned round against.
@@ -52,6 +54,7 @@ impl Hold {
     pub(super) fn new(plane: [usize; 2], tool: Vector, nose: Vector, inch: bool) -> Self {
         Self {
             steps: Vec::new(),
+            handed_on: false,
             track: None,
             guard: Guard::None,
             end: tool,
@@ -126,6 +129,7 @@ impl Hold {
             }
         }
         self.steps = steps;
+        self.handed_on = true;
         self.guard = Guard::None;
         self.end = end;
         Ok(())

@@ -76,14 +76,20 @@ impl Compensation {
         found.map(|(_, text)| text.as_slice())
     }
 
+    /// Whether it is on, or was until the last block.
+    pub(super) fn is_at_work(&self) -> bool {
+        self.state != State::Off
+    }
+
     /// Whether moves wait for their ends.
     pub(super) fn holds(&self) -> bool {
         !self.hold.steps.is_empty()
     }
 
-    /// Keeps the text of a line while its moves wait, and no longer.
+    /// Keeps the text of a line while its moves wait, and for the block that
+    /// lets them go.
     fn remember(&mut self, key: (u16, u64), text: &[u8]) {
-        let known = self.texts.iter().any(|(held, _)| *held == key);
+        let known = self.texts.last().is_some_and(|(last, _)| *last == key);
         if self.holds() && !known {
             let (text, _) = crate::source::split_line_end(text);
             self.texts
@@ -91,15 +97,14 @@ impl Compensation {
         }
     }
 
-    /// Forgets the lines whose moves have been handed on before this block.
+    /// Forgets the lines whose moves have been handed on before this block: all
+    /// but the one that did so.
     fn forget(&mut self) {
-        let waits = |key: (u16, u64)| {
-            self.hold
-                .steps
-                .iter()
-                .any(|step| matches!(step, Step::Move(mv) if (mv.text, mv.line) == key))
-        };
-        self.texts.retain(|(key, _)| waits(*key));
+        if std::mem::take(&mut self.hold.handed_on) {
+            let last = self.texts.pop().filter(|_| self.holds());
+            self.texts.clear();
+            self.texts.extend(last);
+        }
     }
 
     /// The first move behind G40 begins where the tool is. True where its

@@ -79,6 +79,19 @@ impl Control<'_> {
         span: Span,
         run: &mut Run<'_, '_>,
     ) {
+        if !self.machine.controller.language.cutter_compensation {
+            run.report
+                .error(
+                    "unsupported-code",
+                    "cutter compensation, which gwatt follows as LinuxCNC does it only",
+                    span,
+                )
+                .help(
+                    "corners and offsets depend on settings of the machine: \
+                     let the CAM system shift the path by the tool's radius",
+                );
+            return;
+        }
         if self.is_compensating() {
             run.report
                 .error("compensation", "cutter compensation is on already", span)

@@ -61,6 +61,9 @@ pub(crate) struct LanguageTable {
     pub(crate) ignored: Option<Vec<At<String>>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
+    /// Whether G41 and G42 shift the path as LinuxCNC does; default false:
+    /// they are refused.
+    pub(crate) cutter_compensation: Option<bool>,
 }
 
 /// The family of words.

@@ -61,6 +61,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         ignored_g,
         ignored_m,
         block_delete: table.block_delete.unwrap_or(true),
+        cutter_compensation: table.cutter_compensation.unwrap_or(false),
     })
 }
 
