@@ -74,6 +74,7 @@ fn controller() -> Controller {
         name: "rig".into(),
         description: String::new(),
         language: Language {
+            name: "rig".into(),
             family: Family::Iso,
             dwell: Vec::new(),
             metric: true,

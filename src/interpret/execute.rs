@@ -192,7 +192,8 @@ impl<'m> Interpreter<'m> {
     /// True while cutter compensation is on, and for the block that ends it.
     #[must_use]
     pub fn compensates(&self) -> bool {
-        self.control.compensation.is_some()
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.is_at_work())
     }
 
     /// True while moves are held back: cutter compensation needs the next one

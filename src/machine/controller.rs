@@ -27,6 +27,8 @@ pub struct Controller {
     reason = "each is a separate property of the control"
 )]
 pub struct Language {
+    /// Name of the controller profile that it is from.
+    pub name: String,
     /// The family of words.
     pub family: Family,
     /// The words that `G4` takes, with the seconds in one unit of each; if a

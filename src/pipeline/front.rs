@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
-use crate::syntax::{Block, scan_line};
+use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
 
 /// Bytes that a program may have which must be held whole.
 const WHOLE_BYTES_MAX: u64 = 1 << 30;
@@ -98,7 +98,14 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         if self.flow.is_some() {
             return self.next_of_flow();
         }
-        let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else {
+        let next = match self.reader.next_line() {
+            Ok(next) => next,
+            Err(error) => {
+                let failure = source_failure(error);
+                return Err(self.name_foreign(failure));
+            }
+        };
+        let Some((number, text)) = next else {
             return Ok(None);
         };
         self.lines = number;
@@ -178,9 +185,9 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             }
         };
         let run = flow.begin_line();
+        flow.read(&mut self.block);
         let text = flow.text();
         let number = place.line as u64 + 1;
-        scan_line(text, number == 1, &mut self.block);
         self.steps.clear();
         self.interpreter.begin_line(run, place.text);
         let said = self.diagnostics.list.len();
@@ -252,7 +259,31 @@ impl<'m, R: Read + Seek> Front<'m, R> {
                     .help("write G40 and a move, or the end of the program: M2 or M30"),
             );
         }
-        refuse_on_errors(self.diagnostics)
+        let diagnostics = std::mem::take(&mut self.diagnostics);
+        refuse_on_errors(diagnostics).map_err(|failure| self.name_foreign(failure))
+    }
+
+    /// A refusal says what the file is where it plainly is no program of words.
+    #[cold]
+    fn name_foreign(&mut self, failure: Failure) -> Failure {
+        if !matches!(failure, Failure::Refused { .. }) {
+            return failure;
+        }
+        let input = self.reader.get_mut();
+        let mut beginning = Vec::new();
+        let read = input
+            .rewind()
+            .and_then(|()| input.take(FOREIGN_BYTES as u64).read_to_end(&mut beginning));
+        match foreign(&beginning).filter(|_| read.is_ok()) {
+            Some(found) => Failure::Refused {
+                diagnostics: vec![
+                    Diagnostic::error("foreign-file", format!("this is {}", found.what))
+                        .help(found.help),
+                ],
+                more: 0,
+            },
+            None => failure,
+        }
     }
 }
 

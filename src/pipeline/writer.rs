@@ -148,6 +148,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Reads the whole program and decides for its lines, without writing.
     pub(super) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
+        if self.exact {
+            self.tally.keep_lines();
+        }
         while self.read_block()? {
             if let Some(entry) = self.ready.take() {
                 self.write(entry);

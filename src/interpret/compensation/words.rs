@@ -125,11 +125,9 @@ impl Control<'_> {
         };
         let Some(nose) = nose else { return };
         let plane = [first, second];
-        let (tool, straight_first, texts) = match self.compensation.take() {
-            Some(before) if before.state == State::Leaving => {
-                (before.hold.tool, true, before.texts)
-            }
-            _ => (plane.map(|axis| self.position.at[axis]), false, Vec::new()),
+        let (tool, straight_first) = match self.compensation.take() {
+            Some(before) if before.state == State::Leaving => (before.hold.tool, true),
+            _ => (plane.map(|axis| self.position.at[axis]), false),
         };
         let left = left == (nose.radius_mm >= 0.0);
         let radius_mm = nose.radius_mm.abs();
@@ -142,7 +140,7 @@ impl Control<'_> {
             nose: shift,
             straight_first,
             hold: Hold::new(plane, tool, shift, mm_per_unit == MM_PER_INCH),
-            texts,
+            texts: Vec::new(),
             own: Vec::new(),
         }));
     }

@@ -31,7 +31,10 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
     Some(Controller {
         name: file.name.as_ref()?.value.clone(),
         description: file.description.clone().unwrap_or_default(),
-        language: language?,
+        language: Language {
+            name: file.name.as_ref()?.value.clone(),
+            ..language?
+        },
         planner: planner(planner_table)?,
         knobs,
         rapid_knob: rapid_knob(findings, planner_table),
@@ -43,6 +46,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
     let (ignored_g, ignored_m) = ignored(findings, table);
     let power_on = path_mode(table.power_on?);
     Some(Language {
+        name: String::new(),
         family: match table.family? {
             FamilyName::Iso => Family::Iso,
             FamilyName::Rs274 => Family::Rs274,
