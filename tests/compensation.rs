@@ -380,6 +380,7 @@ fn how_it_is_switched_on() {
         "G40\nG41.1 D4 L2\nG1 X10",
         "G40\nG18\nG41.1 D4 L10\nG1 X10",
         "G40\nG19\nG41.1 D4\nG1 Y10",
+        "G1 X10\nX20\nG40\nG41.1 D0\nG1 X30",
     ]
     .map(refused)
     .join("\n");
@@ -391,6 +392,7 @@ fn how_it_is_switched_on() {
 5 compensation: an orientation without G18 | L goes with the plane of a lathe: G18
 6 compensation: L must be the orientation of the tool | write a whole number from 0 to 9
 6 compensation: cutter compensation works in the planes XY and ZX only | choose the plane before: G17 or G18
+7 compensation: the tool has not left the compensation before this one | write a straight move in the plane behind G40
 "#);
     for controller in ["iso", "grbl"] {
         let found = shown(controller, &Options::default(), "G41 D1 G1 X10 F100\n");

@@ -125,9 +125,20 @@ impl Control<'_> {
         };
         let Some(nose) = nose else { return };
         let plane = [first, second];
-        let (tool, straight_first) = match self.compensation.take() {
-            Some(before) if before.state == State::Leaving => (before.hold.tool, true),
-            _ => (plane.map(|axis| self.position.at[axis]), false),
+        let leaving = self
+            .compensation
+            .take()
+            .filter(|before| before.state == State::Leaving);
+        let (tool, straight_first) = match leaving {
+            Some(before) if before.plane != plane || nose.radius_mm == 0.0 => {
+                let message = "the tool has not left the compensation before this one";
+                run.report
+                    .error("compensation", message, span)
+                    .help("write a straight move in the plane behind G40");
+                return;
+            }
+            Some(before) => (before.hold.tool, true),
+            None => (plane.map(|axis| self.position.at[axis]), false),
         };
         let left = left == (nose.radius_mm >= 0.0);
         let radius_mm = nose.radius_mm.abs();
