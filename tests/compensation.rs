@@ -452,7 +452,7 @@ proptest! {
         let corner = |index: usize| {
             let angle = std::f64::consts::TAU * index as f64 / count as f64;
             let radius = radii[index % count];
-            [(radius * angle.cos() * 1e3).round() / 1e3, (radius * angle.sin() * 1e3).round() / 1e3]
+            [libm::cos(angle), libm::sin(angle)].map(|share| (radius * share * 1e3).round() / 1e3)
         };
         let start = [60.0, -1.0];
         let mut points = vec![start];
@@ -485,7 +485,7 @@ proptest! {
                 prop_assert_eq!(mv.arc.map(|arc| arc.center), Some(points[index]));
                 for point in [at, end] {
                     let [x, y] = [point[0] - line[0][0], point[1] - line[0][1]];
-                    prop_assert!((x.hypot(y) - radius).abs() < 1e-9);
+                    prop_assert!((libm::hypot(x, y) - radius).abs() < 1e-9);
                 }
             } else if index > 0 {
                 let side = if left { radius } else { -radius };
