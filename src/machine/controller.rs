@@ -2,6 +2,7 @@
 //! lower speed and acceleration. Profiles are data (TOML).
 
 use super::axis::{Axis, AxisKind};
+use super::printer::Printer;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +59,8 @@ pub struct Language {
     pub block_delete: bool,
     /// Whether G41 and G42 shift the path, as LinuxCNC does.
     pub cutter_compensation: bool,
+    /// What printers differ in; of no account outside the Marlin family.
+    pub printer: Printer,
 }
 
 /// The family of words.
@@ -100,6 +103,9 @@ pub struct Planner {
     pub arc_rule: ArcRule,
     /// What happens at the ends of rapids in a mode that blends.
     pub rapid_joint: RapidJoint,
+    /// Whether a dwell of no time ends the move before it at rest, so that a
+    /// rapid may be written as a feed between two of them.
+    pub dwell_stops: bool,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

@@ -66,6 +66,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         ignored_m,
         block_delete: table.block_delete.unwrap_or(true),
         cutter_compensation: table.cutter_compensation.unwrap_or(false),
+        printer: super::printer::printer(findings, table),
     })
 }
 
@@ -104,7 +105,7 @@ fn ignored(findings: &mut Findings<'_>, table: &LanguageTable) -> (Vec<u16>, Vec
     (g, m)
 }
 
-fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
+pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
     let letter = word::letter(&text.value);
     if letter.is_none() {
         let message = format!("\"{}\" is not a letter", text.value);
@@ -125,6 +126,7 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
             Some(RapidJointName::Rapids) => RapidJoint::Rapids,
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
+        dwell_stops: table.dwell_stops.unwrap_or(false),
     })
 }
 
