@@ -3,6 +3,7 @@
 mod layers;
 mod interpret;
 mod compensation;
+mod cycles;
 mod syntax;
 mod plan;
 mod power;

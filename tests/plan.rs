@@ -72,6 +72,7 @@ fn overrides_and_caps() {
     let half = Overrides {
         feed: 0.5,
         rapid: 0.25,
+        spindle: 1.0,
     };
     let feed = straight(&machine, &[500.0], 100.0);
     close(plan(&machine, &feed, half).speed_limit_mm_s, 50.0);
@@ -105,6 +106,7 @@ fn an_override_of_zero_never_arrives() {
     let stop = Overrides {
         feed: 0.0,
         rapid: 0.0,
+        spindle: 1.0,
     };
     let plan = plan(&machine, &straight(&machine, &[5.0], 10.0), stop);
     assert_eq!(plan.duration_s, f64::INFINITY);

@@ -92,6 +92,8 @@ fn controller() -> Controller {
             block_delete: true,
             cutter_compensation: false,
             printer: gwatt::machine::Printer::default(),
+            mill_cycles: false,
+            peck_clearance_mm: 1.0,
         },
         planner: Planner {
             rapid: RapidPath::Linear,

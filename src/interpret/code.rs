@@ -18,14 +18,17 @@ pub enum Motion {
     ArcCw,
     /// G3.
     ArcCcw,
+    /// A word that makes several moves, or moves that no word may change:
+    /// canned cycles, threads, probing. Number × 10.
+    Special(u16),
 }
 
 impl Motion {
-    /// The digit behind G; `None` has none to write.
+    /// The digit behind G; `None` where no word may be written.
     #[must_use]
     pub fn digit(self) -> Option<u8> {
         match self {
-            Self::None => None,
+            Self::None | Self::Special(_) => None,
             Self::Rapid => Some(b'0'),
             Self::Linear => Some(b'1'),
             Self::ArcCw => Some(b'2'),
@@ -64,6 +67,10 @@ pub(super) enum GCode {
     RestoreOffset,
     FeedMode(super::FeedMode),
     MirrorX,
+    /// G31 of Fanuc and Haas: a feed that a signal ends.
+    Skip,
+    /// G98 (true): canned cycles return to the initial level; G99: to R.
+    Retract(bool),
     /// G65, G66 and G67.
     MacroCall,
     Ignored,
@@ -73,6 +80,8 @@ impl GCode {
     /// The modal group, as a bit; words of one group exclude each other.
     pub(super) fn group(self) -> u32 {
         1 << match self {
+            // G80 may stand beside the word that takes over.
+            Self::Motion(Motion::None) => 16,
             Self::Motion(_) => 0,
             Self::Plane(_) => 1,
             Self::Absolute(_) => 2,
@@ -85,11 +94,14 @@ impl GCode {
             Self::PathMode => 9,
             Self::Dwell => 10,
             Self::MachineCoordinates => 11,
-            Self::Reference | Self::SetOffset | Self::ClearOffset { .. } | Self::RestoreOffset => {
-                12
-            }
+            Self::Reference
+            | Self::Skip
+            | Self::SetOffset
+            | Self::ClearOffset { .. }
+            | Self::RestoreOffset => 12,
             Self::Ignored => 13,
             Self::MirrorX => 14,
+            Self::Retract(_) => 17,
             Self::MacroCall => 15,
         }
     }

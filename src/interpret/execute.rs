@@ -12,6 +12,7 @@ use super::parameters::{LOCALS, Parameters};
 use super::position::{Position, Reading};
 use super::printer;
 use super::report::{Diagnostics, Report};
+use super::special::Special;
 use super::statement::Unread;
 use super::transfer::Transfer;
 use super::words::Words;
@@ -33,6 +34,7 @@ pub(super) struct Control<'m> {
     pub(super) modal: Modal,
     pub(super) position: Position,
     pub(super) knobs: KnobState,
+    pub(super) special: Special,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
     /// Cutter compensation, while it is on or being left.
@@ -86,6 +88,7 @@ impl<'m> Interpreter<'m> {
             modal: Modal::power_on(machine),
             position: Position::new(reading.start),
             knobs: KnobState::new(machine),
+            special: Special::new(machine, reading),
             loads: 0,
             loads_off: 0,
             compensation: None,

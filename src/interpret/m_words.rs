@@ -91,7 +91,10 @@ impl Control<'_> {
                 continue;
             };
             match kind {
-                ActionKind::Spindle => self.note_spindle(run),
+                ActionKind::Spindle => {
+                    self.special.turn_spindle(number);
+                    self.note_spindle(run);
+                }
                 // Arguments of a word that moves no axis, as in `M106 S255 P1`.
                 ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,
                 _ => {}

@@ -18,15 +18,22 @@ pub(super) const EXTRUDER: usize = 9;
 impl Control<'_> {
     /// The block's motion, with what else uses axis words.
     pub(super) fn motion(&mut self, run: &mut Run<'_, '_>) {
+        if self.special.left.is_some() && !self.may_follow_a_stop(run) {
+            return;
+        }
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
                 GCode::Reference => return self.reference(number, span, run),
+                GCode::Skip => return self.skip(run),
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
                 GCode::RestoreOffset => self.position.restore_offset(),
                 _ => {}
             }
+        }
+        if let Motion::Special(number) = self.modal.motion {
+            return self.special(number, run);
         }
         let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
         let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
@@ -36,7 +43,7 @@ impl Control<'_> {
         run.facts.uses_motion = true;
         run.facts.uses_feed = self.obeys_feed();
         match self.modal.motion {
-            Motion::None => {
+            Motion::None | Motion::Special(_) => {
                 let span = run.whole();
                 run.report
                     .error(
@@ -76,7 +83,8 @@ impl Control<'_> {
         }));
     }
 
-    /// Reads the axis words into `end`, machine coordinates. Returns the axes
+    /// Reads the axis words into `end`, machine coordinates, which holds the place
+    /// that incremental words count from. Returns the axes
     /// whose start is not known; `None` when something was wrong.
     pub(super) fn targets(
         &self,
@@ -115,7 +123,7 @@ impl Control<'_> {
             } else if absolute {
                 self.position.absolute(axis, value)
             } else {
-                self.position.at[axis] + value
+                end[axis] + value
             };
             if self.position.unknown.contains(axis) && (absolute || machine_coordinates) {
                 unknown.insert(axis);
@@ -140,7 +148,7 @@ impl Control<'_> {
         } else {
             MoveKind::Feed
         };
-        let mut end = self.position.at;
+        let mut end = self.believed();
         let machine_coordinates = run.facts.machine_coordinates;
         if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
             if self.printer.adjusts {
@@ -187,7 +195,11 @@ impl Control<'_> {
         }
         let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
         let mut feed_mm_s = f64::INFINITY;
-        if let Some(given_mm_s) = given_mm_s {
+        let given = match kind {
+            MoveKind::Thread | MoveKind::Tap => self.special.speed_mm_s,
+            _ => given_mm_s,
+        };
+        if let Some(given_mm_s) = given {
             feed_mm_s = given_mm_s;
         } else if kind != MoveKind::Rapid {
             let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else {
@@ -238,6 +250,7 @@ impl Control<'_> {
             path_mode: self.modal.path_mode,
         }));
         self.position.at = *end;
+        self.special.left = None;
         self.position.unknown.0 &= !unknown_start.0;
     }
 

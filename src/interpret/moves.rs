@@ -24,6 +24,12 @@ pub enum MoveKind {
     Feed,
     /// An arc or a helix at a feed.
     Arc,
+    /// A straight move in step with the spindle that cuts a thread.
+    Thread,
+    /// A tap that goes in or out.
+    Tap,
+    /// A feed that ends where a probe touches.
+    Probe,
     /// Waiting.
     Dwell,
 }
@@ -36,6 +42,9 @@ impl MoveKind {
             Self::Rapid => "rapid",
             Self::Feed => "feed",
             Self::Arc => "arc",
+            Self::Thread => "thread",
+            Self::Tap => "tap",
+            Self::Probe => "probe",
             Self::Dwell => "dwell",
         }
     }

@@ -28,7 +28,7 @@ impl Control<'_> {
             }
             named = self.machine.axis_set;
         } else {
-            let mut via = self.position.at;
+            let mut via = self.believed();
             let Some(unknown) = self.targets(run, false, &mut via) else {
                 return;
             };

@@ -80,6 +80,7 @@ impl Control<'_> {
                 }
                 GCode::PathMode => self.path_mode(number, run),
                 GCode::MirrorX => self.mirror_x(span, run),
+                GCode::Retract(initial) => self.retract_level(initial, span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
                     self.extruder_mode(None);
@@ -100,6 +101,9 @@ impl Control<'_> {
     pub(super) fn motion_word(&mut self, run: &mut Run<'_, '_>) {
         for (code, _, span) in &run.words.g {
             if let GCode::Motion(motion) = *code {
+                let Some(motion) = self.enter(motion, run.words.groups) else {
+                    continue;
+                };
                 self.modal.motion = motion;
                 let words = run.block.words.iter().copied();
                 run.facts.motion_word = words.into_iter().find(|word| word.span == *span);
@@ -187,7 +191,7 @@ impl Control<'_> {
     /// True when F counts for the motion in force.
     pub(super) fn obeys_feed(&self) -> bool {
         match self.modal.motion {
-            Motion::None => false,
+            Motion::None | Motion::Special(_) => false,
             Motion::Rapid => self.machine.controller.language.rapid_uses_feed,
             Motion::Linear | Motion::ArcCw | Motion::ArcCcw => true,
         }

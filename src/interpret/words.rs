@@ -4,6 +4,7 @@ use arrayvec::ArrayVec;
 
 use super::code::{GCode, code_number, g_code};
 use super::report::Report;
+use super::special::special_code;
 use crate::machine::Controller;
 use crate::source::Span;
 use crate::syntax::{Block, Word};
@@ -158,6 +159,7 @@ impl Words {
                     .then_some(GCode::Ignored)
             };
             g_code(number, controller.language.family)
+                .or_else(|| special_code(number, &controller.language))
                 .or_else(ignored)
                 .map(|code| (code, number))
         });

@@ -40,6 +40,7 @@ impl<'m> Solver<'m> {
         let largest = Overrides {
             feed: limits.feed_override_max,
             rapid: limits.rapid_override_max,
+            spindle: limits.spindle_override_max,
         };
         Self {
             machine,

@@ -61,6 +61,12 @@ pub struct Language {
     pub cutter_compensation: bool,
     /// What printers differ in; of no account outside the Marlin family.
     pub printer: Printer,
+    /// Whether G73 to G89 are the canned cycles of a milling control, with G98
+    /// and G99 for the level that they return to.
+    pub mill_cycles: bool,
+    /// How far G73 draws back, and how far above the last depth the rapid of
+    /// G83 ends, mm; not of `Rs274`, which has it fixed.
+    pub peck_clearance_mm: f64,
 }
 
 /// The family of words.

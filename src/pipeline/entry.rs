@@ -128,6 +128,7 @@ impl Entry {
         let stays = stops || planner.rapid_joint == RapidJoint::All || self.between_stops(machine);
         // What forbids any edit, what forbids an F, what forbids G1 for G0.
         let edit = [
+            (facts.fixed.is_some(), facts.fixed.unwrap_or_default()),
             (facts.checksum, "it carries a checksum"),
             (
                 self.block.delete_level > 0,
@@ -138,7 +139,6 @@ impl Entry {
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),
-            (facts.fixed.is_some(), facts.fixed.unwrap_or_default()),
         ];
         let feed = [
             (facts.dwell_takes_feed, "an F in it would be its dwell"),

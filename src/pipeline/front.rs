@@ -163,7 +163,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             .flow
             .insert(Box::new(Flow::new(program, line, &self.reading)));
         self.lines = flow.lines();
-        self.conclude(facts, 1)
+        Ok(self.conclude(facts, 1))
     }
 
     #[cold]
@@ -202,11 +202,11 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             found.file = flow.file().map(str::to_owned);
         }
         self.executed += u64::from(facts.executed);
-        self.conclude(facts, run)
+        Ok(self.conclude(facts, run))
     }
 
     /// Lets the flow go on behind a line, and hands the line over.
-    fn conclude(&mut self, facts: Facts, run: u32) -> Result<Option<Line<'_, 'm>>, Failure> {
+    fn conclude(&mut self, facts: Facts, run: u32) -> Option<Line<'_, 'm>> {
         let Self {
             block,
             steps,
@@ -216,7 +216,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             stuck,
             ..
         } = self;
-        let Some(flow) = flow else { return Ok(None) };
+        let flow = flow.as_mut()?;
         // What is wrong in a loop is wrong in each of its runs.
         *stuck |= diagnostics.errors > 0 && run > 1;
         let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
@@ -233,7 +233,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             diagnostics.push(*trouble);
         }
         let place = flow.now();
-        Ok(Some(Line {
+        Some(Line {
             key: (place.text as u16, place.line as u64 + 1),
             text: flow.text(),
             block,
@@ -241,7 +241,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             facts,
             files: flow.files(),
             interpreter,
-        }))
+        })
     }
 
     /// The warnings and notes of a run without errors.

@@ -69,18 +69,17 @@ impl Table {
             mm_per_unit_before: entry.mm_per_unit_before,
             fixed: entry.facts.fixed,
         };
-        match self.lines.get_mut(&line) {
-            Some(entered) => entered.unanimous &= entered.sight == sight,
-            None => {
-                let entered = Entered {
-                    sight,
-                    unanimous: true,
-                    decision: None,
-                    hopeless: false,
-                };
-                self.lines.insert(line, entered);
-            }
+        if let Some(entered) = self.lines.get_mut(&line) {
+            entered.unanimous &= entered.sight == sight;
+            return;
         }
+        let entered = Entered {
+            sight,
+            unanimous: true,
+            decision: None,
+            hopeless: false,
+        };
+        self.lines.insert(line, entered);
     }
 
     /// Why a line of the program may not be changed.
@@ -123,7 +122,7 @@ impl Table {
                         knobs: entry.knobs.clone(),
                         rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
                         feeds: entry
-                            .moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
+                            .moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
                         stops,
                     }));
                 }

@@ -360,7 +360,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             after: &entry.mark,
             knobs: self.knobs.as_ref(),
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
-            feeds: entry.moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
+            feeds: entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
             change: change.as_ref().unwrap_or(&Change::NONE),
             stops: entry.needs_stops(self.machine, change.as_ref()),
         };

@@ -6,7 +6,7 @@
 //! carry the speed through.
 
 use super::arc::{axis_speed, plane_share, tangent_ranges};
-use super::limits::{PathLimits, moving, rapid_factor};
+use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
 use super::trajectory::{Caps, Overrides};
 use crate::interpret::{FeedMode, Move, MoveKind};
 use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
@@ -140,7 +140,7 @@ fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> S
     let factor = rapid_factor(mv, overrides, caps);
     let feed = match mv.kind {
         MoveKind::Rapid => caps.speed_mm_s,
-        _ => (mv.feed_mm_s * overrides.feed).min(caps.speed_mm_s),
+        _ => (mv.feed_mm_s * feed_factor(mv.kind, overrides)).min(caps.speed_mm_s),
     };
     for axis in commanded.iter() {
         let Some(limit) = machine.axes.get(axis).and_then(Option::as_ref) else {

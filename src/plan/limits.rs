@@ -28,7 +28,7 @@ impl PathLimits {
         };
         let feed = match mv.kind {
             MoveKind::Rapid => f64::INFINITY,
-            _ => mv.feed_mm_s * overrides.feed,
+            _ => mv.feed_mm_s * feed_factor(mv.kind, overrides),
         };
         let path_accel = mv.path_accel_mm_s2 * caps.accel_factor;
         let speed = lower(lower(f64::MAX, axes.speed_mm_s), caps.speed_mm_s);
@@ -89,6 +89,17 @@ pub(super) fn rapid_factor(mv: &Move, overrides: Overrides, caps: &Caps) -> f64 
     match mv.kind {
         MoveKind::Rapid => mv.rapid_factor * overrides.rapid * caps.rapid_factor,
         _ => mv.rapid_factor.max(1.0),
+    }
+}
+
+/// Override of a move at a feed: threads follow the spindle, a tap may follow
+/// either.
+#[inline]
+pub(super) fn feed_factor(kind: MoveKind, overrides: Overrides) -> f64 {
+    match kind {
+        MoveKind::Thread => overrides.spindle,
+        MoveKind::Tap => overrides.feed.max(overrides.spindle),
+        _ => overrides.feed,
     }
 }
 

@@ -74,13 +74,14 @@ impl Phase {
 
 /// The times and the top speed of a trapezoid or triangle from rest to rest.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "the postfixes are units")]
 pub(super) struct Outline {
     /// Duration of each ramp in s.
     ramp_s: f64,
     /// Duration of the cruise in s; a triangle has none.
     cruise_s: Option<f64>,
     /// The largest speed in mm/s.
-    pub top_mm_s: f64,
+    pub top_speed: f64,
 }
 
 impl Outline {
@@ -94,13 +95,13 @@ impl Outline {
             Self {
                 ramp_s,
                 cruise_s: Some((length / v - ramp_s).max(0.0)),
-                top_mm_s: v,
+                top_speed: v,
             }
         } else {
             Self {
                 ramp_s: (length / a).sqrt(),
                 cruise_s: None,
-                top_mm_s: triangle_top,
+                top_speed: triangle_top,
             }
         }
     }
@@ -129,7 +130,7 @@ impl Profile {
         let Outline {
             ramp_s,
             cruise_s,
-            top_mm_s: v,
+            top_speed: v,
         } = Outline::new(length, speed, accel);
         let a = accel;
         let mut phases = ArrayVec::new();

@@ -17,6 +17,8 @@ pub struct Overrides {
     pub feed: f64,
     /// Of rapids.
     pub rapid: f64,
+    /// Of the spindle, for moves in step with it.
+    pub spindle: f64,
 }
 
 impl Default for Overrides {
@@ -24,6 +26,7 @@ impl Default for Overrides {
         Self {
             feed: 1.0,
             rapid: 1.0,
+            spindle: 1.0,
         }
     }
 }
@@ -205,7 +208,7 @@ impl PathFigures {
             duration_s: outline.duration_s(),
             speed_limit_mm_s: limits.speed_mm_s,
             accel_mm_s2: limits.accel_mm_s2,
-            top_speed_mm_s: outline.top_mm_s,
+            top_speed_mm_s: outline.top_speed,
         }
     }
 

@@ -125,10 +125,12 @@ impl<'m> Assessor<'m> {
         let largest = Overrides {
             feed: machine.limits.feed_override_max,
             rapid: machine.limits.rapid_override_max,
+            spindle: machine.limits.spindle_override_max,
         };
         let nominal = Overrides {
             feed: largest.feed.min(1.0),
             rapid: largest.rapid.min(1.0),
+            spindle: largest.spindle.min(1.0),
         };
         let model = PowerModel::new(machine);
         Self {

@@ -48,7 +48,7 @@ struct MoveLine<'a> {
 
 impl<'a> MoveLine<'a> {
     fn new(mv: &'a Move, seconds: Option<f64>, axes: AxisSet) -> Self {
-        let has_feed = matches!(mv.kind, MoveKind::Feed | MoveKind::Arc);
+        let has_feed = !matches!(mv.kind, MoveKind::Rapid | MoveKind::Dwell);
         Self {
             line: mv.line,
             kind: mv.kind.name(),

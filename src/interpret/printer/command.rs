@@ -175,13 +175,13 @@ impl Control<'_> {
             }
         } else if letter == b'T' {
             self.tool(run, number, span);
-        } else if !self.special(run, (letter, number, span), parameters) {
+        } else if !self.own_command(run, (letter, number, span), parameters) {
             self.ordinary(run, (letter, number, span), parameters);
         }
     }
 
     /// Commands that printers alone have, or read in their own way.
-    fn special(
+    fn own_command(
         &mut self,
         run: &mut Run<'_, '_>,
         (letter, number, span): (u8, u16, Span),

@@ -67,6 +67,12 @@ pub(crate) struct LanguageTable {
     pub(crate) cutter_compensation: Option<bool>,
     /// What 3D printers differ in; only with family = "marlin".
     pub(crate) printer: Option<At<PrinterTable>>,
+    /// Whether G73 to G89, G98 and G99 are those of a milling control; default
+    /// false.
+    pub(crate) mill_cycles: Option<bool>,
+    /// How far G73 and G83 stay off the last depth, in mm; default 1. A
+    /// parameter of the control.
+    pub(crate) peck_clearance_mm: Option<Positive>,
 }
 
 /// The family of words.
