@@ -168,7 +168,7 @@ fn the_converter_closest_to_its_limit_is_reported() {
     });
     machine.limits.margin = 0.1;
     machine.loads.push(Load {
-        on: (b'M', 8.0),
+        on: vec![(b'M', 8.0)],
         off: vec![(b'M', 9.0)],
         power_w: 30.0,
         converter: 1,

@@ -14,6 +14,8 @@ pub(crate) fn axis() -> Axis {
     Axis {
         kind: AxisKind::Linear,
         rapid_mm_s: 500.0,
+        home_mm_s: f64::INFINITY,
+        home_mm: None,
         accel_mm_s2: 5000.0,
         jerk_mm_s3: 0.0,
         mass_kg: 100.0,
@@ -90,11 +92,13 @@ fn controller() -> Controller {
             block_delete: true,
             mill_cycles: false,
             peck_clearance_mm: 1.0,
+            printer: gwatt::machine::Printer::default(),
         },
         planner: Planner {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
+            dwell_stops: false,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,

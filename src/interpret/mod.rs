@@ -21,6 +21,7 @@ mod moves;
 mod parameters;
 mod position;
 mod probe;
+mod printer;
 mod reference;
 mod report;
 mod settings;

@@ -47,6 +47,8 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "grbl",
     "isg",
     "marlin",
+    "reprap",
+    "klipper",
 );
 
 /// All built-in machines, the default first.

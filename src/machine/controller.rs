@@ -2,6 +2,7 @@
 //! lower speed and acceleration. Profiles are data (TOML).
 
 use super::axis::{Axis, AxisKind};
+use super::printer::Printer;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,6 +63,8 @@ pub struct Language {
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
+    /// What printers differ in; of no account outside the Marlin family.
+    pub printer: Printer,
 }
 
 /// The family of words.
@@ -104,6 +107,9 @@ pub struct Planner {
     pub arc_rule: ArcRule,
     /// What happens at the ends of rapids in a mode that blends.
     pub rapid_joint: RapidJoint,
+    /// Whether a dwell of no time ends the move before it at rest, so that a
+    /// rapid may be written as a feed between two of them.
+    pub dwell_stops: bool,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

@@ -8,6 +8,7 @@ mod conditions;
 mod describe;
 mod entry;
 mod front;
+mod judge;
 mod limiting;
 mod options;
 mod restart;

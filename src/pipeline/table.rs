@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use super::entry::Entry;
 use crate::interpret::{Facts, FeedMode, KnobState, MoveKind};
 use crate::limit::Change;
+use crate::machine::Machine;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
 
@@ -49,6 +50,8 @@ pub(super) struct Decision {
     pub(super) knobs: Option<KnobState>,
     pub(super) rapids: bool,
     pub(super) feeds: bool,
+    /// See [`BlockView::stops`](crate::rewrite::BlockView).
+    pub(super) stops: bool,
 }
 
 impl Table {
@@ -93,13 +96,23 @@ impl Table {
 
     /// Takes what was decided for a run: the lowest of all runs counts. True
     /// where it is the first time that the line turns out to be hopeless.
-    pub(super) fn decide(&mut self, line: LineKey, entry: &Entry, change: Option<Change>) -> bool {
+    pub(super) fn decide(
+        &mut self,
+        machine: &Machine,
+        line: LineKey,
+        entry: &Entry,
+        change: Option<Change>,
+    ) -> bool {
         let Some(entered) = self.lines.get_mut(&line) else {
             return false;
         };
         if let Some(change) = change {
+            let stops = entry.needs_stops(machine, Some(&change));
             match &mut entered.decision {
-                Some(decision) => decision.change = decision.change.lower(&change),
+                Some(decision) => {
+                    decision.change = decision.change.lower(&change);
+                    decision.stops |= stops;
+                }
                 None => {
                     entered.decision = Some(Box::new(Decision {
                         change,
@@ -110,6 +123,7 @@ impl Table {
                         rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
                         feeds: entry
                             .moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
+                        stops,
                     }));
                 }
             }

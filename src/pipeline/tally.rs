@@ -21,6 +21,8 @@ pub(super) struct Tally<'m, 'r> {
     model: PowerModel,
     rows: Option<&'r mut (dyn RowSink + 'r)>,
     summary: Summary,
+    /// The limits, where peaks below them may be passed over.
+    floors_w: Option<[f64; 2]>,
     energy_j: f64,
     failed: Option<io::Error>,
     /// Names of the files of subprograms, by number less 1.
@@ -36,6 +38,10 @@ impl<'m, 'r> Tally<'m, 'r> {
     ) -> Self {
         let rows_wanted = rows.is_some();
         let model = PowerModel::new(machine);
+        let floors_w = (machine.converters.len() <= 1).then(|| {
+            let regen_limit_w = model.regen_limit_w(0).unwrap_or(f64::INFINITY);
+            [model.limit_w(0), regen_limit_w]
+        });
         let summary = Summary {
             certificate: options.certificate,
             ..Summary::default()
@@ -45,6 +51,7 @@ impl<'m, 'r> Tally<'m, 'r> {
             model,
             rows,
             summary,
+            floors_w,
             energy_j: 0.0,
             failed: None,
             files: Vec::new(),
@@ -58,13 +65,12 @@ impl<'m, 'r> Tally<'m, 'r> {
         if self.rows.is_some() {
             return Want::ALL;
         }
-        if self.machine.converters.len() > 1 {
+        let Some([limit_w, regen_limit_w]) = self.floors_w else {
             return Want::PEAKS;
-        }
-        let regen_limit_w = self.model.regen_limit_w(0).unwrap_or(f64::INFINITY);
+        };
         Want {
             energy: false,
-            floor_w: self.summary.peak_w.min(self.model.limit_w(0)),
+            floor_w: self.summary.peak_w.min(limit_w),
             regen_floor_w: self.summary.regen_w.min(regen_limit_w),
         }
     }

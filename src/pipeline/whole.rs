@@ -98,6 +98,7 @@ fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
             rapids: decision.rapids,
             feeds: decision.feeds,
             change: &decision.change,
+            stops: decision.stops,
         };
         // Contradicting edits leave the line as it was, which the certificate
         // then finds.

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::machine_file::{PathModeName, RapidName};
+use super::printer::PrinterTable;
 use super::value::{At, Positive};
 
 /// What a controller reads, how it plans, and which words limit it.
@@ -67,6 +68,8 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// What 3D printers differ in; only with family = "marlin".
+    pub(crate) printer: Option<At<PrinterTable>>,
 }
 
 /// The family of words.
@@ -119,6 +122,10 @@ pub(crate) struct PlannerTable {
     /// What happens at the ends of rapids where the path mode blends; default
     /// "all", which is the safe one.
     pub(crate) rapid_joint: Option<RapidJointName>,
+    /// Whether a dwell of no time ends the move before it at rest: where feeds
+    /// blend and rapids stop, a rapid may then be written as a feed between two
+    /// such dwells; default false.
+    pub(crate) dwell_stops: Option<bool>,
     /// Whether a rapid may be written as a feed to lower its speed; default none.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
 }

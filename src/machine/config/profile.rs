@@ -67,6 +67,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         block_delete: table.block_delete.unwrap_or(true),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        printer: super::printer::printer(findings, table),
     })
 }
 
@@ -105,7 +106,7 @@ fn ignored(findings: &mut Findings<'_>, table: &LanguageTable) -> (Vec<u16>, Vec
     (g, m)
 }
 
-fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
+pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
     let letter = word::letter(&text.value);
     if letter.is_none() {
         let message = format!("\"{}\" is not a letter", text.value);
@@ -126,6 +127,7 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
             Some(RapidJointName::Rapids) => RapidJoint::Rapids,
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
+        dwell_stops: table.dwell_stops.unwrap_or(false),
     })
 }
 
