@@ -45,7 +45,7 @@ impl Control<'_> {
             }
         }
         if let Motion::Special(number) = self.modal.motion {
-            return self.special(number, run);
+            return self.special_motion(number, run);
         }
         let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
         let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
