@@ -540,7 +540,7 @@ fn each_refusal_once() {
     3 cycle-repeats: the number of repeats is not a whole number from 0 to 1e9 | write how often the hole is to be made
     ");
     // What these do not have stays refused.
-    for controller in ["grbl", "isg", "marlin"] {
+    for controller in ["grbl", "isg"] {
         let found = moves(controller, "G21 G90 F100\nG0 X0\nG81 X1 Z-1 R1\n");
         assert!(found.contains("G81 is a canned cycle"), "{found}");
     }

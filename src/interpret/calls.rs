@@ -1,0 +1,86 @@
+//! What the flow of a program asks of the interpreter: subprograms begin and
+//! end, lines run again.
+
+use super::execute::Interpreter;
+use super::expression::{Fault, Name, Reader, Value};
+use super::parameters::{LOCALS, Scope};
+use super::transfer::Transfer;
+use crate::machine::Family;
+use crate::source::Span;
+
+impl Interpreter<'_> {
+    /// Where the program goes on, if the last block said so.
+    pub(crate) fn transfer(&mut self) -> Option<Transfer> {
+        self.control.transfer.take()
+    }
+
+    /// A line of a program that is held whole begins: which run of it, and in
+    /// which text it stands.
+    pub(crate) fn begin_line(&mut self, run: u32, text: usize) {
+        self.control.run = run;
+        self.control.text = text as u16;
+    }
+
+    /// A subprogram begins, with these variables of its own.
+    pub(super) fn enter(&mut self, scope: Scope, arguments: Option<&[Value; LOCALS]>) {
+        let none = [None; LOCALS];
+        let arguments = arguments.unwrap_or(&none);
+        self.control.parameters.enter(scope, arguments);
+        self.control.enter_level();
+    }
+
+    /// A subprogram with its own variables has ended.
+    pub(super) fn leave(&mut self, scope: Scope) {
+        self.control.parameters.leave(scope);
+        self.control.leave_level();
+    }
+
+    /// Whether programs are written in RS274/NGC.
+    pub(super) fn rs274(&self) -> bool {
+        self.control.machine.controller.language.family == Family::Rs274
+    }
+
+    /// Whether the program has begun with an O number.
+    pub(super) fn in_program(&self) -> bool {
+        self.control.has_program_number
+    }
+
+    /// A subroutine has returned a value, or none (`LinuxCNC`, "Subroutines":
+    /// `#<_value>` and `#<_value_returned>`).
+    pub(crate) fn returned(&mut self, value: Option<f64>) {
+        let returned = f64::from(u8::from(value.is_some()));
+        for (name, value) in [
+            ("_value", value.unwrap_or(0.0)),
+            ("_value_returned", returned),
+        ] {
+            // Two names cannot be too many.
+            let _ = self
+                .control
+                .parameters
+                .set(&Name::Text(name.into()), Some(value));
+        }
+    }
+
+    /// The O number that comes next is that of a program which is called.
+    pub(crate) fn expect_program_number(&mut self) {
+        self.control.has_program_number = false;
+    }
+
+    /// The program begins again.
+    pub(crate) fn begin_again(&mut self) {
+        self.control.begun = false;
+        self.control.has_program_number = false;
+    }
+
+    /// The program ends here.
+    pub(crate) fn end(&mut self) {
+        self.control.ended = true;
+    }
+
+    /// The truth of a condition that stands in a line.
+    pub(super) fn condition(&self, text: &[u8], span: Span) -> Result<bool, Fault> {
+        let text = text.get(..span.end as usize).unwrap_or(text);
+        let mut reader = Reader::new(text, span.start as usize);
+        Ok(reader.brackets(&self.control)?.unwrap_or(0.0) != 0.0)
+    }
+}
