@@ -10,6 +10,7 @@ use super::moves::{Action, ActionKind, Step};
 use super::parameters::{LOCALS, Parameters};
 use super::position::{Position, Reading};
 use super::report::{Diagnostics, Report};
+use super::siemens::{Siemens, is_beyond_words};
 use super::statement::Unread;
 use super::transfer::Transfer;
 use super::words::Words;
@@ -43,6 +44,8 @@ pub(super) struct Control<'m> {
     pub(super) text: u16,
     pub(super) parameters: Parameters,
     pub(super) transfer: Option<Transfer>,
+    /// What only SINUMERIK keeps; `None` for other languages.
+    pub(super) siemens: Option<Box<Siemens>>,
 }
 
 /// The block that is being executed.
@@ -91,6 +94,8 @@ impl<'m> Interpreter<'m> {
             text: 0,
             parameters: Parameters::new(),
             transfer: None,
+            siemens: (machine.controller.language.family == Family::Siemens)
+                .then(|| Box::new(Siemens::new())),
         };
         Self {
             control,
@@ -126,11 +131,19 @@ impl<'m> Interpreter<'m> {
     pub(crate) fn enter(&mut self, arguments: Option<&[Value; LOCALS]>) {
         let arguments = arguments.copied().unwrap_or([None; LOCALS]);
         self.control.parameters.enter(arguments);
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.enter();
+        }
     }
 
     /// A subprogram with its own variables has ended.
     pub(crate) fn leave(&mut self) {
         self.control.parameters.leave();
+        let modal = &mut self.control.modal;
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.leave(modal);
+            self.control.settle_siemens();
+        }
     }
 
     /// A subroutine has returned a value, or none (`LinuxCNC`, "Subroutines":
@@ -158,6 +171,13 @@ impl<'m> Interpreter<'m> {
     pub(crate) fn begin_again(&mut self) {
         self.control.begun = false;
         self.control.has_program_number = false;
+    }
+
+    /// FOR counts on when it is executed next.
+    pub(crate) fn count_on(&mut self) {
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.count_on();
+        }
     }
 
     /// The program ends here.
@@ -197,8 +217,17 @@ impl<'m> Interpreter<'m> {
         if self.control.passes_over(block, &mut report) {
             return Facts::default();
         }
-        let transfers = !block.issues.is_empty() && self.control.beyond_words(block, &mut report);
-        if !block.issues.is_empty() || block.words.is_empty() {
+        let mut beyond = !block.issues.is_empty();
+        let mut acts = false;
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.begin_block();
+            beyond |= is_beyond_words(block, text);
+        }
+        let transfers = beyond && self.control.beyond_words(block, &mut report);
+        if let Some(siemens) = &self.control.siemens {
+            acts = siemens.is_active();
+        }
+        if !block.issues.is_empty() || block.words.is_empty() && !acts {
             return Facts {
                 transfers,
                 ..Facts::default()
@@ -269,7 +298,9 @@ impl Control<'_> {
             .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.words.checksum;
         let errors = run.report.diagnostics.errors;
-        if run.words.is_plain_motion() {
+        let siemens = self.siemens.as_deref();
+        let special = siemens.is_some_and(|siemens| !siemens.is_plain_motion(run.words));
+        if run.words.is_plain_motion() && !special {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
             self.motion_word(run);
@@ -278,6 +309,9 @@ impl Control<'_> {
                 self.complain_about_rest(run);
             }
             return;
+        }
+        if siemens.is_some() {
+            return self.siemens_block(run);
         }
         if self.macro_call(run) {
             return;
@@ -308,6 +342,10 @@ impl Control<'_> {
     /// What is not understood stays in the block's issues and is reported.
     #[cold]
     fn beyond_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
+        if self.siemens.is_some() {
+            self.begun = true;
+            return self.siemens_words(block, report);
+        }
         let text = report.text;
         let statement = match self.statement(text, block) {
             Ok(statement) => statement,
@@ -359,7 +397,7 @@ impl Control<'_> {
     }
 
     /// Words that no code has used: they might mean motion.
-    fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
+    pub(super) fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
         if self.machine.controller.language.family != Family::Rs274 {
             // Numbers of tool offsets without a code that uses them.
             run.words.take(b'D');
@@ -377,7 +415,7 @@ impl Control<'_> {
     }
 
     /// Stops and the end come after the motion.
-    fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
+    pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
         self.loads &= !std::mem::take(&mut self.loads_off);
         if !run.facts.boundary {
             return;

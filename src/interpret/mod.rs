@@ -22,6 +22,7 @@ mod position;
 mod reference;
 mod report;
 mod settings;
+mod siemens;
 mod statement;
 mod subprogram;
 mod system_parameters;

@@ -74,6 +74,11 @@ impl Position {
         value + self.offset[axis]
     }
 
+    /// Sets what is added to program coordinates.
+    pub(super) fn set_shift(&mut self, shift: &AxisValues) {
+        self.offset = *shift;
+    }
+
     /// G92: the place where the axis stands is called `value` from now on.
     pub(super) fn set_offset(&mut self, axis: usize, value: f64) {
         self.offset[axis] = self.at[axis] - value;

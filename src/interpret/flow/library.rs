@@ -33,6 +33,40 @@ impl Library {
         &self.loaded
     }
 
+    /// The contents of the file that holds a subprogram of SINUMERIK:
+    /// `NAME.SPF` or `NAME.MPF`, whatever the case of its letters.
+    pub(super) fn load_siemens(&mut self, name: &str) -> Result<Vec<u8>, Trouble> {
+        let wanted = [
+            format!("{name}.SPF"),
+            format!("{name}.MPF"),
+            format!("_N_{name}_SPF"),
+            format!("_N_{name}_MPF"),
+            format!("{name}_SPF"),
+        ];
+        let find = |folder: &PathBuf| {
+            let mut found: Vec<(usize, PathBuf)> = fs::read_dir(folder)
+                .ok()?
+                .flatten()
+                .filter_map(|entry| {
+                    let file = entry.file_name().to_string_lossy().to_ascii_uppercase();
+                    let rank = wanted.iter().position(|name| *name == file)?;
+                    Some((rank, entry.path()))
+                })
+                .filter(|(_, path)| path.is_file())
+                .collect();
+            found.sort();
+            found.into_iter().next().map(|(_, path)| path)
+        };
+        let Some(path) = self.folders.iter().find_map(find) else {
+            let message = format!("there is no subprogram {name}, and no word of this name");
+            let help = format!(
+                "define it in the program, or put {name}.SPF into its folder or one given by --sub-path"
+            );
+            return Err(Trouble::new("no-such-subprogram", message, help));
+        };
+        self.read(path)
+    }
+
     /// The contents of the file that holds a subprogram.
     pub(super) fn load(&mut self, label: &Label) -> Result<Vec<u8>, Trouble> {
         let names = names(label);
@@ -50,6 +84,10 @@ impl Library {
             );
             return Err(Trouble::new("no-such-subprogram", message, help));
         };
+        self.read(path)
+    }
+
+    fn read(&mut self, path: PathBuf) -> Result<Vec<u8>, Trouble> {
         let shown = path.display().to_string();
         let unreadable = |why: String| {
             let message = format!("the subprogram file {shown} cannot be read: {why}");

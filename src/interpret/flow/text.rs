@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::outline::Outline;
 use crate::interpret::statement::{Keyword, glance};
 use crate::interpret::transfer::Label;
 use crate::source::lines;
@@ -15,6 +16,7 @@ pub(super) struct Text {
     /// How often each line has been executed.
     pub(super) runs: Vec<u32>,
     index: Option<Index>,
+    outline: Option<Box<Outline>>,
     /// Places that have been looked for before.
     found: HashMap<(Search, usize), Option<usize>>,
 }
@@ -55,8 +57,17 @@ impl Text {
             starts,
             runs: vec![0; count],
             index: None,
+            outline: None,
             found: HashMap::new(),
         }
+    }
+
+    /// What the lines of a SINUMERIK text are.
+    pub(super) fn outline(&mut self) -> &Outline {
+        if self.outline.is_none() {
+            self.outline = Some(Box::new(Outline::new(self)));
+        }
+        self.outline.get_or_insert_default()
     }
 
     /// Number of lines.

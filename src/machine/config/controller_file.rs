@@ -71,6 +71,7 @@ pub(crate) enum FamilyName {
     Rs274,
     Marlin,
     Isg,
+    Siemens,
 }
 
 /// A word of G4.
