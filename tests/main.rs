@@ -2,6 +2,7 @@
 
 mod layers;
 mod interpret;
+mod siemens;
 mod syntax;
 mod plan;
 mod power;

@@ -96,11 +96,11 @@ impl Control<'_> {
             };
             match kind {
                 ActionKind::Spindle => self.note_spindle(run),
+                ActionKind::Other if self.is_siemens() && self.is_ignored(number) => {}
                 ActionKind::Other if self.is_siemens() => {
-                    if !self.is_ignored(number) {
-                        let message = "M words of the machine's builder are taken as switches that move no axis";
-                        run.report.note_once("builder-m", message, span);
-                    }
+                    let message =
+                        "M words of the machine's builder are taken as switches that move no axis";
+                    run.report.note_once("builder-m", message, span);
                 }
                 // Arguments of a word that moves no axis, as in `M106 S255 P1`.
                 ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,

@@ -72,6 +72,8 @@ pub(crate) enum Siemens {
     Call {
         name: String,
         times: u64,
+        /// It goes back to the line itself, which has more places to go to.
+        again: bool,
     },
     /// RET, M17.
     Return,

@@ -1,7 +1,7 @@
 //! Subprograms in files of their own.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Trouble;
@@ -64,7 +64,7 @@ impl Library {
             );
             return Err(Trouble::new("no-such-subprogram", message, help));
         };
-        self.read(path)
+        self.read(&path)
     }
 
     /// The contents of the file that holds a subprogram.
@@ -84,16 +84,16 @@ impl Library {
             );
             return Err(Trouble::new("no-such-subprogram", message, help));
         };
-        self.read(path)
+        self.read(&path)
     }
 
-    fn read(&mut self, path: PathBuf) -> Result<Vec<u8>, Trouble> {
+    fn read(&mut self, path: &Path) -> Result<Vec<u8>, Trouble> {
         let shown = path.display().to_string();
         let unreadable = |why: String| {
             let message = format!("the subprogram file {shown} cannot be read: {why}");
             Trouble::new("no-such-subprogram", message, "check the file")
         };
-        let size = fs::metadata(&path)
+        let size = fs::metadata(path)
             .map_err(|error| unreadable(error.to_string()))?
             .len();
         self.bytes += size;
@@ -102,7 +102,7 @@ impl Library {
                 "the subprograms have more than 64 MiB".to_owned(),
             ));
         }
-        let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+        let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
         self.loaded.push(shown);
         Ok(bytes)
     }

@@ -46,6 +46,9 @@ impl Outline {
                 outline.labels.entry(number).or_default().push(line);
             }
             if let Some(label) = rest.label() {
+                if label == "ENDLABEL" {
+                    outline.label_ends.push(line);
+                }
                 outline.labels.entry(label).or_default().push(line);
             }
             outline.structure(line, rest, &mut open);

@@ -31,8 +31,7 @@ impl Flow {
             Siemens::Next | Siemens::If(true) | Siemens::While(true) | Siemens::Until(true) => {
                 Ok(())
             }
-            Siemens::If(false) => self.behind_partner("ENDIF"),
-            Siemens::Else => self.behind_partner("ENDIF"),
+            Siemens::If(false) | Siemens::Else => self.behind_partner("ENDIF"),
             Siemens::While(false) => self.behind_partner("ENDWHILE or ENDFOR"),
             Siemens::Until(false) => {
                 let begin = self.partner("REPEAT")?;
@@ -58,7 +57,12 @@ impl Flow {
                 block,
                 times,
             } => self.repeat(&from, to.as_deref(), block, times),
-            Siemens::Call { name, times } => self.call_siemens(&name, times, interpreter),
+            Siemens::Call { name, times, again } => {
+                if again {
+                    self.next = self.now;
+                }
+                self.call_siemens(&name, times, interpreter)
+            }
             Siemens::Return => {
                 if self.leave(interpreter).is_none() {
                     interpreter.end();

@@ -150,7 +150,7 @@ impl Control<'_> {
             }
         }
         if let Some(opening) = opening {
-            return self.arc_by_opening(
+            return Self::arc_by_opening(
                 state,
                 opening,
                 by_center.then_some(center),
@@ -182,7 +182,6 @@ impl Control<'_> {
 
     /// AR: with the end, or with the centre.
     fn arc_by_opening(
-        &self,
         state: &Siemens,
         opening_deg: f64,
         center: Option<[f64; 2]>,
@@ -223,9 +222,9 @@ impl Control<'_> {
             target.named.insert(axis);
         }
         let place = state.machine_place(&target.program);
-        for axis in 0..3 {
+        for (axis, place) in place.into_iter().enumerate().take(3) {
             if target.named.iter().any(|by| state.frame.depends(axis, by)) {
-                target.machine[axis] = place[axis];
+                target.machine[axis] = place;
             }
         }
         Some(arc::from_center(ends, center))

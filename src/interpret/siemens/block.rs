@@ -331,7 +331,11 @@ impl Control<'_> {
             Called::Cycle(call) => self.cycle(state, &call, run),
             Called::Program { name, arguments } => {
                 state.pending = arguments;
-                self.transfer = Some(Transfer::Siemens(Go::Call { name, times: 1 }));
+                self.transfer = Some(Transfer::Siemens(Go::Call {
+                    name,
+                    times: 1,
+                    again: false,
+                }));
             }
         }
     }

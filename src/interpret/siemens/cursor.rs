@@ -188,7 +188,13 @@ impl<'t> Cursor<'t> {
 
     /// What stands from `start` to the place; a byte at least.
     pub(super) fn span(&self, start: usize) -> Span {
-        let end = self.at.max(start + 1).min(self.text.len());
+        let end = self.end().max(start + 1).min(self.text.len());
         Span::new(start.min(end), end)
+    }
+
+    /// The place without the blanks before it.
+    pub(super) fn end(&self) -> usize {
+        let before = self.text.get(..self.at).unwrap_or(self.text);
+        before.trim_ascii_end().len()
     }
 }

@@ -57,6 +57,11 @@ pub(super) struct Call {
 }
 
 impl Call {
+    /// Whether it is a pattern of holes.
+    pub(super) fn is_pattern(&self) -> bool {
+        matches!(self.kind, Kind::Row | Kind::Circle)
+    }
+
     /// The argument at a place from 1; `None` where it is left out.
     pub(super) fn value(&self, place: usize) -> Option<f64> {
         self.values.get(place.checked_sub(1)?).copied().flatten()
@@ -81,7 +86,7 @@ impl Control<'_> {
     /// Executes a cycle where the axes stand.
     pub(super) fn cycle(&mut self, state: &mut Siemens, call: &Call, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
-        if matches!(call.kind, Kind::Row | Kind::Circle) {
+        if call.is_pattern() {
             return self.pattern(state, call, run);
         }
         let Some(levels) = self.levels(call, run) else {

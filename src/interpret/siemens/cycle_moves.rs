@@ -139,7 +139,7 @@ impl Control<'_> {
             None => (total / 50.0).min(7.0),
         };
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
-        let (mut reached, mut stroke) = (first.min(total), first);
+        let (mut reached, mut stroke, mut last) = (first.min(total), first, false);
         for count in 0..=STROKES_MAX {
             if count == STROKES_MAX {
                 run.report
@@ -178,8 +178,11 @@ impl Control<'_> {
             }
             stroke = stroke.max(least);
             let left = total - reached;
-            if left > stroke && left < 2.0 * stroke {
+            if last {
+                stroke = left;
+            } else if left > stroke && left < 2.0 * stroke {
                 stroke = left / 2.0;
+                last = true;
             }
             reached = (reached + stroke).min(total);
         }

@@ -49,12 +49,12 @@ impl Reading<'_, '_, '_> {
         self.cursor.peek();
         let start = self.cursor.at;
         let value = self.expression()?;
-        self.as_number(value, start)
+        self.as_number(&value, start)
     }
 
-    pub(super) fn as_number(&self, value: Val, start: usize) -> Outcome<f64> {
+    pub(super) fn as_number(&self, value: &Val, start: usize) -> Outcome<f64> {
         match value {
-            Val::Number(value) => Ok(value),
+            Val::Number(value) => Ok(*value),
             Val::Text(_) => {
                 let message = "a text stands where a number is needed";
                 let help = "write a number";
@@ -73,7 +73,7 @@ impl Reading<'_, '_, '_> {
             let start = self.cursor.at;
             self.cursor.at += length;
             let right = self.operators(priority)?;
-            left = self.apply(operator, left, right, start)?;
+            left = self.apply(operator, &left, &right, start)?;
         }
         Ok(left)
     }
@@ -113,9 +113,9 @@ impl Reading<'_, '_, '_> {
         })
     }
 
-    fn apply(&self, operator: Operator, left: Val, right: Val, start: usize) -> Outcome<Val> {
-        let (a, b) = match (operator, &left, &right) {
-            (Operator::Chain, _, _) => return Ok(Val::Text(shown(&left) + &shown(&right))),
+    fn apply(&self, operator: Operator, left: &Val, right: &Val, start: usize) -> Outcome<Val> {
+        let (a, b) = match (operator, left, right) {
+            (Operator::Chain, _, _) => return Ok(Val::Text(shown(left) + &shown(right))),
             (Operator::Compare(holds), Val::Text(a), Val::Text(b)) => {
                 return Ok(truth(holds(a.cmp(b))));
             }
@@ -170,15 +170,15 @@ impl Reading<'_, '_, '_> {
         }
         let value = if self.cursor.take(b'-') {
             let value = self.unary()?;
-            Val::Number(-self.as_number(value, start)?)
+            Val::Number(-self.as_number(&value, start)?)
         } else if self.cursor.take(b'+') {
             self.unary()?
         } else if self.cursor.take_name("NOT") {
             let value = self.unary()?;
-            truth(self.as_number(value, start)? == 0.0)
+            truth(self.as_number(&value, start)? == 0.0)
         } else if self.cursor.take_name("B_NOT") {
             let value = self.unary()?;
-            Val::Number(!(self.as_number(value, start)? as i64) as f64)
+            Val::Number(!(self.as_number(&value, start)? as i64) as f64)
         } else {
             self.operand()?
         };
@@ -235,15 +235,13 @@ impl Reading<'_, '_, '_> {
             [b'B' | b'b', ..] => i64::from_str_radix(text.get(1..)?, 2).ok(),
             _ => None,
         });
-        match value {
-            Some(value) => Ok(value as f64),
-            None => {
-                self.cursor.at = self.cursor.at.min(self.cursor.text.len());
-                let message = "this is no constant";
-                let help = "write 'H1F', 'B101' or one character in quotes";
-                Err(self.cursor.fault("expression", message, help, start))
-            }
+        if let Some(value) = value {
+            return Ok(value as f64);
         }
+        self.cursor.at = self.cursor.at.min(self.cursor.text.len());
+        let message = "this is no constant";
+        let help = "write 'H1F', 'B101' or one character in quotes";
+        Err(self.cursor.fault("expression", message, help, start))
     }
 
     /// A function with its arguments in parentheses.
@@ -266,7 +264,7 @@ impl Reading<'_, '_, '_> {
             .apply(values)
             .map_err(|wrong| self.impossible(wrong, start))?;
         let value = self.finite(result, start)?;
-        self.as_number(value, start)
+        self.as_number(&value, start)
     }
 
     fn impossible(&self, wrong: &'static str, start: usize) -> super::super::expression::Fault {

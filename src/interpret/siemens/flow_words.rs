@@ -144,19 +144,17 @@ impl Reading<'_, '_, '_> {
         let again = std::mem::take(&mut self.state.again);
         let mut value = first;
         if again {
-            let here = match r {
-                Some(number) => self.state.r.get(&number).copied().map(Val::Number),
-                None => {
-                    // The index has been taken: what it names is read here.
-                    let known = self
-                        .state
-                        .scopes
-                        .last()
-                        .and_then(|scope| scope.variables.get(&name))
-                        .and_then(|variable| variable.values.get(variable.place(index)?))
-                        .or_else(|| self.state.globals.get(&name));
-                    known.cloned()
-                }
+            let here = if let Some(number) = r {
+                self.state.r.get(&number).copied().map(Val::Number)
+            } else {
+                let known = self
+                    .state
+                    .scopes
+                    .last()
+                    .and_then(|scope| scope.variables.get(&name))
+                    .and_then(|variable| variable.values.get(variable.place(index)?))
+                    .or_else(|| self.state.globals.get(&name));
+                known.cloned()
             };
             if let Some(Val::Number(here)) = here {
                 value = here + 1.0;
@@ -277,7 +275,8 @@ impl Reading<'_, '_, '_> {
         match what {
             Called::Program { name, arguments } => {
                 self.state.pending = arguments;
-                Ok(Go::Call { name, times })
+                let again = false;
+                Ok(Go::Call { name, times, again })
             }
             Called::Cycle(_) => {
                 let message = "a cycle that is called by CALL";
@@ -297,7 +296,7 @@ impl Reading<'_, '_, '_> {
             let mut values = Vec::new();
             for argument in arguments {
                 values.push(match argument {
-                    Some(argument) => Some(self.as_number(argument.value, start)?),
+                    Some(argument) => Some(self.as_number(&argument.value, start)?),
                     None => None,
                 });
             }

@@ -93,6 +93,14 @@ enum Called {
     },
 }
 
+/// How far a pattern of holes has come whose places call a subprogram.
+#[derive(Debug, Clone, Copy)]
+struct PatternAt {
+    depth: usize,
+    next: u32,
+    backwards: bool,
+}
+
 /// The pole of AP and RP, and the last of both, program coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 struct Polar {
@@ -132,6 +140,7 @@ pub(super) struct Siemens {
     local: AxisValues,
     adrift: AxisSet,
     modal_call: Option<ModalCall>,
+    pattern: Option<PatternAt>,
     /// OVR as a factor.
     feed_factor: f64,
     diameter: bool,
@@ -159,6 +168,7 @@ impl Siemens {
             local: [0.0; AXES],
             adrift: AxisSet::default(),
             modal_call: None,
+            pattern: None,
             feed_factor: 1.0,
             diameter: false,
             polar: Polar::default(),

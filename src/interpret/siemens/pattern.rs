@@ -3,9 +3,10 @@
 
 use super::cycle::{Call, Kind};
 use super::frame_words::at_angle;
-use super::{Called, Siemens};
+use super::{Called, PatternAt, Siemens};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::moves::MoveKind;
+use crate::interpret::transfer::{Siemens as Go, Transfer};
 
 /// Holes of one pattern.
 const HOLES_MAX: f64 = 10_000.0;
@@ -16,18 +17,10 @@ impl Control<'_> {
         let value = |place| call.value(place).unwrap_or(0.0);
         let count = value(6);
         let [first, second, _] = self.modal.plane;
-        let modal = match state.modal_call.as_ref().map(|modal| &modal.what) {
-            Some(Called::Cycle(cycle)) if !matches!(cycle.kind, Kind::Row | Kind::Circle) => {
-                Some(cycle.clone())
-            }
-            None => None,
-            Some(_) => {
-                let message = "a pattern of holes with a subprogram as modal call";
-                run.report
-                    .error("cycle", message, call.span)
-                    .help("write the places and MCALL with the subprogram");
-                return;
-            }
+        let depth = state.scopes.len();
+        let modal = match &state.modal_call {
+            Some(modal) if modal.depth == depth => Some(modal.what.clone()),
+            _ => None,
         };
         if !(1.0..=HOLES_MAX).contains(&count) || count.fract() != 0.0 {
             run.report
@@ -57,20 +50,44 @@ impl Control<'_> {
         // A row begins at the end that is nearer.
         let here = state.program_place(&self.position.at);
         let distance = |[x, y]: [f64; 2]| libm::hypot(x - here[first], y - here[second]);
-        let backwards = call.kind == Kind::Row && distance(hole(count - 1.0)) < distance(hole(0.0));
+        let nearer = distance(hole(count - 1.0)) < distance(hole(0.0));
+        let begun = state.pattern.take().filter(|begun| begun.depth == depth);
+        let backwards = begun.map_or(call.kind == Kind::Row && nearer, |begun| begun.backwards);
         let errors = run.report.diagnostics.errors;
-        for number in 0..count as u32 {
+        for number in begun.map_or(0, |begun| begun.next)..count as u32 {
+            let next = number + 1;
             let number = f64::from(number);
-            let number = if backwards {
+            let [along, across] = hole(if backwards {
                 count - 1.0 - number
             } else {
                 number
-            };
-            let [along, across] = hole(number);
+            });
             let target = self.target_at(state, &[(first, along), (second, across)]);
             self.siemens_go(state, run, MoveKind::Rapid, &target, None);
-            if let Some(cycle) = &modal {
-                self.cycle(state, cycle, run);
+            match &modal {
+                Some(Called::Cycle(cycle)) if !cycle.is_pattern() => self.cycle(state, cycle, run),
+                Some(Called::Cycle(_)) => {
+                    run.report
+                        .error("cycle", "a pattern of patterns of holes", call.span)
+                        .help("set the cycle of a hole by MCALL");
+                }
+                Some(Called::Program { name, arguments }) => {
+                    // The rest comes when the subprogram has returned to here.
+                    let again = f64::from(next) < count;
+                    state.pattern = again.then_some(PatternAt {
+                        depth,
+                        next,
+                        backwards,
+                    });
+                    state.pending.clone_from(arguments);
+                    self.transfer = Some(Transfer::Siemens(Go::Call {
+                        name: name.clone(),
+                        times: 1,
+                        again,
+                    }));
+                    return;
+                }
+                None => {}
             }
             if run.report.diagnostics.errors != errors {
                 return;

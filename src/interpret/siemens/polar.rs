@@ -118,7 +118,7 @@ impl Control<'_> {
             Some((_, value)) => value * unit,
             None => last_radius,
         };
-        if !(radius >= 0.0) {
+        if radius.is_nan() || radius < 0.0 {
             run.report
                 .error("polar-radius", "a polar radius that is negative", span)
                 .help("write a radius from 0 on");

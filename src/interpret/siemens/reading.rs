@@ -41,16 +41,13 @@ impl Reading<'_, '_, '_> {
     /// The value of a variable whose name has been taken.
     pub(super) fn variable(&mut self, name: &str, start: usize) -> Outcome<Val> {
         if let Some(number) = self.r_parameter(name)? {
-            return match self.state.r.get(&number) {
-                Some(value) => Ok(Val::Number(*value)),
-                None => {
-                    let message = format!(
-                        "R{number} has no value yet: what it holds, only the control knows"
-                    );
-                    let help = "assign it in the program before it is used";
-                    Err(self.cursor.fault("unknown-value", message, help, start))
-                }
-            };
+            if let Some(value) = self.state.r.get(&number) {
+                return Ok(Val::Number(*value));
+            }
+            let message =
+                format!("R{number} has no value yet: what it holds, only the control knows");
+            let help = "assign it in the program before it is used";
+            return Err(self.cursor.fault("unknown-value", message, help, start));
         }
         let index = self.index()?;
         let variable = self

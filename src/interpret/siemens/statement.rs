@@ -40,7 +40,7 @@ impl Reading<'_, '_, '_> {
                 }
                 go = Some(found);
             }
-            block.words_end = self.cursor.at as u32;
+            block.words_end = self.cursor.end() as u32;
         }
         block.issues.clear();
         Ok(go)
@@ -406,7 +406,7 @@ impl Reading<'_, '_, '_> {
             letter,
             value,
             span: self.cursor.span(start),
-            number: Span::new(number, self.cursor.at),
+            number: Span::new(number, self.cursor.end().max(number)),
         });
         Ok(())
     }
@@ -427,13 +427,11 @@ impl Reading<'_, '_, '_> {
         self.cursor.peek();
         let start = self.cursor.at;
         let value = self.expression()?;
-        match Kind::Text.convert(value) {
-            Ok(Val::Text(text)) => Ok(text),
-            _ => {
-                let message = "a text is needed here";
-                let help = "write it in quotes";
-                Err(self.cursor.fault("syntax", message, help, start))
-            }
+        if let Ok(Val::Text(text)) = Kind::Text.convert(value) {
+            return Ok(text);
         }
+        let message = "a text is needed here";
+        let help = "write it in quotes";
+        Err(self.cursor.fault("syntax", message, help, start))
     }
 }

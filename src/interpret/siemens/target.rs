@@ -182,7 +182,7 @@ impl Control<'_> {
         if target
             .machine
             .iter()
-            .any(|place| !(place.abs() <= POSITION_MAX_MM))
+            .any(|place| place.is_nan() || place.abs() > POSITION_MAX_MM)
         {
             let span = run.whole();
             run.report
@@ -195,12 +195,12 @@ impl Control<'_> {
     /// Program coordinates to machine coordinates, for the axes that move.
     fn map_target(&self, state: &Siemens, target: &mut Target, run: &mut Run<'_, '_>) {
         let place = state.machine_place(&target.program);
-        for axis in 0..AXES {
+        for (axis, place) in place.into_iter().enumerate() {
             target.machine[axis] = self.position.at[axis];
             if !target.named.iter().any(|by| state.frame.depends(axis, by)) {
                 continue;
             }
-            target.machine[axis] = place[axis];
+            target.machine[axis] = place;
             let mixed = (0..AXES).any(|by| {
                 by != axis && state.frame.depends(axis, by) && self.position.unknown.contains(by)
             });
@@ -235,9 +235,9 @@ impl Control<'_> {
             }
         }
         let place = state.machine_place(&target.program);
-        for axis in 0..AXES {
+        for (axis, place) in place.into_iter().enumerate() {
             if target.named.iter().any(|by| state.frame.depends(axis, by)) {
-                target.machine[axis] = place[axis];
+                target.machine[axis] = place;
             }
         }
         target
