@@ -143,7 +143,7 @@ fn b_parse(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn c_interpret(bencher: Bencher<'_, '_>) {
     let machine = machine("vmc");
-    let blocks: Vec<(&[u8], Block)> = lines(program().as_bytes())
+    let mut blocks: Vec<(&[u8], Block)> = lines(program().as_bytes())
         .map(|text| {
             let mut block = Block::default();
             scan_line(text, false, &mut block);
@@ -154,7 +154,7 @@ fn c_interpret(bencher: Bencher<'_, '_>) {
     bencher.counter(bytes()).bench_local(|| {
         let mut interpreter = Interpreter::new(&machine, &Options::default().reading);
         let mut diagnostics = Diagnostics::default();
-        for ((text, block), number) in blocks.iter().zip(1..) {
+        for ((text, block), number) in blocks.iter_mut().zip(1..) {
             steps.clear();
             interpreter.execute(number, text, block, &mut steps, &mut diagnostics);
             black_box(&steps);

@@ -8,6 +8,7 @@ mod random;
 mod reader;
 mod rewriting;
 mod rows;
+mod whole;
 
 use gwatt::diagnostic::Diagnostic;
 use gwatt::machine::Machine;

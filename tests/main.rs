@@ -9,5 +9,6 @@ mod power;
 mod rig;
 mod limit;
 mod machine;
+mod printers;
 mod cli;
 mod readme;

@@ -7,13 +7,30 @@ use crate::rig::{
 use gwatt::interpret::Move;
 use gwatt::machine::{Axis, AxisKind, AxisSet, Converter, Load, Machine, RapidPath};
 use gwatt::plan::{Caps, Overrides, plan, speed_bound};
-use gwatt::power::{Demand, PowerModel, Want};
+use gwatt::power::{Assessment, Assessor, Certificate, Demand, PowerModel, Want};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn demand(machine: &Machine, mv: &Move) -> Demand {
     let plan = plan(machine, mv, Overrides::default());
     PowerModel::new(machine).demand(mv, &plan, Want::ALL)
+}
+
+/// Judges moves one behind the other.
+fn judged(
+    machine: &Machine,
+    moves: &[Move],
+    certificate: Option<Certificate>,
+    want: Want,
+) -> Vec<Assessment> {
+    let mut assessor = Assessor::new(machine, certificate, want);
+    let mut found = Vec::new();
+    let mut keep = |_: &Move, assessment: &Assessment, _: &[u8]| found.push(*assessment);
+    for mv in moves {
+        assessor.push(mv, b"", &mut keep);
+    }
+    assessor.finish(&mut keep);
+    found
 }
 
 fn close(a: f64, b: f64) {
@@ -168,7 +185,7 @@ fn the_converter_closest_to_its_limit_is_reported() {
     });
     machine.limits.margin = 0.1;
     machine.loads.push(Load {
-        on: (b'M', 8.0),
+        on: vec![(b'M', 8.0)],
         off: vec![(b'M', 9.0)],
         power_w: 30.0,
         converter: 1,
@@ -343,30 +360,42 @@ proptest! {
     fn wanting_less_changes_no_peak_of_interest(
         machine in any_machine(), delta in any_delta(), feed in any_feed(),
         shape in any_arc(), floors in [0.0..2.0_f64, 0.0..2.0_f64],
+        certificate in prop_oneof![Just(None), Just(Some(Certificate::Robust))],
     ) {
         let (plane, radius, angles, lift, arc_feed) = shape;
-        let model = PowerModel::new(&machine);
-        for mv in [
+        let moves = [
             straight(&machine, &delta, feed),
             arc(&machine, plane, radius, angles, lift, arc_feed),
-        ] {
-            let plan = plan(&machine, &mv, Overrides::default());
-            let all = model.demand(&mv, &plan, Want::ALL);
-            let peaks = model.demand(&mv, &plan, Want::PEAKS);
-            prop_assert!((peaks.peak_w - all.peak_w).abs() <= 1e-12 * all.peak_w);
-            prop_assert!((peaks.regen_w - all.regen_w).abs() <= 1e-12 * all.peak_w);
-            let want = Want {
-                energy: false,
-                floor_w: floors[0] * all.peak_w,
-                regen_floor_w: floors[1] * all.regen_w,
-            };
-            let pruned = model.demand(&mv, &plan, want);
+            straight(&machine, &delta.map(|delta| -0.5 * delta), 2.0 * feed),
+        ];
+        let all = judged(&machine, &moves, certificate, Want::ALL);
+        let peaks = judged(&machine, &moves, certificate, Want::PEAKS);
+        let largest = |value: fn(&Demand) -> f64| {
+            all.iter().map(|found| value(&found.demand)).fold(0.0, f64::max)
+        };
+        let scale = largest(|demand| demand.peak_w);
+        let want = Want {
+            energy: false,
+            floor_w: floors[0] * scale,
+            regen_floor_w: floors[1] * largest(|demand| demand.regen_w),
+        };
+        let pruned = judged(&machine, &moves, certificate, want);
+        prop_assert_eq!([all.len(), peaks.len(), pruned.len()], [moves.len(); 3]);
+        for (((all, peaks), pruned), mv) in all.iter().zip(&peaks).zip(&pruned).zip(&moves) {
+            let plan = plan(&machine, mv, Overrides::default());
+            for found in [all, peaks, pruned] {
+                prop_assert_eq!(found.duration_s, plan.duration_s);
+                prop_assert_eq!(found.top_speed_mm_s, plan.top_speed_mm_s);
+                prop_assert_eq!(found.speed_mm_s, plan.speed_limit_mm_s);
+            }
+            prop_assert!((peaks.demand.peak_w - all.demand.peak_w).abs() <= 1e-12 * scale);
+            prop_assert!((peaks.demand.regen_w - all.demand.regen_w).abs() <= 1e-12 * scale);
             for (found, exact, floor) in [
-                (pruned.peak_w, all.peak_w, want.floor_w),
-                (pruned.regen_w, all.regen_w, want.regen_floor_w),
+                (pruned.demand.peak_w, all.demand.peak_w, want.floor_w),
+                (pruned.demand.regen_w, all.demand.regen_w, want.regen_floor_w),
             ] {
                 prop_assert!(found >= exact * (1.0 - 1e-6) || exact <= floor);
-                prop_assert!(found <= (exact * (1.0 + 1e-6)).max(floor) + 1e-9 * all.peak_w);
+                prop_assert!(found <= (exact * (1.0 + 1e-6)).max(floor) + 1e-9 * scale);
             }
         }
     }

@@ -14,6 +14,8 @@ pub(crate) fn axis() -> Axis {
     Axis {
         kind: AxisKind::Linear,
         rapid_mm_s: 500.0,
+        home_mm_s: f64::INFINITY,
+        home_mm: None,
         accel_mm_s2: 5000.0,
         jerk_mm_s3: 0.0,
         mass_kg: 100.0,
@@ -74,6 +76,7 @@ fn controller() -> Controller {
         name: "rig".into(),
         description: String::new(),
         language: Language {
+            name: "rig".into(),
             family: Family::Iso,
             dwell: Vec::new(),
             metric: true,
@@ -87,11 +90,13 @@ fn controller() -> Controller {
             ignored_g: Vec::new(),
             ignored_m: Vec::new(),
             block_delete: true,
+            printer: gwatt::machine::Printer::default(),
         },
         planner: Planner {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
+            dwell_stops: false,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,

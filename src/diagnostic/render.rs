@@ -20,6 +20,7 @@ impl Diagnostic {
             Severity::Warning => Level::WARNING,
             Severity::Note => Level::NOTE,
         };
+        let file = self.file.as_deref().unwrap_or(file);
         let file = excerpt(file.as_bytes(), usize::MAX);
         let message = excerpt(self.message.as_bytes(), usize::MAX);
         let help = self.help.as_deref();

@@ -22,7 +22,11 @@ pub(super) enum ArcFault {
     /// The radius is zero.
     NoRadius,
     /// Radii at start and end, mm.
-    RadiiDiffer { start_mm: f64, end_mm: f64 },
+    RadiiDiffer {
+        start_mm: f64,
+        end_mm: f64,
+        center: [f64; 2],
+    },
     /// R, and half the distance from start to end, mm.
     RadiusTooSmall { radius_mm: f64, half_chord_mm: f64 },
     /// R with end = start: any circle through that point would do.
@@ -54,7 +58,11 @@ pub(super) fn from_center(ends: &Ends, center: [f64; 2]) -> Result<Arc, ArcFault
     let allowed =
         RADIUS_TOLERANCE_MM[usize::from(ends.inch)].max(RADIUS_TOLERANCE * start_mm.max(end_mm));
     if difference > RADIUS_DIFFERENCE_MAX_MM || difference > allowed {
-        return Err(ArcFault::RadiiDiffer { start_mm, end_mm });
+        return Err(ArcFault::RadiiDiffer {
+            start_mm,
+            end_mm,
+            center,
+        });
     }
     Ok(arc(ends, center, start_mm.min(end_mm), from, to))
 }

@@ -4,7 +4,7 @@ use super::arc::{self, ArcFault, Ends};
 use super::code::Motion;
 use super::execute::{Control, Run};
 use super::moves::{Arc, MoveKind};
-use crate::machine::{ALL_AXES, AxisKind};
+use crate::machine::{ALL_AXES, AxisKind, Family};
 use crate::source::Span;
 use crate::units::MM_PER_INCH;
 
@@ -23,7 +23,11 @@ impl Control<'_> {
         };
         let [first, second, normal] = self.modal.plane;
         let touched = self.position.unknown;
-        if !unknown.is_empty() || touched.contains(first) || touched.contains(second) {
+        let printer = self.machine.controller.language.family == Family::Marlin;
+        if printer && (touched.contains(first) || touched.contains(second)) {
+            return self.arc_from_unknown(run, &end, unknown);
+        }
+        if !printer && !unknown.is_empty() || touched.contains(first) || touched.contains(second) {
             run.report
                 .error(
                     "arc-from-unknown",
@@ -74,7 +78,15 @@ impl Control<'_> {
             inch: self.modal.mm_per_unit == MM_PER_INCH,
         };
         match self.arc_geometry(run, &ends) {
-            Some(Ok(arc)) => self.go(run, MoveKind::Arc, &end, unknown, Some(arc)),
+            Some(Ok(arc)) => {
+                if self.printer.adjusts {
+                    self.scale_extrusion(&mut end, unknown);
+                }
+                self.go(run, MoveKind::Arc, &end, unknown, Some(arc));
+            }
+            Some(Err(ArcFault::RadiiDiffer { center, .. })) if printer => {
+                self.loose_arc(run, &ends, center, end);
+            }
             Some(Err(fault)) => report_fault(fault, run, whole),
             None => {}
         }
@@ -135,7 +147,9 @@ pub(super) fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {
             "the arc has no radius: start or end is its centre".to_owned(),
             "check I, J and K",
         ),
-        ArcFault::RadiiDiffer { start_mm, end_mm } => (
+        ArcFault::RadiiDiffer {
+            start_mm, end_mm, ..
+        } => (
             "arc-radius",
             format!(
                 "the arc's end is not on its circle: radius {start_mm:.4} mm at the start, {end_mm:.4} mm at the end"

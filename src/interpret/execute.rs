@@ -9,6 +9,7 @@ use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::parameters::{LOCALS, Parameters};
 use super::position::{Position, Reading};
+use super::printer;
 use super::report::{Diagnostics, Report};
 use super::siemens::{Siemens, is_beyond_words};
 use super::statement::Unread;
@@ -34,6 +35,7 @@ pub(super) struct Control<'m> {
     pub(super) knobs: KnobState,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
+    pub(super) printer: printer::State,
     block_delete: bool,
     begun: bool,
     ended: bool,
@@ -86,6 +88,7 @@ impl<'m> Interpreter<'m> {
             knobs: KnobState::new(machine),
             loads: 0,
             loads_off: 0,
+            printer: printer::State::new(machine),
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
@@ -217,6 +220,9 @@ impl<'m> Interpreter<'m> {
         if self.control.passes_over(block, &mut report) {
             return Facts::default();
         }
+        if printer::is_command(self.control.machine, block) {
+            return self.command_line(block, steps, report);
+        }
         let mut beyond = !block.issues.is_empty();
         let mut acts = false;
         if let Some(siemens) = &mut self.control.siemens {
@@ -251,6 +257,26 @@ impl<'m> Interpreter<'m> {
             self.control.transfer = None;
         }
         run.facts.transfers = self.control.transfer.is_some();
+        run.facts
+    }
+
+    /// A printer's command.
+    fn command_line(
+        &mut self,
+        block: &Block,
+        steps: &mut Vec<Step>,
+        report: Report<'_, '_>,
+    ) -> Facts {
+        let mut run = Run {
+            line: report.line,
+            block,
+            words: &mut self.words,
+            facts: Facts::default(),
+            steps,
+            report,
+        };
+        self.control.begun = true;
+        self.control.command_line(&mut run);
         run.facts
     }
 }
@@ -313,6 +339,18 @@ impl Control<'_> {
         if siemens.is_some() {
             return self.siemens_block(run);
         }
+        if self.machine.controller.language.family == Family::Marlin
+            && run.report.diagnostics.errors == errors
+            && !run.words.is_alone()
+        {
+            self.command_line(run);
+            return;
+        }
+        self.general(run, errors);
+    }
+
+    /// A block of any words, which are filled in; `errors` from before that.
+    pub(super) fn general(&mut self, run: &mut Run<'_, '_>, errors: u64) {
         if self.macro_call(run) {
             return;
         }

@@ -10,9 +10,9 @@ pub struct KnobState {
     pub feed_accel_mm_s2: AxisValues,
     /// Acceleration limits of rapids, mm/s².
     pub rapid_accel_mm_s2: AxisValues,
-    /// Limits along the path of moves that extrude and of others (Marlin's
-    /// M204 P and T); infinite without one.
-    pub path_accel_mm_s2: [f64; 2],
+    /// Limits along the path of moves that extrude, of others, and of those
+    /// that M204's P and T spare (Marlin's M204 P, T and R); infinite without one.
+    pub path_accel_mm_s2: [f64; 3],
     /// Share of the rapid speed.
     pub rapid_factor: f64,
 }
@@ -26,7 +26,7 @@ impl KnobState {
         Self {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
-            path_accel_mm_s2: [f64::INFINITY; 2],
+            path_accel_mm_s2: [f64::INFINITY; 3],
             rapid_factor: 1.0,
         }
     }
@@ -46,7 +46,8 @@ impl KnobState {
         match letter {
             b'P' => self.path_accel_mm_s2[0] = accel,
             b'T' => self.path_accel_mm_s2[1] = accel,
-            _ => self.path_accel_mm_s2 = [accel; 2],
+            b'R' => self.path_accel_mm_s2[2] = accel,
+            _ => self.path_accel_mm_s2[..2].fill(accel),
         }
     }
 

@@ -44,7 +44,7 @@ impl Control<'_> {
             self.machine
                 .loads
                 .iter()
-                .any(|load| load.on == word || load.off.contains(&word))
+                .any(|load| load.on.contains(&word) || load.off.contains(&word))
         };
         match number {
             0 | 10 | 600 => Some(ActionKind::Stop),
@@ -79,7 +79,7 @@ impl Control<'_> {
             if matches!(number, 820 | 830)
                 && self.machine.controller.language.family == Family::Marlin
             {
-                self.modal.extruder_absolute = number == 820;
+                self.extruder_mode(Some(number == 820));
                 continue;
             }
             if self.subprogram_word(number, span, run) {
@@ -120,7 +120,7 @@ impl Control<'_> {
     /// since controllers differ in when they do.
     pub(super) fn switch_loads(&mut self, value: f64) {
         for (index, load) in self.machine.loads.iter().enumerate().take(32) {
-            if load.on == (b'M', value) {
+            if load.on.contains(&(b'M', value)) {
                 self.loads |= 1 << index;
                 self.loads_off &= !(1 << index);
             }

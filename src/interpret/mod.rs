@@ -19,6 +19,7 @@ mod motion;
 mod moves;
 mod parameters;
 mod position;
+mod printer;
 mod reference;
 mod report;
 mod settings;

@@ -3,6 +3,7 @@
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
 use super::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use super::printer::Course;
 use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
 use crate::units::SECONDS_PER_MINUTE;
@@ -12,7 +13,7 @@ const STANDSTILL_MM: f64 = 1e-9;
 /// Positions beyond this are refused (mm, degrees): no machine is that large.
 pub(super) const POSITION_MAX_MM: f64 = 1e9;
 /// Index of the extruder axis.
-const EXTRUDER: usize = 9;
+pub(super) const EXTRUDER: usize = 9;
 
 impl Control<'_> {
     /// The block's motion, with what else uses axis words.
@@ -142,6 +143,9 @@ impl Control<'_> {
         let mut end = self.position.at;
         let machine_coordinates = run.facts.machine_coordinates;
         if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
+            if self.printer.adjusts {
+                self.scale_extrusion(&mut end, unknown);
+            }
             self.go(run, kind, &end, unknown, None);
         }
     }
@@ -154,6 +158,20 @@ impl Control<'_> {
         end: &AxisValues,
         unknown_start: AxisSet,
         arc: Option<Arc>,
+    ) {
+        self.go_at(run, kind, end, unknown_start, arc, None);
+    }
+
+    /// As [`Self::go`]; at `feed_mm_s` instead of F, where it is given.
+    #[inline]
+    pub(super) fn go_at(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        end: &AxisValues,
+        unknown_start: AxisSet,
+        arc: Option<Arc>,
+        given_mm_s: Option<f64>,
     ) {
         let start = &self.position.at;
         let mut moving = AxisSet::default();
@@ -169,13 +187,35 @@ impl Control<'_> {
         }
         let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
         let mut feed_mm_s = f64::INFINITY;
-        if kind != MoveKind::Rapid {
+        if let Some(given_mm_s) = given_mm_s {
+            feed_mm_s = given_mm_s;
+        } else if kind != MoveKind::Rapid {
             let Some(speed_mm_s) = self.feed_speed(run, length_mm, linear) else {
                 return;
             };
             feed_mm_s = speed_mm_s;
         }
         let extrudes = moving.contains(EXTRUDER);
+        let mut slot = usize::from(!extrudes);
+        if moving.0 & !self.machine.controller.language.printer.path_accel_spares.0 == 0 {
+            slot = 2;
+        }
+        let mut rapid_factor = self.knobs.rapid_factor;
+        if self.printer.adjusts {
+            let course = Course {
+                end,
+                commanded: AxisSet(moving.0 | unknown_start.0),
+                length_mm: if arc.is_none() && unknown_start.is_empty() {
+                    length_mm
+                } else {
+                    0.0
+                },
+            };
+            if given_mm_s.is_none() {
+                feed_mm_s = self.printer_feed(run, &course, feed_mm_s);
+            }
+            rapid_factor = self.printer_speed_factor(&course);
+        }
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),
@@ -191,8 +231,8 @@ impl Control<'_> {
             feed_mm_s,
             feed_mode: self.modal.feed_mode,
             accel_mm_s2: *self.knobs.accel(kind),
-            path_accel_mm_s2: self.knobs.path_accel_mm_s2[usize::from(!extrudes)],
-            rapid_factor: self.knobs.rapid_factor,
+            path_accel_mm_s2: self.knobs.path_accel_mm_s2[slot],
+            rapid_factor,
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,

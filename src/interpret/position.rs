@@ -85,6 +85,29 @@ impl Position {
         self.stored[axis] = self.offset[axis];
     }
 
+    /// The axis moved by `by_mm` without a change of its program coordinate.
+    pub(super) fn shift(&mut self, axis: usize, by_mm: f64) {
+        self.offset[axis] += by_mm;
+    }
+
+    /// The axis stands at machine coordinate `at_mm`, without an offset.
+    pub(super) fn home(&mut self, axis: usize, at_mm: f64) {
+        self.at[axis] = at_mm;
+        self.offset[axis] = 0.0;
+        self.stored[axis] = 0.0;
+        self.unknown.0 &= !(1 << axis);
+    }
+
+    /// The offsets of G92 in force.
+    pub(super) fn offsets(&self) -> &AxisValues {
+        &self.offset
+    }
+
+    /// Puts offsets back.
+    pub(super) fn set_offsets(&mut self, offsets: AxisValues) {
+        self.offset = offsets;
+    }
+
     /// G92.1 (`forget`) and G92.2.
     pub(super) fn clear_offset(&mut self, forget: bool) {
         self.offset = [0.0; AXES];

@@ -69,7 +69,10 @@ impl Control<'_> {
                     .help("describe it in the machine file, or take it out");
                 continue;
             };
-            if self.position.unknown.contains(axis) {
+            if self.machine.controller.language.family == Family::Marlin {
+                // Only differences of positions matter to a printer.
+                self.position.unknown.0 &= !(1 << axis);
+            } else if self.position.unknown.contains(axis) {
                 run.report
                     .error(
                         "offset-from-unknown",

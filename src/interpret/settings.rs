@@ -81,7 +81,7 @@ impl Control<'_> {
                 GCode::MirrorX => self.mirror_x(span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
-                    self.modal.extruder_absolute = absolute;
+                    self.extruder_mode(None);
                 }
                 GCode::ArcAbsolute(absolute) => self.modal.arc_absolute = absolute,
                 GCode::MachineCoordinates => run.facts.machine_coordinates = true,

@@ -101,7 +101,10 @@ impl Words {
                     }
                 }
                 b'A'..=b'Z' => self.add(index, *word, report),
-                b'*' if block.number.is_some() => self.checksum = true,
+                b'*' if block.number.is_some() => {
+                    self.checksum = true;
+                    super::printer::verify_checksum(*word, controller, report);
+                }
                 _ => {
                     report.error(
                         "unknown-word",
@@ -209,6 +212,11 @@ impl Words {
             && self.groups & !MOTION_GROUP == 0
             && self.m.is_empty()
             && self.knobs.is_empty()
+    }
+
+    /// True for a block without any G or M word, as `X10 S1`.
+    pub(super) fn is_alone(&self) -> bool {
+        self.g.is_empty() && self.m.is_empty() && self.knobs.is_empty()
     }
 
     /// Whether the letter stands in the block.

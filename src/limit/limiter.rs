@@ -26,16 +26,24 @@ pub struct Outcome {
     pub obstacle: Option<Box<Obstacle>>,
 }
 
-/// A move that may still be changed.
+/// A move that waits for its decision, and what may be changed about its block.
+#[derive(Debug, Clone)]
+pub struct Waiting<'a> {
+    /// The move.
+    pub mv: &'a Move,
+    /// What may be changed.
+    pub permit: Permit,
+}
+
+/// What is known of a move that may still be changed.
 #[derive(Debug, Clone)]
 pub(super) struct Slot {
-    pub(super) mv: Move,
-    /// The move with its change.
-    pub(super) changed: Move,
     pub(super) assessment: Assessment,
-    pub(super) permit: Permit,
-    pub(super) change: Change,
-    pub(super) obstacle: Option<Obstacle>,
+    /// Switched loads during the move.
+    pub(super) loads: u32,
+    /// The move with its change, where it has one.
+    pub(super) changed: Option<Box<Move>>,
+    pub(super) outcome: Outcome,
     /// The controller may run from this move into the next one that moves.
     pub(super) joined: bool,
     /// It has no length and is passed on the way to the next.
@@ -59,71 +67,98 @@ impl<'m> Limiter<'m> {
         }
     }
 
-    /// Takes the next move; `permit` tells what may be changed about its block
-    /// and is asked only where that matters. Outcomes are handed on in the
-    /// order of the moves.
-    pub fn push(
+    /// Takes the next move. Outcomes are handed on in the order of the moves;
+    /// until then the caller keeps them, and `find` gives the one at a place,
+    /// counted from the first that waits. It is asked only where that matters.
+    pub fn push<'a>(
         &mut self,
         mv: &Move,
         assessment: &Assessment,
-        permit: impl Fn() -> Permit,
+        find: &impl Fn(usize) -> Option<Waiting<'a>>,
         sink: &mut impl FnMut(Outcome),
     ) {
         let joined = assessment.joined;
         if !assessment.blended {
-            let outcome = self.alone(mv, assessment, &permit);
+            let outcome = self.alone(mv, assessment, find);
             if joined && !self.slots.is_empty() {
-                let mut slot = Slot::new(mv, assessment, permit());
+                let mut slot = Slot::new(mv, assessment);
                 slot.rider = true;
-                slot.change = outcome.change.map_or(Change::NONE, |change| *change);
-                slot.obstacle = outcome.obstacle.map(|obstacle| *obstacle);
+                slot.outcome = outcome;
                 self.slots.push_back(slot);
                 return;
             }
-            self.settle(sink);
+            self.settle(find, sink);
             sink(outcome);
             return;
         }
         let previous = self.last_moving();
-        self.slots.push_back(Slot::new(mv, assessment, permit()));
+        self.slots.push_back(Slot::new(mv, assessment));
         let mut needed = self.slots.len() - 1;
         if let Some(center) = previous {
             self.slots[center].joined = joined;
-            window::settle(&self.solver, &mut self.slots, center);
+            window::settle(&self.solver, &mut self.slots, find, center);
             if joined {
                 needed = center;
             }
         }
-        for slot in self.slots.drain(..needed) {
-            sink(slot.outcome());
-        }
+        self.hand_on(needed, sink);
     }
 
     /// Hands on what was waiting, at the end of the program.
-    pub fn finish(&mut self, sink: &mut impl FnMut(Outcome)) {
-        self.settle(sink);
+    pub fn finish<'a>(
+        &mut self,
+        find: &impl Fn(usize) -> Option<Waiting<'a>>,
+        sink: &mut impl FnMut(Outcome),
+    ) {
+        self.settle(find, sink);
     }
 
     /// Decides what is waiting; nothing that follows is joined to it.
-    fn settle(&mut self, sink: &mut impl FnMut(Outcome)) {
+    #[inline]
+    fn settle<'a>(
+        &mut self,
+        find: &impl Fn(usize) -> Option<Waiting<'a>>,
+        sink: &mut impl FnMut(Outcome),
+    ) {
+        if self.slots.is_empty() {
+            return;
+        }
         if let Some(center) = self.last_moving() {
             self.slots[center].joined = false;
-            window::settle(&self.solver, &mut self.slots, center);
+            window::settle(&self.solver, &mut self.slots, find, center);
         }
-        for slot in self.slots.drain(..) {
-            sink(slot.outcome());
+        self.hand_on(self.slots.len(), sink);
+    }
+
+    /// Hands on the first `count` that wait.
+    fn hand_on(&mut self, count: usize, sink: &mut impl FnMut(Outcome)) {
+        for _ in 0..count {
+            let Some(slot) = self.slots.pop_front() else {
+                break;
+            };
+            sink(slot.outcome);
         }
     }
 
+    /// The last move with a length.
     fn last_moving(&self) -> Option<usize> {
         self.slots.iter().rposition(|slot| !slot.rider)
     }
 
-    fn alone(&self, mv: &Move, assessment: &Assessment, permit: impl Fn() -> Permit) -> Outcome {
+    #[inline]
+    fn alone<'a>(
+        &self,
+        mv: &Move,
+        assessment: &Assessment,
+        find: &impl Fn(usize) -> Option<Waiting<'a>>,
+    ) -> Outcome {
         if self.solver.model.fits(&assessment.demand) {
             return Outcome::default();
         }
-        match self.solver.solve(mv, assessment, &permit()) {
+        let Some(Waiting { permit, .. }) = find(self.slots.len()) else {
+            return Outcome::default();
+        };
+        match self.solver.solve(mv, assessment, &permit) {
             Ok(change) => Outcome {
                 change: Some(Box::new(change)),
                 obstacle: None,
@@ -137,23 +172,14 @@ impl<'m> Limiter<'m> {
 }
 
 impl Slot {
-    fn new(mv: &Move, assessment: &Assessment, permit: Permit) -> Self {
+    fn new(mv: &Move, assessment: &Assessment) -> Self {
         Self {
-            mv: mv.clone(),
-            changed: mv.clone(),
             assessment: *assessment,
-            permit,
-            change: Change::NONE,
-            obstacle: None,
+            loads: mv.loads,
+            changed: None,
+            outcome: Outcome::default(),
             joined: false,
             rider: false,
-        }
-    }
-
-    fn outcome(self) -> Outcome {
-        Outcome {
-            change: (!self.change.is_none()).then(|| Box::new(self.change)),
-            obstacle: self.obstacle.map(Box::new),
         }
     }
 }

@@ -16,6 +16,6 @@ mod window;
 
 pub use change::{Change, Permit};
 pub use lever::Obstacle;
-pub use limiter::{Limiter, Outcome};
+pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Law, LimitOptions, Strategy};
 pub use solver::Solver;

@@ -8,54 +8,89 @@ use std::collections::VecDeque;
 
 use arrayvec::ArrayVec;
 
-use super::change::{Change, feed_unit, round_feed_down};
+use super::change::{Change, Permit, feed_unit, round_feed_down};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
-use super::limiter::Slot;
+use super::limiter::{Slot, Waiting};
 use super::options::{Law, Strategy};
 use super::root::largest;
 use super::solver::{Case, Solver};
+use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
 use crate::units::SECONDS_PER_MINUTE;
 
-/// Lowers the window around `center` if it does not fit.
-pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: usize) {
-    let range = range(slots, center);
+/// A move of a window.
+struct Member<'a> {
+    /// Of its slot.
+    index: usize,
+    mv: &'a Move,
+    permit: Permit,
+}
+
+impl Member<'_> {
+    /// The move with its change.
+    fn changed<'s>(&'s self, slots: &'s VecDeque<Slot>) -> &'s Move {
+        slots[self.index].changed.as_deref().unwrap_or(self.mv)
+    }
+
+    /// The move with its change, for the solver.
+    fn case<'s>(&'s self, slots: &'s VecDeque<Slot>) -> Case<'s> {
+        Case {
+            mv: self.mv,
+            assessment: &slots[self.index].assessment,
+            permit: &self.permit,
+        }
+    }
+}
+
+/// Lowers the window around `center` if it does not fit; `find` gives the move
+/// of a slot.
+pub(super) fn settle<'a>(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    find: &impl Fn(usize) -> Option<Waiting<'a>>,
+    center: usize,
+) {
+    let loads = slots[center].loads;
     // Untouched, the window is the one that the assessment was made for.
-    let untouched = |index: &usize| {
-        slots[*index].change.is_none() && slots[*index].mv.loads == slots[center].mv.loads
-    };
-    if range.iter().all(untouched) && solver.model.fits(&slots[center].assessment.demand) {
+    let untouched = |slot: &Slot| slot.outcome.change.is_none() && slot.loads == loads;
+    if solver.model.fits(&slots[center].assessment.demand) && slots.iter().all(untouched) {
         return;
     }
-    if load(solver, slots, &range) <= 1.0 + 1e-9 {
+    let window: Window<'a> = indices(slots, center)
+        .into_iter()
+        .filter_map(|index| {
+            let Waiting { mv, permit } = find(index)?;
+            Some(Member { index, mv, permit })
+        })
+        .collect();
+    lower(solver, slots, &window, center);
+}
+
+/// Lowers a window if it does not fit.
+fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, center: usize) {
+    if load(solver, slots, window) <= 1.0 + 1e-9 {
         return;
     }
-    let found: Vec<Levers> = range
+    let found: Vec<Levers> = window
         .iter()
-        .copied()
-        .map(|index| slot_levers(solver, &slots[index]))
+        .map(|member| levers(solver.machine, solver.how, member.mv, &member.permit))
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());
     let by_rule = solver.how.strategy == Strategy::Preset || solver.how.law == Law::Patent;
     let done = match solver.how.strategy {
-        _ if by_rule => by_law(solver, slots, &range, &found),
-        Strategy::Accel => by_accel() && lower_accel(solver, slots, &range, &found),
+        _ if by_rule => by_law(solver, slots, window, &found),
+        Strategy::Accel => by_accel() && lower_accel(solver, slots, window, &found),
         Strategy::Optimal if by_accel() => {
-            faster_of_both(solver, slots, &range, &found, by_speed())
+            faster_of_both(solver, slots, window, &found, by_speed())
         }
-        _ => by_speed() && lower_speed(solver, slots, &range, &found),
+        _ => by_speed() && lower_speed(solver, slots, window, &found),
     };
-    if !done {
-        let slot = &mut slots[center];
-        let case = Case {
-            mv: &slot.mv,
-            assessment: &slot.assessment,
-            permit: &slot.permit,
-        };
-        slot.obstacle = Some(obstacle(solver, case));
+    if !done && let Some(member) = window.iter().find(|member| member.index == center) {
+        let obstacle = obstacle(solver, member.case(slots));
+        slots[center].outcome.obstacle = Some(Box::new(obstacle));
     }
 }
 
@@ -63,16 +98,11 @@ pub(super) fn settle(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, center: us
 fn by_law(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &Window,
+    window: &Window<'_>,
     found: &[Levers],
 ) -> bool {
-    for (index, levers) in range.iter().zip(found) {
-        let slot = &mut slots[*index];
-        let case = Case {
-            mv: &slot.mv,
-            assessment: &slot.assessment,
-            permit: &slot.permit,
-        };
+    for (member, levers) in window.iter().zip(found) {
+        let case = member.case(slots);
         let change = match solver.how.strategy {
             Strategy::Preset => law::preset(solver, case, *levers),
             strategy => law::squared_ratio(solver, case, *levers, strategy),
@@ -80,32 +110,44 @@ fn by_law(
         // A neighbour for which there is none may fit as it is.
         if let Ok(change) = change {
             if let Err(obstacle) = solver.respect_floor(case, &change) {
-                slot.obstacle = Some(obstacle);
+                slots[member.index].outcome.obstacle = Some(Box::new(obstacle));
                 return false;
             }
-            slot.change = change;
-            slot.changed = change.apply(solver.machine, &slot.mv, &slot.permit);
+            put(solver, slots, member, change);
         }
     }
-    load(solver, slots, range) <= 1.0 + 1e-9
+    load(solver, slots, window) <= 1.0 + 1e-9
 }
 
-/// Indices of a move and of the neighbours that it is joined to.
-type Window = ArrayVec<usize, 3>;
+/// Changes a move.
+fn put(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, member: &Member<'_>, change: Change) {
+    let slot = &mut slots[member.index];
+    slot.changed = Some(Box::new(change.apply(
+        solver.machine,
+        member.mv,
+        &member.permit,
+    )));
+    slot.outcome.change = (!change.is_none()).then(|| Box::new(change));
+}
 
-/// The window around `center`, across moves of no length.
-fn range(slots: &VecDeque<Slot>, center: usize) -> Window {
-    let mut window = Window::new();
+/// What a move gets so far.
+fn change(slots: &VecDeque<Slot>, member: &Member<'_>) -> Change {
+    let change = slots[member.index].outcome.change.as_deref();
+    change.copied().unwrap_or(Change::NONE)
+}
+
+/// A move and the neighbours that it is joined to.
+type Window<'a> = ArrayVec<Member<'a>, 3>;
+
+/// Indices of the window around `center`, across moves of no length.
+fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
+    let mut window = ArrayVec::new();
     let before = slots.iter().take(center).rposition(|slot| !slot.rider);
     window.extend(before.filter(|before| slots[*before].joined));
     window.push(center);
     let behind = (center + 1..slots.len()).find(|index| !slots[*index].rider);
     window.extend(behind.filter(|_| slots[center].joined));
     window
-}
-
-fn slot_levers(solver: &Solver<'_>, slot: &Slot) -> Levers {
-    levers(solver.machine, solver.how, &slot.mv, &slot.permit)
 }
 
 /// Blended moves are lowered by F, also a rapid written as a feed.
@@ -130,38 +172,31 @@ fn envelope<'a>(
     (bound, accel)
 }
 
-fn own_bound(solver: &Solver<'_>, slot: &Slot) -> SpeedBound {
-    blended_bound(solver.machine, &slot.changed, solver.largest)
+fn own_bound(solver: &Solver<'_>, slots: &VecDeque<Slot>, member: &Member<'_>) -> SpeedBound {
+    blended_bound(solver.machine, member.changed(slots), solver.largest)
 }
 
 /// Load ratio of the window; of several sets of switched loads the largest.
-fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &Window) -> f64 {
-    let parts = range.iter().copied().map(|index| {
+fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64 {
+    let parts = window.iter().map(|member| {
         (
-            own_bound(solver, &slots[index]),
-            &slots[index].changed.accel_mm_s2,
+            own_bound(solver, slots, member),
+            &member.changed(slots).accel_mm_s2,
         )
     });
     let (bound, accel) = envelope(parts);
-    window_load(solver, slots, range, &bound, &accel)
+    window_load(solver, window, &bound, &accel)
 }
 
 fn window_load(
     solver: &Solver<'_>,
-    slots: &VecDeque<Slot>,
-    range: &Window,
+    window: &Window<'_>,
     bound: &SpeedBound,
     accel: &AxisValues,
 ) -> f64 {
-    range
+    window
         .iter()
-        .copied()
-        .map(|index| {
-            solver
-                .model
-                .robust(&slots[index].mv, bound, accel)
-                .load_ratio
-        })
+        .map(|member| solver.model.robust(member.mv, bound, accel).load_ratio)
         .fold(0.0, f64::max)
 }
 
@@ -169,18 +204,16 @@ fn window_load(
 fn lower_speed(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &Window,
+    window: &Window<'_>,
     found: &[Levers],
 ) -> bool {
-    let bounds: Vec<SpeedBound> = range
+    let bounds: Vec<SpeedBound> = window
         .iter()
-        .copied()
-        .map(|index| own_bound(solver, &slots[index]))
+        .map(|member| own_bound(solver, slots, member))
         .collect();
-    let accels: Vec<AxisValues> = range
+    let accels: Vec<AxisValues> = window
         .iter()
-        .copied()
-        .map(|index| slots[index].changed.accel_mm_s2)
+        .map(|member| member.changed(slots).accel_mm_s2)
         .collect();
     let adjustable: Vec<bool> = found
         .iter()
@@ -205,20 +238,20 @@ fn lower_speed(
             .iter()
             .zip(factors(cap))
             .map(|(bound, factor)| (scale(bound, factor), &accel));
-        window_load(solver, slots, range, &envelope(scaled).0, &accel)
+        window_load(solver, window, &envelope(scaled).0, &accel)
     };
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;
     };
-    for ((index, factor), levers) in range.iter().copied().zip(factors(cap)).zip(found) {
+    for ((member, factor), levers) in window.iter().zip(factors(cap)).zip(found) {
         if factor < 1.0
             && let Some(lever) = speed_lever(*levers)
-            && !lower_feed(solver, &mut slots[index], lever, factor)
+            && !lower_feed(solver, slots, member, lever, factor)
         {
             return false;
         }
     }
-    load(solver, slots, range) <= 1.0 + 1e-9
+    load(solver, slots, window) <= 1.0 + 1e-9
 }
 
 /// The share of its speed at which a move stays under the cap on every axis.
@@ -242,13 +275,20 @@ fn scale(bound: &SpeedBound, factor: f64) -> SpeedBound {
 }
 
 /// Sets the F of one move to a share of the speed that it has now.
-fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f64) -> bool {
-    let speed_mm_s = if slot.mv.unknown_start.is_empty() {
-        blended_speed(solver.machine, &slot.changed, solver.largest)
+fn lower_feed(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    member: &Member<'_>,
+    lever: SpeedLever,
+    factor: f64,
+) -> bool {
+    let changed = member.changed(slots);
+    let speed_mm_s = if changed.unknown_start.is_empty() {
+        blended_speed(solver.machine, changed, solver.largest)
     } else {
-        slot.changed.feed_mm_s.min(1e6) * solver.largest.feed
+        changed.feed_mm_s.min(1e6) * solver.largest.feed
     };
-    let unit = feed_unit(solver.machine, &slot.mv, &slot.permit);
+    let unit = feed_unit(solver.machine, member.mv, &member.permit);
     let feed =
         round_feed_down(speed_mm_s * factor / solver.largest.feed * SECONDS_PER_MINUTE / unit);
     if !(feed > 0.0 && feed.is_finite()) {
@@ -257,19 +297,13 @@ fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f
     let change = Change {
         feed: Some(feed),
         as_feed: lever == SpeedLever::AsFeed,
-        ..slot.change
+        ..change(slots, member)
     };
-    let case = Case {
-        mv: &slot.mv,
-        assessment: &slot.assessment,
-        permit: &slot.permit,
-    };
-    if let Err(obstacle) = solver.respect_floor(case, &change) {
-        slot.obstacle = Some(obstacle);
+    if let Err(obstacle) = solver.respect_floor(member.case(slots), &change) {
+        slots[member.index].outcome.obstacle = Some(Box::new(obstacle));
         return false;
     }
-    slot.changed = change.apply(solver.machine, &slot.mv, &slot.permit);
-    slot.change = change;
+    put(solver, slots, member, change);
     true
 }
 
@@ -277,20 +311,19 @@ fn lower_feed(solver: &Solver<'_>, slot: &mut Slot, lever: SpeedLever, factor: f
 fn lower_accel(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &Window,
+    window: &Window<'_>,
     found: &[Levers],
 ) -> bool {
-    let parts = range.iter().copied().map(|index| {
+    let parts = window.iter().map(|member| {
         (
-            own_bound(solver, &slots[index]),
-            &slots[index].changed.accel_mm_s2,
+            own_bound(solver, slots, member),
+            &member.changed(slots).accel_mm_s2,
         )
     });
     let (bound, top) = envelope(parts);
-    let accels: Vec<AxisValues> = range
+    let accels: Vec<AxisValues> = window
         .iter()
-        .copied()
-        .map(|index| slots[index].changed.accel_mm_s2)
+        .map(|member| member.changed(slots).accel_mm_s2)
         .collect();
     let lowered = |cap: f64| -> Vec<AxisValues> {
         accels
@@ -305,28 +338,37 @@ fn lower_accel(
     let load_at = |cap: f64| {
         let accels = lowered(cap);
         let (_, accel) = envelope(accels.iter().map(|accel| (SpeedBound::default(), accel)));
-        window_load(solver, slots, range, &bound, &accel)
+        window_load(solver, window, &bound, &accel)
     };
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;
     };
-    for ((index, accel), levers) in range.iter().copied().zip(lowered(cap)).zip(found) {
+    for ((member, accel), levers) in window.iter().zip(lowered(cap)).zip(found) {
         if let Some(knob) = levers.accel
-            && accel != slots[index].changed.accel_mm_s2
-            && !set_accel(solver, &mut slots[index], knob, &accel)
+            && accel != member.changed(slots).accel_mm_s2
+            && !set_accel(solver, slots, member, knob, &accel)
         {
             return false;
         }
     }
-    load(solver, slots, range) <= 1.0 + 1e-9
+    load(solver, slots, window) <= 1.0 + 1e-9
 }
 
-fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValues) -> bool {
-    let Some(values) = solver.knob_values(knob, accel, &slot.permit) else {
+fn set_accel(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    member: &Member<'_>,
+    knob: usize,
+    accel: &AxisValues,
+) -> bool {
+    let Some(values) = solver.knob_values(knob, accel, &member.permit) else {
         return false;
     };
-    slot.change.accel = Some((knob, values));
-    slot.changed = slot.change.apply(solver.machine, &slot.mv, &slot.permit);
+    let change = Change {
+        accel: Some((knob, values)),
+        ..change(slots, member)
+    };
+    put(solver, slots, member, change);
     true
 }
 
@@ -334,32 +376,33 @@ fn set_accel(solver: &Solver<'_>, slot: &mut Slot, knob: usize, accel: &AxisValu
 fn faster_of_both(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
-    range: &Window,
+    window: &Window<'_>,
     found: &[Levers],
     by_speed: bool,
 ) -> bool {
     let save = |slots: &VecDeque<Slot>| -> Vec<Slot> {
-        range.iter().map(|index| slots[*index].clone()).collect()
+        let saved = window.iter().map(|member| slots[member.index].clone());
+        saved.collect()
     };
     let restore = |slots: &mut VecDeque<Slot>, saved: Vec<Slot>| {
-        for (index, slot) in range.iter().zip(saved) {
-            slots[*index] = slot;
+        for (member, slot) in window.iter().zip(saved) {
+            slots[member.index] = slot;
         }
     };
     let before = save(slots);
-    let accel_done = lower_accel(solver, slots, range, found);
+    let accel_done = lower_accel(solver, slots, window, found);
     if !by_speed {
         return accel_done;
     }
     let accel_time = if accel_done {
-        time(solver, slots, range)
+        time(solver, slots, window)
     } else {
         f64::INFINITY
     };
     let by_accel = save(slots);
     restore(slots, before.clone());
-    let speed_done = lower_speed(solver, slots, range, found);
-    if speed_done && time(solver, slots, range) < accel_time {
+    let speed_done = lower_speed(solver, slots, window, found);
+    if speed_done && time(solver, slots, window) < accel_time {
         return true;
     }
     restore(slots, if accel_done { by_accel } else { before });
@@ -367,11 +410,10 @@ fn faster_of_both(
 }
 
 /// Time of the window's moves with a stop at each, s.
-fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, range: &Window) -> f64 {
-    range
+fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64 {
+    window
         .iter()
-        .copied()
-        .map(|index| plan(solver.machine, &slots[index].changed, solver.largest).duration_s)
+        .map(|member| plan(solver.machine, member.changed(slots), solver.largest).duration_s)
         .sum()
 }
 

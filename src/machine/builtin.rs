@@ -48,6 +48,8 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "isg",
     "siemens",
     "marlin",
+    "reprap",
+    "klipper",
 );
 
 /// All built-in machines, the default first.

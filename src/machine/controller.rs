@@ -2,6 +2,7 @@
 //! lower speed and acceleration. Profiles are data (TOML).
 
 use super::axis::{Axis, AxisKind};
+use super::printer::Printer;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +28,8 @@ pub struct Controller {
     reason = "each is a separate property of the control"
 )]
 pub struct Language {
+    /// Name of the controller profile that it is from.
+    pub name: String,
     /// The family of words.
     pub family: Family,
     /// The words that `G4` takes, with the seconds in one unit of each; if a
@@ -54,6 +57,8 @@ pub struct Language {
     pub ignored_m: Vec<u16>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
+    /// What printers differ in; of no account outside the Marlin family.
+    pub printer: Printer,
 }
 
 /// The family of words.
@@ -98,6 +103,9 @@ pub struct Planner {
     pub arc_rule: ArcRule,
     /// What happens at the ends of rapids in a mode that blends.
     pub rapid_joint: RapidJoint,
+    /// Whether a dwell of no time ends the move before it at rest, so that a
+    /// rapid may be written as a feed between two of them.
+    pub dwell_stops: bool,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

@@ -5,9 +5,11 @@ pub mod builtin;
 mod config;
 mod controller;
 mod model;
+mod printer;
 
 pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
 pub use builtin::builtin_controller;
 pub use config::{Loaded, controller_schema, schema};
 pub use controller::*;
 pub use model::*;
+pub use printer::*;

@@ -79,8 +79,8 @@ pub struct Spindle {
 /// A load that program words switch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// Word that switches it on: letter and number.
-    pub on: (u8, f64),
+    /// Words that switch it on: letter and number.
+    pub on: Vec<(u8, f64)>,
     /// Words that switch it off.
     pub off: Vec<(u8, f64)>,
     /// What it draws in W.

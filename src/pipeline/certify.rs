@@ -77,7 +77,7 @@ pub(super) struct Verdict<'m, 'r> {
     model: PowerModel,
     tally: Tally<'m, 'r>,
     /// What the original does, from the first move that is not judged.
-    expected: Vec<Expected>,
+    originals: Originals,
     /// How much of it the written program has done, and how much is judged.
     done: usize,
     judged: usize,
@@ -177,6 +177,34 @@ impl<'m, 'r> Certifier<'m, 'r> {
     }
 }
 
+/// What the original does: what is left of earlier pieces, and the last piece.
+#[derive(Debug, Default)]
+struct Originals {
+    left: Vec<Expected>,
+    piece: Vec<Expected>,
+}
+
+impl Originals {
+    /// Drops the first `judged`, takes the next piece, and tells how much of
+    /// earlier ones is left.
+    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
+        let old = judged.min(self.left.len());
+        let new = (judged - old).min(self.piece.len());
+        self.left.drain(..old);
+        self.left.extend(self.piece.drain(new..));
+        self.piece.clear();
+        std::mem::swap(&mut self.piece, next);
+        self.left.len()
+    }
+
+    fn get(&mut self, place: usize) -> Option<&mut Expected> {
+        match place.checked_sub(self.left.len()) {
+            Some(place) => self.piece.get_mut(place),
+            None => self.left.get_mut(place),
+        }
+    }
+}
+
 impl<'m, 'r> Verdict<'m, 'r> {
     pub(super) fn new(
         machine: &'m Machine,
@@ -186,7 +214,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         Self {
             model: PowerModel::new(machine),
             tally: Tally::new(machine, options, rows),
-            expected: Vec::new(),
+            originals: Originals::default(),
             done: 0,
             judged: 0,
             reasons: Reasons::default(),
@@ -204,8 +232,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 
     /// Whether the written program must still do something.
-    pub(super) fn expects(&self) -> bool {
-        self.done < self.expected.len()
+    pub(super) fn expects(&mut self) -> bool {
+        self.originals.get(self.done).is_some()
     }
 
     /// All that was expected must have been done.
@@ -234,19 +262,16 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// Forgets what is judged and takes more.
     pub(super) fn refill(&mut self, more: &mut Vec<Expected>) {
-        self.expected.drain(..self.judged.min(self.expected.len()));
-        self.done = self.expected.len();
+        self.done = self.originals.refill(self.judged, more);
         self.judged = 0;
-        if self.expected.is_empty() {
-            std::mem::swap(&mut self.expected, more);
-        } else {
-            self.expected.append(more);
-        }
     }
 
     /// (b): the step must be the original's next one.
     pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
-        let original = self.expected.get(self.done);
+        let original = self.originals.get(self.done).map(|original| &*original);
+        if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
+            return;
+        }
         self.done += 1;
         let message = match (step, original) {
             (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
@@ -270,10 +295,14 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// (a), (c) and (d): the written move is judged.
     pub(super) fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
-        while matches!(self.expected.get(self.judged), Some(Expected::Action(_))) {
+        while matches!(self.originals.get(self.judged), Some(Expected::Action(_))) {
             self.judged += 1;
         }
-        if let Some(Expected::Move(original)) = self.expected.get_mut(self.judged) {
+        let original = self.originals.get(self.judged).map(|original| &*original);
+        if added_stop(mv, original) {
+            return;
+        }
+        if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             compare(&self.model, original, mv, after, text, &mut self.reasons);
             if let Some(row) = &mut original.row {
                 row.peak_after_w = Some(after.demand.peak_w);
@@ -287,28 +316,38 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 }
 
+/// Whether a move is a dwell of no time that the original does not have: it
+/// only makes the axes stop.
+fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
+    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
+    is_stop(mv.kind, mv.dwell_s)
+        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
+}
+
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
 
 /// What differs in two moves, if anything.
 fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
     let same_kind = original.kind == mv.kind
         || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
-    let checks = [
-        (same_kind, "another kind of move"),
-        (original.end == mv.end, "another end point"),
-        (
-            original.unknown_start == mv.unknown_start,
-            "another start point",
-        ),
-        (original.arc == mv.arc, "another arc"),
-        (original.dwell_s == mv.dwell_s, "another dwell"),
-        (original.path_mode == mv.path_mode, "another path mode"),
-        (original.loads == mv.loads, "other switched loads"),
-    ];
-    checks
-        .into_iter()
-        .find(|(same, _)| !same)
-        .map(|(_, message)| message)
+    let message = if !same_kind {
+        "another kind of move"
+    } else if original.end != mv.end {
+        "another end point"
+    } else if original.unknown_start != mv.unknown_start {
+        "another start point"
+    } else if original.arc != mv.arc {
+        "another arc"
+    } else if original.dwell_s != mv.dwell_s {
+        "another dwell"
+    } else if original.path_mode != mv.path_mode {
+        "another path mode"
+    } else if original.loads != mv.loads {
+        "other switched loads"
+    } else {
+        return None;
+    };
+    Some(message)
 }
 
 /// (a), (c) and (d) for one move.

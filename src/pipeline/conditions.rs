@@ -29,6 +29,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         "margin {} % of the converter's power",
         percent(limits.margin)
     ));
+    conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),
         Start::At(at) if at.iter().all(|value| *value == 0.0) => {

@@ -3,7 +3,7 @@
 use super::front::Line;
 use super::table::LineKey;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
-use crate::limit::{Outcome, Permit};
+use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
@@ -83,8 +83,14 @@ impl Entry {
                 .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
     }
 
+    /// One of its moves, with what may be changed.
+    pub(super) fn waiting<'a>(&self, machine: &Machine, mv: &'a Move, step: usize) -> Waiting<'a> {
+        let permit = self.permit(machine, mv, step);
+        Waiting { mv, permit }
+    }
+
     /// What may be changed for one of its moves.
-    pub(super) fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
+    fn permit(&self, machine: &Machine, mv: &Move, step: usize) -> Permit {
         let facts = &self.facts;
         let mode_before = if step == 0 {
             self.mode_before
@@ -92,7 +98,8 @@ impl Entry {
             mv.path_mode
         };
         let stops = mv.path_mode == PathMode::ExactStop && mode_before == PathMode::ExactStop;
-        let stays = stops || machine.controller.planner.rapid_joint == RapidJoint::All;
+        let planner = &machine.controller.planner;
+        let stays = stops || planner.rapid_joint == RapidJoint::All || self.between_stops(machine);
         // What forbids any edit, what forbids an F, what forbids G1 for G0.
         let edit = [
             (facts.checksum, "it carries a checksum"),
@@ -149,6 +156,21 @@ impl Entry {
             feed_before: self.feed_before(),
             feed_accel_mm_s2,
         }
+    }
+
+    /// Whether its rapid may be written as a feed between two dwells of no time,
+    /// where the feed alone would be blended.
+    pub(super) fn between_stops(&self, machine: &Machine) -> bool {
+        machine.controller.planner.dwell_stops && self.moves == 1
+    }
+
+    /// Whether a rapid of it that is written as a feed needs these dwells.
+    pub(super) fn needs_stops(&self, machine: &Machine, change: Option<&Change>) -> bool {
+        let blends =
+            |step: &Step| matches!(step, Step::Move(mv) if mv.path_mode == PathMode::LookAhead);
+        machine.controller.planner.rapid_joint != RapidJoint::All
+            && change.is_some_and(|change| change.as_feed)
+            && (self.mode_before == PathMode::LookAhead || self.steps.iter().any(blends))
     }
 
     /// The F in force, in program units.

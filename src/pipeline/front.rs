@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Reading, Step};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
-use crate::syntax::{Block, scan_line};
+use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
 
 /// Bytes that a program may have which must be held whole.
 const WHOLE_BYTES_MAX: u64 = 1 << 30;
@@ -87,7 +87,14 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         if self.flow.is_some() {
             return self.next_of_flow();
         }
-        let Some((number, text)) = self.reader.next_line().map_err(source_failure)? else {
+        let next = match self.reader.next_line() {
+            Ok(next) => next,
+            Err(error) => {
+                let failure = source_failure(error);
+                return Err(self.name_foreign(failure));
+            }
+        };
+        let Some((number, text)) = next else {
             return Ok(None);
         };
         self.lines = number;
@@ -145,7 +152,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             .flow
             .insert(Box::new(Flow::new(program, line, &self.reading)));
         self.lines = flow.lines();
-        self.conclude(facts, 1)
+        Ok(self.conclude(facts, 1))
     }
 
     #[cold]
@@ -167,9 +174,9 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             }
         };
         let run = flow.begin_line();
+        flow.read(&mut self.block);
         let text = flow.text();
         let number = place.line as u64 + 1;
-        scan_line(text, number == 1, &mut self.block);
         self.steps.clear();
         self.interpreter.begin_line(run, place.text);
         let said = self.diagnostics.list.len();
@@ -184,11 +191,11 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             found.file = flow.file().map(str::to_owned);
         }
         self.executed += u64::from(facts.executed);
-        self.conclude(facts, run)
+        Ok(self.conclude(facts, run))
     }
 
     /// Lets the flow go on behind a line, and hands the line over.
-    fn conclude(&mut self, facts: Facts, run: u32) -> Result<Option<Line<'_, 'm>>, Failure> {
+    fn conclude(&mut self, facts: Facts, run: u32) -> Option<Line<'_, 'm>> {
         let Self {
             block,
             steps,
@@ -198,7 +205,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             stuck,
             ..
         } = self;
-        let Some(flow) = flow else { return Ok(None) };
+        let flow = flow.as_mut()?;
         // What is wrong in a loop is wrong in each of its runs.
         *stuck |= diagnostics.errors > 0 && run > 1;
         let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
@@ -215,7 +222,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             diagnostics.push(*trouble);
         }
         let place = flow.now();
-        Ok(Some(Line {
+        Some(Line {
             key: (place.text as u16, place.line as u64 + 1),
             text: flow.text(),
             block,
@@ -223,7 +230,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             facts,
             files: flow.files(),
             interpreter,
-        }))
+        })
     }
 
     /// The warnings and notes of a run without errors.
@@ -233,7 +240,31 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             self.diagnostics
                 .push(Diagnostic::error("no-program", message).help("give a part program"));
         }
-        refuse_on_errors(self.diagnostics)
+        let diagnostics = std::mem::take(&mut self.diagnostics);
+        refuse_on_errors(diagnostics).map_err(|failure| self.name_foreign(failure))
+    }
+
+    /// A refusal says what the file is where it plainly is no program of words.
+    #[cold]
+    fn name_foreign(&mut self, failure: Failure) -> Failure {
+        if !matches!(failure, Failure::Refused { .. }) {
+            return failure;
+        }
+        let input = self.reader.get_mut();
+        let mut beginning = Vec::new();
+        let read = input
+            .rewind()
+            .and_then(|()| input.take(FOREIGN_BYTES as u64).read_to_end(&mut beginning));
+        match foreign(&beginning).filter(|_| read.is_ok()) {
+            Some(found) => Failure::Refused {
+                diagnostics: vec![
+                    Diagnostic::error("foreign-file", format!("this is {}", found.what))
+                        .help(found.help),
+                ],
+                more: 0,
+            },
+            None => failure,
+        }
     }
 }
 

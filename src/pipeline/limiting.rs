@@ -50,22 +50,15 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
             None => None,
         }
     };
-    let (written, certified) = match streamed {
-        Some(done) => done,
-        None => {
-            output.restart().map_err(Failure::Output)?;
-            if let Some(rows) = &mut rows {
-                rows.restart().map_err(Failure::Output)?;
-            }
-            limit_whole(
-                input,
-                machine,
-                options,
-                how,
-                output,
-                rows.map(|rows| as_sink(rows)),
-            )?
+    let (written, certified) = if let Some(done) = streamed {
+        done
+    } else {
+        output.restart().map_err(Failure::Output)?;
+        if let Some(rows) = &mut rows {
+            rows.restart().map_err(Failure::Output)?;
         }
+        let rows = rows.map(as_sink);
+        limit_whole(input, machine, options, how, output, rows)?
     };
     Ok(conclude(machine, options, written, certified))
 }

@@ -2,11 +2,13 @@
 
 mod advice;
 mod analyze;
+mod by_line;
 mod certify;
 mod conditions;
 mod describe;
 mod entry;
 mod front;
+mod judge;
 mod limiting;
 mod options;
 mod restart;
@@ -18,6 +20,7 @@ mod whole;
 mod writer;
 
 pub use analyze::{analyze, moves};
+pub use by_line::LineSummary;
 pub use limiting::limit;
 pub use options::{Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
 pub use restart::{Restart, RestartRows};

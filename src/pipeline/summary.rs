@@ -4,6 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::interpret::MoveKind;
 use crate::machine::AxisSet;
 
+use super::by_line::LineSummary;
 use super::row::Certificate;
 
 /// A move that does not fit.
@@ -11,6 +12,10 @@ use super::row::Certificate;
 pub struct Unfit {
     /// Line from 1.
     pub line: u64,
+    /// The file that it stands in; empty for the program itself.
+    pub file: String,
+    /// Runs of the line that do not fit; the figures are those of the worst.
+    pub runs: u64,
     /// Block number without N.
     pub n_word: Option<f64>,
     /// What kind of move.
@@ -56,6 +61,8 @@ pub struct Summary {
     pub unfit_count: u64,
     /// The first of them, in program order; `Summary::KEPT` at most.
     pub unfit: Vec<Unfit>,
+    /// Figures by line, where rows were asked for and lines run several times.
+    pub by_line: Vec<LineSummary>,
     /// The worst ten, worst first.
     pub worst: Vec<Unfit>,
     /// Which certificate the figures belong to: robust when any move needs it.

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use super::entry::Entry;
 use crate::interpret::{Facts, FeedMode, KnobState, MoveKind};
 use crate::limit::Change;
+use crate::machine::Machine;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
 
@@ -49,6 +50,8 @@ pub(super) struct Decision {
     pub(super) knobs: Option<KnobState>,
     pub(super) rapids: bool,
     pub(super) feeds: bool,
+    /// See [`BlockView::stops`](crate::rewrite::BlockView).
+    pub(super) stops: bool,
 }
 
 impl Table {
@@ -65,18 +68,17 @@ impl Table {
             mm_per_unit_before: entry.mm_per_unit_before,
             fixed: entry.facts.fixed,
         };
-        match self.lines.get_mut(&line) {
-            Some(entered) => entered.unanimous &= entered.sight == sight,
-            None => {
-                let entered = Entered {
-                    sight,
-                    unanimous: true,
-                    decision: None,
-                    hopeless: false,
-                };
-                self.lines.insert(line, entered);
-            }
+        if let Some(entered) = self.lines.get_mut(&line) {
+            entered.unanimous &= entered.sight == sight;
+            return;
         }
+        let entered = Entered {
+            sight,
+            unanimous: true,
+            decision: None,
+            hopeless: false,
+        };
+        self.lines.insert(line, entered);
     }
 
     /// Why a line of the program may not be changed.
@@ -93,13 +95,23 @@ impl Table {
 
     /// Takes what was decided for a run: the lowest of all runs counts. True
     /// where it is the first time that the line turns out to be hopeless.
-    pub(super) fn decide(&mut self, line: LineKey, entry: &Entry, change: Option<Change>) -> bool {
+    pub(super) fn decide(
+        &mut self,
+        machine: &Machine,
+        line: LineKey,
+        entry: &Entry,
+        change: Option<Change>,
+    ) -> bool {
         let Some(entered) = self.lines.get_mut(&line) else {
             return false;
         };
         if let Some(change) = change {
+            let stops = entry.needs_stops(machine, Some(&change));
             match &mut entered.decision {
-                Some(decision) => decision.change = decision.change.lower(&change),
+                Some(decision) => {
+                    decision.change = decision.change.lower(&change);
+                    decision.stops |= stops;
+                }
                 None => {
                     entered.decision = Some(Box::new(Decision {
                         change,
@@ -110,6 +122,7 @@ impl Table {
                         rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
                         feeds: entry
                             .moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
+                        stops,
                     }));
                 }
             }

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use super::by_line::ByLine;
 use super::describe::row;
 use super::{Certificate, Failure, Options, Row, RowSink, Summary, Unfit};
 use crate::interpret::Move;
@@ -20,10 +21,13 @@ pub(super) struct Tally<'m, 'r> {
     model: PowerModel,
     rows: Option<&'r mut (dyn RowSink + 'r)>,
     summary: Summary,
+    /// The limits, where peaks below them may be passed over.
+    floors_w: Option<[f64; 2]>,
     energy_j: f64,
     failed: Option<io::Error>,
     /// Names of the files of subprograms, by number less 1.
     files: Vec<String>,
+    by_line: Option<ByLine>,
 }
 
 impl<'m, 'r> Tally<'m, 'r> {
@@ -32,7 +36,12 @@ impl<'m, 'r> Tally<'m, 'r> {
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
+        let rows_wanted = rows.is_some();
         let model = PowerModel::new(machine);
+        let floors_w = (machine.converters.len() <= 1).then(|| {
+            let regen_limit_w = model.regen_limit_w(0).unwrap_or(f64::INFINITY);
+            [model.limit_w(0), regen_limit_w]
+        });
         let summary = Summary {
             certificate: options.certificate,
             ..Summary::default()
@@ -42,9 +51,11 @@ impl<'m, 'r> Tally<'m, 'r> {
             model,
             rows,
             summary,
+            floors_w,
             energy_j: 0.0,
             failed: None,
             files: Vec::new(),
+            by_line: rows_wanted.then(ByLine::default),
         }
     }
 
@@ -54,13 +65,12 @@ impl<'m, 'r> Tally<'m, 'r> {
         if self.rows.is_some() {
             return Want::ALL;
         }
-        if self.machine.converters.len() > 1 {
+        let Some([limit_w, regen_limit_w]) = self.floors_w else {
             return Want::PEAKS;
-        }
-        let regen_limit_w = self.model.regen_limit_w(0).unwrap_or(f64::INFINITY);
+        };
         Want {
             energy: false,
-            floor_w: self.summary.peak_w.min(self.model.limit_w(0)),
+            floor_w: self.summary.peak_w.min(limit_w),
             regen_floor_w: self.summary.regen_w.min(regen_limit_w),
         }
     }
@@ -81,7 +91,7 @@ impl<'m, 'r> Tally<'m, 'r> {
                 assessment,
                 self.summary.duration_s,
             );
-            row.file = self.file(mv);
+            row.file = self.file(mv.text);
             self.write(&row);
         }
         self.count(mv, assessment, text, help);
@@ -93,9 +103,14 @@ impl<'m, 'r> Tally<'m, 'r> {
         self.files.extend(names.iter().skip(known).cloned());
     }
 
-    /// The file that a move's line stands in; empty for the program itself.
-    pub(super) fn file(&self, mv: &Move) -> String {
-        let index = usize::from(mv.text).checked_sub(1);
+    /// Adds up by line too.
+    pub(super) fn keep_lines(&mut self) {
+        self.by_line = Some(ByLine::default());
+    }
+
+    /// The name of a text; empty for the program itself.
+    fn file(&self, text: u16) -> String {
+        let index = usize::from(text).checked_sub(1);
         let name = index.and_then(|index| self.files.get(index));
         name.cloned().unwrap_or_default()
     }
@@ -127,6 +142,9 @@ impl<'m, 'r> Tally<'m, 'r> {
         summary.moves += 1;
         summary.duration_s += assessment.duration_s;
         self.energy_j += demand.energy_j;
+        if let Some(by_line) = &mut self.by_line {
+            by_line.add(mv, assessment);
+        }
         if demand.peak_w > summary.peak_w {
             summary.peak_w = demand.peak_w;
             summary.peak_line = mv.line;
@@ -153,6 +171,9 @@ impl<'m, 'r> Tally<'m, 'r> {
     ) {
         let overload = assessment.demand.load_ratio;
         self.summary.unfit_count += 1;
+        if mv.run > 1 && self.join_run(mv, assessment) {
+            return;
+        }
         let listed = self.summary.unfit.len() < Summary::KEPT;
         let worst = &self.summary.worst;
         let among_worst =
@@ -160,7 +181,8 @@ impl<'m, 'r> Tally<'m, 'r> {
         if !listed && !among_worst {
             return;
         }
-        let unfit = unfit(&self.model, mv, assessment, text, help());
+        let mut unfit = unfit(&self.model, mv, assessment, text, help());
+        unfit.file = self.file(mv.text);
         if among_worst {
             let at = self
                 .summary
@@ -174,6 +196,33 @@ impl<'m, 'r> Tally<'m, 'r> {
         }
     }
 
+    /// Joins a further run of a line to the ones that were kept; false
+    /// where none was.
+    fn join_run(&mut self, mv: &Move, assessment: &Assessment) -> bool {
+        let file = self.file(mv.text);
+        let same =
+            |unfit: &Unfit| unfit.line == mv.line && unfit.kind == mv.kind && unfit.file == file;
+        let Summary { unfit, worst, .. } = &mut self.summary;
+        let overload = assessment.demand.load_ratio;
+        let mut known = false;
+        let mut worse = false;
+        for found in unfit.iter_mut().chain(worst).filter(|found| same(found)) {
+            known = true;
+            found.runs += 1;
+            if overload > found.overload {
+                worse = true;
+                found.overload = overload;
+                found.peak_w = assessment.demand.peak_w;
+                found.regen_w = assessment.demand.regen_w;
+            }
+        }
+        if worse {
+            let order = |a: &Unfit, b: &Unfit| b.overload.total_cmp(&a.overload);
+            self.summary.worst.sort_by(order);
+        }
+        known
+    }
+
     /// The error of the rows, if there was one.
     pub(super) fn check(&mut self) -> Result<(), Failure> {
         self.failed
@@ -183,8 +232,11 @@ impl<'m, 'r> Tally<'m, 'r> {
 
     /// The figures, with the energy where it was wanted of all moves; lines,
     /// notes and conditions are still to be filled in.
-    pub(super) fn finish(self, energy: bool) -> Summary {
+    pub(super) fn finish(mut self, energy: bool) -> Summary {
+        let by_line = self.by_line.take().unwrap_or_default();
+        let by_line = by_line.finish(|text| self.file(text));
         let mut summary = self.summary;
+        summary.by_line = by_line;
         summary.energy_j = energy.then_some(self.energy_j);
         summary.certificate = summary.certificate.or(Some(Certificate::Planned));
         summary
@@ -207,6 +259,8 @@ fn unfit(
     let (text, _) = split_line_end(text);
     Unfit {
         line: mv.line,
+        file: String::new(),
+        runs: 1,
         n_word: mv.number,
         kind: mv.kind,
         axes: axes(mv),

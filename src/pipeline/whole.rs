@@ -98,6 +98,7 @@ fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
             rapids: decision.rapids,
             feeds: decision.feeds,
             change: &decision.change,
+            stops: decision.stops,
         };
         // Contradicting edits leave the line as it was, which the certificate
         // then finds.
@@ -212,36 +213,33 @@ impl<'m, 'p> Original<'m, 'p> {
                 files,
                 ..
             } = self;
-            match front.next_line()? {
-                Some(line) => {
-                    let feed = line
-                        .interpreter
-                        .modal()
-                        .feed
-                        .as_ref()
-                        .map(|feed| feed.value);
-                    *ordinal += 1;
-                    let known = files.len();
-                    files.extend(line.files.iter().skip(known).cloned());
-                    for step in &*line.steps {
-                        waiting.steps.push_back(Held {
-                            step: step.clone(),
-                            key: line.key,
-                            ordinal: *ordinal,
-                            feed,
-                            assessment: None,
+            if let Some(line) = front.next_line()? {
+                let feed = line
+                    .interpreter
+                    .modal()
+                    .feed
+                    .as_ref()
+                    .map(|feed| feed.value);
+                *ordinal += 1;
+                let known = files.len();
+                files.extend(line.files.iter().skip(known).cloned());
+                for step in &*line.steps {
+                    waiting.steps.push_back(Held {
+                        step: step.clone(),
+                        key: line.key,
+                        ordinal: *ordinal,
+                        feed,
+                        assessment: None,
+                    });
+                    if let Step::Move(mv) = step {
+                        assessor.push(mv, line.text, &mut |_, assessment, _| {
+                            waiting.judge(assessment);
                         });
-                        if let Step::Move(mv) = step {
-                            assessor.push(mv, line.text, &mut |_, assessment, _| {
-                                waiting.judge(assessment);
-                            });
-                        }
                     }
                 }
-                None => {
-                    assessor.finish(&mut |_, assessment, _| waiting.judge(assessment));
-                    more = false;
-                }
+            } else {
+                assessor.finish(&mut |_, assessment, _| waiting.judge(assessment));
+                more = false;
             }
             while let Some(held) = self.waiting.take() {
                 expected.push(match (&held.step, held.assessment) {

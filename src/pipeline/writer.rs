@@ -9,10 +9,11 @@ use super::certify::{Batch, Expected, ExpectedMove, Reasons};
 use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
 use super::front::Front;
+use super::judge::{Flight, Judge, Queue};
 use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, LimitOptions, Options, Summary};
-use crate::interpret::{KnobState, Move, MoveKind, Step};
+use crate::interpret::{KnobState, MoveKind, Step};
 use crate::limit::{Change, Limiter, Obstacle, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
@@ -27,14 +28,6 @@ pub(super) struct Written {
     pub(super) before: Summary,
     pub(super) edited_lines: u64,
     pub(super) reasons: Reasons,
-}
-
-/// A move that is not decided yet.
-struct Flight {
-    /// Number of its block, and which of its steps it is.
-    entry: u64,
-    step: usize,
-    assessment: Option<Assessment>,
 }
 
 /// Analyses, changes and writes.
@@ -54,7 +47,11 @@ pub(super) struct Writer<'m, R, W> {
     #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
     spare: Vec<Box<Entry>>,
     flights: VecDeque<Flight>,
+    /// How many of them are judged.
+    judged: usize,
     outcomes: Vec<Outcome>,
+    /// Those of a block that does not wait; empty in between.
+    decided: Vec<(Assessment, Outcome)>,
     /// Path mode of the last move that was read.
     mode: PathMode,
     /// Millimetres in a program unit behind the last block that was read.
@@ -102,7 +99,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             ready: None,
             spare: Vec::new(),
             flights: VecDeque::new(),
+            judged: 0,
             outcomes: Vec::new(),
+            decided: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
             exact,
@@ -148,6 +147,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Reads the whole program and decides for its lines, without writing.
     pub(super) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
+        if self.exact {
+            self.tally.keep_lines();
+        }
         while self.read_block()? {
             if let Some(entry) = self.ready.take() {
                 self.write(entry);
@@ -218,6 +220,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             entries,
             first,
             flights,
+            judged,
             outcomes,
             ..
         } = self;
@@ -235,11 +238,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             });
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
             let mut judge = Judge {
-                machine: self.machine,
                 limiter,
-                entries,
-                first: *first,
-                flights,
+                queue: Queue {
+                    machine: self.machine,
+                    entries,
+                    first: *first,
+                    flights,
+                },
+                judged,
                 outcomes,
             };
             assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
@@ -252,9 +258,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Judges and decides the moves of a block none of which has to wait.
     fn decide_at_once(&mut self, entry: &mut Entry) {
-        let mut decided = std::mem::take(&mut entry.decided);
-        let entry_ref = &*entry;
-        for (step, mv) in entry_ref.steps.iter().enumerate() {
+        for (step, mv) in entry.steps.iter().enumerate() {
             let Step::Move(mv) = mv else { continue };
             self.mode = mv.path_mode;
             let Self {
@@ -262,18 +266,19 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 limiter,
                 tally,
                 machine,
+                decided,
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, &entry_ref.text, &mut |mv, assessment, text| {
+            assessor.push(mv, &entry.text, &mut |_, assessment, text| {
                 tally.add(mv, assessment, text);
-                let permit = || entry_ref.permit(machine, mv, step);
-                limiter.push(mv, assessment, permit, &mut |outcome| {
+                let find = |_| Some(entry.waiting(machine, mv, step));
+                limiter.push(mv, assessment, &find, &mut |outcome| {
                     decided.push((*assessment, outcome));
                 });
             });
         }
-        entry.decided = decided;
+        std::mem::swap(&mut entry.decided, &mut self.decided);
     }
 
     /// Judges and decides what is left at the end.
@@ -285,22 +290,26 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             entries,
             first,
             flights,
+            judged,
             outcomes,
             ..
         } = self;
         let mut judge = Judge {
-            machine: self.machine,
             limiter,
-            entries,
-            first: *first,
-            flights,
+            queue: Queue {
+                machine: self.machine,
+                entries,
+                first: *first,
+                flights,
+            },
+            judged,
             outcomes,
         };
         assessor.finish(&mut |mv, assessment, text| {
             tally.add(mv, assessment, text);
             judge.take(mv, assessment);
         });
-        limiter.finish(&mut |outcome| outcomes.push(outcome));
+        judge.finish();
         self.decide();
     }
 
@@ -310,6 +319,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             let Some(flight) = self.flights.pop_front() else {
                 break;
             };
+            self.judged = self.judged.saturating_sub(1);
             let index = (flight.entry - self.first) as usize;
             if let (Some(entry), Some(assessment)) =
                 (self.entries.get_mut(index), flight.assessment)
@@ -352,6 +362,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
             feeds: entry.moves_by(|kind| matches!(kind, MoveKind::Feed | MoveKind::Arc)),
             change: change.as_ref().unwrap_or(&Change::NONE),
+            stops: entry.needs_stops(self.machine, change.as_ref()),
         };
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
@@ -359,7 +370,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 .push(0, "edit", message, "change the block by hand", &entry.text);
             self.batch.bytes.extend_from_slice(&entry.text);
         }
-        self.expect(&mut entry, change);
+        self.expect(&mut entry, change.as_ref());
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
         self.spare.push(entry);
@@ -368,7 +379,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     /// Keeps what was decided for a run of a line.
     fn note(&mut self, entry: &Entry, change: Option<Change>) {
         let Some(table) = &mut self.table else { return };
-        if !table.decide(entry.key, entry, change) {
+        if !table.decide(self.machine, entry.key, entry, change) {
             return;
         }
         let obstacles = entry.decided.iter();
@@ -385,9 +396,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     }
 
     /// Tells the certifier what the block must do.
-    fn expect(&mut self, entry: &mut Entry, change: Option<Change>) {
+    fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
         let feed_before = entry.feed_before();
-        let mut decided = entry.decided.drain(..);
+        let mut decided = entry.decided.iter_mut();
         for step in &entry.steps {
             let mv = match step {
                 Step::Action(action) => {
@@ -400,7 +411,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 continue;
             };
             let hopeless = outcome.obstacle.is_some();
-            if let Some(obstacle) = outcome.obstacle {
+            if let Some(obstacle) = outcome.obstacle.take() {
                 let Obstacle {
                     rule,
                     message,
@@ -412,8 +423,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);
             let row = self.exact.then(|| {
-                let mut row = row(self.machine, &self.model, mv, &assessment, self.start_s);
-                describe(self.machine, mv, change.as_ref(), feed_before, &mut row);
+                let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
+                describe(self.machine, mv, change, feed_before, &mut row);
                 if hopeless {
                     row.action = "none possible";
                 }
@@ -441,44 +452,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     }
 }
 
-/// Hands judged moves to the limiter and collects its decisions.
-struct Judge<'a, 'm> {
-    machine: &'m Machine,
-    limiter: &'a mut Limiter<'m>,
-    entries: &'a VecDeque<Box<Entry>>,
-    first: u64,
-    flights: &'a mut VecDeque<Flight>,
-    outcomes: &'a mut Vec<Outcome>,
-}
-
-impl Judge<'_, '_> {
-    fn take(&mut self, mv: &Move, assessment: &Assessment) {
-        let Self {
-            machine,
-            limiter,
-            entries,
-            first,
-            flights,
-            outcomes,
-        } = self;
-        let Some(flight) = flights
-            .iter_mut()
-            .find(|flight| flight.assessment.is_none())
-        else {
-            return;
-        };
-        flight.assessment = Some(*assessment);
-        let Some(entry) = entries.get((flight.entry - *first) as usize) else {
-            return;
-        };
-        let permit = || entry.permit(machine, mv, flight.step);
-        limiter.push(mv, assessment, permit, &mut |outcome| {
-            outcomes.push(outcome);
-        });
-    }
-}
-
 /// One change for a block of several moves: the lower value of each word.
+#[inline]
 fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
     let mut changes = decided
         .iter()

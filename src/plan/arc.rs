@@ -84,12 +84,13 @@ pub(super) fn plane_share(mv: &Move, arc: &Arc) -> f64 {
 pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
     let share = plane_share(mv, arc);
     let ranges = tangent_ranges(arc);
+    let raised = mv.rapid_factor.max(1.0);
     let per_axis = limits::moving(machine, mv).map(|(axis, limit)| {
         let part = match arc.plane.iter().position(|&plane| plane == axis) {
             Some(i) => share * ranges[i].largest(),
             None => (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm,
         };
-        limit.rapid_mm_s / part
+        limit.rapid_mm_s * raised / part
     });
     per_axis.fold(f64::INFINITY, f64::min)
 }
@@ -102,6 +103,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         speed_mm_s: f64::INFINITY,
         accel_mm_s2: f64::INFINITY,
     };
+    let raised = mv.rapid_factor.max(1.0);
     let mut plane_accel = f64::INFINITY;
     let mut linear_accel = f64::INFINITY;
     for (axis, limit) in limits::moving(machine, mv) {
@@ -112,10 +114,10 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         match arc.plane.iter().position(|&plane| plane == axis) {
             Some(i) => {
                 plane_accel = plane_accel.min(accel);
-                let speed = limit.rapid_mm_s / (share * ranges[i].largest());
+                let speed = limit.rapid_mm_s * raised / (share * ranges[i].largest());
                 limits.speed_mm_s = limits.speed_mm_s.min(speed);
             }
-            None => limits.take(mv, axis, limit.rapid_mm_s, accel),
+            None => limits.take(mv, axis, limit.rapid_mm_s * raised, accel),
         }
     }
     let radius = arc.radius_mm;

@@ -72,6 +72,22 @@ pub fn blended_bound(machine: &Machine, mv: &Move, overrides: Overrides) -> Spee
     bound
 }
 
+/// The largest speeds of a move that runs along one straight path at a speed of
+/// `v`; its start is known and it has a length.
+#[must_use]
+#[inline]
+pub fn path_bound(machine: &Machine, mv: &Move, v: f64) -> SpeedBound {
+    let mut bound = SpeedBound::default();
+    for (axis, _) in moving(machine, mv) {
+        let distance = mv.end[axis] - mv.start[axis];
+        if distance != 0.0 {
+            let speed = v * (distance.abs() / mv.length_mm);
+            bound.raise(axis, speed.copysign(distance));
+        }
+    }
+    bound
+}
+
 /// Path speed in mm/s (degrees/s) to which [`blended_bound`] belongs.
 #[must_use]
 pub fn blended_speed(machine: &Machine, mv: &Move, overrides: Overrides) -> f64 {

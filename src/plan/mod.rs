@@ -9,6 +9,8 @@ mod limits;
 mod profile;
 mod trajectory;
 
-pub use bound::{SpeedBound, blended_bound, blended_speed, speed_bound};
+pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use profile::{Phase, PhaseKind, Profile, State};
-pub use trajectory::{Caps, Overrides, Plan, Trajectory, UnknownMotion, plan, plan_with};
+pub use trajectory::{
+    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, path_figures, plan, plan_with,
+};

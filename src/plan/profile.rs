@@ -72,6 +72,47 @@ impl Phase {
     }
 }
 
+/// The times and the top speed of a trapezoid or triangle from rest to rest.
+#[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "the postfixes are units")]
+pub(super) struct Outline {
+    /// Duration of each ramp in s.
+    ramp_s: f64,
+    /// Duration of the cruise in s; a triangle has none.
+    cruise_s: Option<f64>,
+    /// The largest speed in mm/s.
+    pub top_speed: f64,
+}
+
+impl Outline {
+    /// The outline of [`Profile::trapezoid`].
+    #[inline]
+    pub fn new(length: f64, speed: f64, accel: f64) -> Self {
+        let (v, a) = (speed, accel);
+        let triangle_top = (a * length).sqrt();
+        if v < triangle_top {
+            let ramp_s = v / a;
+            Self {
+                ramp_s,
+                cruise_s: Some((length / v - ramp_s).max(0.0)),
+                top_speed: v,
+            }
+        } else {
+            Self {
+                ramp_s: (length / a).sqrt(),
+                cruise_s: None,
+                top_speed: triangle_top,
+            }
+        }
+    }
+
+    /// How long it lasts in s.
+    #[inline]
+    pub fn duration_s(&self) -> f64 {
+        self.ramp_s + self.cruise_s.unwrap_or(0.0) + self.ramp_s
+    }
+}
+
 /// The speed along one path, from rest to rest: at most seven phases.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Profile {
@@ -86,20 +127,20 @@ impl Profile {
     #[must_use]
     #[inline]
     pub fn trapezoid(length: f64, speed: f64, accel: f64) -> Self {
-        let (v, a) = (speed, accel);
-        let triangle_top = (a * length).sqrt();
+        let Outline {
+            ramp_s,
+            cruise_s,
+            top_speed: v,
+        } = Outline::new(length, speed, accel);
+        let a = accel;
         let mut phases = ArrayVec::new();
-        if v < triangle_top {
-            let ramp_s = v / a;
+        phases.push(Phase::constant(ramp_s, 0.0, 0.0, v, a));
+        if let Some(cruise_s) = cruise_s {
             let ramp_mm = 0.5 * v * ramp_s;
-            let cruise_s = (length / v - ramp_s).max(0.0);
-            phases.push(Phase::constant(ramp_s, 0.0, 0.0, v, a));
             phases.push(Phase::constant(cruise_s, ramp_mm, v, v, 0.0));
             phases.push(Phase::constant(ramp_s, length - ramp_mm, v, 0.0, -a));
         } else {
-            let ramp_s = (length / a).sqrt();
-            phases.push(Phase::constant(ramp_s, 0.0, 0.0, triangle_top, a));
-            phases.push(Phase::constant(ramp_s, 0.5 * length, triangle_top, 0.0, -a));
+            phases.push(Phase::constant(ramp_s, 0.5 * length, v, 0.0, -a));
         }
         Self { phases }
     }

@@ -6,7 +6,7 @@
 
 use super::bound::{SpeedBound, speed_bound};
 use super::limits::{self, PathLimits};
-use super::profile::{Phase, PhaseKind, Profile};
+use super::profile::{Outline, Phase, PhaseKind, Profile};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidPath};
 
@@ -162,23 +162,71 @@ pub fn plan_with(machine: &Machine, mv: &Move, overrides: Overrides, caps: Caps)
     if !limits.permit_motion() {
         return Plan::rest(f64::INFINITY);
     }
-    if mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent {
+    if is_independent(machine, mv) {
         return independent(machine, mv, overrides, &caps, limits);
     }
-    path(mv.length_mm, limits)
+    PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
 }
 
-/// All axes on one path of `length` mm.
+/// What a plan on one path comes to, without its phases; the fields are those
+/// of [`Plan`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "see Plan")]
+pub struct PathFigures {
+    pub duration_s: f64,
+    pub speed_limit_mm_s: f64,
+    pub accel_mm_s2: f64,
+    pub top_speed_mm_s: f64,
+}
+
+/// The figures of [`plan`] for a move on one path, at a fraction of its cost;
+/// `None` for all others.
+#[must_use]
 #[inline]
-fn path(length: f64, limits: PathLimits) -> Plan {
-    let profile = Profile::trapezoid(length, limits.speed_mm_s, limits.accel_mm_s2);
-    Plan {
-        duration_s: profile.duration_s(),
-        speed_limit_mm_s: limits.speed_mm_s,
-        accel_mm_s2: limits.accel_mm_s2,
-        top_speed_mm_s: profile.top_speed_mm_s(),
-        trajectory: Trajectory::Path(profile),
+pub fn path_figures(machine: &Machine, mv: &Move, overrides: Overrides) -> Option<PathFigures> {
+    let on_path = mv.kind != MoveKind::Dwell
+        && mv.unknown_start.is_empty()
+        && mv.length_mm > 0.0
+        && !is_independent(machine, mv);
+    if !on_path {
+        return None;
     }
+    let limits = PathLimits::of(machine, mv, overrides, &Caps::default());
+    limits
+        .permit_motion()
+        .then(|| PathFigures::new(mv.length_mm, limits))
+}
+
+impl PathFigures {
+    #[inline]
+    fn new(length: f64, limits: PathLimits) -> Self {
+        let outline = Outline::new(length, limits.speed_mm_s, limits.accel_mm_s2);
+        Self {
+            duration_s: outline.duration_s(),
+            speed_limit_mm_s: limits.speed_mm_s,
+            accel_mm_s2: limits.accel_mm_s2,
+            top_speed_mm_s: outline.top_speed,
+        }
+    }
+
+    /// The whole plan of the path, `length` mm long.
+    #[must_use]
+    pub fn plan(self, length: f64) -> Plan {
+        let profile = Profile::trapezoid(length, self.speed_limit_mm_s, self.accel_mm_s2);
+        Plan {
+            trajectory: Trajectory::Path(profile),
+            duration_s: self.duration_s,
+            speed_limit_mm_s: self.speed_limit_mm_s,
+            accel_mm_s2: self.accel_mm_s2,
+            top_speed_mm_s: self.top_speed_mm_s,
+        }
+    }
+}
+
+/// Whether each axis of a move runs for itself.
+#[inline]
+fn is_independent(machine: &Machine, mv: &Move) -> bool {
+    mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent
 }
 
 /// Each axis for itself at its own speed and acceleration; the slowest one
@@ -223,7 +271,7 @@ fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> P
     };
     let limits = PathLimits::of(machine, mv, overrides, caps);
     let mut plan = if mv.length_mm > 0.0 && limits.permit_motion() {
-        path(mv.length_mm, limits)
+        PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
     } else {
         Plan::rest(0.0)
     };

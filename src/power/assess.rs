@@ -6,9 +6,12 @@
 
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
+use super::robust::Part;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine, PathMode, RapidJoint};
-use crate::plan::{Overrides, SpeedBound, blended_bound, plan};
+use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::plan::{
+    Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
+};
 
 /// Which bound a figure rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,9 +72,14 @@ pub struct Assessor<'m> {
     requested: Option<Certificate>,
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
-    held: Option<Held>,
+    held: Option<Box<Held>>,
+    /// The one that was held before, and room that is used again.
+    before: Option<Box<Held>>,
+    spare: Option<Box<Held>>,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
+    /// The last move was a dwell.
+    dwelt: bool,
 }
 
 /// A move that waits for its successor.
@@ -80,16 +88,22 @@ struct Held {
     mv: Move,
     text: Vec<u8>,
     assessment: Assessment,
-    /// Largest speeds and accelerations of it and its predecessor.
+    /// Its largest speeds, its neighbours left aside.
     bound: SpeedBound,
-    accel_mm_s2: AxisValues,
-    /// Its own.
-    own_bound: SpeedBound,
-    /// Whether its predecessor runs into it.
-    joined: bool,
+    /// A dwell stands before it.
+    dwelt: bool,
     /// Moves of no length behind it: controllers leave them out and blend
     /// across them.
     riders: Vec<Rider>,
+}
+
+impl Held {
+    fn part(&self) -> Part<'_> {
+        Part {
+            bound: &self.bound,
+            accel_mm_s2: &self.mv.accel_mm_s2,
+        }
+    }
 }
 
 /// A move of no length that waits with the move before it.
@@ -125,7 +139,10 @@ impl<'m> Assessor<'m> {
             requested,
             want,
             held: None,
+            before: None,
+            spare: None,
             needs_robust: false,
+            dwelt: false,
         }
     }
 
@@ -149,16 +166,17 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
+        let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);
+        let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
             .held
             .as_ref()
             .is_some_and(|held| self.joins(&held.mv, mv));
-        let mut assessment = self.alone(mv);
+        let mut assessment = self.alone(mv, figures.as_ref());
         assessment.joined = joined;
-        let may_blend = assessment.blended || joined;
-        if mv.kind != MoveKind::Dwell
+        if let Some(held) = &mut self.held
+            && mv.kind != MoveKind::Dwell
             && !moves(mv)
-            && let Some(held) = &mut self.held
             && held.riders.len() < RIDERS
         {
             assessment.joined = true;
@@ -169,80 +187,148 @@ impl<'m> Assessor<'m> {
             });
             return;
         }
-        if !may_blend {
-            self.release(None, sink);
+        if !(assessment.blended || joined) {
+            if self.held.is_some() {
+                self.release(None, mv.kind == MoveKind::Dwell, sink);
+            }
             sink(mv, &assessment, text);
             return;
         }
         assessment.blended = true;
-        let own_bound = blended_bound(self.machine, mv, self.largest);
-        let mut bound = own_bound;
-        let mut accel_mm_s2 = mv.accel_mm_s2;
-        if joined && let Some(held) = &self.held {
-            bound.include(&held.own_bound);
-            include_accel(&mut accel_mm_s2, &held.mv.accel_mm_s2);
-        }
-        let mut text_buffer = self.release(joined.then_some((&own_bound, &mv.accel_mm_s2)), sink);
-        text_buffer.clear();
-        text_buffer.extend_from_slice(text);
-        self.held = Some(Held {
-            mv: mv.clone(),
-            text: text_buffer,
-            assessment,
-            bound,
-            accel_mm_s2,
-            own_bound,
-            joined,
-            riders: Vec::new(),
-        });
+        self.hold(mv, text, assessment, figures.as_ref(), dwelt, sink);
+    }
+
+    /// Lets a move wait for its successor; the one that waited is handed on.
+    fn hold(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        assessment: Assessment,
+        figures: Option<&PathFigures>,
+        dwelt: bool,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let bound = match figures {
+            Some(path) if mv.arc.is_none() => path_bound(self.machine, mv, path.speed_limit_mm_s),
+            _ => blended_bound(self.machine, mv, self.largest),
+        };
+        let fresh = match self.spare.take() {
+            Some(mut fresh) => {
+                fresh.mv.clone_from(mv);
+                fresh.text.clear();
+                fresh.text.extend_from_slice(text);
+                fresh.assessment = assessment;
+                fresh.bound = bound;
+                fresh.dwelt = dwelt;
+                fresh
+            }
+            None => Box::new(Held {
+                mv: mv.clone(),
+                text: text.to_vec(),
+                assessment,
+                bound,
+                dwelt,
+                riders: Vec::new(),
+            }),
+        };
+        let next = assessment.joined.then(|| fresh.part());
+        self.release(next, false, sink);
+        self.held = Some(fresh);
     }
 
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        self.release(None, sink);
+        self.release(None, false, sink);
     }
 
-    /// Judges what is held; `next` is the bound of a move that it runs into.
-    /// Returns the text buffer for the next one.
+    /// Judges what is held; `next` is the move that it runs into, `dwells`
+    /// whether a dwell follows it.
     fn release(
         &mut self,
-        next: Option<(&SpeedBound, &AxisValues)>,
+        next: Option<Part<'_>>,
+        dwells: bool,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
-    ) -> Vec<u8> {
+    ) {
         let Some(mut held) = self.held.take() else {
-            return Vec::new();
+            return;
         };
-        if let Some((bound, accel_mm_s2)) = next {
-            held.bound.include(bound);
-            include_accel(&mut held.accel_mm_s2, accel_mm_s2);
-        }
-        // A rapid between two stops is planned like any other; feeds in a mode
-        // that blends keep the robust bound.
-        let stops = held.mv.kind == MoveKind::Rapid && !held.joined && next.is_none();
-        if stops && self.requested != Some(Certificate::Robust) {
+        let joined = held.assessment.joined;
+        // A rapid between two stops is planned like any other, and so is a
+        // straight feed between two dwells; other feeds in a mode that blends
+        // keep the robust bound.
+        let alone = !joined && next.is_none() && self.requested != Some(Certificate::Robust);
+        if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
+        } else if alone && dwells && held.dwelt && held.mv.arc.is_none() {
+            let figures = path_figures(self.machine, &held.mv, self.largest);
+            held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
         } else {
-            self.bound(&mut held);
+            let demand = {
+                let own = held.part();
+                let before = self.before.as_deref().filter(|_| joined);
+                let window = [before.map_or(own, Held::part), own, next.unwrap_or(own)];
+                self.model.robust_over(&held.mv, &window, self.want)
+            };
+            held.assessment.demand = Demand {
+                energy_j: held.assessment.demand.energy_j,
+                ..demand
+            };
+            held.assessment.certificate = Certificate::Robust;
+            self.needs_robust |= self.requested == Some(Certificate::Planned);
         }
         sink(&held.mv, &held.assessment, &held.text);
         for rider in &held.riders {
             sink(&rider.mv, &rider.assessment, &rider.text);
         }
-        held.text
+        held.riders.clear();
+        self.spare = self.before.replace(held);
     }
 
-    /// Gives a move its robust bound.
-    fn bound(&mut self, held: &mut Held) {
-        let energy_j = held.assessment.demand.energy_j;
-        held.assessment.demand = self.model.robust(&held.mv, &held.bound, &held.accel_mm_s2);
-        held.assessment.demand.energy_j = energy_j;
-        held.assessment.certificate = Certificate::Robust;
-        self.needs_robust |= self.requested == Some(Certificate::Planned);
+    /// The planned demand, and whether the move may be blended; `figures` are
+    /// those of its path at the largest overrides, if it has one.
+    #[inline]
+    fn alone(&self, mv: &Move, figures: Option<&PathFigures>) -> Assessment {
+        let blended = self.may_blend(mv);
+        if let Some(path) = figures
+            && let Some(demand) = self.quick_demand(mv, path, blended)
+        {
+            let mut assessment = Assessment {
+                duration_s: path.duration_s,
+                speed_mm_s: path.speed_limit_mm_s,
+                accel_mm_s2: path.accel_mm_s2,
+                top_speed_mm_s: path.top_speed_mm_s,
+                demand,
+                certificate: Certificate::Planned,
+                blended,
+                joined: false,
+            };
+            if self.largest != self.nominal {
+                let nominal = plan(self.machine, mv, self.nominal);
+                assessment.duration_s = nominal.duration_s;
+                assessment.speed_mm_s = nominal.speed_limit_mm_s;
+            }
+            return assessment;
+        }
+        self.evaluate(mv, figures, blended)
     }
 
-    /// The planned demand, and whether the move may be blended.
-    fn alone(&self, mv: &Move) -> Assessment {
-        let peak_plan = plan(self.machine, mv, self.largest);
+    /// The demand of a path where it needs no closer look: it is small, or the
+    /// robust bound takes its place.
+    #[inline]
+    fn quick_demand(&self, mv: &Move, path: &PathFigures, blended: bool) -> Option<Demand> {
+        let may_stop = mv.kind == MoveKind::Rapid && self.requested != Some(Certificate::Robust);
+        if blended && !may_stop && !self.want.energy {
+            return Some(Demand::NONE);
+        }
+        self.model.below_floor(mv, path, self.want)
+    }
+
+    /// The planned demand of any move.
+    fn evaluate(&self, mv: &Move, figures: Option<&PathFigures>, blended: bool) -> Assessment {
+        let peak_plan = match figures {
+            Some(path) => path.plan(mv.length_mm),
+            None => plan(self.machine, mv, self.largest),
+        };
         let mut demand = self.model.demand(mv, &peak_plan, self.want);
         let (mut duration_s, mut speed_mm_s) = (peak_plan.duration_s, peak_plan.speed_limit_mm_s);
         if self.largest != self.nominal {
@@ -264,7 +350,7 @@ impl<'m> Assessor<'m> {
             } else {
                 Certificate::Planned
             },
-            blended: self.may_blend(mv),
+            blended,
             joined: false,
         }
     }
@@ -302,10 +388,4 @@ impl<'m> Assessor<'m> {
 /// Whether any axis moves.
 fn moves(mv: &Move) -> bool {
     mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
-}
-
-fn include_accel(accel: &mut AxisValues, other: &AxisValues) {
-    for (own, other) in accel.iter_mut().zip(other) {
-        *own = own.max(*other);
-    }
 }

@@ -14,7 +14,7 @@ use super::axis::{AxisPower, Side};
 use super::demand::{Demand, Want};
 use crate::interpret::Move;
 use crate::machine::AxisSet;
-use crate::plan::Plan;
+use crate::plan::PathFigures;
 
 /// X, Y and Z: the axes whose directions make a unit vector.
 const XYZ: u16 = 0b111;
@@ -52,14 +52,21 @@ impl Ceiling {
         ceiling
     }
 
-    /// A demand at the bound, if it stays below what is of interest.
+    /// A demand at the bound, if it stays below what is of interest; for a
+    /// move from a known start.
     #[inline]
-    pub fn below_floor(&self, mv: &Move, plan: &Plan, idle_w: f64, want: Want) -> Option<Demand> {
-        if want.energy || mv.moving.0 & !XYZ != 0 || !mv.unknown_start.is_empty() {
+    pub fn below_floor(
+        &self,
+        mv: &Move,
+        figures: &PathFigures,
+        idle_w: f64,
+        want: Want,
+    ) -> Option<Demand> {
+        if want.energy || mv.moving.0 & !XYZ != 0 {
             return None;
         }
-        let v = plan.top_speed_mm_s * self.si_per_unit;
-        let mut a = plan.accel_mm_s2 * self.si_per_unit;
+        let v = figures.top_speed_mm_s * self.si_per_unit;
+        let mut a = figures.accel_mm_s2 * self.si_per_unit;
         if let Some(arc) = &mv.arc {
             a += v * v / (arc.radius_mm * self.si_per_unit);
         }
@@ -67,10 +74,6 @@ impl Ceiling {
         let mechanical = v * force;
         // F² of each axis is at most that of all, whose sum is bounded too.
         let drawn_w = idle_w + mechanical * self.inverse_efficiency + self.copper * force * force;
-        (drawn_w <= want.floor_w && mechanical <= want.regen_floor_w).then_some(Demand {
-            peak_w: drawn_w,
-            regen_w: mechanical,
-            ..Demand::NONE
-        })
+        Demand::below_floor(drawn_w, mechanical, want)
     }
 }

@@ -53,6 +53,17 @@ impl Demand {
         converter: 0,
         load_ratio: f64::NEG_INFINITY,
     };
+
+    /// A demand that nobody wants to know more of; none where one of its peaks
+    /// reaches what is of interest.
+    #[inline]
+    pub(super) fn below_floor(peak_w: f64, regen_w: f64, want: Want) -> Option<Self> {
+        (peak_w <= want.floor_w && regen_w <= want.regen_floor_w).then_some(Self {
+            peak_w,
+            regen_w,
+            ..Self::NONE
+        })
+    }
 }
 
 /// Peaks and energy of one converter while they are being found.

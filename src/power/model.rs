@@ -8,7 +8,7 @@ use super::demand::{Demand, Totals, Want};
 use super::{arc, independent, straight};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet, Machine};
-use crate::plan::{Plan, Trajectory};
+use crate::plan::{PathFigures, Plan, Trajectory};
 
 /// How far a ratio may exceed 1 by rounding alone.
 const FIT_TOLERANCE: f64 = 1e-9;
@@ -89,23 +89,7 @@ impl PowerModel {
     /// A move from an unknown start gets its robust bound; its energy is that
     /// of the axes at rest.
     #[must_use]
-    #[allow(
-        clippy::inline_always,
-        reason = "most moves end at the ceiling, and their demand stays in registers"
-    )]
-    #[inline(always)]
     pub fn demand(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
-        if let ([converter], Trajectory::Path(_)) = (self.converters.as_slice(), &plan.trajectory) {
-            let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
-            if let Some(demand) = converter.ceiling.below_floor(mv, plan, idle_w, want) {
-                return demand;
-            }
-        }
-        self.evaluate(mv, plan, want)
-    }
-
-    /// The demand, evaluated exactly.
-    fn evaluate(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
         let mut demand = Demand::NONE;
         for (index, converter) in self.converters.iter().enumerate() {
             let active = AxisSet(mv.moving.0 & converter.axes.0);
@@ -136,6 +120,24 @@ impl PowerModel {
             demand.add(index, converter, totals);
         }
         demand
+    }
+}
+
+impl PowerModel {
+    /// A bound of the demand of a path, if it stays below what is of interest:
+    /// then the path need not be looked at more closely.
+    #[inline]
+    pub(super) fn below_floor(
+        &self,
+        mv: &Move,
+        figures: &PathFigures,
+        want: Want,
+    ) -> Option<Demand> {
+        let [converter] = self.converters.as_slice() else {
+            return None;
+        };
+        let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
+        converter.ceiling.below_floor(mv, figures, idle_w, want)
     }
 }
 

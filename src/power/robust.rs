@@ -14,11 +14,18 @@
 //! speeds up to v̂, w the ratio of warm friction.
 
 use super::axis::{AxisPower, Side};
-use super::demand::{Demand, Totals};
+use super::demand::{Demand, Totals, Want};
 use super::model::{ConverterPower, PowerModel};
 use crate::interpret::Move;
-use crate::machine::{AxisSet, AxisValues};
+use crate::machine::{AXES, AxisSet, AxisValues};
 use crate::plan::SpeedBound;
+
+/// Largest speeds and accelerations of one move of a window.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part<'a> {
+    pub bound: &'a SpeedBound,
+    pub accel_mm_s2: &'a AxisValues,
+}
 
 impl PowerModel {
     /// The robust bound of a move (of which only the switched loads are read):
@@ -32,6 +39,65 @@ impl PowerModel {
             demand.add(index, converter, totals);
         }
         demand
+    }
+
+    /// The robust bound over a move (of which only the switched loads are read)
+    /// and its neighbours; where something above it stays below what is of
+    /// interest, that. Instead of a neighbour that is missing any other part
+    /// may be given again.
+    pub(super) fn robust_over(&self, mv: &Move, parts: &[Part<'_>; 3], want: Want) -> Demand {
+        if let [converter] = self.converters.as_slice()
+            && let Some(demand) = self.robust_below_floor(converter, mv, parts, want)
+        {
+            return demand;
+        }
+        let (mut bound, mut accel_mm_s2) = (SpeedBound::default(), [0.0_f64; AXES]);
+        for part in parts {
+            bound.include(part.bound);
+            for (largest, own) in accel_mm_s2.iter_mut().zip(part.accel_mm_s2) {
+                *largest = largest.max(*own);
+            }
+        }
+        self.robust(mv, &bound, &accel_mm_s2)
+    }
+
+    /// A quick bound above the robust one, if it stays below what is of
+    /// interest: drawn is at most `P₀ + Σ [v·F/η + R·F²]`,
+    /// `F = m·â·k + b·v + Fc + |Fg|`, with the larger speed of each axis, and
+    /// fed back at most `Σ v·(m·â·k − Fc·w + |Fg|)⁺`.
+    #[inline]
+    fn robust_below_floor(
+        &self,
+        converter: &ConverterPower,
+        mv: &Move,
+        parts: &[Part<'_>; 3],
+        want: Want,
+    ) -> Option<Demand> {
+        // Axes at rest hold their weight: counted for all.
+        let mut drawn_w = converter.idle_w(mv, &self.axes, AxisSet::default());
+        let mut fed_back_w = 0.0;
+        for axis in converter.axes.iter() {
+            let power = &self.axes[axis];
+            let speeds =
+                parts.map(|part| larger(part.bound.positive[axis], part.bound.negative[axis]));
+            let accels = parts.map(|part| part.accel_mm_s2[axis]);
+            let [v, accel] =
+                [speeds, accels].map(|[a, b, c]| larger(larger(a, b), c) * power.si_per_unit);
+            if v == 0.0 {
+                continue;
+            }
+            let inertia = power.mass * accel;
+            let weight = power.gravity.abs();
+            let force = inertia * power.accel_factor(Side::Motor, true)
+                + power.viscous * v
+                + power.coulomb
+                + weight;
+            let braking = inertia * power.accel_factor(Side::Regen, false) + weight
+                - power.coulomb * power.friction_factor(Side::Regen);
+            drawn_w += v * force * power.inverse_efficiency + power.copper * force * force;
+            fed_back_w += v * larger(braking, 0.0);
+        }
+        Demand::below_floor(drawn_w, fed_back_w, want)
     }
 
     /// The robust bound for one converter.
@@ -73,6 +139,13 @@ impl PowerModel {
         totals.raise_regen(regen);
         totals
     }
+}
+
+/// The larger of two numbers, in one instruction: `f64::max` also looks for
+/// what is no number.
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// Largest electrical power of an axis at speeds up to `v` in a direction in

@@ -54,8 +54,8 @@ mod tests {
         rows.row(&example())?;
         rows.finish()?;
         insta::assert_snapshot!(String::from_utf8_lossy(&bytes).replace('\r', ""), @r#"
-        line,n_word,move,axes,start_s,duration_s,peak_w,regen_w,limit_w,ratio,energy_j,action,knob,value_before,value_after,peak_after_w,duration_after_s,regen_after_w,regen_limit_w,certificate,converter
-        3,101,rapid,XYZ,360.25,1.5,4200,0.3,3150,0.75,1234.5,write as feed,F,,12345.678,3149.999,1.75,,,planned,"left, ""A"""
+        line,n_word,move,axes,start_s,duration_s,peak_w,regen_w,limit_w,ratio,energy_j,action,knob,value_before,value_after,peak_after_w,duration_after_s,regen_after_w,regen_limit_w,certificate,converter,run,file
+        3,101,rapid,XYZ,360.25,1.5,4200,0.3,3150,0.75,1234.5,write as feed,F,,12345.678,3149.999,1.75,,,planned,"left, ""A""",2,sub.nc
         "#);
         Ok(())
     }

@@ -47,6 +47,8 @@ pub(super) fn severity_name(severity: Severity) -> &'static str {
 #[derive(Debug, Serialize)]
 pub(super) struct UnfitMove<'a> {
     line: u64,
+    file: &'a str,
+    runs: u64,
     n_word: Option<Figure>,
     #[serde(rename = "move")]
     kind: &'static str,
@@ -64,6 +66,8 @@ impl<'a> From<&'a Unfit> for UnfitMove<'a> {
     fn from(unfit: &'a Unfit) -> Self {
         Self {
             line: unfit.line,
+            file: &unfit.file,
+            runs: unfit.runs,
             n_word: unfit.n_word.map(Figure),
             kind: unfit.kind.name(),
             axes: Letters(unfit.axes),

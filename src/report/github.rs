@@ -57,6 +57,11 @@ fn annotations(checked: &Checked) -> Vec<(f64, String)> {
 }
 
 fn unfit_command(program: &str, unfit: &Unfit) -> String {
+    let program = if unfit.file.is_empty() {
+        program
+    } else {
+        &unfit.file
+    };
     let (title, what, power_w, limit_w) = if is_regenerative(unfit) {
         let limit_w = unfit.regen_limit_w.unwrap_or_default();
         ("regen-power", "feeds back", unfit.regen_w, limit_w)
@@ -79,6 +84,7 @@ fn unfit_command(program: &str, unfit: &Unfit) -> String {
 }
 
 fn refusal_command(program: &str, diagnostic: &Diagnostic) -> String {
+    let program = diagnostic.file.as_deref().unwrap_or(program);
     let mut message = diagnostic.message.clone();
     if let Some(help) = &diagnostic.help {
         message.push_str("; ");

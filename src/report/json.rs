@@ -75,8 +75,38 @@ impl<'a> Head<'a> {
 }
 
 #[derive(Serialize)]
-struct ReportTail {
+struct ReportTail<'a> {
     unfit_count: u64,
+    lines: Vec<LineFigures<'a>>,
+}
+
+/// What all runs of a line come to.
+#[derive(Serialize)]
+struct LineFigures<'a> {
+    line: u64,
+    file: &'a str,
+    runs: u64,
+    duration_s: Figure,
+    peak_w: Figure,
+    regen_w: Figure,
+    energy_j: Figure,
+}
+
+impl<'a> LineFigures<'a> {
+    fn list(summary: &'a Summary) -> Vec<Self> {
+        let lines = summary.by_line.iter();
+        lines
+            .map(|line| Self {
+                line: line.line,
+                file: &line.file,
+                runs: line.runs,
+                duration_s: Figure(line.duration_s),
+                peak_w: Figure(line.peak_w),
+                regen_w: Figure(line.regen_w),
+                energy_j: Figure(line.energy_j),
+            })
+            .collect()
+    }
 }
 
 #[derive(Serialize)]
@@ -86,6 +116,7 @@ struct LimitTail<'a> {
     regen_after_w: Figure,
     energy_after_j: Option<Figure>,
     unfit_count: u64,
+    lines: Vec<LineFigures<'a>>,
     edited_lines: u64,
     certified: bool,
     reasons: Vec<Finding<'a>>,
@@ -104,6 +135,7 @@ pub fn report_json(
 ) -> io::Result<()> {
     let tail = ReportTail {
         unfit_count: summary.unfit_count,
+        lines: LineFigures::list(summary),
     };
     write_object(&Head::new(program, machine, summary), blocks, &tail, out)
 }
@@ -132,6 +164,7 @@ pub fn limit_json(
         regen_after_w: Figure(summary.after.regen_w),
         energy_after_j: summary.after.energy_j.map(Figure),
         unfit_count: summary.before.unfit_count,
+        lines: LineFigures::list(&summary.before),
         edited_lines: summary.edited_lines,
         certified: summary.certified,
         reasons: summary.reasons.iter().map(Finding::from).collect(),

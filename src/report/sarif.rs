@@ -93,6 +93,11 @@ fn findings(checked: &Checked) -> Vec<Finding> {
 }
 
 fn unfit_finding(program: &str, unfit: &Unfit) -> Finding {
+    let program = if unfit.file.is_empty() {
+        program
+    } else {
+        &unfit.file
+    };
     let (rule, mut message) = if is_regenerative(unfit) {
         let limit = power(unfit.regen_limit_w.unwrap_or_default());
         let message = format!("feeds back {} of {limit}", power(unfit.regen_w));
@@ -114,6 +119,7 @@ fn unfit_finding(program: &str, unfit: &Unfit) -> Finding {
 }
 
 fn diagnostic_finding(program: &str, diagnostic: &Diagnostic) -> Finding {
+    let program = diagnostic.file.as_deref().unwrap_or(program);
     let level = match diagnostic.severity {
         Severity::Error => ResultLevel::Error,
         Severity::Warning => ResultLevel::Warning,

@@ -76,8 +76,9 @@ fn refusal(failure: &Failure) -> String {
 fn worst(summary: &Summary) -> String {
     let rows: Vec<[String; 5]> = summary.worst.iter().map(unfit_row).collect();
     let mut text = aligned(&rows, "  ");
-    if summary.unfit_count > summary.worst.len() as u64 {
-        let more = summary.unfit_count - summary.worst.len() as u64;
+    let shown: u64 = summary.worst.iter().map(|unfit| unfit.runs).sum();
+    if summary.unfit_count > shown {
+        let more = summary.unfit_count - shown;
         let _ = writeln!(text, "  and {more} more: see `gwatt report`");
     }
     text
@@ -91,6 +92,12 @@ fn unfit_row(unfit: &Unfit) -> [String; 5] {
         format!("{} of {}", power(unfit.peak_w), power(unfit.limit_w))
     };
     let mut shown = excerpt(unfit.text.trim_ascii(), LINE_CHARS);
+    if unfit.runs > 1 {
+        let _ = write!(shown, "  ({} runs)", unfit.runs);
+    }
+    if !unfit.file.is_empty() {
+        let _ = write!(shown, "  in {}", unfit.file);
+    }
     if !unfit.help.is_empty() {
         let _ = write!(shown, "  → {}", unfit.help);
     }

@@ -6,7 +6,7 @@ use super::state::{FeedValue, Mark, Written};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
+use crate::machine::{AXES, AxisValues, Family, KnobTarget, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
@@ -32,6 +32,9 @@ pub struct BlockView<'a> {
     pub feeds: bool,
     /// What its moves get.
     pub change: &'a Change,
+    /// A dwell of no time stands before and behind it, so that it starts and
+    /// ends at rest.
+    pub stops: bool,
 }
 
 /// Writes the blocks of one program.
@@ -45,6 +48,8 @@ pub struct Rewriter<'m> {
     /// The last line that was written has an end.
     complete: bool,
     edits: Vec<Edit>,
+    /// The last line that was written is a dwell of no time.
+    stopped: bool,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
 }
@@ -63,6 +68,7 @@ impl<'m> Rewriter<'m> {
             line_end: b"\n".to_vec(),
             complete: true,
             edits: Vec::new(),
+            stopped: false,
             edited_lines: 0,
         }
     }
@@ -94,15 +100,35 @@ impl<'m> Rewriter<'m> {
         if view.rapids || view.feeds {
             self.turn_knobs(view, out);
         }
+        if view.stops && !self.stopped {
+            self.insert_line(&self.dwell(), out);
+        }
         self.edits.clear();
         self.motion_word(view);
         self.feed_word(view);
-        if self.edits.is_empty() {
+        let fine = if self.edits.is_empty() {
             out.extend_from_slice(view.text);
-            return true;
+            true
+        } else {
+            self.edited_lines += 1;
+            apply(view.text, &mut self.edits, out)
+        };
+        self.stopped = view.stops;
+        if view.stops {
+            if !self.complete {
+                out.extend_from_slice(&self.line_end);
+                self.complete = true;
+            }
+            self.insert_line(&self.dwell(), out);
         }
-        self.edited_lines += 1;
-        apply(view.text, &mut self.edits, out)
+        fine
+    }
+
+    /// A dwell of no time.
+    fn dwell(&self) -> String {
+        let letter = self.machine.controller.language.dwell.first();
+        let letter = letter.map_or('P', |(letter, _)| char::from(*letter));
+        format!("G4 {letter}0")
     }
 
     /// Writes a block by itself: what it changes is put back right behind it, so
@@ -221,6 +247,10 @@ impl<'m> Rewriter<'m> {
     /// Lines before a block that moves: knobs that it needs, and those that it
     /// must not have.
     fn turn_knobs(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        let none = view.change.accel.is_none() && view.change.rapid_percent.is_none();
+        if none && self.turned.is_empty() {
+            return;
+        }
         let mut wanted: [Option<(usize, AxisValues)>; 2] = [view.change.accel, None];
         if let Some((knob, percent)) = view.change.rapid_percent {
             wanted[1] = Some((knob, [percent; AXES]));
@@ -309,6 +339,11 @@ impl<'m> Rewriter<'m> {
         }
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute {
+            // A printer reads no line without a command.
+            if words.is_empty() && self.machine.controller.language.family == Family::Marlin {
+                let digit = original.motion.digit();
+                words.extend(digit.map(|digit| format!("G{}", digit as char)));
+            }
             words.extend(
                 original
                     .feed

@@ -30,6 +30,24 @@ pub struct Block {
 }
 
 impl Block {
+    /// Becomes a copy of another block, in the buffers that it has.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self {
+            mut words,
+            mut issues,
+            ..
+        } = std::mem::take(self);
+        words.clear();
+        words.extend_from_slice(&other.words);
+        issues.clear();
+        issues.extend_from_slice(&other.issues);
+        *self = Self {
+            words,
+            issues,
+            ..*other
+        };
+    }
+
     /// Empties the block and keeps its memory.
     pub fn clear(&mut self) {
         self.words.clear();

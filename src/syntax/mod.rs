@@ -9,6 +9,7 @@
 
 mod block;
 mod expression;
+mod foreign;
 mod issue;
 mod parser;
 mod piece;
@@ -18,6 +19,7 @@ mod token;
 mod word;
 
 pub use block::{Block, MAX_ISSUES};
+pub use foreign::{FOREIGN_BYTES, Foreign, foreign};
 pub use issue::{Issue, IssueKind};
 pub use parser::parse_line;
 pub use piece::{Piece, PieceKind};

@@ -69,3 +69,29 @@ fn all_moves_of_an_exact_program_can_be_asked_for() {
     let text = rig.fits("G1 X10 F30000\nX0\n");
     assert_eq!(text, "G1 X10 F23999\nX0\nF30000\n");
 }
+
+/// `LinuxCNC` stops between G0 and G1 and blends among G1: a rapid that is
+/// written as a feed gets a dwell of no time on both sides, so that no corner is
+/// rounded that was not. Between them it is planned like the rapid.
+#[test]
+fn a_rapid_among_blended_feeds_is_written_between_stops() {
+    let rig = super::Rig {
+        controller: "linuxcnc",
+        ..RIG
+    };
+    let program = "G21 G90 G64 P0.05\nG1 X10 F500\nG0 X400\nG0 X0\nG1 X10 F500\nG0 X-390";
+    let (text, summary) = rig.limit(program.as_bytes()).expect("a program");
+    assert!(summary.certified, "{:?}", summary.reasons);
+    let text = String::from_utf8(text).expect("text");
+    let words: Vec<&str> = text.lines().collect();
+    assert_eq!(words[..3], ["G21 G90 G64 P0.05", "G1 X10 F500", "G4 P0"]);
+    assert!(words[3].starts_with("G1 X400 F"), "{text}");
+    assert_eq!(words[4], "G4 P0");
+    assert!(words[5].starts_with("G1 X0"), "{text}");
+    assert_eq!(words[6..8], ["G4 P0", "G1 X10 F500"]);
+    assert_eq!(words[8], "G4 P0");
+    assert!(words[9].starts_with("G1 X-390 F"), "{text}");
+    assert_eq!(words[10..], ["G4 P0", "G0 F500"]);
+    // No move is added, and none is lost.
+    assert_eq!(summary.before.moves, summary.after.moves);
+}

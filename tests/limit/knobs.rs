@@ -81,9 +81,13 @@ fn marlin_acceleration_in_inches() {
 /// The line before a block is read in the unit before it.
 #[test]
 fn marlin_acceleration_beside_a_change_of_units() {
+    // RepRapFirmware reads both commands of the line.
+    let rig = Rig {
+        controller: "reprap",
+        ..MARLIN
+    };
     assert_eq!(
-        MARLIN
-            .strategy(Strategy::Accel)
+        rig.strategy(Strategy::Accel)
             .fits("G1 F30000 X1\nG20 G1 X15\nG21\nG1 X380\n"),
         "G1 F30000 X1\nM201 X3999 Y3999\nG20 G1 X15\nG21\nM201 X5000 Y5000\nG1 X380\n"
     );

@@ -136,7 +136,7 @@ fn blocks_that_are_not_touched() {
         controller: "marlin",
         ..ISG
     };
-    untouchable(marlin, "N5 G1 X400 F30000*12\n", "it carries a checksum");
+    untouchable(marlin, "N5 G1 X400 F30000*52\n", "it carries a checksum");
     // Marlin moves without an F, at a feed that no word can put back.
     untouchable(
         marlin.strategy(Strategy::Speed),

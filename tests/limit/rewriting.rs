@@ -121,8 +121,8 @@ fn nothing_is_put_behind_a_checksum() {
     }
     .strategy(Strategy::Speed);
     assert_eq!(
-        rig.fits("G1 X400 F30000\nN2 G1 X390*40\n"),
-        "G1 X400 F24000\nF30000\nN2 G1 X390*40\n"
+        rig.fits("G1 X400 F30000\nN2 G1 X390*104\n"),
+        "G1 X400 F24000\nG1 F30000\nN2 G1 X390*104\n"
     );
 }
 

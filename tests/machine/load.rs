@@ -23,7 +23,7 @@ fn unknown_names() {
     assert_snapshot!(said("three-axes"), @r#"line 0, error machine-file: no built-in machine and no file is named "three-axes" / did you mean "three-axis"? built in: three-axis, vmc, linear-gantry, five-axis, lathe, router-48v, linuxcnc-mill, printer"#);
     assert_snapshot!(said("qqq"), @r#"line 0, error machine-file: no built-in machine and no file is named "qqq" / built in: three-axis, vmc, linear-gantry, five-axis, lathe, router-48v, linuxcnc-mill, printer"#);
     assert_snapshot!(said(""), @r#"line 0, error machine-file: no built-in machine and no file is named "" / built in: three-axis, vmc, linear-gantry, five-axis, lathe, router-48v, linuxcnc-mill, printer"#);
-    assert_snapshot!(render(&Controller::load("marlim").unwrap_err()), @r#"line 0, error machine-file: no built-in controller profile and no file is named "marlim" / did you mean "marlin"? built in: iso, linuxcnc, grbl, isg, siemens, marlin"#);
+    assert_snapshot!(render(&Controller::load("marlim").unwrap_err()), @r#"line 0, error machine-file: no built-in controller profile and no file is named "marlim" / did you mean "marlin"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper"#);
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn profiles_hold_their_facts() {
     assert!(marlin.language.rapid_uses_feed && !marlin.language.block_delete);
     assert_eq!(
         marlin.knobs[1].argument,
-        KnobArgument::Path(vec![b'P', b'T'])
+        KnobArgument::Path(b"SPTR".to_vec())
     );
     let isg = load("isg");
     assert_eq!(isg.language.family, Family::Isg);
@@ -157,7 +157,7 @@ fn loads_limits_and_converters() {
              min_feed_mm_min = 60\nmin_feed_ratio = 0.5\n\n[axes.X]",
         ),
     );
-    assert_eq!(machine.loads[0].on, (b'M', 8.0));
+    assert_eq!(machine.loads[0].on, [(b'M', 8.0)]);
     assert_eq!(machine.loads[0].off, [(b'M', 9.0), (b'M', 30.0)]);
     assert_eq!(machine.loads[0].converter, 1);
     assert_eq!(machine.converters[0].axes.to_string(), "X");

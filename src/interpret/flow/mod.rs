@@ -19,6 +19,7 @@ use super::position::Reading;
 use super::transfer::{Call, Label, Target, Transfer};
 use crate::diagnostic::Diagnostic;
 use crate::source::{Span, split_line_end};
+use crate::syntax::Block;
 
 /// A line of one of the texts, from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -216,6 +217,13 @@ impl Flow {
         self.texts
             .get(self.now.text)
             .map_or(&[], |text| text.line(self.now.line))
+    }
+
+    /// Reads that line.
+    pub(crate) fn read(&mut self, block: &mut Block) {
+        if let Some(text) = self.texts.get_mut(self.now.text) {
+            text.read(self.now.line, block);
+        }
     }
 
     /// The name of its file, unless it is the program itself.

@@ -6,6 +6,7 @@ use super::outline::Outline;
 use crate::interpret::statement::{Keyword, glance};
 use crate::interpret::transfer::Label;
 use crate::source::lines;
+use crate::syntax::{Block, scan_line};
 
 /// A program, or a file of subprograms.
 #[derive(Debug)]
@@ -15,6 +16,8 @@ pub(super) struct Text {
     starts: Vec<usize>,
     /// How often each line has been executed.
     pub(super) runs: Vec<u32>,
+    /// Lines that run again and again, as they were read.
+    blocks: Vec<Option<Box<Block>>>,
     index: Option<Index>,
     outline: Option<Box<Outline>>,
     /// Places that have been looked for before.
@@ -56,6 +59,7 @@ impl Text {
             bytes,
             starts,
             runs: vec![0; count],
+            blocks: Vec::new(),
             index: None,
             outline: None,
             found: HashMap::new(),
@@ -80,6 +84,23 @@ impl Text {
         let start = self.starts.get(line).copied().unwrap_or_default();
         let end = self.starts.get(line + 1).copied().unwrap_or(start);
         self.bytes.get(start..end).unwrap_or_default()
+    }
+
+    /// Reads a line into `block`, from its text or as it was read before.
+    pub(super) fn read(&mut self, line: usize, block: &mut Block) {
+        if let Some(Some(known)) = self.blocks.get(line) {
+            block.copy_from(known);
+            return;
+        }
+        scan_line(self.line(line), line == 0, block);
+        if self.runs.get(line).is_some_and(|runs| *runs > 2) {
+            if self.blocks.is_empty() {
+                self.blocks.resize(self.len(), None);
+            }
+            if let Some(entry) = self.blocks.get_mut(line) {
+                *entry = Some(Box::new(block.clone()));
+            }
+        }
     }
 
     /// The line of a subroutine's `sub`, or of a program's O number.

@@ -152,13 +152,16 @@ fn load(
         power_w,
         converter,
     } = &table.value;
-    let on_word = on.as_ref().and_then(&mut read);
+    let mut on_words = Vec::new();
+    for text in on.iter().flat_map(|list| &list.0) {
+        on_words.extend(read(text));
+    }
     let mut off_words = Vec::new();
     for text in off.iter().flat_map(|list| &list.0) {
         off_words.extend(read(text).map(|word| (word, &text.span)));
     }
     for (word, span) in &off_words {
-        if on_word == Some(*word) {
+        if on_words.contains(word) {
             let message = "the same word switches the load on and off";
             findings.error("machine-load", span, message, None);
         }
@@ -179,8 +182,11 @@ fn load(
         }
         None => 0,
     };
+    if on_words.is_empty() {
+        return None;
+    }
     Some(Load {
-        on: on_word?,
+        on: on_words,
         off: off_words.into_iter().map(|(word, _)| word).collect(),
         power_w: power_w.as_ref()?.value,
         converter,

@@ -135,6 +135,8 @@ impl Builder {
         plausible::linear(findings, table, &accel, &mass);
         Some(Axis {
             rapid_mm_s: rapid.value,
+            home_mm_s: value(table.home_mm_min.as_ref(), f64::INFINITY) / SECONDS_PER_MINUTE,
+            home_mm: table.home_mm.as_ref().map(|number| number.value),
             accel_mm_s2: accel.value,
             jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
             mass_kg: mass.value,
@@ -221,6 +223,8 @@ impl Builder {
         Axis {
             kind: self.kind,
             rapid_mm_s: 0.0,
+            home_mm_s: f64::INFINITY,
+            home_mm: None,
             accel_mm_s2: 0.0,
             jerk_mm_s3: 0.0,
             mass_kg: 0.0,
@@ -263,6 +267,8 @@ impl Builder {
                         span(t.rapid_mm_min.as_ref()),
                         "rapid_deg_min",
                     ),
+                    ("home_mm_min", span(t.home_mm_min.as_ref()), "rapid_deg_min"),
+                    ("home_mm", span(t.home_mm.as_ref()), "rapid_deg_min"),
                     ("accel_mm_s2", span(t.accel_mm_s2.as_ref()), "accel_deg_s2"),
                     ("jerk_mm_s3", span(t.jerk_mm_s3.as_ref()), "jerk_deg_s3"),
                     ("mass_kg", span(t.mass_kg.as_ref()), "inertia_kg_m2"),

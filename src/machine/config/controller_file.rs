@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::machine_file::{PathModeName, RapidName};
+use super::printer::PrinterTable;
 use super::value::{At, Positive};
 
 /// What a controller reads, how it plans, and which words limit it.
@@ -61,6 +62,8 @@ pub(crate) struct LanguageTable {
     pub(crate) ignored: Option<Vec<At<String>>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
+    /// What 3D printers differ in; only with family = "marlin".
+    pub(crate) printer: Option<At<PrinterTable>>,
 }
 
 /// The family of words.
@@ -114,6 +117,10 @@ pub(crate) struct PlannerTable {
     /// What happens at the ends of rapids where the path mode blends; default
     /// "all", which is the safe one.
     pub(crate) rapid_joint: Option<RapidJointName>,
+    /// Whether a dwell of no time ends the move before it at rest: where feeds
+    /// blend and rapids stop, a rapid may then be written as a feed between two
+    /// such dwells; default false.
+    pub(crate) dwell_stops: Option<bool>,
     /// Whether a rapid may be written as a feed to lower its speed; default none.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
 }

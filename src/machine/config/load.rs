@@ -62,7 +62,7 @@ impl Machine {
             "machine",
             builtin::machines(),
         );
-        Self::from_toml(name_or_path, &text.map_err(|error| vec![error])?)
+        Self::from_toml(name_or_path, &text?)
     }
 }
 
@@ -101,7 +101,7 @@ fn load_controller(folder: &Path, name: &str) -> Loaded<Controller> {
     }
     let path = folder.join(name);
     let text = read(&path, name, "controller profile", builtin::controllers());
-    Controller::from_toml(&text.map_err(|error| vec![error])?)
+    Controller::from_toml(&text?)
 }
 
 /// The machine's controller; what is wrong with its profile is told at the
@@ -149,33 +149,41 @@ fn controller(
 }
 
 /// Text of a file, or why there is none.
-fn read(path: &Path, name: &str, what: &str, builtins: &[Builtin]) -> Result<String, Diagnostic> {
+fn read(
+    path: &Path,
+    name: &str,
+    what: &str,
+    builtins: &[Builtin],
+) -> Result<String, Vec<Diagnostic>> {
     let shown = path.display();
     let refuse = |message: String, help: Option<String>| {
         findings::diagnostic(Severity::Error, "machine-file", message, help)
     };
     if path.is_dir() {
-        return Err(refuse(
+        return Err(vec![refuse(
             format!("{shown} is a folder, not a {what} file"),
             None,
-        ));
+        )]);
     }
     let bytes = match read_bytes(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return Err(not_found(path, name, what, builtins, refuse));
+            return Err(vec![not_found(path, name, what, builtins, refuse)]);
         }
-        Err(error) => return Err(refuse(format!("cannot read {shown}: {error}"), None)),
+        Err(error) => {
+            let message = format!("cannot read {shown}: {error}");
+            return Err(vec![refuse(message, None)]);
+        }
     };
     if bytes.len() as u64 > MAX_BYTES {
         let help = Some(format!("a {what} file is a few kilobytes"));
-        return Err(refuse(format!("{shown} is larger than 1 MiB"), help));
+        return Err(vec![refuse(format!("{shown} is larger than 1 MiB"), help)]);
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let help = Some("save the file as UTF-8".to_owned());
         let refused = refuse(format!("{shown} is not UTF-8"), help);
-        findings::locate(error.as_bytes(), &(at..at + 1), refused)
+        vec![findings::locate(error.as_bytes(), &(at..at + 1), refused)]
     })
 }
 

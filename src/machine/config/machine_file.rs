@@ -138,6 +138,11 @@ pub(crate) struct AxisTable {
     pub(crate) kind: Option<At<KindName>>,
     /// Linear: rapid speed in mm/min; caps feeds too.
     pub(crate) rapid_mm_min: Option<Positive>,
+    /// Linear: homing speed of a printer (G28) in mm/min; default: the rapid speed.
+    pub(crate) home_mm_min: Option<Positive>,
+    /// Linear: where a printer's axis stands after G28, in mm; default: not
+    /// known, so that its next move counts at full speed and acceleration.
+    pub(crate) home_mm: Option<Number>,
     /// Rotary: rapid speed in degrees/min.
     pub(crate) rapid_deg_min: Option<Positive>,
     /// Largest speed of the motor (of the table without `gear_ratio`) in 1/min.
@@ -215,9 +220,10 @@ pub(crate) struct SpindleTable {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LoadTable {
-    /// Word that switches it on, such as `M8`.
+    /// Word or words that switch it on, such as `M8`. On a printer a word with a
+    /// value (`M104 S200`, `M106 S255`) switches it off when the value is 0.
     #[schemars(required)]
-    pub(crate) on: Option<At<String>>,
+    pub(crate) on: Option<OneOrMany<String>>,
     /// Word or words that switch it off.
     #[schemars(required)]
     pub(crate) off: Option<OneOrMany<String>>,

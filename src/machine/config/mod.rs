@@ -16,6 +16,7 @@ mod load;
 mod machine_file;
 mod plausible;
 mod preset;
+mod printer;
 mod profile;
 mod quantity;
 mod schema;

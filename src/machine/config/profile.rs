@@ -31,7 +31,10 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
     Some(Controller {
         name: file.name.as_ref()?.value.clone(),
         description: file.description.clone().unwrap_or_default(),
-        language: language?,
+        language: Language {
+            name: file.name.as_ref()?.value.clone(),
+            ..language?
+        },
         planner: planner(planner_table)?,
         knobs,
         rapid_knob: rapid_knob(findings, planner_table),
@@ -43,6 +46,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
     let (ignored_g, ignored_m) = ignored(findings, table);
     let power_on = path_mode(table.power_on?);
     Some(Language {
+        name: String::new(),
         family: match table.family? {
             FamilyName::Iso => Family::Iso,
             FamilyName::Rs274 => Family::Rs274,
@@ -62,6 +66,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         ignored_g,
         ignored_m,
         block_delete: table.block_delete.unwrap_or(true),
+        printer: super::printer::printer(findings, table),
     })
 }
 
@@ -100,7 +105,7 @@ fn ignored(findings: &mut Findings<'_>, table: &LanguageTable) -> (Vec<u16>, Vec
     (g, m)
 }
 
-fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
+pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
     let letter = word::letter(&text.value);
     if letter.is_none() {
         let message = format!("\"{}\" is not a letter", text.value);
@@ -121,6 +126,7 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
             Some(RapidJointName::Rapids) => RapidJoint::Rapids,
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
+        dwell_stops: table.dwell_stops.unwrap_or(false),
     })
 }
 

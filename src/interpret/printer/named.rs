@@ -1,0 +1,146 @@
+//! Extended commands: a name, then `KEY=value`.
+//!
+//! Source: Klipper documentation, "G-Codes". `RepRapFirmware` has `if`,
+//! `while`, `var` and the like at the beginning of a line (Duet documentation,
+//! "Meta commands"); they are refused by name.
+
+use super::command::{note_advance, note_levelling};
+use super::kept::Back;
+use super::line::{Parameters, Text};
+use crate::interpret::execute::{Control, Run};
+use crate::interpret::motion::EXTRUDER;
+use crate::interpret::moves::ActionKind;
+use crate::machine::Command;
+use crate::source::Span;
+
+/// Words of `RepRapFirmware`'s conditional language.
+const META: [&str; 11] = [
+    "if", "elif", "else", "while", "break", "continue", "var", "global", "set", "abort", "skip",
+];
+
+impl Control<'_> {
+    /// Executes an extended command.
+    pub(super) fn named(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        text: Text<'_>,
+        name: &[u8],
+        span: Span,
+        at: usize,
+    ) {
+        let printer = &self.machine.controller.language.printer;
+        let listed = |list: &[Command]| list.iter().any(|one| one.is_macro(name));
+        let upper = name.to_ascii_uppercase();
+        let upper = upper.as_slice();
+        let shifts = listed(&printer.shifts);
+        let moves = shifts && text.argument(at, "MOVE").is_some_and(|value| value != b"0");
+        if listed(&printer.ignored_macros) {
+            match upper {
+                b"SET_PRESSURE_ADVANCE" => note_advance(run, span),
+                b"BED_MESH_PROFILE" => {
+                    note_levelling(run, span);
+                    self.shift_axes(&Parameters::new());
+                }
+                _ => {}
+            }
+            run.act(ActionKind::Other, 0.0);
+        } else if moves || listed(&printer.unknown_moves) {
+            self.unknown_moves(run, span);
+        } else if shifts {
+            self.shift_axes(&Parameters::new());
+            run.act(ActionKind::Other, 0.0);
+        } else if !(printer.velocity_limit && self.klipper(run, text, upper, span, at)) {
+            refuse_name(run, name, span);
+        }
+    }
+
+    /// Klipper's commands that set something; false for others.
+    fn klipper(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        text: Text<'_>,
+        name: &[u8],
+        span: Span,
+        at: usize,
+    ) -> bool {
+        let state = || text.argument(at, "NAME").unwrap_or(b"default").to_vec();
+        match name {
+            b"SET_VELOCITY_LIMIT" => {
+                match ["VELOCITY", "ACCEL"].map(|key| text.number_argument(at, key)) {
+                    [Ok(velocity), Ok(accel)] => self.limit_velocity(run, velocity, accel, span),
+                    _ => Self::bad_value(run, span, "write numbers behind VELOCITY and ACCEL"),
+                }
+            }
+            b"RESET_VELOCITY_LIMIT" => self.reset_velocity(run),
+            b"SET_RETRACTION" => self.set_retraction(run, text, span, at),
+            b"SAVE_GCODE_STATE" => self.save_state(run, state(), span),
+            b"RESTORE_GCODE_STATE" => {
+                let moves = text.argument(at, "MOVE").is_some_and(|value| value != b"0");
+                let back = match text.number_argument(at, "MOVE_SPEED") {
+                    _ if !moves => Back::No,
+                    Ok(None) => Back::AtFeed,
+                    Ok(Some(speed)) if speed > 0.0 => Back::At(speed),
+                    _ => {
+                        Self::bad_value(run, span, "write a speed above 0");
+                        return true;
+                    }
+                };
+                self.restore_state(run, &state(), back, span);
+            }
+            b"SET_HEATER_TEMPERATURE" => self.set_heater(run, text, at, span),
+            b"SET_FAN_SPEED" => self.set_fan(run, text, at, span),
+            b"TURN_OFF_HEATERS" => self.turn_off_heaters(),
+            b"SET_EXTRUDER_ROTATION_DISTANCE" => {
+                if let Ok(Some(distance)) = text.number_argument(at, "DISTANCE") {
+                    self.steps_of(run, EXTRUDER, distance, span);
+                }
+            }
+            b"ACTIVATE_EXTRUDER" => {
+                // Another extruder has another place.
+                self.position.unknown.insert(EXTRUDER);
+                run.facts.boundary = true;
+            }
+            _ => return false,
+        }
+        run.act(ActionKind::Other, 0.0);
+        true
+    }
+
+    /// `SET_RETRACTION`: lengths in mm, speeds in mm/s.
+    fn set_retraction(&mut self, run: &mut Run<'_, '_>, text: Text<'_>, span: Span, at: usize) {
+        let mut retract = self.printer.retract;
+        let fields = [
+            ("RETRACT_LENGTH", &mut retract.length_mm),
+            ("RETRACT_SPEED", &mut retract.speed_mm_s),
+            ("UNRETRACT_EXTRA_LENGTH", &mut retract.extra_mm),
+            ("UNRETRACT_SPEED", &mut retract.recover_mm_s),
+        ];
+        for (key, field) in fields {
+            match text.number_argument(at, key) {
+                Ok(None) => {}
+                Ok(Some(value)) => *field = value,
+                Err(_) => return Self::bad_value(run, span, "write numbers behind the keys"),
+            }
+        }
+        self.take_retract(run, retract, span);
+    }
+}
+
+fn refuse_name(run: &mut Run<'_, '_>, name: &[u8], span: Span) {
+    let shown = crate::diagnostic::excerpt(name, 60);
+    if META
+        .iter()
+        .any(|word| word.as_bytes().eq_ignore_ascii_case(name))
+    {
+        let message = format!("`{shown}`: branches, loops and variables are not supported");
+        run.report
+            .error("meta-command", message, span)
+            .help("write the blocks out in the order in which they are executed");
+        return;
+    }
+    let message = format!("`{shown}` is a macro or a command that this profile does not know");
+    run.report.error("unknown-macro", message, span).help(
+        "in [language.printer] of a profile of your own, list it under `ignored_macros` if it \
+         moves nothing and sets nothing, or under `unknown_moves` if it moves",
+    );
+}

@@ -1,0 +1,620 @@
+//! The language of 3D printers: each construct by a program worked by hand,
+//! with the source of its meaning.
+
+use std::fmt::Write as _;
+use std::io::Cursor;
+
+use gwatt::interpret::Move;
+use gwatt::machine::{ALL_AXES, AxisSet, Machine};
+use gwatt::pipeline::{self, Failure, Options};
+use insta::assert_snapshot;
+
+/// X Y Z E: 100 mm/s, 1000 mm/s², home at 0, homing at 10 mm/s; a nozzle heater of
+/// 40 W, a bed of 200 W and a fan of 5 W.
+fn machine(controller: &str) -> Machine {
+    let mut text = format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
+    );
+    for axis in ["X", "Y", "Z", "E"] {
+        let home = if axis == "E" {
+            ""
+        } else {
+            "home_mm = 0\nhome_mm_min = 600"
+        };
+        let _ = writeln!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n{home}"
+        );
+    }
+    text.push_str(
+        "[[load]]\non = [\"M104\", \"M109\"]\noff = \"M81\"\npower_w = 40\n\
+         [[load]]\non = [\"M140\", \"M190\"]\noff = \"M81\"\npower_w = 200\n\
+         [[load]]\non = \"M106\"\noff = [\"M107\", \"M81\"]\npower_w = 5\n",
+    );
+    load(&text)
+}
+
+fn load(text: &str) -> Machine {
+    Machine::from_toml("test.toml", text)
+        .expect("a valid machine")
+        .0
+}
+
+fn letters(set: AxisSet) -> String {
+    set.iter()
+        .map(|axis| ALL_AXES[axis].letter() as char)
+        .collect()
+}
+
+fn shown(mv: &Move) -> String {
+    let mut out = format!("{} {}", mv.line, mv.kind.name());
+    for axis in mv.moving.iter() {
+        let letter = ALL_AXES[axis].letter() as char;
+        let (start, end) = (mv.start[axis], mv.end[axis]);
+        let _ = write!(out, " {letter}{start:.3}>{end:.3}");
+    }
+    if !mv.unknown_start.is_empty() {
+        let _ = write!(out, " from anywhere {}", letters(mv.unknown_start));
+    }
+    if mv.feed_mm_s.is_finite() {
+        let _ = write!(out, " v{:.3}", mv.feed_mm_s);
+    }
+    if mv.path_accel_mm_s2.is_finite() {
+        let _ = write!(out, " a{:.0}", mv.path_accel_mm_s2);
+    }
+    if mv.rapid_factor > 1.0 {
+        let _ = write!(out, " raised {:.2}", mv.rapid_factor);
+    }
+    if mv.dwell_s > 0.0 {
+        let _ = write!(out, " {} s", mv.dwell_s);
+    }
+    if mv.loads != 0 {
+        let _ = write!(out, " loads {:03b}", mv.loads);
+    }
+    out
+}
+
+/// The moves of a program and its notes, or the messages of a refusal.
+fn run(machine: &Machine, program: &str) -> String {
+    let mut out = String::new();
+    let result = pipeline::moves(
+        Cursor::new(program.as_bytes()),
+        machine,
+        &Options::default(),
+        &mut |mv, _| {
+            out.push_str(&shown(mv));
+            out.push('\n');
+            Ok(())
+        },
+    );
+    match result {
+        Ok(notes) => {
+            for note in notes {
+                let _ = writeln!(out, "note {}", note.rule);
+            }
+            out
+        }
+        Err(Failure::Refused { diagnostics, .. }) => diagnostics
+            .iter()
+            .filter(|found| found.severity == gwatt::diagnostic::Severity::Error)
+            .fold(String::new(), |mut out, found| {
+                let _ = writeln!(out, "{}: {}", found.rule, found.message);
+                out
+            }),
+        Err(_) => "another failure".to_owned(),
+    }
+}
+
+fn marlin(program: &str) -> String {
+    run(&machine("marlin"), program)
+}
+
+fn reprap(program: &str) -> String {
+    run(&machine("reprap"), program)
+}
+
+fn klipper(program: &str) -> String {
+    run(&machine("klipper"), program)
+}
+
+/// `RepRap` wiki, "G-code", "Checking": XOR of the bytes before the star, 96 for
+/// `N10 G1 X10`; ` F600` turns it into 96 ^ 0x20 ^ 0x46 ^ 0x36 ^ 0x30 ^ 0x30 = 48.
+#[test]
+fn checksums_are_verified() {
+    assert_snapshot!(marlin("N10 G1 X10*96\n"), @r"
+    1 feed X0.000>10.000
+    note no-feed-yet
+    ");
+    assert_snapshot!(marlin("N10 G1 X10*97 ; wrong\n"), @"checksum: the checksum is wrong: the line's own is 96");
+    assert_snapshot!(marlin("N10 G1 X10 F600*12345\n"), @"checksum: the checksum is wrong: the line's own is 48");
+    let text = "N3 M117 Hi";
+    let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
+    assert_eq!(
+        marlin(&format!("{text}*{sum}\nG0 X1 F60\n")),
+        "2 feed X0.000>1.000 v1.000\n"
+    );
+    assert_snapshot!(marlin("N3 M117 Hi*1\n"), @"checksum: the checksum is wrong: the line's own is 38");
+    assert_snapshot!(marlin("N4 M110 N0\nG0 X1 F60\n"), @"2 feed X0.000>1.000 v1.000");
+}
+
+/// Marlin M117, M118, M23, M862.3, M486: text and flags, read to the comment.
+#[test]
+fn free_text_is_no_fault() {
+    assert_snapshot!(marlin(
+        "M117 Layer 5/10 (25%) \"up\" X9 G1\nM118 E1 hello, world #3\nM23 a~1.gco\n\
+         M862.3 P \"MK3S\"\nM486 A\"Körper\"\nM84 X Y E\nM73 P5 R10 ; five\nM115 U3.9.0\n\
+         M155 S1\nM900 K0.05\nM420 S1 Z10\nM0 Click to go on\nG0 X1 F60\n"
+    ), @r"
+    13 feed X0.000>1.000 v1.000
+    note pressure-advance
+    note bed-levelling
+    ");
+    assert_snapshot!(marlin("M106 S{x}\n"), @"expression: expressions in `{ }` are not supported");
+    assert_snapshot!(marlin("M999.3 ?\nM106 hello\n"), @"unknown-text: this is no parameter of the command");
+    assert_snapshot!(marlin("M1234\n"), @"unknown-code: M1234 is not known to this controller profile");
+    assert_snapshot!(marlin("G1 X10 Y\n"), @"missing-number: `Y` has no number behind it");
+}
+
+/// Marlin G90, M82, M83: G90 makes the extruder absolute too; RepRapFirmware:
+/// only M82 and M83; Klipper (`gcode_move.py`): relative if either says so.
+#[test]
+fn the_extruder_has_a_mode_of_its_own() {
+    let program = "M83\nG90\nG1 E5 F60\nG1 E5\nG91\nM82\nG1 E7\n";
+    assert_snapshot!(marlin(program), @r"
+    3 feed E0.000>5.000 v1.000
+    4 feed v1.000
+    7 feed E5.000>7.000 v1.000
+    ");
+    assert_snapshot!(reprap(program), @r"
+    3 feed E0.000>5.000 v1.000
+    4 feed E5.000>10.000 v1.000
+    7 feed E10.000>7.000 v1.000
+    ");
+    assert_snapshot!(klipper(program), @r"
+    3 feed E0.000>5.000 v1.000
+    4 feed E5.000>10.000 v1.000
+    7 feed E10.000>17.000 v1.000
+    ");
+}
+
+/// Marlin G10, G11, M207, M208: E moves by itself and its number stays; a
+/// second G10 does nothing. Default 3 mm at 45 mm/s.
+#[test]
+fn firmware_retracts() {
+    assert_snapshot!(marlin(
+        "G1 E10 F60\nG10\nG10\nG11\nM207 S2 F600 Z0.5\nM208 S0.25 F300\nG10 S1\nG11\nG1 E11\n"
+    ), @r"
+    1 feed E0.000>10.000 v1.000
+    2 feed E10.000>7.000 v45.000
+    4 feed E7.000>10.000 v45.000
+    7 feed E10.000>8.000 v10.000
+    7 feed Z0.000>0.500
+    8 feed Z0.500>0.000
+    8 feed E8.000>10.250 v5.000
+    9 feed E10.250>11.250 v1.000
+    note retract-default
+    ");
+    // Klipper, [firmware_retraction], in mm and mm/s.
+    assert_snapshot!(klipper("SET_RETRACTION RETRACT_LENGTH=4 RETRACT_SPEED=30\nG10\nG11\n"), @r"
+    2 feed E0.000>-4.000 v30.000
+    3 feed E-4.000>0.000 v10.000
+    ");
+    // Duet, G10 with P: temperatures of a tool, no retract.
+    assert_snapshot!(reprap("G10 P0 S200 R150\nG1 X1 F60\n"), @r"
+    2 feed X0.000>1.000 v1.000
+    note heaters
+    ");
+}
+
+/// Marlin G28: from anywhere to the endstops, X and Y together; Klipper homes
+/// one axis after the other; RepRapFirmware's homeall.g is the machine's own.
+#[test]
+fn homing_starts_anywhere() {
+    assert_snapshot!(marlin("G92 X5\nG28 ; all\nG1 X10 F600\nG28 X Y\nG28 Z0\n"), @r"
+    2 feed from anywhere XY v10.000
+    2 feed from anywhere Z v10.000
+    3 feed X0.000>10.000 v10.000
+    4 feed from anywhere XY v10.000
+    5 feed from anywhere Z v10.000
+    ");
+    assert_snapshot!(klipper("G28\n"), @r"
+    1 feed from anywhere X v10.000
+    1 feed from anywhere Y v10.000
+    1 feed from anywhere Z v10.000
+    ");
+    assert_snapshot!(reprap("G28\n"), @"1 feed from anywhere XYZ v10.000");
+    // Without a homing speed and place: full speed, and the next move too.
+    let plain = load(
+        "schema = 1\nname = \"t\"\ncontroller = \"marlin\"\n[converter]\npeak_power_w = 1e5\n\
+         [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n",
+    );
+    assert_snapshot!(run(&plain, "G28\nG1 X10 F600\nG1 X20\n"), @r"
+    1 feed from anywhere X
+    2 feed from anywhere X v10.000
+    3 feed X10.000>20.000 v10.000
+    note home
+    ");
+}
+
+/// Marlin G29, M600, T: only the firmware knows; every axis counts, and its
+/// place is lost until an absolute move, or G92.
+#[test]
+fn unknown_moves_count_in_full() {
+    assert_snapshot!(marlin("G29 P1 T\nG1 X10 F600\nG91\nG1 Y5\nM600\nG92 E0\nG90\nG1 E2\nT0\nT1\n"), @r"
+    1 feed from anywhere XYZE
+    2 feed from anywhere X v10.000
+    4 feed Y0.000>5.000 v10.000
+    5 feed from anywhere XYZE
+    8 feed E0.000>2.000 v10.000
+    10 feed from anywhere XYZE
+    note unknown-moves
+    note bed-levelling
+    ");
+    // An F of such a command may or may not stay in force.
+    assert_snapshot!(marlin("G1 X1 F60\nG38.2 Z-5 F30\nG92 X1\nG1 X2\n"), @r"
+    1 feed X0.000>1.000 v1.000
+    2 feed from anywhere XYZE
+    4 feed X1.000>2.000
+    note unknown-moves
+    note no-feed-yet
+    ");
+    // M206 shifts: only the next absolute move of that axis comes from anywhere.
+    assert_snapshot!(marlin("M206 Z0.5\nG1 X1 F60\nG1 Z1\nG1 Z2\n"), @r"
+    2 feed X0.000>1.000 v1.000
+    3 feed from anywhere Z v1.000
+    4 feed Z1.000>2.000 v1.000
+    ");
+    // RepRapFirmware: T0 runs files of the machine; G1 H1 ends at an endstop.
+    assert_snapshot!(reprap("T0\nG1 H1 X-200 F600\nG1 H0 X1\n"), @r"
+    1 feed from anywhere XYZE
+    2 feed from anywhere XYZE
+    3 feed from anywhere X v10.000
+    note unknown-moves
+    ");
+}
+
+/// Marlin M220: a percentage of all feeds, of G0 too; B and R keep it.
+#[test]
+fn the_feed_percentage_scales_feeds() {
+    assert_snapshot!(marlin("G0 X10 F600\nM220 S50 B\nG0 X20\nG1 X30 F1200\nM220 S200\nG1 X40\nM220 R\nG1 X50\n"), @r"
+    1 feed X0.000>10.000 v10.000
+    3 feed X10.000>20.000 v5.000
+    4 feed X20.000>30.000 v10.000
+    6 feed X30.000>40.000 v40.000
+    8 feed X40.000>50.000 v20.000
+    ");
+    assert_snapshot!(marlin("M220 S0\n"), @"printer-value: this value is out of range");
+}
+
+/// Marlin M221 and M200: filament moves more or less than E says. 1.75 mm:
+/// 1/(π·0.875²) = 0.415752 mm for a mm³.
+#[test]
+fn flow_scales_the_extruder() {
+    assert_snapshot!(marlin("M221 S50\nG1 X10 E10 F600\nG1 E12\nM221 S100\nG1 E13\nG92 E0\nM200 D1.75\nG1 E10\n"), @r"
+    2 feed X0.000>10.000 E0.000>5.000 v10.000
+    3 feed E5.000>6.000 v10.000
+    5 feed E6.000>7.000 v10.000
+    8 feed E7.000>11.158 v10.000
+    ");
+}
+
+/// Marlin M203 in mm/s, RepRapFirmware M203 in mm/min: lower caps the move,
+/// higher lifts the machine's limit.
+#[test]
+fn speed_limits_of_axes() {
+    assert_snapshot!(marlin("M203 X20 Y150\nG1 X30 Y40 F60000\nG1 Y50\nG1 X0\n"), @r"
+    2 feed X0.000>30.000 Y0.000>40.000 v33.333 raised 1.50
+    3 feed Y40.000>50.000 v150.000 raised 1.50
+    4 feed X30.000>0.000 v20.000
+    ");
+    assert_snapshot!(reprap("M203 X1200\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
+    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000");
+    // Marlin M205 S: no move that extrudes is slower.
+    assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"
+    2 feed X0.000>1.000 E0.000>1.000 v20.000
+    3 feed X1.000>2.000 v10.000
+    ");
+}
+
+/// Marlin M204: S for both, then P and T; R for the extruder alone.
+/// RepRapFirmware: moves of X or Y only.
+#[test]
+fn accelerations_along_the_path() {
+    let moves = "G1 X10 E1 F600\nG1 X20\nG1 E2\nG1 Z1\n";
+    assert_snapshot!(marlin(&format!("M204 S500 T800\n{moves}M204 R300 P400\n{moves}")), @r"
+    2 feed X0.000>10.000 E0.000>1.000 v10.000 a500
+    3 feed X10.000>20.000 v10.000 a800
+    4 feed E1.000>2.000 v10.000
+    5 feed Z0.000>1.000 v10.000 a800
+    7 feed X20.000>10.000 E2.000>1.000 v10.000 a400
+    8 feed X10.000>20.000 v10.000 a800
+    9 feed E1.000>2.000 v10.000 a300
+    10 feed v10.000 a300
+    ");
+    assert_snapshot!(reprap(&format!("M204 P500 T800\n{moves}")), @r"
+    2 feed X0.000>10.000 E0.000>1.000 v10.000 a500
+    3 feed X10.000>20.000 v10.000 a800
+    4 feed E1.000>2.000 v10.000
+    5 feed Z0.000>1.000 v10.000
+    ");
+    assert_snapshot!(marlin("M204 P0\n"), @"printer-value: this value is out of range");
+}
+
+/// Klipper, [toolhead]: VELOCITY caps the path, ACCEL is along the path; both
+/// may be above the machine file. M204: S, or the smaller of P and T.
+#[test]
+fn klipper_velocity_limits() {
+    assert_snapshot!(klipper(
+        "SET_VELOCITY_LIMIT VELOCITY=50 ACCEL=700 SQUARE_CORNER_VELOCITY=5 MINIMUM_CRUISE_RATIO=0\n\
+         G1 X30 Y40 F60000\nG1 E1\nSET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X0\n\
+         M204 P200 T100\nG1 Y0 F600\nM204 P10\nG1 Y1\nRESET_VELOCITY_LIMIT\nG1 Y0\n"
+    ), @r"
+    2 feed X0.000>30.000 Y0.000>40.000 v50.000 a700
+    3 feed E0.000>1.000 v1000.000
+    5 feed X30.000>0.000 v300.000 a3000 raised 3.00
+    7 feed Y40.000>0.000 v10.000 a100 raised 3.00
+    9 feed Y0.000>1.000 v10.000 a100 raised 3.00
+    11 feed Y1.000>0.000 v10.000
+    ");
+    assert_snapshot!(klipper("SET_VELOCITY_LIMIT ACCEL={a}\n"), @"printer-value: this value is out of range");
+}
+
+/// A raised limit must reach the peak: 10 kg from rest to 300 mm/s at
+/// 3000 mm/s² takes 0.3·10·3 = 9 W, at the machine's own limits 1 W.
+#[test]
+fn raised_limits_raise_the_peak() {
+    let machine = machine("klipper");
+    let peak = |program: &str| {
+        pipeline::analyze(
+            Cursor::new(program.as_bytes()),
+            &machine,
+            &Options::default(),
+            None,
+        )
+        .expect("accepted")
+        .peak_w
+    };
+    let own = peak("G1 X100 F60000\n");
+    let raised = peak("SET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X100 F60000\n");
+    assert!((own - 1.0).abs() < 1e-6, "{own}");
+    assert!((raised - 9.0).abs() < 1e-6, "{raised}");
+    // An arc alike, and Marlin's words for it.
+    let marlin = self::machine("marlin");
+    let arc = pipeline::analyze(
+        Cursor::new("M203 X300 Y300\nG2 X0 Y0 I1000 J0 F60000\n"),
+        &marlin,
+        &Options::default(),
+        None,
+    )
+    .expect("accepted")
+    .peak_w;
+    assert!(arc > 2.0, "{arc}");
+}
+
+/// Klipper, `[gcode_move]`: modes, feed and offsets come back, the extruder's
+/// place does not; MOVE=1 goes back too.
+#[test]
+fn klipper_states() {
+    assert_snapshot!(klipper(
+        "G1 X10 E5 F600\nSAVE_GCODE_STATE NAME=a\nG91\nM83\nG1 X5 E2 F1200\n\
+         RESTORE_GCODE_STATE NAME=a MOVE=1 MOVE_SPEED=7\nG1 X11 E6\n"
+    ), @r"
+    1 feed X0.000>10.000 E0.000>5.000 v10.000
+    5 feed X10.000>15.000 E5.000>7.000 v20.000
+    6 feed X15.000>10.000 v7.000
+    7 feed X10.000>11.000 E7.000>8.000 v10.000
+    ");
+    assert_snapshot!(klipper("RESTORE_GCODE_STATE NAME=b\n"), @"no-such-state: a state that was not saved");
+    // RepRapFirmware, M120 and M121: modes and feed.
+    assert_snapshot!(reprap("G1 X1 F60\nM120\nG91\nG1 X1 F120\nM121\nG1 X1\n"), @r"
+    1 feed X0.000>1.000 v1.000
+    4 feed X1.000>2.000 v2.000
+    6 feed X2.000>1.000 v1.000
+    ");
+}
+
+/// Marlin G60 and G61.
+#[test]
+fn kept_positions() {
+    assert_snapshot!(marlin("G1 X10 Y5 E1 F600\nG60 S2\nG1 X20 Y9 E2\nG61 S2 X F1200\nG61 S2\n"), @r"
+    1 feed X0.000>10.000 Y0.000>5.000 E0.000>1.000 v10.000
+    3 feed X10.000>20.000 Y5.000>9.000 E1.000>2.000 v10.000
+    4 feed X20.000>10.000 v20.000
+    5 feed Y9.000>5.000 v10.000
+    ");
+    assert_snapshot!(marlin("G61 S1\n"), @"no-such-position: G61 to a position that G60 has not kept");
+}
+
+/// Loads by value (Marlin M104, M140, M106, M107): S0 switches off, behind the
+/// block; a second fan or tool keeps its load on.
+#[test]
+fn heaters_and_fans() {
+    assert_snapshot!(marlin(
+        "M140 S60\nM104 S200\nG1 X1 F60\nM109 S0\nM106 S255\nG1 X2\nM106 P1\nM107\nG1 X3\n\
+         M107 P1\nM190 R0\nG1 X4\nM104 T1 S9\nM104 S0\nG1 X5\nM81\nG1 X6\n"
+    ), @r"
+    3 feed X0.000>1.000 v1.000 loads 011
+    6 feed X1.000>2.000 v1.000 loads 110
+    9 feed X2.000>3.000 v1.000 loads 110
+    12 feed X3.000>4.000 v1.000
+    15 feed X4.000>5.000 v1.000 loads 001
+    17 feed X5.000>6.000 v1.000
+    ");
+    assert_snapshot!(klipper(
+        "SET_HEATER_TEMPERATURE HEATER=heater_bed TARGET=60\nSET_FAN_SPEED FAN=aux SPEED=0.5\n\
+         G1 X1 F60\nTURN_OFF_HEATERS\nSET_FAN_SPEED FAN=aux SPEED=0\nG1 X2\n"
+    ), @r"
+    3 feed X0.000>1.000 v1.000 loads 110
+    6 feed X1.000>2.000 v1.000 loads 100
+    ");
+    let bare = load(
+        "schema = 1\nname = \"t\"\ncontroller = \"marlin\"\n[converter]\npeak_power_w = 1e5\n\
+         [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n",
+    );
+    assert_snapshot!(run(&bare, "M104 S200\nM109 S0\n"), @"note heaters");
+}
+
+/// Marlin and Klipper read one command a line; RepRapFirmware reads all.
+#[test]
+fn several_commands_on_a_line() {
+    assert_snapshot!(marlin("G21 G90\nM5 M400\nG1 X1 F60\n"), @r"
+    3 feed X0.000>1.000 v1.000
+    note no-spindle
+    ");
+    assert_snapshot!(marlin("G90 G91\n"), @"two-commands: this controller reads one command a line");
+    assert_snapshot!(marlin("M106 S9 G1 X5\n"), @"two-commands: this controller reads one command a line");
+    assert_snapshot!(reprap("G91 M83 G1 X1 E1 F60 M400 G1 X1 E1\n"), @r"
+    1 feed X0.000>1.000 E0.000>1.000 v1.000
+    1 feed X1.000>2.000 E1.000>2.000 v1.000
+    ");
+}
+
+/// Klipper, "G-Codes": names without motion pass; macros of the machine and
+/// RepRapFirmware's meta commands are refused by name.
+#[test]
+fn extended_commands() {
+    assert_snapshot!(klipper(
+        "SET_PRESSURE_ADVANCE EXTRUDER=extruder ADVANCE=.001\nEXCLUDE_OBJECT_START NAME=part_1\n\
+         TIMELAPSE_TAKE_FRAME\nRESPOND TYPE=echo MSG=\"hi; there\"\nSET_GCODE_OFFSET Z=.1\n\
+         G1 Z1 F60\nset_gcode_offset Z=0 MOVE=1\nBED_MESH_CALIBRATE\n"
+    ), @r"
+    6 feed from anywhere Z v1.000
+    7 feed from anywhere XYZE
+    8 feed from anywhere XYZE
+    note pressure-advance
+    note unknown-moves
+    note bed-levelling
+    ");
+    assert_snapshot!(klipper("PRINT_START BED=60 EXTRUDER=200\n"), @"unknown-macro: `PRINT_START` is a macro or a command that this profile does not know");
+    assert_snapshot!(marlin("SET_VELOCITY_LIMIT ACCEL=5\n"), @"unknown-macro: `SET_VELOCITY_LIMIT` is a macro or a command that this profile does not know");
+    assert_snapshot!(reprap("if x > 1\n"), @"meta-command: `if`: branches, loops and variables are not supported");
+    assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file");
+    assert_snapshot!(reprap("M99\n"), @"unsupported-code: M99 belongs to a macro file");
+    assert_snapshot!(reprap("G1 X{global.x}\n"), @"expression: expressions in `{ }` are not supported");
+    assert_snapshot!(marlin("M502\n"), @"unsupported-code: M502 loads settings that the machine file does not describe");
+    assert_snapshot!(marlin("M209 S1\n"), @"unsupported-code: M209 turns moves of the extruder into retracts");
+}
+
+/// Marlin M92: what the program states is taken for true, but not two values.
+#[test]
+fn steps_per_unit() {
+    assert_snapshot!(marlin("M92 X80 E415\nM92\nM92 X80\n"), @"note steps-per-unit");
+    assert_snapshot!(marlin("M92 E415\nM92 E400\n"), @"steps-per-unit: a second scale for this axis: its real distances are not known");
+}
+
+/// Marlin M501: the machine file's limits again.
+#[test]
+fn stored_settings() {
+    assert_snapshot!(marlin("M204 P100 T100\nM203 X5\nG1 X1 F600\nM501\nG1 X2\n"), @r"
+    3 feed X0.000>1.000 v5.000 a100
+    5 feed from anywhere X v10.000
+    note stored-settings
+    ");
+}
+
+/// Marlin `G2_G3.cpp`: an end beside the circle is reached by the circle of the
+/// start and a straight line: centre (10, 0), radius 10, a quarter turn to
+/// (10, 10), then up to (10, 12).
+#[test]
+fn arcs_with_an_end_beside_the_circle() {
+    assert_snapshot!(marlin("G2 X10 Y12 I10 J0 E3 F600\n"), @r"
+    1 arc X0.000>10.000 Y0.000>10.000 E0.000>3.000 v10.000
+    1 feed Y10.000>12.000 v10.000
+    note arc-end
+    ");
+    // From an unknown place: the feed in every direction.
+    assert_snapshot!(marlin("G29\nG2 X10 Y10 I10 J0 F600\nG1 X11\n"), @r"
+    1 feed from anywhere XYZE
+    2 feed from anywhere XY v10.000
+    3 feed X10.000>11.000 v10.000
+    note unknown-moves
+    note bed-levelling
+    ");
+}
+
+/// No bytes make the reader panic, and every refusal has a reason.
+#[test]
+fn any_text_is_read() {
+    let parts = [
+        "G",
+        "M",
+        "T",
+        "G28",
+        "M117",
+        "N1",
+        "*",
+        "*5",
+        "\"",
+        "{",
+        "}",
+        ";",
+        "(",
+        ")",
+        " ",
+        "X",
+        "-",
+        ".",
+        "1e",
+        "é",
+        "SET_",
+        "=",
+        ":",
+        "M104",
+        "S",
+        "9999999999999999999999999999999999999999999",
+        "\t",
+        "/",
+        "%",
+        "#",
+        "[",
+        "G10",
+        "M92",
+        "G61",
+        "SAVE_GCODE_STATE NAME=",
+    ];
+    let machines = ["marlin", "reprap", "klipper"].map(machine);
+    for first in parts {
+        for second in parts {
+            for third in ["", "X", "5", "\"", "*", "G1", " M106 S1"] {
+                let line = format!("{first}{second}{third}\nG1 X1 F60\n");
+                for machine in &machines {
+                    let _ = run(machine, &line);
+                }
+            }
+        }
+    }
+}
+
+/// Complete print programs of the corpus are read; it is not part of the
+/// project.
+#[test]
+fn real_programs_are_read() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus/3dprint");
+    if !folder.is_dir() {
+        println!("skipped: {} is not there", folder.display());
+        return;
+    }
+    let (machine, _) = Machine::load("printer").expect("built in");
+    let mut folders = vec![folder];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("readable").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            // A plasma cutter's program for Mach3.
+            let name = path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            if name == "mach3.gcode" {
+                continue;
+            }
+            let text = std::fs::read(&path).expect("readable");
+            let result = pipeline::analyze(Cursor::new(text), &machine, &Options::default(), None);
+            assert!(result.is_ok(), "{}", path.display());
+        }
+    }
+}
