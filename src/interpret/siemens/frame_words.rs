@@ -130,10 +130,10 @@ impl Siemens {
     pub(super) fn change_frame(&mut self, frame: Frame, at: &AxisValues) {
         self.local = self.increments_from(at);
         self.frame = frame;
-        let place = self.machine_place(&self.local);
+        let place = self.program_place(at);
         self.adrift = AxisSet::default();
         for axis in 0..AXES {
-            if (place[axis] - at[axis]).abs() > SAME_MM {
+            if (place[axis] - self.local[axis]).abs() > SAME_MM {
                 self.adrift.insert(axis);
             }
         }
