@@ -130,10 +130,9 @@ impl Siemens {
     pub(super) fn change_frame(&mut self, frame: Frame, at: &AxisValues) {
         self.local = self.increments_from(at);
         self.frame = frame;
-        let place = self.program_place(at);
         self.adrift = AxisSet::default();
-        for axis in 0..AXES {
-            if (place[axis] - self.local[axis]).abs() > SAME_MM {
+        for (axis, place) in self.program_place(at).into_iter().enumerate() {
+            if (place - self.local[axis]).abs() > SAME_MM {
                 self.adrift.insert(axis);
             }
         }
