@@ -668,6 +668,7 @@ RET
 
 /// What is not followed is refused by its name.
 #[test]
+#[allow(clippy::too_many_lines, reason = "a table")]
 fn refusals_name_the_construct() {
     let mut wrong = String::new();
     let cases = [
