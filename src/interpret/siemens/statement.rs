@@ -95,7 +95,8 @@ impl Reading<'_, '_, '_> {
         let name = self.cursor.name();
         self.cursor.at += name.len();
         if let Some(go) = self.flow_word(&name, start)? {
-            return Ok(Some(go));
+            // MCALL is done with: the program need not be held whole for it.
+            return Ok(Some(go).filter(|_| name != "MCALL"));
         }
         if name.starts_with('$') {
             return self.set_system_variable(&name, start).map(|()| None);

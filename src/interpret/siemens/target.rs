@@ -37,7 +37,6 @@ impl Control<'_> {
                 _ => {}
             }
         }
-        run.facts.machine_coordinates = state.extra.machine_coordinates;
         let extra = &state.extra;
         let polar = extra.polar_angle.is_some() || extra.polar_radius.is_some();
         let through = extra.through_point || extra.via.iter().any(Option::is_some);
