@@ -8,6 +8,7 @@ mod interpret;
 mod compensation;
 mod cycles;
 mod coordinates;
+mod siemens;
 mod syntax;
 mod plan;
 mod power;

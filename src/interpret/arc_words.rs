@@ -59,7 +59,7 @@ impl Control<'_> {
                 .help("write the number of turns");
         }
         let stray = b"IJK"[normal];
-        if run.words.take(stray).is_some_and(|value| value != 0.0) {
+        if run.words.take(stray).is_some_and(|value| value != 0.0) && !self.is_siemens() {
             let span = run.words.span(stray, run.block);
             let message = format!("{} does not belong to an arc in this plane", stray as char);
             run.report
@@ -120,8 +120,9 @@ impl Control<'_> {
             return Some(arc::from_radius(ends, radius * unit));
         }
         if offsets == [None, None] {
+            let radius = if self.is_siemens() { "CR" } else { "R" };
             let message = format!(
-                "an arc without a centre ({} {}) or R",
+                "an arc without a centre ({} {}) or {radius}",
                 letters[0] as char, letters[1] as char
             );
             run.report
@@ -154,7 +155,7 @@ impl Control<'_> {
     }
 }
 
-fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {
+pub(super) fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {
     let (rule, message, help) = match fault {
         ArcFault::NoRadius => (
             "arc-center",

@@ -27,12 +27,20 @@ impl Interpreter<'_> {
         let arguments = arguments.unwrap_or(&none);
         self.control.parameters.enter(scope, arguments);
         self.control.enter_level();
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.enter();
+        }
     }
 
     /// A subprogram with its own variables has ended.
     pub(super) fn leave(&mut self, scope: Scope) {
         self.control.parameters.leave(scope);
         self.control.leave_level();
+        let modal = &mut self.control.modal;
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.leave(modal);
+            self.control.settle_siemens();
+        }
     }
 
     /// Whether programs are written in RS274/NGC.
@@ -70,6 +78,13 @@ impl Interpreter<'_> {
     pub(crate) fn begin_again(&mut self) {
         self.control.begun = false;
         self.control.has_program_number = false;
+    }
+
+    /// FOR counts on when it is executed next.
+    pub(crate) fn count_on(&mut self) {
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.count_on();
+        }
     }
 
     /// The program ends here.

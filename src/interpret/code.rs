@@ -93,6 +93,8 @@ pub(super) enum GCode {
     Retract(bool),
     /// G65, G66 and G67.
     MacroCall,
+    /// A word of SINUMERIK alone.
+    Siemens(super::siemens::Code),
     Ignored,
 }
 
@@ -132,6 +134,7 @@ impl GCode {
             Self::Mirror(_) => 20,
             Self::MacroCall => 21,
             Self::Retract(_) => 22,
+            Self::Siemens(code) => code.group(),
         }
     }
 }
@@ -150,6 +153,7 @@ pub(super) fn code_number(value: f64) -> Option<u16> {
 /// not known.
 pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
     match (family, number) {
+        (Family::Siemens, _) => super::siemens::siemens_code(number),
         // ISG: G21 mirrors X and G20 ends it; G70 and G71 set the unit.
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.

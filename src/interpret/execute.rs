@@ -12,6 +12,7 @@ use super::position::{Position, Reading};
 use super::printer;
 use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
+use super::siemens::{Siemens, is_beyond_words};
 use super::special::Special;
 use super::spindle_speed::SpindleMode;
 use super::state_words::{Saved, Switches};
@@ -69,6 +70,8 @@ pub(super) struct Control<'m> {
     pub(super) text: u16,
     pub(super) parameters: Parameters,
     pub(super) transfer: Option<Transfer>,
+    /// What only SINUMERIK keeps; `None` for other languages.
+    pub(super) siemens: Option<Box<Siemens>>,
 }
 
 /// The block that is being executed.
@@ -131,6 +134,8 @@ impl<'m> Interpreter<'m> {
             text: 0,
             parameters: Parameters::new(machine.controller.language.family),
             transfer: None,
+            siemens: (machine.controller.language.family == Family::Siemens)
+                .then(|| Box::new(Siemens::new())),
         };
         if let Some(file) = &reading.parameters {
             control.parameters.keep(file);
@@ -204,8 +209,17 @@ impl<'m> Interpreter<'m> {
         if printer::is_command(self.control.machine, block) {
             return self.command_line(block, steps, report);
         }
-        let transfers = !block.issues.is_empty() && self.control.beyond_words(block, &mut report);
-        if !block.issues.is_empty() || block.words.is_empty() {
+        let mut beyond = !block.issues.is_empty();
+        let mut acts = false;
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.begin_block();
+            beyond |= is_beyond_words(block, text);
+        }
+        let transfers = beyond && self.control.beyond_words(block, &mut report);
+        if let Some(siemens) = &self.control.siemens {
+            acts = siemens.is_active();
+        }
+        if !block.issues.is_empty() || block.words.is_empty() && !acts {
             if block.words.is_empty() {
                 self.control.abort(block, &mut report);
             }
@@ -325,7 +339,9 @@ impl Control<'_> {
             let span = run.whole();
             self.settle_debts(span, run);
         }
-        if run.words.is_plain_motion() {
+        let siemens = self.siemens.as_deref();
+        let special = siemens.is_some_and(|siemens| !siemens.is_plain_motion(run.words));
+        if run.words.is_plain_motion() && !special {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
             self.motion_word(run);
@@ -334,6 +350,9 @@ impl Control<'_> {
                 self.complain_about_rest(run);
             }
             return;
+        }
+        if siemens.is_some() {
+            return self.siemens_block(run);
         }
         if self.machine.controller.language.family == Family::Marlin
             && run.report.diagnostics.errors == errors
@@ -376,6 +395,10 @@ impl Control<'_> {
     /// What is not understood stays in the block's issues and is reported.
     #[cold]
     fn beyond_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
+        if self.siemens.is_some() {
+            self.begun = true;
+            return self.siemens_words(block, report);
+        }
         let text = report.text;
         let statement = match self.statement(text, block) {
             Ok(statement) => statement,
@@ -427,7 +450,7 @@ impl Control<'_> {
     }
 
     /// Words that no code has used: they might mean motion.
-    fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
+    pub(super) fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
         if self.machine.controller.language.family != Family::Rs274 {
             // Numbers of tool offsets without a code that uses them.
             run.words.take(b'D');
@@ -444,7 +467,7 @@ impl Control<'_> {
     }
 
     /// Stops and the end come after the motion.
-    fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
+    pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
         self.loads &= !std::mem::take(&mut self.loads_off);
         if !run.facts.boundary {
             return;

@@ -12,7 +12,8 @@ impl Control<'_> {
             .words
             .m
             .iter()
-            .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other));
+            .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other))
+            && !self.is_siemens();
         if let Some(value) = run.words.take(b'S')
             && !other
         {
@@ -50,10 +51,13 @@ impl Control<'_> {
         match number {
             0 | 10 | 600 => Some(ActionKind::Stop),
             20 | 300 => Some(ActionKind::End),
+            170 if self.is_siemens() => Some(ActionKind::End),
             30 | 40 | 50 => Some(ActionKind::Spindle),
             60 => Some(ActionKind::ToolChange),
             70 | 80 | 90 => Some(ActionKind::Coolant),
             _ if self.is_ignored(number) || is_load() => Some(ActionKind::Other),
+            // SINUMERIK: free M numbers are the machine builder's switches.
+            _ if self.is_siemens() => Some(ActionKind::Other),
             _ => None,
         }
     }
@@ -102,6 +106,12 @@ impl Control<'_> {
                     self.note_spindle(run);
                 }
                 ActionKind::ToolChange => self.load_tool(number, span, run),
+                ActionKind::Other if self.is_siemens() && self.is_ignored(number) => {}
+                ActionKind::Other if self.is_siemens() => {
+                    let message =
+                        "M words of the machine's builder are taken as switches that move no axis";
+                    run.report.note_once("builder-m", message, span);
+                }
                 // Arguments of a word that moves no axis, as in `M106 S255 P1`.
                 ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,
                 _ => {}

@@ -35,6 +35,7 @@ mod report;
 mod settings;
 mod special;
 mod spline;
+mod siemens;
 mod statement;
 mod subprogram;
 mod system_parameters;

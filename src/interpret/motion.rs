@@ -302,6 +302,12 @@ impl Control<'_> {
                 run.report.note_once("no-feed-yet", message, span);
                 return Some(f64::INFINITY);
             }
+            None if self.is_siemens() => {
+                let message = "no F in force: the control's data (SD42110) say which feed then; \
+                               counted at the speed limits of the axes";
+                run.report.note_once("no-feed-yet", message, span);
+                return Some(f64::INFINITY);
+            }
             None => {
                 run.report
                     .error("no-feed", "a feed move, but no F is in force", span)

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::code::{code_number, refused_g_name, refused_m_name};
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::machine::Family;
 use crate::source::Span;
 use crate::syntax::Word;
 
@@ -76,8 +77,11 @@ impl Report<'_, '_> {
     }
 
     /// Reports a G word that is not supported.
-    pub(super) fn refused_g(&mut self, word: Word) {
-        let name = code_number(word.value).map_or("a word", refused_g_name);
+    pub(super) fn refused_g(&mut self, word: Word, family: Family) {
+        let name = code_number(word.value).map_or("a word", |number| match family {
+            Family::Siemens => super::siemens::refused_name(number),
+            _ => refused_g_name(number),
+        });
         self.refused(b'G', word, name);
     }
 

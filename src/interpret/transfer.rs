@@ -40,6 +40,55 @@ pub(crate) enum Transfer {
     Loop { number: u8, holds: bool },
     /// `END n`.
     EndLoop(u8),
+    /// A word of SINUMERIK.
+    Siemens(Siemens),
+}
+
+/// What a block of SINUMERIK says about the order of execution.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Siemens {
+    /// At the next line, as for a word that only ends or begins something.
+    Next,
+    /// GOTO and its kin.
+    Jump {
+        to: String,
+        direction: Direction,
+        /// GOTOC: without a destination the program goes on.
+        quiet: bool,
+    },
+    If(bool),
+    Else,
+    /// WHILE and FOR: whether the loop runs.
+    While(bool),
+    /// ENDWHILE, ENDFOR, ENDLOOP.
+    Back,
+    Until(bool),
+    /// REPEAT and REPEATB with labels.
+    Repeat {
+        from: String,
+        to: Option<String>,
+        block: bool,
+        times: u64,
+    },
+    Call {
+        name: String,
+        times: u64,
+        /// It goes back to the line itself, which has more places to go to.
+        again: bool,
+    },
+    /// RET, M17.
+    Return,
+}
+
+/// Where a label is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Direction {
+    Forwards,
+    Backwards,
+    /// Forwards, then backwards.
+    Both,
+    /// The beginning of the program.
+    Start,
 }
 
 /// What an O-word does.

@@ -191,7 +191,7 @@ impl Words {
                 .map(|code| (code, number))
         });
         let Some((code, number)) = known else {
-            report.refused_g(word);
+            report.refused_g(word, controller.language.family);
             return;
         };
         if self.groups & code.group() != 0 && code != GCode::Ignored {

@@ -46,6 +46,7 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "linuxcnc",
     "grbl",
     "isg",
+    "siemens",
     "marlin",
     "reprap",
     "klipper",

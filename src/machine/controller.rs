@@ -80,6 +80,8 @@ pub enum Family {
     Marlin,
     /// ISG kernel, Beckhoff `TwinCAT` CNC.
     Isg,
+    /// Siemens SINUMERIK 840D and its kin.
+    Siemens,
 }
 
 /// What happens at the joint of two blocks.

@@ -86,7 +86,7 @@ fn unknown_key() {
 #[test]
 fn unknown_family() {
     assert_snapshot!(findings(&edited("family = \"iso\"", "family = \"fanuc\"")), @r#"
-    line 6, error machine-value: `family` must be "iso", "rs274", "marlin" or "isg", not "fanuc"
+    line 6, error machine-value: `family` must be "iso", "rs274", "marlin", "isg" or "siemens", not "fanuc"
       | family = "fanuc"
       |          ^^^^^^^
     "#);

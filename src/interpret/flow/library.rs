@@ -1,7 +1,7 @@
 //! Subprograms in files of their own.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Trouble;
@@ -43,6 +43,40 @@ impl Library {
         Trouble::new("no-such-subprogram", message, help)
     }
 
+    /// The contents of the file that holds a subprogram of SINUMERIK:
+    /// `NAME.SPF` or `NAME.MPF`, whatever the case of its letters.
+    pub(super) fn load_siemens(&mut self, name: &str) -> Result<Vec<u8>, Trouble> {
+        let wanted = [
+            format!("{name}.SPF"),
+            format!("{name}.MPF"),
+            format!("_N_{name}_SPF"),
+            format!("_N_{name}_MPF"),
+            format!("{name}_SPF"),
+        ];
+        let find = |folder: &PathBuf| {
+            let mut found: Vec<(usize, PathBuf)> = fs::read_dir(folder)
+                .ok()?
+                .flatten()
+                .filter_map(|entry| {
+                    let file = entry.file_name().to_string_lossy().to_ascii_uppercase();
+                    let rank = wanted.iter().position(|name| *name == file)?;
+                    Some((rank, entry.path()))
+                })
+                .filter(|(_, path)| path.is_file())
+                .collect();
+            found.sort();
+            found.into_iter().next().map(|(_, path)| path)
+        };
+        let Some(path) = self.folders.iter().find_map(find) else {
+            let message = format!("there is no subprogram {name}, and no word of this name");
+            let help = format!(
+                "define it in the program, or put {name}.SPF into its folder or one given by --sub-path"
+            );
+            return Err(Trouble::new("no-such-subprogram", message, help));
+        };
+        self.read(&path)
+    }
+
     /// The contents of the file that holds a subprogram, if there is one.
     pub(super) fn load(&mut self, label: &Label) -> Result<Option<Vec<u8>>, Trouble> {
         let names = names(label);
@@ -53,12 +87,16 @@ impl Library {
                 .find(|path| path.is_file())
         });
         let Some(path) = found else { return Ok(None) };
+        self.read(&path).map(Some)
+    }
+
+    fn read(&mut self, path: &Path) -> Result<Vec<u8>, Trouble> {
         let shown = path.display().to_string();
         let unreadable = |why: String| {
             let message = format!("the subprogram file {shown} cannot be read: {why}");
             Trouble::new("no-such-subprogram", message, "check the file")
         };
-        let size = fs::metadata(&path)
+        let size = fs::metadata(path)
             .map_err(|error| unreadable(error.to_string()))?
             .len();
         self.bytes += size;
@@ -67,9 +105,9 @@ impl Library {
                 "the subprograms have more than 64 MiB".to_owned(),
             ));
         }
-        let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+        let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
         self.loaded.push(shown);
-        Ok(Some(bytes))
+        Ok(bytes)
     }
 }
 

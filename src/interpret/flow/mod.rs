@@ -4,12 +4,15 @@
 mod library;
 mod macro_b;
 mod o_word;
+mod outline;
+mod siemens;
 mod text;
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use self::library::Library;
+use self::siemens::Section;
 use self::text::{Search, Text};
 use super::execute::Interpreter;
 use super::parameters::{LOCALS, Scope};
@@ -56,6 +59,12 @@ pub(crate) struct Flow {
     idle_lines: u64,
     /// The program has begun again (M99 in the main program).
     again: bool,
+    /// It is a program of SINUMERIK.
+    is_siemens: bool,
+    /// Sections that are repeated.
+    sections: Vec<Section>,
+    /// Texts that were loaded by the names of their subprograms.
+    named: Vec<(String, usize)>,
 }
 
 /// Where repetition stops.
@@ -163,11 +172,15 @@ impl Flow {
             repeated_moves: 0,
             idle_lines: 0,
             again: false,
+            is_siemens: false,
+            sections: Vec::new(),
+            named: Vec::new(),
         }
     }
 
     /// Goes to the next line; `None` at the end of the program.
     pub(crate) fn advance(&mut self) -> Result<Option<Place>, Box<Diagnostic>> {
+        self.end_section();
         loop {
             let Some(text) = self.texts.get_mut(self.next.text) else {
                 return Ok(None);
@@ -176,14 +189,16 @@ impl Flow {
                 if self.calls.is_empty() {
                     return Ok(None);
                 }
-                let message = "the subprogram ends without a return";
-                let help = "end it with M99, or endsub";
-                return Err(self.trouble(Trouble::new("subprogram", message, help)));
+                return Err(self.without_return());
             }
             let tape = text
                 .line(self.next.line)
                 .trim_ascii_start()
                 .starts_with(b"%");
+            if tape && self.is_siemens && !self.calls.is_empty() && self.next.line > 0 {
+                // The header of the next program.
+                return Err(self.without_return());
+            }
             if tape && self.next.text > 0 {
                 self.next.line += 1;
                 continue;
@@ -192,6 +207,16 @@ impl Flow {
             self.next.line += 1;
             return Ok(Some(self.now));
         }
+    }
+
+    fn without_return(&self) -> Box<Diagnostic> {
+        let message = "the subprogram ends without a return";
+        let help = if self.is_siemens {
+            "end it with M17 or RET"
+        } else {
+            "end it with M99, or endsub"
+        };
+        self.trouble(Trouble::new("subprogram", message, help))
     }
 
     /// Where the line that is being executed stands.
@@ -304,6 +329,7 @@ impl Flow {
             Transfer::Goto(block) => self.go_to(block),
             Transfer::Loop { number, holds } => self.begin_loop(number, holds),
             Transfer::EndLoop(number) => self.end_loop(number),
+            Transfer::Siemens(word) => self.siemens(word, interpreter),
         };
         done.map_err(|trouble| self.trouble(trouble))
     }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::outline::Outline;
 use crate::interpret::statement::{Keyword, glance};
 use crate::interpret::transfer::Label;
 use crate::source::lines;
@@ -18,6 +19,7 @@ pub(super) struct Text {
     /// Lines that run again and again, as they were read.
     blocks: Vec<Option<Box<Block>>>,
     index: Option<Index>,
+    outline: Option<Box<Outline>>,
     /// Places that have been looked for before.
     found: HashMap<(Search, usize), Option<usize>>,
 }
@@ -60,8 +62,17 @@ impl Text {
             runs: vec![0; count],
             blocks: Vec::new(),
             index: None,
+            outline: None,
             found: HashMap::new(),
         }
+    }
+
+    /// What the lines of a SINUMERIK text are.
+    pub(super) fn outline(&mut self) -> &Outline {
+        if self.outline.is_none() {
+            self.outline = Some(Box::new(Outline::new(self)));
+        }
+        self.outline.get_or_insert_default()
     }
 
     /// Number of lines.

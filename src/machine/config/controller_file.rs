@@ -83,6 +83,7 @@ pub(crate) enum FamilyName {
     Rs274,
     Marlin,
     Isg,
+    Siemens,
 }
 
 /// A word of G4.

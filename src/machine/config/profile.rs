@@ -52,6 +52,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             FamilyName::Rs274 => Family::Rs274,
             FamilyName::Marlin => Family::Marlin,
             FamilyName::Isg => Family::Isg,
+            FamilyName::Siemens => Family::Siemens,
         },
         dwell,
         metric: table.units != Some(UnitsName::Inch),

@@ -1,0 +1,260 @@
+//! What the lines of a SINUMERIK text are, as far as the order of execution
+//! goes: programs, labels, block numbers, and the partners of structures.
+
+use std::collections::HashMap;
+
+use super::text::Text;
+
+/// The outline of a text.
+#[derive(Debug, Default)]
+pub(super) struct Outline {
+    /// `%_N_NAME_SPF` lines with their names, in order.
+    programs: Vec<(usize, String)>,
+    /// Lines of each label and block number (`N10`), in order.
+    labels: HashMap<String, Vec<usize>>,
+    /// Where a structure goes on: IF to its ELSE or ENDIF, ELSE to ENDIF, the
+    /// beginning of a loop to its end and back.
+    partners: HashMap<usize, usize>,
+    /// Lines that begin with ENDLABEL.
+    label_ends: Vec<usize>,
+    /// FOR lines.
+    counting: Vec<usize>,
+}
+
+/// Structures that are open while the lines are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Open {
+    If,
+    While,
+    For,
+    Loop,
+    Repeat,
+}
+
+impl Outline {
+    pub(super) fn new(text: &Text) -> Self {
+        let mut outline = Self::default();
+        let mut open: Vec<(Open, usize)> = Vec::new();
+        for line in 0..text.len() {
+            let mut rest = Rest(text.line(line));
+            if let Some(name) = program_name(rest.0) {
+                open.clear();
+                outline.programs.push((line, name));
+                continue;
+            }
+            if let Some(number) = rest.front() {
+                outline.labels.entry(number).or_default().push(line);
+            }
+            if let Some(label) = rest.label() {
+                if label == "ENDLABEL" {
+                    outline.label_ends.push(line);
+                }
+                outline.labels.entry(label).or_default().push(line);
+            }
+            outline.structure(line, rest, &mut open);
+        }
+        outline
+    }
+
+    fn structure(&mut self, line: usize, mut rest: Rest<'_>, open: &mut Vec<(Open, usize)>) {
+        let word = rest.name();
+        let begins = match word.as_str() {
+            "IF" if !rest.jumps() => Some(Open::If),
+            "WHILE" => Some(Open::While),
+            "FOR" => Some(Open::For),
+            "LOOP" => Some(Open::Loop),
+            // With a label it repeats a section.
+            "REPEAT" if rest.name().is_empty() => Some(Open::Repeat),
+            _ => None,
+        };
+        if let Some(kind) = begins {
+            if kind == Open::For {
+                self.counting.push(line);
+            }
+            open.push((kind, line));
+            return;
+        }
+        let kind = match word.as_str() {
+            "ELSE" | "ENDIF" => Open::If,
+            "ENDWHILE" => Open::While,
+            "ENDFOR" => Open::For,
+            "ENDLOOP" => Open::Loop,
+            "UNTIL" => Open::Repeat,
+            "ENDLABEL" => return self.label_ends.push(line),
+            _ => return,
+        };
+        // What is open inside without an end has none.
+        while let Some((found, begin)) = open.pop() {
+            if found != kind {
+                continue;
+            }
+            self.partners.insert(begin, line);
+            if word == "ELSE" {
+                open.push((Open::If, line));
+            } else {
+                self.partners.insert(line, begin);
+            }
+            return;
+        }
+    }
+
+    /// Where a program or subprogram begins, behind its header.
+    pub(super) fn program(&self, name: &str) -> Option<usize> {
+        let found = self.programs.iter().find(|(_, found)| found == name);
+        found.map(|(line, _)| line + 1)
+    }
+
+    /// The lines of the program that a line belongs to.
+    fn borders(&self, line: usize, len: usize) -> (usize, usize) {
+        let next = self.programs.partition_point(|(begin, _)| *begin <= line);
+        let begin = next.checked_sub(1).and_then(|at| self.programs.get(at));
+        (
+            begin.map_or(0, |(line, _)| line + 1),
+            self.programs.get(next).map_or(len, |(line, _)| *line),
+        )
+    }
+
+    /// The first line of the program that `line` belongs to.
+    pub(super) fn start(&self, line: usize) -> usize {
+        self.borders(line, usize::MAX).0
+    }
+
+    /// The next line of a label behind `line`.
+    pub(super) fn forwards(&self, label: &str, line: usize, len: usize) -> Option<usize> {
+        let (_, end) = self.borders(line, len);
+        let lines = self.labels.get(label)?;
+        let next = lines.partition_point(|found| *found <= line);
+        lines.get(next).copied().filter(|found| *found < end)
+    }
+
+    /// The last line of a label before `line`, or that line itself.
+    pub(super) fn backwards(&self, label: &str, line: usize) -> Option<usize> {
+        let (begin, _) = self.borders(line, usize::MAX);
+        let lines = self.labels.get(label)?;
+        let next = lines.partition_point(|found| *found <= line);
+        let found = lines.get(next.checked_sub(1)?).copied();
+        found.filter(|found| *found >= begin)
+    }
+
+    /// The first ENDLABEL from `from` to before `to`.
+    pub(super) fn label_end(&self, from: usize, to: usize) -> Option<usize> {
+        let next = self.label_ends.partition_point(|line| *line < from);
+        let found = self.label_ends.get(next).copied();
+        found.filter(|line| *line < to)
+    }
+
+    pub(super) fn partner(&self, line: usize) -> Option<usize> {
+        self.partners.get(&line).copied()
+    }
+
+    pub(super) fn counts(&self, line: usize) -> bool {
+        self.counting.binary_search(&line).is_ok()
+    }
+}
+
+/// The name in `%_N_NAME_MPF`, upper case.
+fn program_name(line: &[u8]) -> Option<String> {
+    let line = line.trim_ascii().to_ascii_uppercase();
+    let name = line.strip_prefix(b"%_N_")?;
+    let end = name
+        .iter()
+        .position(|byte| !(byte.is_ascii_alphanumeric() || *byte == b'_'));
+    let name = name.get(..end.unwrap_or(name.len()))?;
+    let name = name
+        .strip_suffix(b"_SPF")
+        .or_else(|| name.strip_suffix(b"_MPF"))
+        .unwrap_or(name);
+    Some(String::from_utf8_lossy(name).into_owned())
+}
+
+/// What is left of a line.
+struct Rest<'t>(&'t [u8]);
+
+impl Rest<'_> {
+    fn skip(&mut self, count: usize) {
+        self.0 = self.0.get(count..).unwrap_or_default().trim_ascii_start();
+    }
+
+    fn digits(&self) -> usize {
+        self.0
+            .iter()
+            .take_while(|byte| byte.is_ascii_digit())
+            .count()
+    }
+
+    /// Block delete and block number; gives the number as `N10`.
+    fn front(&mut self) -> Option<String> {
+        self.skip(0);
+        if let Some(rest) = self.0.strip_prefix(b"\xEF\xBB\xBF") {
+            self.0 = rest;
+            self.skip(0);
+        }
+        if self.0.first() == Some(&b'/') {
+            self.skip(1);
+            self.skip(self.digits());
+        }
+        if !matches!(self.0.first(), Some(b'N' | b'n' | b':')) {
+            return None;
+        }
+        let mut behind = Rest(self.0);
+        behind.skip(1);
+        let length = behind.digits();
+        let digits = std::str::from_utf8(behind.0.get(..length)?).ok()?;
+        let number: u64 = digits.parse().ok()?;
+        behind.skip(length);
+        self.0 = behind.0;
+        if self.0.first() == Some(&b'/') {
+            self.skip(1);
+            self.skip(self.digits());
+        }
+        Some(format!("N{number}"))
+    }
+
+    /// A name, upper case; empty where none is next.
+    fn name(&mut self) -> String {
+        if !self
+            .0
+            .first()
+            .is_some_and(|byte| byte.is_ascii_alphabetic() || *byte == b'_')
+        {
+            return String::new();
+        }
+        let plain = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
+        let length = self.0.iter().take_while(plain).count();
+        let name = self.0.get(..length).unwrap_or_default();
+        let name = String::from_utf8_lossy(name).to_ascii_uppercase();
+        self.skip(length);
+        name
+    }
+
+    fn label(&mut self) -> Option<String> {
+        let before = self.0;
+        let name = self.name();
+        if !name.is_empty() && self.0.first() == Some(&b':') {
+            self.skip(1);
+            return Some(name);
+        }
+        self.0 = before;
+        None
+    }
+
+    /// Whether a GOTO follows, outside quotes and comments.
+    fn jumps(&self) -> bool {
+        let mut rest = Rest(self.0);
+        let mut quoted = false;
+        while let Some(&byte) = rest.0.first() {
+            if byte == b'"' {
+                quoted = !quoted;
+            } else if byte == b';' && !quoted {
+                return false;
+            } else if !quoted && (byte.is_ascii_alphabetic() || byte == b'_') {
+                if rest.name().starts_with("GOTO") {
+                    return true;
+                }
+                continue;
+            }
+            rest.0 = rest.0.get(1..).unwrap_or_default();
+        }
+        false
+    }
+}

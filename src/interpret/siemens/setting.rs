@@ -1,0 +1,140 @@
+//! Names that set something, and addresses of several letters.
+
+use super::cursor::Outcome;
+use super::reading::Reading;
+use crate::syntax::Block;
+
+impl Reading<'_, '_, '_> {
+    /// Takes what belongs to a name that sets something; false for others.
+    pub(super) fn setting(&mut self, name: &str, start: usize, block: &mut Block) -> Outcome<bool> {
+        match name {
+            "DEF" => self.definition()?,
+            "PROC" => self.procedure()?,
+            // Its parameters are read where it is called.
+            "EXTERN" => self.cursor.pass_over_rest(),
+            // "Deselection of frames (G53, G153, SUPA, G500)".
+            "SUPA" => self.extra().machine_coordinates = true,
+            "DIAMON" => self.state.diameter = true,
+            "DIAMOF" => self.state.diameter = false,
+            "DIAM90" => {
+                let reason = "diameters under G90 only";
+                return Err(self.refused(name, reason, start));
+            }
+            "TRANS" | "ATRANS" | "ROT" | "AROT" | "SCALE" | "ASCALE" | "MIRROR" | "AMIRROR" => {
+                self.frame_word(name, start)?;
+            }
+            // "Circular interpolation via intermediate and end point (CIP)".
+            "CIP" => self.extra().through_point = true,
+            // "Circular interpolation with radius", "with opening angle",
+            // "Helical interpolation (TURN)".
+            "CR" => {
+                let value = self.value_behind(name, start)?;
+                self.push_as(b'R', value, start, block);
+            }
+            "AR" => {
+                let value = self.value_behind(name, start)?;
+                self.extra().opening_deg = Some(value);
+            }
+            "TURN" => {
+                let value = self.value_behind(name, start)?;
+                self.push_as(b'P', value + 1.0, start, block);
+            }
+            // "Travel commands with polar coordinates (AP, RP)".
+            "AP" | "RP" => {
+                self.equals(name, start)?;
+                let value = Some(self.measured()?);
+                if name == "AP" {
+                    self.extra().polar_angle = value;
+                } else {
+                    self.extra().polar_radius = value;
+                }
+            }
+            "LIMS" => {
+                self.index()?;
+                let value = self.value_behind(name, start)?;
+                self.state.spindle_limit = Some(value.abs());
+            }
+            "OVR" => self.feed_override(start)?,
+            "OVRRAP" | "OVRA" | "ACC" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" => {
+                self.limit(name, start)?;
+            }
+            // "Three, four and five axis transformation (TRAORI)".
+            "TRAORI" => {
+                self.cursor.pass_over_parentheses()?;
+                let message = "TRAORI: the axes are taken as they are programmed; \
+                               what the transformation adds to them is not counted";
+                self.note("transformation", message, start);
+            }
+            "CYCLE832" => self.high_speed_settings()?,
+            "CYCLE800" => {
+                self.cursor.expect(b'(')?;
+                if self.cursor.peek() != Some(b')') {
+                    self.cursor.pass_over_rest();
+                    let reason = "a swivelled plane, which turns axes as the machine is built";
+                    return Err(self.refused(name, reason, start));
+                }
+                self.cursor.at += 1;
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    fn equals(&mut self, name: &str, start: usize) -> Outcome<()> {
+        if self.cursor.take(b'=') {
+            return Ok(());
+        }
+        let message = format!("{name} has no value");
+        let help = "write `=` and the value behind it";
+        Err(self.cursor.fault("syntax", message, help, start))
+    }
+
+    fn value_behind(&mut self, name: &str, start: usize) -> Outcome<f64> {
+        self.equals(name, start)?;
+        self.number()
+    }
+
+    /// "Programmable feedrate override (OVR)": 0 to 200 % of path feeds, not of
+    /// rapids, modal.
+    fn feed_override(&mut self, start: usize) -> Outcome<()> {
+        let percent = self.value_behind("OVR", start)?;
+        if percent > 0.0 && percent <= 200.0 {
+            self.state.feed_factor = percent / 100.0;
+            return Ok(());
+        }
+        let message = format!("OVR of {percent} %");
+        let help = "write a value above 0 and up to 200";
+        Err(self.cursor.fault("override", message, help, start))
+    }
+
+    /// Percentages of the machine's limits: what lowers them is not counted,
+    /// which leaves the estimate higher.
+    fn limit(&mut self, name: &str, start: usize) -> Outcome<()> {
+        if self.cursor.take(b'[') {
+            while !self.cursor.take(b']') {
+                if self.cursor.peek().is_none() {
+                    self.cursor.expect(b']')?;
+                }
+                self.cursor.at += 1;
+            }
+        }
+        let percent = self.value_behind(name, start)?;
+        if percent > 100.0 || percent <= 0.0 {
+            let message = format!("{name} of {percent} %");
+            let help = "only values above 0 and up to 100 are read: the machine's limits hold";
+            return Err(self.cursor.fault("override", message, help, start));
+        }
+        if percent < 100.0 {
+            let message = "a limit that the program lowers by a percentage is counted at 100 %";
+            self.note("limit-not-lowered", message, start);
+        }
+        Ok(())
+    }
+
+    /// CYCLE832 ("High Speed Settings") chooses a path mode that blends.
+    fn high_speed_settings(&mut self) -> Outcome<()> {
+        self.cursor.pass_over_parentheses()?;
+        self.extra().blends = true;
+        Ok(())
+    }
+}
