@@ -18,6 +18,7 @@ use super::state_words::{Saved, Switches};
 use super::statement::Unread;
 use super::tools::Tools;
 use super::transfer::Transfer;
+use super::turning::Turning;
 use super::words::Words;
 use crate::machine::{Family, Machine};
 use crate::source::Span;
@@ -26,8 +27,8 @@ use crate::syntax::Block;
 /// Executes the blocks of a program.
 #[derive(Debug)]
 pub struct Interpreter<'m> {
-    control: Control<'m>,
-    words: Words,
+    pub(super) control: Control<'m>,
+    pub(super) words: Words,
 }
 
 /// What holds from block to block.
@@ -57,6 +58,11 @@ pub(super) struct Control<'m> {
     /// Targets are more than offsets: see `targets`.
     pub(super) bent: bool,
     pub(super) printer: printer::State,
+    /// The words of a block need a second look: see `dialect`.
+    adapts: bool,
+    /// The program that the block names to be called.
+    pub(super) callee: Option<String>,
+    pub(super) turning: Turning,
     block_delete: bool,
     begun: bool,
     ended: bool,
@@ -120,6 +126,9 @@ impl<'m> Interpreter<'m> {
             lost: None,
             bent: false,
             printer: printer::State::new(machine),
+            adapts: machine.controller.language.dialect.adapts(),
+            callee: None,
+            turning: Turning::default(),
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
@@ -277,6 +286,12 @@ impl<'m> Interpreter<'m> {
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
         self.control.execute(&mut run);
+        if self.control.callee.take().is_some() {
+            let whole = run.whole();
+            run.report
+                .error("program-name", "nothing in this block calls the program that it names", whole)
+                .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
+        }
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;
@@ -367,6 +382,9 @@ impl Control<'_> {
         run.words
             .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.words.checksum;
+        if self.adapts {
+            self.adapt_words(run);
+        }
         let errors = run.report.diagnostics.errors;
         if !self.debts.is_empty() {
             let span = run.whole();
@@ -441,7 +459,20 @@ impl Control<'_> {
             }
         };
         self.begun = true;
+        self.callee = statement.callee;
+        if let Some(span) = statement.alarm {
+            let message =
+                "whether this alarm (#3000) is raised only the machine knows: taken as not";
+            report.note_once("alarm-not-raised", message, span);
+        }
         for (name, value, span) in &statement.assignments {
+            if *name == Name::Number(3000) && self.raises_alarm(*value) {
+                let message = "#3000 raises an alarm: the program ends here";
+                report.note_once("alarm", message, *span);
+                self.ended = true;
+                block.words.clear();
+                return false;
+            }
             if let Err(reason) = self.assign(name, *value) {
                 report
                     .error(
@@ -454,6 +485,11 @@ impl Control<'_> {
         }
         self.transfer = statement.transfer;
         self.transfer.is_some()
+    }
+
+    fn raises_alarm(&self, value: Value) -> bool {
+        self.machine.controller.language.family != Family::Rs274
+            && value.is_some_and(|it| it != 0.0)
     }
 
     /// Takes an O number; true when it ends the program.

@@ -9,6 +9,7 @@ mod arc_words;
 mod code;
 mod cycle;
 mod data_setting;
+mod dialect;
 mod execute;
 mod expression;
 mod facts;
@@ -45,7 +46,10 @@ mod tool_table;
 mod tools;
 mod transfer;
 mod turned_arc;
+mod turning;
 mod words;
+
+pub(crate) use transfer::Transfer;
 
 pub use code::Motion;
 pub use execute::Interpreter;

@@ -199,7 +199,12 @@ pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword
     while matches!(reader.peek(), Some(b'/' | b'N' | b'0'..=b'9' | b'.')) {
         reader.at += 1;
     }
-    if !reader.take(b'O') {
+    if reader.peek() == Some(b'<') {
+        // A program name of Fanuc, alone in its line.
+        let name = reader.angle_name().ok()?.into_owned();
+        return reader.peek().is_none().then_some((Label::Name(name), None));
+    }
+    if !(reader.take(b'O') || reader.take(b':')) {
         return None;
     }
     let label = match reader.peek()? {

@@ -70,6 +70,44 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// What a number without a decimal point means; default: what it says,
+    /// without a note.
+    pub(crate) decimal_point: Option<PointName>,
+    /// The G codes of a lathe; default: not a lathe.
+    pub(crate) lathe: Option<LatheName>,
+    /// Whether words of X are diameters; default false.
+    pub(crate) diameter: Option<bool>,
+    /// Whether M words from M10 on that are not known move no axis, which is
+    /// then said once; default false: they are refused.
+    pub(crate) other_m: Option<bool>,
+    /// What F means at power-on; default per minute.
+    pub(crate) feed: Option<FeedName>,
+    /// Whether G28 without axes moves all of them; default false.
+    pub(crate) g28_all: Option<bool>,
+}
+
+/// What a number without a decimal point means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PointName {
+    Calculator,
+    LeastIncrement,
+}
+
+/// G-code systems of lathes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+pub(crate) enum LatheName {
+    A,
+    B,
+    C,
+}
+
+/// What F means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FeedName {
+    PerMinute,
+    PerRevolution,
 }
 
 /// The family of words.
@@ -92,6 +130,8 @@ pub(crate) struct DwellTable {
     /// Seconds in one unit of it.
     #[schemars(required)]
     pub(crate) unit_s: Option<Positive>,
+    /// Seconds in one unit of a number without a decimal point; default the same.
+    pub(crate) whole_unit_s: Option<Positive>,
 }
 
 /// Unit of lengths.
