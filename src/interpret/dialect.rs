@@ -41,6 +41,7 @@ pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Option<Option<GCod
         (Lathe::A, 900) | (Lathe::B, 770) | (Lathe::C, 200) => special(BOX),
         (Lathe::A, 920) | (Lathe::B, 780) | (Lathe::C, 210) => special(THREAD_BOX),
         (Lathe::A, 940) | (Lathe::B, 790) | (Lathe::C, 240) => special(FACE),
+        (_, 830 | 840 | 850 | 870 | 880 | 890) => special(number),
         (Lathe::A, 500) => Some(GCode::SetOffset),
         (Lathe::A, 980) => Some(GCode::FeedMode(FeedMode::PerMinute)),
         (Lathe::A, 990) => Some(GCode::FeedMode(FeedMode::PerRevolution)),
@@ -110,9 +111,15 @@ impl Control<'_> {
             _ => None,
         });
         let inch = inch.unwrap_or(self.modal.mm_per_unit == MM_PER_INCH);
-        for index in 0..run.block.words.len() {
-            let word = run.block.words[index];
+        let cycle = run
+            .words
+            .g
+            .iter()
+            .any(|(code, ..)| matches!(code, GCode::Turning(_)));
+        for word in &run.block.words {
             if !LENGTHS.contains(&word.letter)
+                // A count, an angle.
+                || cycle && (word.letter == b'A' || word.letter == b'R' && point == Point::Calculator)
                 || word.value == 0.0
                 || has_point(word.number.of(run.report.text))
             {

@@ -210,6 +210,7 @@ impl Control<'_> {
         match number {
             50..=53 => self.spline(number, run),
             330 | 331 => self.thread(number, run),
+            830..=890 if self.dialect().lathe.is_some() => self.turning_motion(number, run),
             THREAD | BOX | THREAD_BOX | FACE => self.turning_motion(number, run),
             380..=389 => self.probe(run),
             760 if !iso => self.thread_cycle(run),

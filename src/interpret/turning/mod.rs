@@ -4,8 +4,9 @@
 //! Each part of a cycle is a move of its own. Numbers here are those of G-code
 //! systems A and B.
 
-mod groove;
 mod contour;
+mod drill;
+mod groove;
 mod rough;
 mod single;
 mod thread;
@@ -43,6 +44,7 @@ pub(super) struct Turning {
     /// Return of G74 and G75, mm.
     back: Option<f64>,
     finish: thread::Finish,
+    hole: drill::Hole,
 }
 
 #[derive(Debug, Default, Clone, Copy)]
@@ -59,11 +61,13 @@ impl Control<'_> {
         if !self.turning_axes_fit(run) {
             return;
         }
-        if number == THREAD {
-            self.special.active = 0;
-            self.long_thread(run);
-        } else {
-            self.single_cycle(number, run);
+        match number {
+            THREAD => {
+                self.special.active = 0;
+                self.long_thread(run);
+            }
+            BOX | THREAD_BOX | FACE => self.single_cycle(number, run),
+            _ => self.drill(number, run),
         }
     }
 

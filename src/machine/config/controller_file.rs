@@ -167,6 +167,8 @@ pub(crate) struct PlannerTable {
     /// such dwells; default false.
     pub(crate) dwell_stops: Option<bool>,
     /// Whether a rapid may be written as a feed to lower its speed; default none.
+    /// With "g1-where-linear" only on a machine whose file says that its rapids
+    /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
 }
 
@@ -193,6 +195,8 @@ pub(crate) enum RapidJointName {
 pub(crate) enum RapidKnobName {
     None,
     G1,
+    // Only on a machine whose file says that its rapids are straight.
+    G1WhereLinear,
 }
 
 /// A word that limits speed or acceleration until it is taken back.

@@ -169,11 +169,14 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
     let Some(knob) = table
         .rapid_knob
         .as_ref()
-        .filter(|knob| knob.value == RapidKnobName::G1)
+        .filter(|knob| knob.value != RapidKnobName::None)
     else {
         return RapidKnob::None;
     };
-    if table.rapid.map(rapid_path) == Some(RapidPath::Independent) {
+    // Where the machine's rapids are independent, it takes the knob away.
+    if knob.value == RapidKnobName::G1
+        && table.rapid.map(rapid_path) == Some(RapidPath::Independent)
+    {
         let message = "`rapid_knob` = \"g1\" with independent rapids changes the path";
         let help = Some("a feed is straight; use \"none\"".to_owned());
         findings.error("machine-value", &knob.span, message, help);
