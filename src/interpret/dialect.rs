@@ -25,36 +25,47 @@ const LENGTHS: &[u8] = b"XYZUVWABCIJKR";
 /// Words of system A with the axes along which they are incremental.
 const INCREMENTAL: [(u8, u8); 4] = [(b'U', b'X'), (b'V', b'Y'), (b'W', b'Z'), (b'H', b'C')];
 
+/// What a dialect makes of a G word.
+pub(super) enum Own {
+    Code(GCode),
+    /// It does not have it.
+    Missing,
+    /// What the family makes of it.
+    Common,
+}
+
 /// The G word with this number × 10, where the dialect has a meaning of its own
-/// for it: `Some(None)` is one that it does not have.
-pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Option<Option<GCode>> {
+/// for it.
+pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Own {
     let Some(lathe) = dialect.lathe else {
-        return (number == 310).then_some(Some(GCode::Skip));
+        return if number == 310 {
+            Own::Code(GCode::Skip)
+        } else {
+            Own::Common
+        };
     };
-    let special = |number| Some(GCode::Motion(Motion::Special(number)));
-    let units = |mm_per_unit| Some(GCode::Units { mm_per_unit });
-    Some(match (lathe, number) {
-        (_, 310) => Some(GCode::Skip),
+    let special = |number| GCode::Motion(Motion::Special(number));
+    let units = |mm_per_unit| GCode::Units { mm_per_unit };
+    Own::Code(match (lathe, number) {
+        (_, 310) => GCode::Skip,
         // The radius of the tool nose, which only the control knows.
-        (_, 410 | 420) => Some(GCode::NoseRadius),
+        (_, 410 | 420) => GCode::NoseRadius,
         (_, 320 | 330) => special(THREAD),
         (Lathe::A, 900) | (Lathe::B, 770) | (Lathe::C, 200) => special(BOX),
         (Lathe::A, 920) | (Lathe::B, 780) | (Lathe::C, 210) => special(THREAD_BOX),
         (Lathe::A, 940) | (Lathe::B, 790) | (Lathe::C, 240) => special(FACE),
         (_, 830 | 840 | 850 | 870 | 880 | 890) => special(number),
-        (Lathe::A, 500) => Some(GCode::SetOffset),
-        (Lathe::A, 980) => Some(GCode::FeedMode(FeedMode::PerMinute)),
-        (Lathe::A, 990) => Some(GCode::FeedMode(FeedMode::PerRevolution)),
-        (Lathe::A, 910 | 930 | 950) => None,
-        (Lathe::A | Lathe::B, 700..=760) if number.is_multiple_of(10) => {
-            Some(GCode::Turning(number))
-        }
-        (Lathe::C, 720..=780) if number.is_multiple_of(10) => Some(GCode::Turning(number - 20)),
+        (Lathe::A, 500) => GCode::SetOffset,
+        (Lathe::A, 980) => GCode::FeedMode(FeedMode::PerMinute),
+        (Lathe::A, 990) => GCode::FeedMode(FeedMode::PerRevolution),
+        (Lathe::A, 910 | 930 | 950) => return Own::Missing,
+        (Lathe::A | Lathe::B, 700..=760) if number.is_multiple_of(10) => GCode::Turning(number),
+        (Lathe::C, 720..=780) if number.is_multiple_of(10) => GCode::Turning(number - 20),
         (Lathe::C, 700) => units(MM_PER_INCH),
         (Lathe::C, 710) => units(1.0),
         // The level that drilling cycles return to.
-        (Lathe::B | Lathe::C, 980 | 990) => Some(GCode::Ignored),
-        _ => return None,
+        (Lathe::B | Lathe::C, 980 | 990) => GCode::Ignored,
+        _ => return Own::Common,
     })
 }
 
@@ -99,12 +110,19 @@ impl Control<'_> {
                     ));
                 continue;
             }
+            if groups & GCode::MachineCoordinates.group() != 0 {
+                let message = format!("{} is incremental, and G53 takes places", letter as char);
+                run.report
+                    .error("incremental-in-g53", message, span)
+                    .help("write X, Y, Z or C");
+            }
             run.words.rename(letter, axis);
             run.words.incremental |= bit(axis);
         }
     }
 
-    /// Numbers without a point: least increments, or a note.
+    /// Numbers without a point: least increments, or a note. F is taken as it
+    /// is written, which is never less than it means.
     fn points(&self, point: Point, run: &mut Run<'_, '_>) {
         let inch = run.words.g.iter().find_map(|(code, ..)| match code {
             GCode::Units { mm_per_unit } => Some(*mm_per_unit == MM_PER_INCH),
@@ -204,7 +222,7 @@ impl Control<'_> {
 
     /// G41 and G42 on a lathe: no path is moved, since the radius of the nose
     /// stands in the control.
-    pub(super) fn nose_radius(&self, span: Span, run: &mut Run<'_, '_>) {
+    pub(super) fn nose_radius(span: Span, run: &mut Run<'_, '_>) {
         run.words.take(b'D');
         let message = "G41 and G42: the radius of the tool nose stands in the control, \
                        it is taken as 0";
@@ -222,7 +240,7 @@ impl Control<'_> {
     }
 
     /// Says once that such a word is taken to move no axis.
-    pub(super) fn note_other_m(&self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+    pub(super) fn note_other_m(number: u16, span: Span, run: &mut Run<'_, '_>) {
         let message = format!(
             "M{} and other M words of the machine's builder are taken to move no axis",
             number / 10

@@ -65,7 +65,7 @@ impl Control<'_> {
     /// A word that moves no axis takes its arguments with it.
     fn other_word(&self, number: u16, span: Span, run: &mut Run<'_, '_>) {
         if self.is_other_m(number) && !self.is_ignored(number) {
-            self.note_other_m(number, span, run);
+            Self::note_other_m(number, span, run);
         }
         if !self.dialect().other_m || run.words.groups == 0 && !run.words.has_axes() {
             run.words.unused &= super::words::AXIS_LETTERS;

@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 use super::code::{GCode, code_number, g_code};
-use super::dialect::dialect_code;
+use super::dialect::{Own, dialect_code};
 use super::report::Report;
 use super::special::special_code;
 use crate::machine::{Controller, Family};
@@ -190,10 +190,12 @@ impl Words {
                     .then_some(GCode::Ignored)
             };
             let dialect = &controller.language.dialect;
-            if dialect.active
-                && let Some(own) = dialect_code(number, dialect)
-            {
-                return own.map(|code| (code, number));
+            if dialect.active {
+                match dialect_code(number, dialect) {
+                    Own::Code(code) => return Some((code, number)),
+                    Own::Missing => return None,
+                    Own::Common => {}
+                }
             }
             g_code(number, controller.language.family)
                 .or_else(|| special_code(number, &controller.language))

@@ -331,12 +331,11 @@ impl Flow {
             Target::Short(number) => {
                 let whole = u32::try_from(*number).ok().map(Label::Number);
                 let here = whole.and_then(|label| self.find_loaded(&label));
-                match here {
-                    Some(place) => place,
-                    None => {
-                        times = number / 10_000;
-                        self.find_program(&Label::Number((number % 10_000) as u32))?
-                    }
+                if let Some(place) = here {
+                    place
+                } else {
+                    times = number / 10_000;
+                    self.find_program(&Label::Number((number % 10_000) as u32))?
                 }
             }
             Target::Block(block) => self.find_block(*block, self.next)?,

@@ -36,6 +36,28 @@ pub(super) enum Unread {
     Foreign,
 }
 
+/// `<NAME>`: of the program itself at the beginning of a block, else of the
+/// one that is called (Fanuc 30i, "Program Name").
+fn program_name(
+    name: String,
+    start: usize,
+    reader: &Reader<'_>,
+    statement: &mut Statement<'_>,
+    block: &mut Block,
+) {
+    if !block.words.is_empty() {
+        statement.callee = Some(name);
+        return;
+    }
+    let span = Span::new(start, reader.at);
+    block.words.push(Word {
+        letter: b'O',
+        value: 0.0,
+        span,
+        number: span,
+    });
+}
+
 /// `,C2.` `,R5.` `,A30.`: B-63604EN, "Chamfering and Corner Rounding", "Direct
 /// Drawing Dimension Programming".
 fn corner_word(reader: &mut Reader<'_>) -> Fault {
@@ -100,7 +122,7 @@ impl Control<'_> {
                 }
                 b'<' if family == Family::Iso => {
                     let name = reader.angle_name()?.into_owned();
-                    self.name(name, start, &reader, &mut statement, block);
+                    program_name(name, start, &reader, &mut statement, block);
                 }
                 b':' | b'O' if family == Family::Iso => {
                     self.program_word(&mut reader, &mut statement, block)?;
@@ -120,29 +142,6 @@ impl Control<'_> {
         Ok(statement)
     }
 
-    /// `<NAME>`: of the program itself at the beginning of a block, else of the
-    /// one that is called (Fanuc 30i, "Program Name").
-    fn name(
-        &self,
-        name: String,
-        start: usize,
-        reader: &Reader<'_>,
-        statement: &mut Statement<'_>,
-        block: &mut Block,
-    ) {
-        if !block.words.is_empty() {
-            statement.callee = Some(name);
-            return;
-        }
-        let span = Span::new(start, reader.at);
-        block.words.push(Word {
-            letter: b'O',
-            value: 0.0,
-            span,
-            number: span,
-        });
-    }
-
     /// `:1000`, `O1000` and `O<NAME>`: the number of a program.
     fn program_word<'t>(
         &self,
@@ -158,7 +157,7 @@ impl Control<'_> {
                 return self.word(b'O', reader, block);
             }
             let name = reader.angle_name()?.into_owned();
-            self.name(name, start, reader, statement, block);
+            program_name(name, start, reader, statement, block);
             return Ok(());
         }
         self.word(b'O', reader, block)

@@ -6,7 +6,7 @@
 //! it is the contour. The program then goes on behind them; behind G70 it goes
 //! on at the next block.
 
-use super::{Control, Run, X, Z};
+use super::{Control, Run, X, Z, note_parameter, turning_needs};
 use crate::interpret::execute::Interpreter;
 use crate::interpret::facts::Facts;
 use crate::interpret::modal::Modal;
@@ -73,7 +73,7 @@ impl Control<'_> {
                 .map(|value| value as u64)
         };
         let (Some(first), Some(last)) = (block(first), block(last)) else {
-            self.turning_needs("the block numbers P and Q", number, run);
+            turning_needs("the block numbers P and Q", number, run);
             return;
         };
         let unit = self.modal.mm_per_unit;
@@ -87,8 +87,8 @@ impl Control<'_> {
         };
         let Some(cycle) = cycle else { return };
         let fits = allowance.iter().all(|length| length.abs() < 1e6);
-        if !fits || run.report.diagnostics.errors > 0 && !run.steps.is_empty() {
-            self.contour_value("an allowance beyond reason", span, run);
+        if !fits {
+            contour_value("an allowance beyond reason", span, run);
             return;
         }
         self.transfer = Some(Transfer::Contour(Box::new(Contour {
@@ -109,7 +109,7 @@ impl Control<'_> {
         let escape = self.plain_length(b'R', run).map(f64::abs);
         if number == 730 {
             let relief = [x.unwrap_or(0.0), z.unwrap_or(0.0)];
-            let times = self.divisions(count, run);
+            let times = divisions(count, run);
             if let Some(times) = times {
                 self.turning.relief = Some((relief, times));
             }
@@ -120,27 +120,17 @@ impl Control<'_> {
         self.turning.escape = escape.or(self.turning.escape);
     }
 
-    fn divisions(&self, count: Option<f64>, run: &mut Run<'_, '_>) -> Option<u64> {
-        let count = count
-            .filter(|count| (1.0..=DIVISIONS_MAX).contains(count) && count.fract() == 0.0)
-            .map(|count| count as u64);
-        if count.is_none() {
-            self.turning_needs("its number of divisions, from 1", 730, run);
-        }
-        count
-    }
-
     fn pattern(&mut self, run: &mut Run<'_, '_>) -> Option<ContourCycle> {
         if run.words.has(b'D') {
             let x = self.plain_length(b'I', run).unwrap_or(0.0);
             let z = self.plain_length(b'K', run).unwrap_or(0.0);
             let count = run.words.take(b'D');
-            let times = self.divisions(count, run)?;
+            let times = divisions(count, run)?;
             let relief_mm = [x, z];
             return Some(ContourCycle::Pattern { relief_mm, times });
         }
         let Some((relief_mm, times)) = self.turning.relief else {
-            self.turning_needs("its first block U W R", 730, run);
+            turning_needs("its first block U W R", 730, run);
             return None;
         };
         Some(ContourCycle::Pattern { relief_mm, times })
@@ -160,28 +150,22 @@ impl Control<'_> {
                 let span = run.words.span(letter, run.block);
                 let message =
                     "I and K of a roughing cycle (a pass before the last) are not supported";
-                self.contour_value(message, span, run);
+                contour_value(message, span, run);
                 return None;
             }
         }
         let Some(depth_mm) = depth_mm.filter(|depth| *depth > 0.0) else {
-            self.turning_needs("a depth of cut", number, run);
+            turning_needs("a depth of cut", number, run);
             return None;
         };
         if escape_mm.is_none() {
-            self.note_parameter(run);
+            note_parameter(run);
         }
         Some(ContourCycle::Rough {
             deep: if number == 710 { X } else { Z },
             depth_mm,
             escape_mm: escape_mm.unwrap_or(0.0),
         })
-    }
-
-    pub(super) fn contour_value(&self, message: &str, span: Span, run: &mut Run<'_, '_>) {
-        run.report
-            .error("contour", message, span)
-            .help("write the passes out, or check the words of the cycle");
     }
 }
 
@@ -262,6 +246,24 @@ impl Interpreter<'_> {
             .collect();
         control.rough(contour, &moves, &mut run);
     }
+}
+
+/// The number of divisions of G73.
+fn divisions(count: Option<f64>, run: &mut Run<'_, '_>) -> Option<u64> {
+    let count = count
+        .filter(|count| (1.0..=DIVISIONS_MAX).contains(count) && count.fract() == 0.0)
+        .map(|count| count as u64);
+    if count.is_none() {
+        turning_needs("its number of divisions, from 1", 730, run);
+    }
+    count
+}
+
+/// Reports what is wrong about a contour.
+pub(super) fn contour_value(message: &str, span: Span, run: &mut Run<'_, '_>) {
+    run.report
+        .error("contour", message, span)
+        .help("write the passes out, or check the words of the cycle");
 }
 
 /// Whether a contour consists of what cycles can follow.

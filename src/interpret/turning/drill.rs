@@ -2,7 +2,7 @@
 //! (G80-G89)" of lathes): R is a distance from where the cycle begins, and the
 //! tool comes back to there.
 
-use super::{Control, Run, X, Z};
+use super::{Control, Run, X, Z, turning_needs};
 use crate::interpret::moves::MoveKind::{Feed, Rapid, Tap};
 use crate::interpret::special::Turning as Spin;
 use crate::machine::{ALL_AXES, AxisValues};
@@ -46,7 +46,7 @@ impl Control<'_> {
         let hole = self.turning.hole;
         let Some(bottom) = hole.bottom else {
             let what = if axis == X { "X" } else { "Z" };
-            self.turning_needs(what, number, run);
+            turning_needs(what, number, run);
             return;
         };
         if repeats == 0.0 {
@@ -99,7 +99,7 @@ impl Control<'_> {
         if let Some(dwell) = run.words.take(b'P') {
             let dwell_s = dwell * if point { 1.0 } else { MILLISECOND_S };
             if !(0.0..=1e9).contains(&dwell_s) {
-                self.turning_needs("a dwell from 0 to 1e9 s", number, run);
+                turning_needs("a dwell from 0 to 1e9 s", number, run);
                 return false;
             }
             self.turning.hole.dwell_s = dwell_s;
@@ -128,7 +128,7 @@ impl Control<'_> {
                 let off = self.machine.controller.language.peck_clearance_mm;
                 let mut depth = level;
                 if let Some(peck) = hole.peck {
-                    self.note_pecks(run);
+                    note_pecks(run);
                     while (bottom - depth) * inward > peck + 1e-9 && run.within_limits() {
                         depth += inward * peck;
                         to(self, run, Feed, depth);
@@ -166,11 +166,11 @@ impl Control<'_> {
             self.dwell(run, dwell_s);
         }
     }
+}
 
-    fn note_pecks(&self, run: &mut Run<'_, '_>) {
-        let whole = run.whole();
-        let message = "G83 and G87 are taken to come out to R behind each peck (parameter 5101 \
-                       bit RTR), peck_clearance_mm of the controller profile off the last depth";
-        run.report.note_once("peck-clearance", message, whole);
-    }
+fn note_pecks(run: &mut Run<'_, '_>) {
+    let whole = run.whole();
+    let message = "G83 and G87 are taken to come out to R behind each peck (parameter 5101 \
+                   bit RTR), peck_clearance_mm of the controller profile off the last depth";
+    run.report.note_once("peck-clearance", message, whole);
 }

@@ -1,7 +1,7 @@
 //! G74 and G75: pecking along Z or X, column by column ("End Face Peck Drilling
 //! Cycle (G74)", "Outer Diameter/Internal Diameter Drilling Cycle (G75)").
 
-use super::{Control, Run, X, Z};
+use super::{Control, Run, X, Z, note_parameter, turning_needs};
 use crate::interpret::moves::MoveKind::{Feed, Rapid};
 
 impl Control<'_> {
@@ -27,12 +27,12 @@ impl Control<'_> {
         let last = targets[across].unwrap_or(at[across]);
         if targets[deep].is_none() {
             let what = if deep == Z { "Z" } else { "X" };
-            self.turning_needs(what, number, run);
+            turning_needs(what, number, run);
             return;
         }
         let back = self.turning.back.unwrap_or(0.0);
         if self.turning.back.is_none() {
-            self.note_parameter(run);
+            note_parameter(run);
         }
         let aside = (last - at[across]).signum() * clearance;
         let mut column = at[across];
@@ -54,7 +54,7 @@ impl Control<'_> {
             let next = step[across].filter(|step| *step > 0.0);
             let Some(next) = next else {
                 let what = if across == X { "P" } else { "Q" };
-                self.turning_needs(what, number, run);
+                turning_needs(what, number, run);
                 return;
             };
             column = toward(column, last, next);

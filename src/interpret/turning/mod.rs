@@ -159,26 +159,26 @@ impl Control<'_> {
     fn names_x_or_z(run: &Run<'_, '_>) -> bool {
         run.words.unused & (bit(b'X') | bit(b'Z')) != 0
     }
+}
 
-    /// Reports a word that a cycle lacks.
-    fn turning_needs(&self, what: &str, number: u16, run: &mut Run<'_, '_>) {
-        let whole = run.whole();
-        run.report
-            .error(
-                "cycle-word",
-                format!("G{} without {what}", number / 10),
-                whole,
-            )
-            .help("write it in this block, or in the first block of the cycle");
-    }
+/// Reports a word that a cycle lacks.
+fn turning_needs(what: &str, number: u16, run: &mut Run<'_, '_>) {
+    let whole = run.whole();
+    run.report
+        .error(
+            "cycle-word",
+            format!("G{} without {what}", number / 10),
+            whole,
+        )
+        .help("write it in this block, or in the first block of the cycle");
+}
 
-    /// Says once that a parameter of the control is not known.
-    fn note_parameter(&self, run: &mut Run<'_, '_>) {
-        let whole = run.whole();
-        let message = "what the program does not give of a turning cycle (return, escape, \
-                       chamfer) is a parameter of the control: taken as 0";
-        run.report.note_once("cycle-parameter", message, whole);
-    }
+/// Says once that a parameter of the control is not known.
+fn note_parameter(run: &mut Run<'_, '_>) {
+    let whole = run.whole();
+    let message = "what the program does not give of a turning cycle (return, escape, \
+                   chamfer) is a parameter of the control: taken as 0";
+    run.report.note_once("cycle-parameter", message, whole);
 }
 
 /// `at` with other places of X and Z.

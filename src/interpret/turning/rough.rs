@@ -6,7 +6,7 @@
 //! and back to the start. G72 the same with X and Z exchanged. The escape is a
 //! rapid here, which counts higher than a feed.
 
-use super::contour::{Contour, ContourCycle};
+use super::contour::{Contour, ContourCycle, contour_value};
 use super::{Control, Run, X, Z};
 use crate::interpret::moves::{Arc, Move, MoveKind};
 use crate::machine::{AxisSet, AxisValues};
@@ -105,7 +105,7 @@ impl Control<'_> {
             .map(|mv| Piece::new(mv, contour.allowance))
             .collect();
         if pieces.len() < 2 {
-            self.contour_wrong(
+            contour_wrong(
                 "the contour of a turning cycle needs two moves at least",
                 run,
             );
@@ -122,11 +122,6 @@ impl Control<'_> {
             }
             ContourCycle::Finish => {}
         }
-    }
-
-    fn contour_wrong(&self, message: &str, run: &mut Run<'_, '_>) {
-        let whole = run.whole();
-        self.contour_value(message, whole, run);
     }
 
     /// G71 and G72.
@@ -150,7 +145,7 @@ impl Control<'_> {
         let inward = (floor - corner[deep]).signum();
         let forward = (last.end[along] - approach.end[along]).signum();
         if (floor - corner[deep]).abs() < TOLERANCE_MM {
-            self.contour_wrong(
+            contour_wrong(
                 "the contour begins at the depth where the cycle stands",
                 run,
             );
@@ -158,7 +153,7 @@ impl Control<'_> {
         }
         let one_way = |axis: usize, way: f64| rest.iter().all(|piece| piece.goes(axis, way));
         if !one_way(deep, -inward) || !one_way(along, forward) {
-            self.contour_wrong(
+            contour_wrong(
                 "the contour goes back on itself (pockets of type II), which is not supported",
                 run,
             );
@@ -166,7 +161,7 @@ impl Control<'_> {
         }
         let count = (floor - corner[deep]).abs() / depth_mm;
         if count > 1e5 {
-            self.contour_wrong("more than 100000 passes", run);
+            contour_wrong("more than 100000 passes", run);
             return;
         }
         let into = match approach.kind {
@@ -250,4 +245,9 @@ impl Control<'_> {
             self.go(run, piece.kind, &piece.end, AxisSet::default(), piece.arc);
         }
     }
+}
+
+fn contour_wrong(message: &str, run: &mut Run<'_, '_>) {
+    let whole = run.whole();
+    contour_value(message, whole, run);
 }

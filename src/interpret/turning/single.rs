@@ -2,10 +2,8 @@
 //! system B ("Outer Diameter/Internal Diameter Cutting Cycle (G90)", "Thread
 //! Cutting Cycle (G92)", "End Face Turning Cycle (G94)").
 
-use super::{BOX, Control, FACE, Held, Run, THREAD_BOX, xz};
+use super::{BOX, Control, FACE, Held, Run, THREAD_BOX, X, Z, note_parameter, turning_needs, xz};
 use crate::interpret::moves::MoveKind::{Feed, Rapid};
-
-use super::{X, Z};
 
 impl Control<'_> {
     pub(super) fn single_cycle(&mut self, number: u16, run: &mut Run<'_, '_>) {
@@ -22,7 +20,7 @@ impl Control<'_> {
         held.taper = taper.unwrap_or(held.taper);
         let (Some(x), Some(z)) = (held.x, held.z) else {
             let number = run.words.g.first().map_or(number, |(_, number, _)| *number);
-            self.turning_needs("X and Z", number, run);
+            turning_needs("X and Z", number, run);
             return;
         };
         let taper = held.taper;
@@ -40,7 +38,7 @@ impl Control<'_> {
                 let Some(lead_mm) = self.lead(run) else {
                     return;
                 };
-                self.note_parameter(run);
+                note_parameter(run);
                 self.thread_to(&second, lead_mm, run);
                 self.part(run, Rapid, &third);
             }

@@ -2,7 +2,7 @@
 //! Thread Cutting Cycle (G76)"; one block in the format of Series 10/11, which
 //! is that of Haas).
 
-use super::{Control, Run, X, Z, xz};
+use super::{Control, Run, X, Z, note_parameter, turning_needs, xz};
 use crate::interpret::moves::MoveKind::{Rapid, Thread};
 use crate::machine::AxisValues;
 use crate::units::SECONDS_PER_MINUTE;
@@ -127,9 +127,9 @@ impl Control<'_> {
                 angle_deg: angle,
                 ..Finish::default()
             };
-            self.note_parameter(run);
+            note_parameter(run);
         } else if !self.turning.finish.given {
-            self.note_parameter(run);
+            note_parameter(run);
         }
         let root_mm = self.take_target(X, run).unwrap_or(self.position.at[X]);
         let (Some(end_mm), Some(height_mm), Some(first_mm)) =
@@ -140,12 +140,12 @@ impl Control<'_> {
             } else {
                 "Z, P and Q"
             };
-            self.turning_needs(what, 760, run);
+            turning_needs(what, 760, run);
             return;
         };
         let (height_mm, first_mm) = (height_mm.abs(), first_mm.abs());
         if height_mm == 0.0 || first_mm == 0.0 {
-            self.turning_needs("a depth", 760, run);
+            turning_needs("a depth", 760, run);
             return;
         }
         let Some(lead_mm) = self.lead(run) else {
