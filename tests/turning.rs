@@ -32,6 +32,17 @@ fn coordinates_are_preset_and_shifted() {
 }
 
 #[test]
+fn the_clamp_of_the_spindle_holds() {
+    // At a radius of 10 mm 100 m/min are 1592 1/min; G50 permits 600.
+    let program = "G0 X100. Z1.\nG50 X100. Z1. S600\nG96 S100 M3\nG1 X20. F0.2\nG97 S100\nG10 P1 X0.1 Z0\nG1 X10.\n";
+    assert_snapshot!(moves("fanuc-lathe", program), @r"
+1 rapid X50.0000 Z1.0000
+4 feed X10.0000 F120.0000
+7 feed X5.0000 F20.0000
+");
+}
+
+#[test]
 fn single_cycles() {
     let program = "G97 S600 M3\nG0 X60. Z2.\nG90 X50. Z-30. F0.2\nU-18. R-2.\nG94 X20. Z-1.\nZ-2. R-1.\nG92 X58. Z-20. F1.5\nG0 X80.\n";
     let expected = "\
@@ -346,6 +357,10 @@ fn what_turning_cycles_refuse() {
         (
             "G95",
             "unsupported-code: G95 is a feed mode that G-code system A does not have (G98, G99), which gwatt does not support",
+        ),
+        (
+            "G53 G0 U2.",
+            "incremental-in-g53: U is incremental, and G53 takes places",
         ),
         (
             "G0 X5. U2.",
