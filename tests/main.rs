@@ -5,6 +5,7 @@ mod conformance;
 mod expressions;
 mod flow;
 mod interpret;
+mod compensation;
 mod cycles;
 mod coordinates;
 mod syntax;

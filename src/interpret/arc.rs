@@ -14,7 +14,7 @@ const RADIUS_TOLERANCE_MM: [f64; 2] = [0.005, 0.0127];
 /// Share of the radius that the radii may differ by.
 const RADIUS_TOLERANCE: f64 = 1e-3;
 /// Angles below it count as none, so that the arc is a full circle.
-const FULL_CIRCLE_RAD: f64 = 1e-6;
+pub(super) const FULL_CIRCLE_RAD: f64 = 1e-6;
 
 /// An arc that cannot be.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -50,6 +50,11 @@ pub(super) enum GCode {
     Reference,
     CompensationOff,
     ToolLength(ToolLength),
+    /// G41, G42; `by_diameter`: G41.1 and G42.1.
+    CompensationOn {
+        left: bool,
+        by_diameter: bool,
+    },
     MachineCoordinates,
     WorkOffset(u8),
     PathMode,
@@ -107,7 +112,7 @@ impl GCode {
             Self::ArcAbsolute(_) => 3,
             Self::FeedMode(_) => 4,
             Self::Units { .. } => 5,
-            Self::CompensationOff | Self::NoseRadius => 6,
+            Self::CompensationOff | Self::CompensationOn { .. } | Self::NoseRadius => 6,
             Self::ToolLength(_) => 7,
             Self::WorkOffset(_) | Self::FurtherOffset => 8,
             Self::PathMode => 9,
@@ -154,6 +159,12 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
+        (Family::Rs274, 410 | 411 | 420 | 421) | (Family::Iso | Family::Isg, 410 | 420) => {
+            Some(GCode::CompensationOn {
+                left: number < 420,
+                by_diameter: number % 10 == 1,
+            })
+        }
         (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, 700) => common_g_code(200),
         (Family::Isg, 710) => common_g_code(210),

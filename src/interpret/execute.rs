@@ -2,11 +2,12 @@
 //! tool change, spindle, coolant, dwell, plane, units, offsets, path mode,
 //! distance mode, reference points and offsets, motion, stop.
 
+use super::compensation::Compensation;
 use super::expression::{Fault, Name, Reader, Value};
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Step};
+use super::moves::{Action, ActionKind, Move, Step};
 use super::parameters::{LOCALS, Parameters, Scope};
 use super::position::{Position, Reading};
 use super::printer;
@@ -57,6 +58,8 @@ pub(super) struct Control<'m> {
     pub(super) lost: Option<&'static str>,
     /// Targets are more than offsets: see `targets`.
     pub(super) bent: bool,
+    /// Cutter compensation, while it is on or being left.
+    pub(super) compensation: Option<Box<Compensation>>,
     pub(super) printer: printer::State,
     /// The words of a block need a second look: see `dialect`.
     adapts: bool,
@@ -65,7 +68,7 @@ pub(super) struct Control<'m> {
     pub(super) turning: Turning,
     block_delete: bool,
     begun: bool,
-    ended: bool,
+    pub(super) ended: bool,
     has_program_number: bool,
     /// Which run of the line this is, from 1.
     pub(super) run: u32,
@@ -125,6 +128,7 @@ impl<'m> Interpreter<'m> {
             debts: Vec::new(),
             lost: None,
             bent: false,
+            compensation: None,
             printer: printer::State::new(machine),
             adapts: machine.controller.language.dialect.adapts(),
             callee: None,
@@ -241,6 +245,28 @@ impl<'m> Interpreter<'m> {
         self.control.ended
     }
 
+    /// The text of the line of a move that was given with the last block, if
+    /// that line came before it; cut if it is long.
+    #[must_use]
+    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
+        self.control.compensation.as_ref()?.text_of(mv)
+    }
+
+    /// True while cutter compensation is on, and for the block that ends it.
+    #[must_use]
+    pub fn compensates(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.is_at_work())
+    }
+
+    /// True while moves are held back: cutter compensation needs the next one
+    /// to know where they end.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.holds())
+    }
+
     /// Executes one block: appends what it does to `steps`. What is not
     /// understood is reported, and the block then does nothing. Words whose
     /// values are worked out get them in `block`.
@@ -291,6 +317,9 @@ impl<'m> Interpreter<'m> {
             run.report
                 .error("program-name", "nothing in this block calls the program that it names", whole)
                 .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
+        }
+        if self.control.compensation.is_some() {
+            self.control.compensate(&mut run, before, errors);
         }
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);

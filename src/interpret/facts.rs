@@ -23,6 +23,9 @@ pub struct Facts {
     pub dwell_takes_feed: bool,
     /// Why none of its words may be changed, as in "it cuts a thread".
     pub fixed: Option<&'static str>,
+    /// Compensation is on, or lets go of moves: such blocks follow each other
+    /// without anything between them.
+    pub compensated: bool,
     /// A stop, tool change or end: the modal state must be the original's.
     pub boundary: bool,
     /// The block is executed: not deleted, not behind the end, not empty.

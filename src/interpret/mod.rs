@@ -7,6 +7,7 @@
 mod arc;
 mod arc_words;
 mod code;
+mod compensation;
 mod cycle;
 mod data_setting;
 mod dialect;

@@ -11,7 +11,7 @@ use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Differences of position below this are rounding, not motion (mm, degrees).
-const STANDSTILL_MM: f64 = 1e-9;
+pub(super) const STANDSTILL_MM: f64 = 1e-9;
 /// Positions beyond this are refused (mm, degrees): no machine is that large.
 pub(super) const POSITION_MAX_MM: f64 = 1e9;
 /// Index of the extruder axis.
@@ -46,7 +46,7 @@ impl Control<'_> {
             }
         }
         if let Motion::Special(number) = self.modal.motion {
-            return self.special(number, run);
+            return self.special_motion(number, run);
         }
         let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
         let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
@@ -359,7 +359,7 @@ fn no_such_axis(letter: u8, span: Span, report: &mut Report<'_, '_>) {
 /// Length of the path that F speaks for, and whether that is a length of
 /// linear axes: XYZ if any of them moves, else UVW, else the rotary axes, else
 /// the extruder (RS274/NGC, "Feed Rate").
-fn path_length(
+pub(super) fn path_length(
     start: &AxisValues,
     end: &AxisValues,
     moving: AxisSet,

@@ -19,6 +19,9 @@ pub(super) const LOCALS: usize = 34;
 /// Parameters that a program may keep: beyond, something runs away.
 const COUNT_MAX: usize = 100_000;
 
+/// `LinuxCNC` does not tell places there either.
+const UNDER_COMPENSATION: &str = "where the path ends under cutter compensation";
+
 /// What a program has assigned.
 #[derive(Debug)]
 pub(super) struct Parameters {
@@ -150,6 +153,9 @@ impl Variables for Control<'_> {
         if self.fanuc() {
             return self.fanuc_variable(number);
         }
+        if self.is_compensating() && matches!(number, 5420..=5428) {
+            return Read::Unknown(UNDER_COMPENSATION);
+        }
         if let Some(value) = self.system_parameter(number) {
             return Read::Value(Some(value));
         }
@@ -168,6 +174,10 @@ impl Variables for Control<'_> {
     fn named(&self, name: &str) -> Read {
         if let Some(value) = self.parameters.named(name) {
             return Read::Value(Some(value));
+        }
+        let place = matches!(name.as_bytes(), [b'_', b'a'..=b'c' | b'u'..=b'z']);
+        if place && self.is_compensating() {
+            return Read::Unknown(UNDER_COMPENSATION);
         }
         if let Some(value) = self.named_parameter(name) {
             return Read::Value(Some(value));

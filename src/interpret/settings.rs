@@ -67,6 +67,7 @@ impl Control<'_> {
     /// Plane, units, compensation, offsets, path and distance mode.
     pub(super) fn settings(&mut self, run: &mut Run<'_, '_>) {
         self.motion_word(run);
+        self.compensation_words(run);
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {

@@ -169,7 +169,7 @@ impl Control<'_> {
     }
 
     /// A block under a special motion word (number × 10).
-    pub(super) fn special(&mut self, number: u16, run: &mut Run<'_, '_>) {
+    pub(super) fn special_motion(&mut self, number: u16, run: &mut Run<'_, '_>) {
         let iso = self.machine.controller.language.family == Family::Iso;
         let moves = match number {
             52 | 53 => run.facts.motion_word.is_some() || run.words.has_axes(),

@@ -274,7 +274,6 @@ impl Control<'_> {
 
     /// Radius in mm and orientation of a tool, or of the one in the spindle;
     /// `None` if they are not known.
-    #[allow(dead_code, reason = "for those who compensate the radius")]
     pub(super) fn tool_edge(&self, number: Option<u32>) -> Option<(f64, u8)> {
         let number = number.filter(|number| *number != 0);
         let number = number.unwrap_or(self.tools.loaded);

@@ -57,6 +57,8 @@ pub struct Language {
     pub ignored_m: Vec<u16>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
+    /// Whether G41 and G42 shift the path, as LinuxCNC does.
+    pub cutter_compensation: bool,
     /// What printers differ in; of no account outside the Marlin family.
     pub printer: Printer,
     /// Whether G73 to G89 are the canned cycles of a milling control, with G98

@@ -34,6 +34,10 @@ impl<'m> Adviser<'m> {
         if assessment.blended {
             return "lower feed or acceleration here and in the neighbouring blocks".to_owned();
         }
+        if interpreter.compensates() {
+            return "lower the feed by hand: `limit` changes nothing under cutter compensation"
+                .to_owned();
+        }
         let modal = interpreter.modal();
         let per_minute = modal.feed_mode == FeedMode::PerMinute;
         let permit = Permit {

@@ -32,7 +32,7 @@ pub fn analyze<R: Read + Seek + Send>(
         for step in &*line.steps {
             if let Step::Move(mv) = step {
                 assessor.want = tally.want();
-                assessor.push(mv, line.text, &mut |mv, assessment, text| {
+                assessor.push(mv, line.text_of(mv), &mut |mv, assessment, text| {
                     let help = || adviser.help(mv, assessment, line.interpreter);
                     tally.take(mv, assessment, text, help);
                 });

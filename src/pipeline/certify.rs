@@ -149,10 +149,16 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 block,
                 steps,
                 verdict,
-                ..
+                line,
             } = self;
-            interpreter.execute(self.line, text, block, steps, diagnostics);
+            interpreter.execute(*line, text, block, steps, diagnostics);
             for step in &*steps {
+                let mut text = text;
+                if let Step::Move(mv) = step
+                    && mv.line != *line
+                {
+                    text = interpreter.held_text(mv).unwrap_or(text);
+                }
                 verdict.compare_step(step, text);
                 if let Step::Move(mv) = step {
                     assessor.want = verdict.tally.want();

@@ -13,6 +13,8 @@ use crate::syntax::Block;
 pub(super) struct Entry {
     pub(super) key: LineKey,
     pub(super) text: Vec<u8>,
+    /// Earlier lines, of which this block gives moves that were held back.
+    earlier: Vec<(LineKey, Vec<u8>)>,
     pub(super) block: Block,
     pub(super) facts: Facts,
     pub(super) steps: Vec<Step>,
@@ -34,6 +36,7 @@ impl Entry {
         Self {
             key: line.key,
             text: Vec::new(),
+            earlier: Vec::new(),
             block: Block::default(),
             facts: Facts::default(),
             steps: Vec::new(),
@@ -61,6 +64,10 @@ impl Entry {
         std::mem::swap(&mut self.block, line.block);
         self.facts = line.facts;
         std::mem::swap(&mut self.steps, line.steps);
+        self.earlier.clear();
+        if line.facts.compensated {
+            self.take_earlier(line);
+        }
         self.moves = self
             .steps
             .iter()
@@ -72,6 +79,25 @@ impl Entry {
         self.mode_before = mode_before;
         self.mm_per_unit_before = mm_per_unit_before;
         self.decided.clear();
+    }
+
+    /// Keeps the texts of the earlier lines that its moves belong to.
+    fn take_earlier(&mut self, line: &Line<'_, '_>) {
+        for step in &self.steps {
+            let Step::Move(mv) = step else { continue };
+            let key = (mv.text, mv.line);
+            let known = key == self.key || self.earlier.iter().any(|it| it.0 == key);
+            if !known && let Some(text) = line.interpreter.held_text(mv) {
+                self.earlier.push((key, text.to_vec()));
+            }
+        }
+    }
+
+    /// The text of the line that one of its moves belongs to.
+    pub(super) fn text_of(&self, mv: &Move) -> &[u8] {
+        let key = (mv.text, mv.line);
+        let earlier = self.earlier.iter().find(|it| it.0 == key);
+        earlier.map_or(self.text.as_slice(), |(_, text)| text.as_slice())
     }
 
     /// Whether it moves by a kind that is wanted.

@@ -9,7 +9,7 @@ use std::io::{Read, Seek, SeekFrom};
 use super::table::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Reading, Step, Transfer};
+use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step, Transfer};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
@@ -31,6 +31,17 @@ pub(super) struct Line<'f, 'm> {
     pub(super) files: &'f [String],
     /// The state behind it.
     pub(super) interpreter: &'f Interpreter<'m>,
+}
+
+impl Line<'_, '_> {
+    /// The text of the line that a move belongs to: this one, or an earlier one
+    /// whose moves were held back.
+    pub(super) fn text_of(&self, mv: &Move) -> &[u8] {
+        if (mv.text, mv.line) == self.key {
+            return self.text;
+        }
+        self.interpreter.held_text(mv).unwrap_or(self.text)
+    }
 }
 
 /// A stream of executed lines.
@@ -249,6 +260,14 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             let message = "there is no program in this file: no block does anything";
             self.diagnostics
                 .push(Diagnostic::error("no-program", message).help("give a part program"));
+        }
+        if self.interpreter.holds() && self.diagnostics.errors == 0 {
+            let message =
+                "the program ends under cutter compensation: where its last move ends is not known";
+            self.diagnostics.push(
+                Diagnostic::error("compensation", message)
+                    .help("write G40 and a move, or the end of the program: M2 or M30"),
+            );
         }
         let diagnostics = std::mem::take(&mut self.diagnostics);
         refuse_on_errors(diagnostics).map_err(|failure| self.name_foreign(failure))

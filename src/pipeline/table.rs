@@ -57,7 +57,8 @@ pub(super) struct Decision {
 impl Table {
     /// Takes note of a run of a line.
     pub(super) fn see(&mut self, line: LineKey, entry: &Entry) {
-        if entry.moves == 0 {
+        // A line whose moves are held back counts too: they obey its words.
+        if entry.moves == 0 && !entry.facts.compensated {
             return;
         }
         let sight = Sight {

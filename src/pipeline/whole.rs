@@ -317,7 +317,7 @@ fn certify(
                 verdict.compare_step(step, line.text);
                 if let Step::Move(mv) = step {
                     assessor.want = verdict.want();
-                    assessor.push(mv, line.text, &mut |mv, after, text| {
+                    assessor.push(mv, line.text_of(mv), &mut |mv, after, text| {
                         verdict.judge(mv, after, text);
                     });
                 }

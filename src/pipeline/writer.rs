@@ -248,7 +248,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 judged,
                 outcomes,
             };
-            assessor.push(mv, &entry.text, &mut |mv, assessment, text| {
+            assessor.push(mv, entry.text_of(mv), &mut |mv, assessment, text| {
                 tally.add(mv, assessment, text);
                 judge.take(mv, assessment);
             });
@@ -270,7 +270,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, &entry.text, &mut |_, assessment, text| {
+            assessor.push(mv, entry.text_of(mv), &mut |_, assessment, text| {
                 tally.add(mv, assessment, text);
                 let find = |_| Some(entry.waiting(machine, mv, step));
                 limiter.push(mv, assessment, &find, &mut |outcome| {
@@ -382,23 +382,25 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if !table.decide(self.machine, entry.key, entry, change) {
             return;
         }
-        let obstacles = entry.decided.iter();
-        for obstacle in obstacles.filter_map(|(_, outcome)| outcome.obstacle.as_deref()) {
-            let message = obstacle.message.clone();
-            self.reasons.push(
-                entry.key.1,
-                obstacle.rule,
-                message,
-                &obstacle.help,
-                &entry.text,
-            );
+        let moves = entry.steps.iter().filter_map(|step| match step {
+            Step::Move(mv) => Some(mv),
+            Step::Action(_) => None,
+        });
+        for (mv, (_, outcome)) in moves.zip(&entry.decided) {
+            if let Some(obstacle) = outcome.obstacle.as_deref() {
+                let message = obstacle.message.clone();
+                let text = entry.text_of(mv);
+                self.reasons
+                    .push(mv.line, obstacle.rule, message, &obstacle.help, text);
+            }
         }
     }
 
     /// Tells the certifier what the block must do.
     fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
         let feed_before = entry.feed_before();
-        let mut decided = entry.decided.iter_mut();
+        let mut list = std::mem::take(&mut entry.decided);
+        let mut decided = list.iter_mut();
         for step in &entry.steps {
             let mv = match step {
                 Step::Action(action) => {
@@ -417,8 +419,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                     message,
                     help,
                 } = *obstacle;
-                self.reasons
-                    .push(mv.line, rule, message, &help, &entry.text);
+                let text = entry.text_of(mv);
+                self.reasons.push(mv.line, rule, message, &help, text);
             }
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);
@@ -449,6 +451,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 row,
             }));
         }
+        entry.decided = list;
     }
 }
 

@@ -86,6 +86,8 @@ impl<'m> Rewriter<'m> {
         // Nothing can be put back inside a block that takes no further word.
         let sealed = facts.checksum || facts.dwell_takes_feed;
         let looked_at = facts.boundary
+            // Nothing may come between blocks under compensation.
+            || facts.compensated
             || facts.turns_knob
             || sealed
             || view.block.tape

@@ -62,6 +62,9 @@ pub(crate) struct LanguageTable {
     pub(crate) ignored: Option<Vec<At<String>>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
+    /// Whether G41 and G42 shift the path as LinuxCNC does; default false:
+    /// they are refused.
+    pub(crate) cutter_compensation: Option<bool>,
     /// What 3D printers differ in; only with family = "marlin".
     pub(crate) printer: Option<At<PrinterTable>>,
     /// Whether G73 to G89, G98 and G99 are those of a milling control; default

@@ -66,6 +66,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         ignored_g,
         ignored_m,
         block_delete: table.block_delete.unwrap_or(true),
+        cutter_compensation: table.cutter_compensation.unwrap_or(false),
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),

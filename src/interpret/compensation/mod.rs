@@ -1,0 +1,202 @@
+//! Cutter radius compensation: G40, G41, G42, G41.1 and G42.1.
+//!
+//! As LinuxCNC 2.9 does it (manual, "Cutter Compensation" and "G41, G42",
+//! "G41.1, G42.1"; what it leaves open was measured): the tool's centre runs
+//! beside the programmed path, and where a move ends depends on the next one.
+//! Each move is therefore held back, with what follows it without leaving its
+//! place in the plane, until the next is known.
+//!
+//! Blocks are executed as if there were no compensation; what a block gives
+//! then goes through here.
+
+mod corner;
+mod fault;
+mod follow;
+mod hold;
+mod refusals;
+mod vector;
+mod words;
+
+use self::fault::Fault;
+use self::hold::{Hold, place};
+use self::vector::Vector;
+use super::execute::{Control, Run};
+use super::moves::{Move, MoveKind, Step};
+
+/// Why blocks under compensation stay as they are.
+const FIXED: &str = "it is under cutter compensation";
+/// Longest text of a line that is kept.
+const TEXT_MAX: usize = 256;
+
+/// How far the compensation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// On, but nothing has moved yet.
+    Entry,
+    /// The tool is beside the path.
+    On,
+    /// G40 was read: the next move begins beside the path and ends on it.
+    Leaving,
+    /// Off.
+    Off,
+}
+
+/// Compensation that is on, or whose end is still to be seen.
+#[derive(Debug)]
+pub(super) struct Compensation {
+    state: State,
+    /// Axes of the plane.
+    plane: [usize; 2],
+    /// +1: the tool is to the left of its way; -1: to the right.
+    side: f64,
+    radius_mm: f64,
+    /// From the centre of a lathe tool's nose to the point that the machine
+    /// moves.
+    nose: Vector,
+    /// Where it was switched on the tool was still beside an earlier path: the
+    /// first move must be straight.
+    straight_first: bool,
+    hold: Hold,
+    /// Lines whose moves are held back, or were until this block.
+    texts: Vec<((u16, u64), Vec<u8>)>,
+    /// The steps of a block: a buffer.
+    own: Vec<Step>,
+}
+
+impl Compensation {
+    /// Whether G41 or G42 is in force.
+    fn is_on(&self) -> bool {
+        matches!(self.state, State::Entry | State::On)
+    }
+
+    /// The line of a move that was held back.
+    pub(super) fn text_of(&self, mv: &Move) -> Option<&[u8]> {
+        let key = (mv.text, mv.line);
+        let found = self.texts.iter().find(|(held, _)| *held == key);
+        found.map(|(_, text)| text.as_slice())
+    }
+
+    /// Whether it is on, or was until the last block.
+    pub(super) fn is_at_work(&self) -> bool {
+        self.state != State::Off
+    }
+
+    /// Whether moves wait for their ends.
+    pub(super) fn holds(&self) -> bool {
+        !self.hold.steps.is_empty()
+    }
+
+    /// Keeps the text of a line while its moves wait, and for the block that
+    /// lets them go.
+    fn remember(&mut self, key: (u16, u64), text: &[u8]) {
+        let known = self.texts.last().is_some_and(|(last, _)| *last == key);
+        if self.holds() && !known {
+            let (text, _) = crate::source::split_line_end(text);
+            self.texts
+                .push((key, text.get(..TEXT_MAX).unwrap_or(text).to_vec()));
+        }
+    }
+
+    /// Forgets the lines whose moves have been handed on before this block: all
+    /// but the one that did so.
+    fn forget(&mut self) {
+        if std::mem::take(&mut self.hold.handed_on) {
+            let last = self.texts.pop().filter(|_| self.holds());
+            self.texts.clear();
+            self.texts.extend(last);
+        }
+    }
+
+    /// The first move behind G40 begins where the tool is. True where its
+    /// length is one of linear axes.
+    fn leave(&mut self, mv: &mut Move) -> bool {
+        self.state = State::Off;
+        let end = self.plane.map(|axis| mv.end[axis]);
+        place(mv, self.plane, self.hold.tool, end, None)
+    }
+}
+
+impl Control<'_> {
+    /// Sends what a block gave through the compensation.
+    #[cold]
+    pub(super) fn compensate(&mut self, run: &mut Run<'_, '_>, before: usize, errors: u64) {
+        let Some(mut compensation) = self.compensation.take() else {
+            return;
+        };
+        if compensation.state == State::Off && !compensation.holds() {
+            return;
+        }
+        if compensation.is_on() || compensation.holds() {
+            run.facts.fixed = Some(FIXED);
+            run.facts.compensated = true;
+        }
+        if run.report.diagnostics.errors == errors {
+            compensation.forget();
+            let mut own = std::mem::take(&mut compensation.own);
+            own.extend(run.steps.drain(before..));
+            if let Err(fault) = self.pass(&mut compensation, &mut own, run) {
+                // One fault is told once: it goes on without compensation.
+                fault.report(run);
+                return;
+            }
+            own.clear();
+            compensation.own = own;
+            compensation.remember((self.text, run.line), run.report.text);
+        }
+        self.compensation = Some(compensation);
+    }
+
+    fn pass(
+        &mut self,
+        compensation: &mut Compensation,
+        own: &mut Vec<Step>,
+        run: &mut Run<'_, '_>,
+    ) -> Result<(), Fault> {
+        if !compensation.is_on() {
+            compensation.hold.finish(run.steps)?;
+        }
+        let path = |step: &&Step| matches!(step, Step::Move(mv) if mv.kind != MoveKind::Dwell);
+        if compensation.is_on() && own.iter().filter(path).count() > 1 {
+            return Err(Fault::OtherMotion);
+        }
+        for mut step in own.drain(..) {
+            match (compensation.state, &mut step) {
+                (State::Leaving, Step::Move(mv)) if mv.kind != MoveKind::Dwell => {
+                    self.leave(compensation, mv, run)?;
+                    run.steps.push(step);
+                }
+                (State::Off, _) => run.steps.push(step),
+                (State::Leaving, _) => compensation.hold.stay(step, run.steps)?,
+                _ => compensation.follow(step, run.steps)?,
+            }
+        }
+        if self.ended {
+            compensation.hold.finish(run.steps)?;
+            compensation.state = State::Off;
+        }
+        Ok(())
+    }
+
+    fn leave(
+        &self,
+        compensation: &mut Compensation,
+        mv: &mut Move,
+        run: &mut Run<'_, '_>,
+    ) -> Result<(), Fault> {
+        if mv.arc.is_some() {
+            return Err(Fault::ArcAfterExit);
+        }
+        let timed = mv.feed_mode == super::moves::FeedMode::InverseTime;
+        if timed && mv.kind != MoveKind::Rapid {
+            return Err(Fault::InverseTime);
+        }
+        let linear = compensation.leave(mv);
+        if mv.kind != MoveKind::Rapid
+            && let Some(speed_mm_s) =
+                self.feed_speed(run, &mv.end, mv.arc.as_ref(), mv.length_mm, linear)
+        {
+            mv.feed_mm_s = speed_mm_s;
+        }
+        Ok(())
+    }
+}
