@@ -233,6 +233,10 @@ impl Control<'_> {
     /// axis is left alone; G76 and G87 shift in that plane.
     fn suits_frame(&self, number: u16) -> bool {
         let frame = &self.position.frame;
+        if self.dialect().lathe.is_some() {
+            // Turning cycles see to diameters and frames themselves.
+            return true;
+        }
         if self.modal.diameter {
             return false;
         }
