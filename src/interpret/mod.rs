@@ -6,6 +6,7 @@
 
 mod arc;
 mod arc_words;
+mod beyond_words;
 mod code;
 mod compensation;
 mod cycle;
