@@ -305,7 +305,7 @@ fn every_message_of_an_assignment() {
         (
             "iso",
             "#3000=1",
-            "assignment: this cannot be assigned: #3000 raises an alarm, which ends the program",
+            "alarm: #3000 raises an alarm: the program ends here",
         ),
         (
             "iso",

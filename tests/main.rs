@@ -18,3 +18,5 @@ mod machine;
 mod printers;
 mod cli;
 mod readme;
+mod fanuc;
+mod turning;

@@ -89,6 +89,10 @@ pub(super) enum GCode {
     MirrorX,
     /// G31 of Fanuc and Haas: a feed that a signal ends.
     Skip,
+    /// G41 and G42 on a lathe.
+    NoseRadius,
+    /// G70 to G76 of a lathe; number × 10 in systems A and B.
+    Turning(u16),
     /// G98 (true): canned cycles return to the initial level; G99: to R.
     Retract(bool),
     /// G65, G66 and G67.
@@ -103,14 +107,14 @@ impl GCode {
     pub(super) fn group(self) -> u32 {
         1 << match self {
             // G80 may stand beside the word that takes over.
-            Self::Motion(Motion::None) => 16,
+            Self::Motion(Motion::None) => 24,
             Self::Motion(_) => 0,
             Self::Plane(_) => 1,
             Self::Absolute(_) => 2,
             Self::ArcAbsolute(_) => 3,
             Self::FeedMode(_) => 4,
             Self::Units { .. } => 5,
-            Self::CompensationOff | Self::CompensationOn { .. } => 6,
+            Self::CompensationOff | Self::CompensationOn { .. } | Self::NoseRadius => 6,
             Self::ToolLength(_) => 7,
             Self::WorkOffset(_) | Self::FurtherOffset => 8,
             Self::PathMode => 9,
@@ -123,6 +127,7 @@ impl GCode {
             | Self::RestoreOffset
             | Self::SaveReference
             | Self::DataSetting
+            | Self::Turning(_)
             | Self::LocalOffset => 12,
             Self::Ignored => 13,
             Self::MirrorX => 14,
@@ -240,19 +245,30 @@ fn common_g_code(number: u16) -> Option<GCode> {
 pub(super) fn refused_g_name(number: u16) -> &'static str {
     match number {
         50..=59 => "a spline or a high-speed mode",
-        70 | 80 => "diameter or radius programming",
         100..=109 => "data setting",
         171 | 181 | 191 => "a plane of the U V W axes",
         330 | 331 | 340..=360 => "thread cutting or tapping",
         380..=389 => "probing",
         410..=429 => "cutter compensation",
         431..=449 => "a tool length offset of another form",
+        502 | 512 => "turning of polygons",
         500..=519 => "scaling",
         520 => "a local coordinate system",
         650..=670 => "a macro call",
         680..=699 => "coordinate rotation",
         700..=799 | 801..=899 => "a canned cycle",
         960 | 970 => "constant surface speed",
+        70 | 80 => "diameter or radius programming",
+        71 | 1070 => "cylindrical interpolation",
+        120 | 130 => "a circular pocket",
+        121 | 131 | 1120 | 1130 => "polar interpolation",
+        270 | 290 => "a return from or a check of the reference point",
+        470 => "engraving of text",
+        600 => "positioning from one side",
+        630 => "the tapping mode",
+        910 => "incremental distance, which G-code system A writes as U and W",
+        930 | 950 => "a feed mode that G-code system A does not have (G98, G99)",
+        1500 => "a pocket",
         _ => "a word",
     }
 }
@@ -265,6 +281,8 @@ pub(super) fn refused_m_name(number: u16) -> &'static str {
         610..=689 => "input and output",
         700..=730 => "saving of modal state",
         970..=990 => "a subprogram call or return",
+        960 => "a jump or an interrupt by an input",
+        1090 => "a value that the operator types",
         1000..=1999 => "a user-defined word",
         _ => "a word",
     }

@@ -53,6 +53,15 @@ impl Control<'_> {
             (true, 2 | 20) => self.set_system(form == 20, number, &words, span, run),
             (true, 1 | 10 | 11) => self.set_tool(form, number, &words, span, run),
             (false, 2 | 20) => self.fanuc_system(form == 20, number, &words, span, run),
+            (false, -1) if self.dialect().lathe.is_some() && number.is_some() => {
+                // G10 P X Z R Q: an offset of a tool (B-63604EN, "Setting of
+                // Tool Offset Data").
+                for letter in [b'R', b'Q', b'Y'] {
+                    run.words.take(letter);
+                }
+                let message = "the tool offsets that G10 sets are taken as 0, like all of them";
+                run.report.note_once("tool-offset", message, span);
+            }
             (false, 10..=13) => self.fanuc_tool(form, number, span, run),
             _ => {
                 run.report

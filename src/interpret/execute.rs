@@ -16,9 +16,9 @@ use super::siemens::{Siemens, is_beyond_words};
 use super::special::Special;
 use super::spindle_speed::SpindleMode;
 use super::state_words::{Saved, Switches};
-use super::statement::Unread;
 use super::tools::Tools;
 use super::transfer::Transfer;
+use super::turning::Turning;
 use super::words::Words;
 use crate::machine::{Family, Machine};
 use crate::source::Span;
@@ -28,7 +28,7 @@ use crate::syntax::Block;
 #[derive(Debug)]
 pub struct Interpreter<'m> {
     pub(super) control: Control<'m>,
-    words: Words,
+    pub(super) words: Words,
 }
 
 /// What holds from block to block.
@@ -60,6 +60,11 @@ pub(super) struct Control<'m> {
     /// Cutter compensation, while it is on or being left.
     pub(super) compensation: Option<Box<Compensation>>,
     pub(super) printer: printer::State,
+    /// The words of a block need a second look: see `dialect`.
+    adapts: bool,
+    /// The program that the block names to be called.
+    pub(super) callee: Option<String>,
+    pub(super) turning: Turning,
     block_delete: bool,
     pub(super) begun: bool,
     pub(super) ended: bool,
@@ -126,6 +131,9 @@ impl<'m> Interpreter<'m> {
             bent: false,
             compensation: None,
             printer: printer::State::new(machine),
+            adapts: machine.controller.language.dialect.adapts(),
+            callee: None,
+            turning: Turning::default(),
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
@@ -241,6 +249,12 @@ impl<'m> Interpreter<'m> {
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
         self.control.execute(&mut run);
+        if self.control.callee.take().is_some() {
+            let whole = run.whole();
+            run.report
+                .error("program-name", "nothing in this block calls the program that it names", whole)
+                .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
+        }
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
         }
@@ -334,6 +348,9 @@ impl Control<'_> {
         run.words
             .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.words.checksum;
+        if self.adapts {
+            self.adapt_words(run);
+        }
         let errors = run.report.diagnostics.errors;
         if !self.debts.is_empty() {
             let span = run.whole();
@@ -388,65 +405,6 @@ impl Control<'_> {
             self.complain_about_rest(run);
         }
         self.end_of_block(run);
-    }
-
-    /// Reads a block that is more than plain words: values that are worked out,
-    /// assignments, flow. True when the program does not go on at the next line.
-    /// What is not understood stays in the block's issues and is reported.
-    #[cold]
-    fn beyond_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
-        if self.siemens.is_some() {
-            self.begun = true;
-            return self.siemens_words(block, report);
-        }
-        let text = report.text;
-        let statement = match self.statement(text, block) {
-            Ok(statement) => statement,
-            Err(Unread::Fault(fault)) => {
-                report
-                    .error(fault.rule, fault.message, fault.span)
-                    .help(fault.help);
-                return false;
-            }
-            Err(Unread::Foreign) => {
-                for issue in &block.issues {
-                    let found = issue.diagnostic(report.line, text);
-                    report.diagnostics.push(found);
-                }
-                return false;
-            }
-        };
-        self.begun = true;
-        for (name, value, span) in &statement.assignments {
-            if let Err(reason) = self.assign(name, *value) {
-                report
-                    .error(
-                        "assignment",
-                        format!("this cannot be assigned: {reason}"),
-                        *span,
-                    )
-                    .help("use another parameter");
-            }
-        }
-        self.transfer = statement.transfer;
-        self.transfer.is_some()
-    }
-
-    /// Takes an O number; true when it ends the program.
-    fn program_number(&mut self, run: &mut Run<'_, '_>) -> bool {
-        if run.words.take(b'O').is_none() {
-            return false;
-        }
-        let another = self.has_program_number;
-        if another {
-            let span = run.words.span(b'O', run.block);
-            let message = "a second program number ends the program; \
-                           programs behind it run where they are called";
-            run.report.note_once("several-programs", message, span);
-            self.ended = true;
-        }
-        self.has_program_number = true;
-        another
     }
 
     /// Words that no code has used: they might mean motion.

@@ -3,6 +3,7 @@
 use super::execute::{Control, Run};
 use super::moves::ActionKind;
 use crate::machine::Family;
+use crate::source::Span;
 use crate::syntax::Word;
 
 impl Control<'_> {
@@ -13,7 +14,9 @@ impl Control<'_> {
             .m
             .iter()
             .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other))
-            && !self.is_siemens();
+            && !self.is_siemens()
+            // Such words stand beside S and T: `S580 M13`.
+            && !self.dialect().other_m;
         if let Some(value) = run.words.take(b'S')
             && !other
         {
@@ -58,7 +61,18 @@ impl Control<'_> {
             _ if self.is_ignored(number) || is_load() => Some(ActionKind::Other),
             // SINUMERIK: free M numbers are the machine builder's switches.
             _ if self.is_siemens() => Some(ActionKind::Other),
+            _ if self.is_other_m(number) => Some(ActionKind::Other),
             _ => None,
+        }
+    }
+
+    /// A word that moves no axis takes its arguments with it.
+    fn other_word(&self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+        if self.is_other_m(number) && !self.is_ignored(number) {
+            Self::note_other_m(number, span, run);
+        }
+        if !self.dialect().other_m || run.words.groups == 0 && !run.words.has_axes() {
+            run.words.unused &= super::words::AXIS_LETTERS;
         }
     }
 
@@ -113,7 +127,7 @@ impl Control<'_> {
                     run.report.note_once("builder-m", message, span);
                 }
                 // Arguments of a word that moves no axis, as in `M106 S255 P1`.
-                ActionKind::Other => run.words.unused &= super::words::AXIS_LETTERS,
+                ActionKind::Other => self.other_word(number, span, run),
                 _ => {}
             }
             run.facts.boundary |= matches!(

@@ -7,10 +7,12 @@
 mod arc;
 mod arc_words;
 mod calls;
+mod beyond_words;
 mod code;
 mod compensation;
 mod cycle;
 mod data_setting;
+mod dialect;
 mod execute;
 mod expression;
 mod facts;
@@ -48,7 +50,10 @@ mod tool_table;
 mod tools;
 mod transfer;
 mod turned_arc;
+mod turning;
 mod words;
+
+pub(crate) use transfer::Transfer;
 
 pub use code::Motion;
 pub use execute::Interpreter;

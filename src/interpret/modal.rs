@@ -94,16 +94,24 @@ impl Modal {
         let language = &machine.controller.language;
         Self {
             motion: Motion::None,
-            plane: [0, 1, 2],
+            plane: if language.dialect.lathe.is_some() {
+                [2, 0, 1]
+            } else {
+                [0, 1, 2]
+            },
             absolute: language.absolute,
             extruder_absolute: language.absolute,
             arc_absolute: language.arc_absolute,
             mm_per_unit: if language.metric { 1.0 } else { MM_PER_INCH },
-            feed_mode: FeedMode::PerMinute,
+            feed_mode: if language.dialect.per_revolution {
+                FeedMode::PerRevolution
+            } else {
+                FeedMode::PerMinute
+            },
             feed: None,
             path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
             spindle_rpm: 0.0,
-            diameter: false,
+            diameter: language.dialect.diameter,
         }
     }
 }

@@ -10,8 +10,9 @@ use std::collections::HashMap;
 
 use super::execute::Control;
 use super::expression::{Name, Read, Value, Variables};
+use super::moves::FeedMode;
 use super::parameter_file::ParameterFile;
-use crate::machine::Family;
+use crate::machine::{Family, Lathe};
 
 /// Numbers that belong to the subroutine that runs, and 0.
 pub(super) const LOCALS: usize = 34;
@@ -195,12 +196,17 @@ impl Variables for Control<'_> {
 impl Control<'_> {
     /// B-63944EN, "System Variables": what the program itself decides is known.
     fn fanuc_variable(&self, number: u32) -> Read {
+        if matches!(number, 3001 | 3002 | 3011 | 3012) {
+            return Read::Unknown("the time");
+        }
         if let Some(value) = self.parameters.number(number) {
             return Read::Value(value);
         }
         let axis = |first: u32| (number - first) as usize;
         let known = match number {
             0 | 100..=199 | 500..=999 => return Read::Value(None),
+            4001..=4021 => self.modal_code(number),
+            4120 => Some(f64::from(self.tools.selected)),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
             5001..=5009 => self.place(axis(5001)),
@@ -213,6 +219,36 @@ impl Control<'_> {
             None if number >= 1000 => Read::Unknown("the state of the control"),
             None => Read::Missing,
         }
+    }
+
+    /// #4001 and so on: the G codes in force, by group.
+    fn modal_code(&self, number: u32) -> Option<f64> {
+        let system_a = self.dialect().lathe == Some(Lathe::A);
+        Some(match number {
+            4001 => f64::from(self.modal.motion.digit()? - b'0'),
+            4002 => match self.modal.plane {
+                [0, 1, 2] => 17.0,
+                [2, 0, 1] => 18.0,
+                _ => 19.0,
+            },
+            4003 if system_a => return None,
+            4003 if self.modal.absolute => 90.0,
+            4003 => 91.0,
+            4005 => match (self.modal.feed_mode, system_a) {
+                (FeedMode::InverseTime, _) => 93.0,
+                (FeedMode::PerMinute, false) => 94.0,
+                (FeedMode::PerRevolution, false) => 95.0,
+                (FeedMode::PerMinute, true) => 98.0,
+                (FeedMode::PerRevolution, true) => 99.0,
+            },
+            4006 if self.modal.mm_per_unit == 1.0 => 21.0,
+            4006 => 20.0,
+            4014 => match self.position.offsets().system {
+                system @ 1..=6 => 53.0 + f64::from(system),
+                _ => return None,
+            },
+            _ => return None,
+        })
     }
 
     /// Gives a parameter a value; the reason where it cannot have one.

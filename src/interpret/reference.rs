@@ -31,7 +31,8 @@ impl Control<'_> {
         run.words.axes().for_each(|(axis, _)| named.insert(axis));
         self.refuse_turned(named, span, run);
         if named.is_empty() {
-            if self.machine.controller.language.family == Family::Iso {
+            let language = &self.machine.controller.language;
+            if language.family == Family::Iso && !language.dialect.g28_all {
                 run.report
                     .error("reference-axes", "a reference point without axes", span)
                     .help("name the axes, as in G28 G91 Z0");
@@ -133,7 +134,11 @@ impl Control<'_> {
                     .help("give --start, or move the axis to a known position first");
                 continue;
             }
-            let value = self.length_mm(axis, value);
+            let mut value = self.length_mm(axis, value);
+            if run.words.incremental & bit(letter) != 0 {
+                // G50 U W of a lathe: the coordinates change by so much.
+                value += self.position.program()[axis];
+            }
             if value.abs() > POSITION_MAX_MM {
                 run.report
                     .error("position-range", "the position is beyond any machine", at)

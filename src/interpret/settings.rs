@@ -78,6 +78,8 @@ impl Control<'_> {
                 GCode::Polar(on) => self.polar_mode(on, span, run),
                 GCode::PathMode => self.path_mode(number, run),
                 GCode::MirrorX => self.mirror_x(span, run),
+                GCode::Ignored => self.arguments_of_ignored(number, run),
+                GCode::NoseRadius => Self::nose_radius(span, run),
                 GCode::Retract(initial) => self.retract_level(initial, span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
@@ -157,6 +159,13 @@ impl Control<'_> {
                     .error("dwell-time", "two words could be the time of G4", span)
                     .help("write the dwell in a block of its own, with one time");
             }
+            let whole = run
+                .words
+                .word(*letter, run.block)
+                .is_some_and(|word| !word.number.of(run.report.text).contains(&b'.'));
+            let dialect = &language.dialect;
+            let own = dialect.dwell_whole.iter().find(|(name, _)| name == letter);
+            let unit = own.filter(|_| whole).map_or(*unit, |(_, unit)| *unit);
             seconds = Some(value * unit);
         }
         match seconds {

@@ -7,6 +7,7 @@ use super::execute::{Control, Run};
 use super::moves::{ActionKind, MoveKind};
 use super::position::Reading;
 use super::spline::Spline;
+use super::turning::{BOX, FACE, THREAD, THREAD_BOX};
 use super::words::bit;
 use crate::machine::{AxisSet, AxisValues, Family, Language, Machine};
 use crate::source::Span;
@@ -142,7 +143,8 @@ impl Control<'_> {
         }
         self.special.active = 0;
         let language = &self.machine.controller.language;
-        if language.family != Family::Iso || !language.mill_cycles {
+        let lathe = language.dialect.lathe.is_some();
+        if language.family != Family::Iso || !(language.mill_cycles || lathe) {
             return Some(Motion::None);
         }
         // On a Fanuc, G80 is of another group than G0 to G3, which come back.
@@ -208,6 +210,8 @@ impl Control<'_> {
         match number {
             50..=53 => self.spline(number, run),
             330 | 331 => self.thread(number, run),
+            830..=890 if self.dialect().lathe.is_some() => self.turning_motion(number, run),
+            THREAD | BOX | THREAD_BOX | FACE => self.turning_motion(number, run),
             380..=389 => self.probe(run),
             760 if !iso => self.thread_cycle(run),
             _ if iso => self.iso_cycle(number, run),
@@ -229,6 +233,10 @@ impl Control<'_> {
     /// axis is left alone; G76 and G87 shift in that plane.
     fn suits_frame(&self, number: u16) -> bool {
         let frame = &self.position.frame;
+        if self.dialect().lathe.is_some() {
+            // Turning cycles see to diameters and frames themselves.
+            return true;
+        }
         if self.modal.diameter {
             return false;
         }

@@ -35,13 +35,14 @@ impl Default for SpindleMode {
 impl Control<'_> {
     /// G96, G97 and the clamp; before S is read.
     pub(super) fn spindle_mode(&mut self, run: &mut Run<'_, '_>) {
+        let lathe = self.dialect().lathe.is_some();
         let rs274 = self.machine.controller.language.family == Family::Rs274;
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
                 // G50 S and G92 S without axes: no offset, but a clamp.
                 GCode::SetOffset | GCode::Scaling(false)
-                    if !rs274 && run.words.has(b'S') && !run.words.has_axes() =>
+                    if !rs274 && run.words.has(b'S') && (lathe || !run.words.has_axes()) =>
                 {
                     if let Some(limit) = run.words.take(b'S') {
                         self.spindle.limit_rpm = limit.abs();

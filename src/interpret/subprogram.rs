@@ -61,7 +61,8 @@ impl Control<'_> {
             return true;
         }
         match (family, number) {
-            (Family::Rs274 | Family::Iso, 980) | (Family::Iso, 970) => {
+            // M198 calls a program that stands in another memory.
+            (Family::Rs274 | Family::Iso, 980) | (Family::Iso, 970 | 1980) => {
                 let local = number == 970;
                 if let Some(call) = self.call(local, span, run) {
                     self.transfer = Some(Transfer::Call(call));
@@ -82,24 +83,33 @@ impl Control<'_> {
     }
 
     /// The call of M97 and M98.
-    fn call(&self, local: bool, span: Span, run: &mut Run<'_, '_>) -> Option<Call> {
+    fn call(&mut self, local: bool, span: Span, run: &mut Run<'_, '_>) -> Option<Call> {
         let program = run.words.take(b'P');
         let times = run.words.take(b'L');
-        let Some(mut program) = program.and_then(whole) else {
+        if let Some(name) = self.callee.take() {
+            return Some(Call {
+                target: Target::Program(Label::Name(name)),
+                times: repetitions(times, span, run)?,
+                arguments: None,
+            });
+        }
+        let Some(program) = program.and_then(whole) else {
             run.report
                 .error("subprogram", "a call without the number of a program", span)
                 .help("write the number behind P, as in M98 P1000");
             return None;
         };
-        let mut repeat = times;
+        let repeat = times;
         if times.is_none()
             && !local
             && program > 9999
             && self.machine.controller.language.family == Family::Iso
         {
-            // The short form: repetitions before the four digits of the number.
-            repeat = Some((program / 10_000) as f64);
-            program %= 10_000;
+            return Some(Call {
+                target: Target::Short(program),
+                times: 1,
+                arguments: None,
+            });
         }
         let target = if local {
             Target::Block(program)
@@ -148,20 +158,24 @@ impl Control<'_> {
                     }
                     last = letter;
                     let variable = 3 * sets + 1 + usize::from(letter - b'I');
-                    set(&mut arguments, variable, word.value);
+                    set(&mut arguments, variable, self.argument(word, run));
                 }
                 letter => {
                     if let Some((_, variable)) = ARGUMENT_I.iter().find(|(name, _)| *name == letter)
                     {
-                        set(&mut arguments, *variable, word.value);
+                        set(&mut arguments, *variable, self.argument(word, run));
                     }
                 }
             }
         }
-        let Some(program) = program
-            .and_then(whole)
-            .and_then(|program| u32::try_from(program).ok())
-        else {
+        let label = match self.callee.take() {
+            Some(name) => Some(Label::Name(name)),
+            None => program
+                .and_then(whole)
+                .and_then(|program| u32::try_from(program).ok())
+                .map(Label::Number),
+        };
+        let Some(label) = label else {
             run.report
                 .error(
                     "subprogram",
@@ -175,7 +189,7 @@ impl Control<'_> {
             return true;
         };
         let call = Call {
-            target: Target::Program(Label::Number(program)),
+            target: Target::Program(label),
             times,
             arguments: Some(Box::new(arguments)),
         };

@@ -3,8 +3,8 @@
 
 use super::execute::{Control, Run};
 use super::frame::sin_cos_deg;
-use super::words::{AXIS_LETTERS, POLAR};
-use crate::machine::{AXES, AxisSet, AxisValues, Family};
+use super::words::{AXIS_LETTERS, POLAR, bit};
+use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family};
 use crate::source::Span;
 
 impl Control<'_> {
@@ -19,6 +19,7 @@ impl Control<'_> {
         self.bent = !self.position.frame.is_plain()
             || self.modal.diameter
             || self.polar.is_some()
+            || self.dialect().lathe.is_some()
             || !self.position.adrift.is_empty();
     }
 
@@ -60,12 +61,12 @@ impl Control<'_> {
                 let value = self.length_mm(axis, value);
                 if machine_coordinates {
                     end[axis] = value;
-                } else if self.is_absolute(axis) {
+                } else if self.is_absolute(axis, run) {
                     program[axis] = value;
                 } else {
                     program[axis] += value;
                 }
-                if machine_coordinates || self.is_absolute(axis) {
+                if machine_coordinates || self.is_absolute(axis, run) {
                     unknown.insert(axis);
                 }
             }
@@ -111,7 +112,10 @@ impl Control<'_> {
         (run.report.diagnostics.errors == errors).then_some(unknown)
     }
 
-    fn is_absolute(&self, axis: usize) -> bool {
+    fn is_absolute(&self, axis: usize, run: &Run<'_, '_>) -> bool {
+        if run.words.incremental & bit(ALL_AXES[axis].letter()) != 0 {
+            return false;
+        }
         if axis == super::motion::EXTRUDER {
             self.modal.extruder_absolute
         } else {

@@ -3,6 +3,7 @@
 use super::expression::Value;
 use super::parameters::LOCALS;
 use super::statement::Keyword;
+use super::turning::Contour;
 use crate::source::Span;
 
 /// The name of an O-word or of a subprogram.
@@ -42,6 +43,8 @@ pub(crate) enum Transfer {
     EndLoop(u8),
     /// A word of SINUMERIK.
     Siemens(Siemens),
+    /// A turning cycle about a contour that stands elsewhere in the program.
+    Contour(Box<Contour>),
 }
 
 /// What a block of SINUMERIK says about the order of execution.
@@ -149,6 +152,9 @@ pub(crate) struct Call {
 pub(crate) enum Target {
     /// A program.
     Program(Label),
+    /// A number of more than four digits: that program, or repetitions before
+    /// the four digits of its number (the short form of M98).
+    Short(u64),
     /// A block of the same program (M97).
     Block(u64),
 }

@@ -3,6 +3,7 @@
 use arrayvec::ArrayVec;
 
 use super::code::{GCode, code_number, g_code};
+use super::dialect::{Own, dialect_code};
 use super::report::Report;
 use super::special::special_code;
 use crate::machine::{Controller, Family};
@@ -71,6 +72,8 @@ pub(super) struct Words {
     pub(super) knobs: ArrayVec<(usize, Option<f64>, Span), 8>,
     /// Modal groups that have a word.
     pub(super) groups: u32,
+    /// Axis letters whose words are incremental whatever the distance mode.
+    pub(super) incremental: u32,
     /// The block carries a checksum.
     pub(super) checksum: bool,
 }
@@ -86,6 +89,7 @@ impl Words {
             m: ArrayVec::new(),
             knobs: ArrayVec::new(),
             groups: 0,
+            incremental: 0,
             checksum: false,
         }
     }
@@ -185,6 +189,14 @@ impl Words {
                     .contains(&number)
                     .then_some(GCode::Ignored)
             };
+            let dialect = &controller.language.dialect;
+            if dialect.active {
+                match dialect_code(number, dialect) {
+                    Own::Code(code) => return Some((code, number)),
+                    Own::Missing => return None,
+                    Own::Common => {}
+                }
+            }
             g_code(number, controller.language.family)
                 .or_else(|| special_code(number, &controller.language))
                 .or_else(ignored)
@@ -251,6 +263,21 @@ impl Words {
     /// Whether the letter stands in the block.
     pub(super) fn has(&self, letter: u8) -> bool {
         self.present & bit(letter) != 0
+    }
+
+    /// Takes the word of one letter for that of another.
+    pub(super) fn rename(&mut self, from: u8, to: u8) {
+        let (at, place) = (slot(from), slot(to));
+        self.values[place] = self.values[at];
+        self.index[place] = self.index[at];
+        for mask in [&mut self.present, &mut self.unused] {
+            *mask = *mask & !bit(from) | bit(to);
+        }
+    }
+
+    /// Multiplies the value of a letter's word.
+    pub(super) fn scale(&mut self, letter: u8, factor: f64) {
+        self.values[slot(letter)] *= factor;
     }
 
     /// Value of a letter's word if no other code has used it; it is used now.

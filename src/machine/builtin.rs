@@ -50,6 +50,14 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "marlin",
     "reprap",
     "klipper",
+    "fanuc",
+    "haas",
+    "fanuc-lathe",
+    "fanuc-lathe-b",
+    "mitsubishi",
+    "mazak",
+    "syntec",
+    "okuma",
 );
 
 /// All built-in machines, the default first.

@@ -67,6 +67,62 @@ pub struct Language {
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
+    /// What Fanuc, Haas and their relatives have besides.
+    pub dialect: Dialect,
+}
+
+/// What the controls of Fanuc, Haas and their relatives have besides ISO 6983.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a separate property of the control"
+)]
+pub struct Dialect {
+    /// There is any of this.
+    pub active: bool,
+    /// What numbers without a point mean; `None`: what they say.
+    pub point: Option<Point>,
+    /// Words of `G4` whose numbers without a point are in another unit, with
+    /// the seconds in one of it.
+    pub dwell_whole: Vec<(u8, f64)>,
+    /// The G codes of a lathe.
+    pub lathe: Option<Lathe>,
+    /// Words of X are diameters at power-on.
+    pub diameter: bool,
+    /// M words from M10 on that are not known move no axis.
+    pub other_m: bool,
+    /// F is a feed per revolution at power-on.
+    pub per_revolution: bool,
+    /// G28 without axes moves all of them.
+    pub g28_all: bool,
+}
+
+impl Dialect {
+    /// Whether the words of a block need a second look.
+    #[must_use]
+    pub fn adapts(&self) -> bool {
+        self.point.is_some() || self.lathe.is_some()
+    }
+}
+
+/// What a number without a decimal point means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Point {
+    /// The same as with a point behind it.
+    Calculator,
+    /// Least increments: 0.001 mm, 0.0001 inch, 0.001 degrees.
+    LeastIncrement,
+}
+
+/// The G codes of a lathe (Fanuc: G-code systems).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lathe {
+    /// G90, G92 and G94 are cycles, U and W are incremental.
+    A,
+    /// G77, G78 and G79 are cycles, G90 and G91 distance modes.
+    B,
+    /// As B, with G20, G21 and G24 as cycles and G70 and G71 as units.
+    C,
 }
 
 /// The family of words.

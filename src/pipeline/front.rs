@@ -9,7 +9,7 @@ use std::io::{Read, Seek, SeekFrom};
 use super::table::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step};
+use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step, Transfer};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
@@ -220,10 +220,19 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         let flow = flow.as_mut()?;
         // What is wrong in a loop is wrong in each of its runs.
         *stuck |= diagnostics.errors > 0 && run > 1;
+        let mut transfer = interpreter.transfer();
+        let mut done = Ok(());
+        if let Some(Transfer::Contour(contour)) = &transfer {
+            done = flow.turn(contour, interpreter, block, steps, diagnostics);
+            *stuck |= diagnostics.errors > 0;
+            transfer = None;
+        }
         let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
-        let mut done = flow.end_line(run, moves.clone().count());
+        if done.is_ok() {
+            done = flow.end_line(run, moves.clone().count());
+        }
         if done.is_ok()
-            && let Some(transfer) = interpreter.transfer()
+            && let Some(transfer) = transfer
         {
             done = flow.follow(transfer, interpreter);
         } else if done.is_ok() && moves.count() > 0 {

@@ -1,6 +1,7 @@
 //! The order of execution: calls, branches and loops over programs that are
 //! held whole.
 
+mod contour;
 mod library;
 mod macro_b;
 mod o_word;
@@ -330,6 +331,8 @@ impl Flow {
             Transfer::Loop { number, holds } => self.begin_loop(number, holds),
             Transfer::EndLoop(number) => self.end_loop(number),
             Transfer::Siemens(word) => self.siemens(word, interpreter),
+            // Its moves belong to its line: see `turn`.
+            Transfer::Contour(_) => Ok(()),
         };
         done.map_err(|trouble| self.trouble(trouble))
     }
@@ -348,8 +351,19 @@ impl Flow {
         if call.times == 0 {
             return Ok(());
         }
+        let mut times = call.times;
         let begin = match &call.target {
             Target::Program(label) => self.find_program(label)?,
+            Target::Short(number) => {
+                let whole = u32::try_from(*number).ok().map(Label::Number);
+                let here = whole.and_then(|label| self.find_loaded(&label));
+                if let Some(place) = here {
+                    place
+                } else {
+                    times = number / 10_000;
+                    self.find_program(&Label::Number((number % 10_000) as u32))?
+                }
+            }
             Target::Block(block) => self.find_block(*block, self.next)?,
         };
         if interpreter.rs274() && self.is_sub(begin) {
@@ -360,13 +374,7 @@ impl Flow {
                 "call it with `o… call`",
             ));
         }
-        self.enter(
-            begin,
-            call.times,
-            call.arguments,
-            Style::Program,
-            interpreter,
-        )
+        self.enter(begin, times, call.arguments, Style::Program, interpreter)
     }
 
     /// Begins a subprogram.
@@ -435,14 +443,8 @@ impl Flow {
     /// Where a program or subroutine begins, in the texts that are there or in
     /// a file of its own.
     fn find_program(&mut self, label: &Label) -> Result<Place, Trouble> {
-        // In this text first, then in the program, then in the others.
-        let here = self.now.text;
-        let count = self.texts.len();
-        let order = std::iter::once(here).chain((0..count).filter(|text| *text != here));
-        for text in order {
-            if let Some(line) = self.texts.get_mut(text).and_then(|text| text.begin(label)) {
-                return Ok(Place { text, line });
-            }
+        if let Some(place) = self.find_loaded(label) {
+            return Ok(place);
         }
         let Some(text) = self.load(label)? else {
             return Err(Library::nothing(label));
@@ -467,6 +469,18 @@ impl Flow {
         let text = self.texts.get(place.text);
         let keyword = text.and_then(|text| text.keyword(place.line));
         keyword == Some(Keyword::Sub)
+    }
+
+    /// The same in the texts that are there.
+    fn find_loaded(&mut self, label: &Label) -> Option<Place> {
+        // In this text first, then in the program, then in the others.
+        let here = self.now.text;
+        let count = self.texts.len();
+        let mut order = std::iter::once(here).chain((0..count).filter(|text| *text != here));
+        order.find_map(|text| {
+            let line = self.texts.get_mut(text)?.begin(label)?;
+            Some(Place { text, line })
+        })
     }
 
     /// A block of the program that `from` belongs to, looked for from there on.

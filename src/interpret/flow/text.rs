@@ -141,7 +141,9 @@ impl Text {
             let mut index = Index::default();
             for line in 0..self.len() {
                 let text = self.line(line);
-                if memchr::memchr3(b'O', b'o', b':', text).is_none() {
+                if memchr::memchr3(b'O', b'o', b':', text).is_none()
+                    && memchr::memchr(b'<', text).is_none()
+                {
                     continue;
                 }
                 match glance(text) {
@@ -150,6 +152,10 @@ impl Text {
                     }
                     Some((Label::Number(number), None)) => {
                         index.programs.entry(number).or_insert(line);
+                        index.borders.push(line);
+                    }
+                    Some((label @ Label::Name(_), None)) => {
+                        index.subs.entry(label).or_insert(line);
                         index.borders.push(line);
                     }
                     _ => {}

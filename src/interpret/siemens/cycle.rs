@@ -87,7 +87,7 @@ impl Control<'_> {
     pub(super) fn cycle(&mut self, state: &mut Siemens, call: &Call, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
         if call.is_pattern() {
-            return self.pattern(state, call, run);
+            return self.hole_pattern(state, call, run);
         }
         let Some(levels) = self.levels(call, run) else {
             return;
@@ -99,10 +99,10 @@ impl Control<'_> {
             return;
         }
         match call.kind {
-            Kind::Drill => self.drill(state, levels, call, run),
+            Kind::Drill => self.cycle_drill(state, levels, call, run),
             Kind::Deep => self.deep_hole(state, levels, call, run),
             Kind::Tap | Kind::FloatingTap => self.tap(state, levels, call, run),
-            Kind::Bore => self.bore(state, levels, call, run),
+            Kind::Bore => self.cycle_bore(state, levels, call, run),
             _ => self.bore_aside(state, levels, call, run),
         }
     }

@@ -71,7 +71,7 @@ impl Control<'_> {
     }
 
     /// A dwell: seconds, or revolutions where negative ("CYCLE82", DTB).
-    fn wait(&self, time: Option<f64>, run: &mut Run<'_, '_>) {
+    fn cycle_wait(&self, time: Option<f64>, run: &mut Run<'_, '_>) {
         let seconds = match time {
             Some(time) if time < 0.0 && self.modal.spindle_rpm > 0.0 => {
                 -time * 60.0 / self.modal.spindle_rpm
@@ -85,7 +85,7 @@ impl Control<'_> {
     }
 
     /// "Drilling, centering (CYCLE81)", "Drilling, counterboring (CYCLE82)".
-    pub(super) fn drill(
+    pub(super) fn cycle_drill(
         &mut self,
         state: &mut Siemens,
         levels: Levels,
@@ -94,7 +94,7 @@ impl Control<'_> {
     ) {
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
         self.plunge(state, MoveKind::Feed, &levels, levels.depth, run);
-        self.wait(call.value(6), run);
+        self.cycle_wait(call.value(6), run);
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
     }
 
@@ -150,13 +150,13 @@ impl Control<'_> {
             let level = levels.reference + levels.sign * reached;
             let share = if count == 0 { factor } else { 1.0 };
             self.plunge_at(state, feed.map(|feed| feed * share), &levels, level, run);
-            self.wait(call.value(9), run);
+            self.cycle_wait(call.value(9), run);
             if reached >= total {
                 break;
             }
             if chips_out {
                 self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
-                self.wait(call.value(10), run);
+                self.cycle_wait(call.value(10), run);
                 let near = level - levels.sign * clearance;
                 if (near - levels.safe) * levels.sign > 0.0 {
                     self.plunge(state, MoveKind::Rapid, &levels, near, run);
@@ -229,7 +229,7 @@ impl Control<'_> {
         // Overrides do not act on tapping.
         let factor = std::mem::replace(&mut state.feed_factor, 1.0);
         self.plunge_at(state, Some(pitch * speed_in), &levels, levels.depth, run);
-        self.wait(call.value(6), run);
+        self.cycle_wait(call.value(6), run);
         self.plunge_at(state, Some(pitch * speed_out), &levels, levels.safe, run);
         state.feed_factor = factor;
         self.modal.feed_mode = mode;
@@ -237,7 +237,7 @@ impl Control<'_> {
     }
 
     /// "Boring 1 (CYCLE85)": in at FFR, out at RFF. CYCLE89: both at F.
-    pub(super) fn bore(
+    pub(super) fn cycle_bore(
         &mut self,
         state: &mut Siemens,
         levels: Levels,
@@ -246,7 +246,7 @@ impl Control<'_> {
     ) {
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
         self.plunge_at(state, call.value(7), &levels, levels.depth, run);
-        self.wait(call.value(6), run);
+        self.cycle_wait(call.value(6), run);
         self.plunge_at(state, call.value(8), &levels, levels.safe, run);
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
     }
@@ -264,7 +264,7 @@ impl Control<'_> {
         let here = state.program_place(&self.position.at);
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
         self.plunge(state, MoveKind::Feed, &levels, levels.depth, run);
-        self.wait(call.value(6), run);
+        self.cycle_wait(call.value(6), run);
         let by = |place| call.value(place).unwrap_or(0.0) * self.modal.mm_per_unit;
         let aside = [
             (first, here[first] + by(8)),

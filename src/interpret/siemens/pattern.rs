@@ -12,7 +12,7 @@ use crate::interpret::transfer::{Siemens as Go, Transfer};
 const HOLES_MAX: f64 = 10_000.0;
 
 impl Control<'_> {
-    pub(super) fn pattern(&mut self, state: &mut Siemens, call: &Call, run: &mut Run<'_, '_>) {
+    pub(super) fn hole_pattern(&mut self, state: &mut Siemens, call: &Call, run: &mut Run<'_, '_>) {
         let unit = self.modal.mm_per_unit;
         let value = |place| call.value(place).unwrap_or(0.0);
         let count = value(6);

@@ -16,7 +16,18 @@ impl Control<'_> {
         if reader.take_name(b"GOTO") {
             statement.transfer = Some(Transfer::Goto(self.block_number(reader)?));
         } else if takes_if(reader) {
-            let holds = self.macro_condition(reader)?;
+            let before = reader.at;
+            let holds = match self.macro_condition(reader) {
+                Err(Unread::Fault(fault))
+                    if fault.rule == "unknown-value" && raises_alarm(reader.text, before) =>
+                {
+                    // An alarm would only make the program shorter.
+                    statement.alarm = Some(Span::new(before, reader.text.len()));
+                    reader.at = reader.text.len();
+                    return Ok(true);
+                }
+                holds => holds?,
+            };
             if reader.take_name(b"THEN") {
                 self.then(holds, reader, statement)?;
             } else if reader.take_name(b"GOTO") {
@@ -115,6 +126,17 @@ impl Control<'_> {
                 .into()),
         }
     }
+}
+
+/// Whether `THEN #3000=` stands behind a condition.
+fn raises_alarm(text: &[u8], from: usize) -> bool {
+    let bare: Vec<u8> = text
+        .iter()
+        .skip(from)
+        .filter(|byte| !byte.is_ascii_whitespace())
+        .map(u8::to_ascii_uppercase)
+        .collect();
+    memchr::memmem::find(&bare, b"]THEN#3000=").is_some()
 }
 
 /// Takes IF with a condition behind it; `IFIX[#1]` is an I word.

@@ -22,6 +22,10 @@ pub(super) struct Statement<'t> {
     /// They take effect when the whole block has been read.
     pub(super) assignments: Vec<(Name<'t>, Value, Span)>,
     pub(super) transfer: Option<Transfer>,
+    /// The program that a call names: `M98 <NAME>`.
+    pub(super) callee: Option<String>,
+    /// An alarm whose condition nobody knows.
+    pub(super) alarm: Option<Span>,
 }
 
 /// Why a block could not be read.
@@ -30,6 +34,45 @@ pub(super) enum Unread {
     Fault(Fault),
     /// It is no statement of this language: its issues say it best.
     Foreign,
+}
+
+/// `<NAME>`: of the program itself at the beginning of a block, else of the
+/// one that is called (Fanuc 30i, "Program Name").
+fn program_name(
+    name: String,
+    start: usize,
+    reader: &Reader<'_>,
+    statement: &mut Statement<'_>,
+    block: &mut Block,
+) {
+    if !block.words.is_empty() {
+        statement.callee = Some(name);
+        return;
+    }
+    let span = Span::new(start, reader.at);
+    block.words.push(Word {
+        letter: b'O',
+        value: 0.0,
+        span,
+        number: span,
+    });
+}
+
+/// `,C2.` `,R5.` `,A30.`: B-63604EN, "Chamfering and Corner Rounding", "Direct
+/// Drawing Dimension Programming".
+fn corner_word(reader: &mut Reader<'_>) -> Fault {
+    let start = reader.at;
+    reader.at += 1;
+    let what = match reader.peek() {
+        Some(b'C') => "a chamfer (,C)",
+        Some(b'R') => "a rounded corner (,R)",
+        Some(b'A') => "an angle of a drawing (,A)",
+        _ => "a word behind a comma",
+    };
+    reader.at += 1;
+    let message = format!("{what} is not supported");
+    let help = "write the corner as a move of its own";
+    reader.fault("corner-word", message, help, start)
 }
 
 impl From<Fault> for Unread {
@@ -77,6 +120,14 @@ impl Control<'_> {
                     }
                     statement.assignments.push((name, value, span));
                 }
+                b'<' if family == Family::Iso => {
+                    let name = reader.angle_name()?.into_owned();
+                    program_name(name, start, &reader, &mut statement, block);
+                }
+                b':' | b'O' if family == Family::Iso => {
+                    self.program_word(&mut reader, &mut statement, block)?;
+                }
+                b',' => return Err(corner_word(&mut reader).into()),
                 b'O' if family == Family::Rs274 => {
                     self.o_word(&mut reader, &mut statement, block)?;
                 }
@@ -89,6 +140,27 @@ impl Control<'_> {
         }
         block.issues.clear();
         Ok(statement)
+    }
+
+    /// `:1000`, `O1000` and `O<NAME>`: the number of a program.
+    fn program_word<'t>(
+        &self,
+        reader: &mut Reader<'t>,
+        statement: &mut Statement<'t>,
+        block: &mut Block,
+    ) -> Result<(), Unread> {
+        let start = reader.at;
+        if reader.peek() == Some(b'O') {
+            reader.at += 1;
+            if reader.peek() != Some(b'<') {
+                reader.at = start;
+                return self.word(b'O', reader, block);
+            }
+            let name = reader.angle_name()?.into_owned();
+            program_name(name, start, reader, statement, block);
+            return Ok(());
+        }
+        self.word(b'O', reader, block)
     }
 
     /// Passes over the byte order mark, the block delete and the block number.

@@ -195,11 +195,16 @@ fn keyword(reader: &mut Reader<'_>) -> Option<Keyword> {
 /// The O-word at the beginning of a line that is passed over: its label, where
 /// it does not have to be worked out, and what it does.
 pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword>)> {
-    let mut reader = Reader::new(line, 0);
+    let mut reader = Reader::new(line.trim_ascii_end(), 0);
     while matches!(reader.peek(), Some(b'/' | b'N' | b'0'..=b'9' | b'.')) {
         reader.at += 1;
     }
-    if !reader.take(b'O') {
+    if reader.peek() == Some(b'<') {
+        // A program name of Fanuc, alone in its line.
+        let name = reader.angle_name().ok()?.into_owned();
+        return reader.peek().is_none().then_some((Label::Name(name), None));
+    }
+    if !(reader.take(b'O') || reader.take(b':')) {
         return None;
     }
     let label = match reader.peek()? {

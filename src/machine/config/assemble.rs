@@ -5,7 +5,7 @@ use super::machine_file::{
     LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName, SpindleTable,
 };
 use super::value::{At, Num};
-use super::{axis, converter, plausible, preset, unchecked, word};
+use super::{axis, converter, plausible, preset, profile, unchecked, word};
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
 use crate::machine::model::{Converter, Limits, Load, Machine, Path, Spindle};
@@ -25,6 +25,16 @@ pub(crate) fn machine(
     if path.rapid == RapidPath::Independent {
         // A feed is straight: written as one, such a rapid would take another path.
         controller.rapid_knob = RapidKnob::None;
+    }
+    if let Some(table) = &file.language {
+        let dialect = &mut controller.language.dialect;
+        dialect.point = table
+            .value
+            .decimal_point
+            .map(profile::point)
+            .or(dialect.point);
+        dialect.diameter = table.value.diameter.unwrap_or(dialect.diameter);
+        dialect.active = true;
     }
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();

@@ -73,6 +73,44 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// What a number without a decimal point means; default: what it says,
+    /// without a note.
+    pub(crate) decimal_point: Option<PointName>,
+    /// The G codes of a lathe; default: not a lathe.
+    pub(crate) lathe: Option<LatheName>,
+    /// Whether words of X are diameters; default false.
+    pub(crate) diameter: Option<bool>,
+    /// Whether M words from M10 on that are not known move no axis, which is
+    /// then said once; default false: they are refused.
+    pub(crate) other_m: Option<bool>,
+    /// What F means at power-on; default per minute.
+    pub(crate) feed: Option<FeedName>,
+    /// Whether G28 without axes moves all of them; default false.
+    pub(crate) g28_all: Option<bool>,
+}
+
+/// What a number without a decimal point means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PointName {
+    Calculator,
+    LeastIncrement,
+}
+
+/// G-code systems of lathes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+pub(crate) enum LatheName {
+    A,
+    B,
+    C,
+}
+
+/// What F means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FeedName {
+    PerMinute,
+    PerRevolution,
 }
 
 /// The family of words.
@@ -96,6 +134,8 @@ pub(crate) struct DwellTable {
     /// Seconds in one unit of it.
     #[schemars(required)]
     pub(crate) unit_s: Option<Positive>,
+    /// Seconds in one unit of a number without a decimal point; default the same.
+    pub(crate) whole_unit_s: Option<Positive>,
 }
 
 /// Unit of lengths.
@@ -131,6 +171,8 @@ pub(crate) struct PlannerTable {
     /// such dwells; default false.
     pub(crate) dwell_stops: Option<bool>,
     /// Whether a rapid may be written as a feed to lower its speed; default none.
+    /// With "g1-where-linear" only on a machine whose file says that its rapids
+    /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
 }
 
@@ -157,6 +199,8 @@ pub(crate) enum RapidJointName {
 pub(crate) enum RapidKnobName {
     None,
     G1,
+    // Only on a machine whose file says that its rapids are straight.
+    G1WhereLinear,
 }
 
 /// A word that limits speed or acceleration until it is taken back.

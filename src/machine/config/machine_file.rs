@@ -7,6 +7,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::controller_file::PointName;
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, Share,
@@ -31,6 +32,8 @@ pub(crate) struct MachineFile {
     pub(crate) converter: Option<OneOrMany<ConverterTable>>,
     /// How the path is followed.
     pub(crate) path: Option<At<PathTable>>,
+    /// Parameters of the control that change how programs are read.
+    pub(crate) language: Option<At<OwnLanguageTable>>,
     /// The axes by letter; at least one.
     #[schemars(required)]
     pub(crate) axes: Option<At<PerAxis<At<AxisTable>>>>,
@@ -104,6 +107,17 @@ pub(crate) struct PathTable {
     pub(crate) mode: Option<PathModeName>,
     /// Straight rapids, or each axis for itself; absent: the controller's.
     pub(crate) rapid: Option<RapidName>,
+}
+
+/// Parameters of the control that change how programs are read; what is absent
+/// is as in the controller profile.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OwnLanguageTable {
+    /// What a number without a decimal point means.
+    pub(crate) decimal_point: Option<PointName>,
+    /// Whether words of X are diameters.
+    pub(crate) diameter: Option<bool>,
 }
 
 /// What happens at the joint of two blocks.

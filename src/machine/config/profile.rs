@@ -2,16 +2,17 @@
 
 use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
-    ArcRuleName, ArgumentName, ControllerFile, DistanceName, FamilyName, KnobTable, LanguageTable,
-    PlannerTable, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
+    ArcRuleName, ArgumentName, ControllerFile, DistanceName, DwellTable, FamilyName, FeedName,
+    KnobTable, LanguageTable, LatheName, PlannerTable, PointName, RapidJointName, RapidKnobName,
+    TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
 use crate::machine::controller::{
-    ArcRule, Controller, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language, Planner,
-    RapidJoint, RapidKnob, RapidPath,
+    ArcRule, Controller, Dialect, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language,
+    Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath,
 };
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
@@ -70,7 +71,39 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        dialect: dialect(table),
     })
+}
+
+fn dialect(table: &LanguageTable) -> Dialect {
+    let whole = |entry: &At<DwellTable>| {
+        let letter = word::letter(&entry.value.letter.as_ref()?.value)?;
+        Some((letter, entry.value.whole_unit_s.as_ref()?.value))
+    };
+    let mut dialect = Dialect {
+        active: false,
+        point: table.decimal_point.map(point),
+        dwell_whole: table.dwell.iter().flatten().filter_map(whole).collect(),
+        lathe: table.lathe.map(|lathe| match lathe {
+            LatheName::A => Lathe::A,
+            LatheName::B => Lathe::B,
+            LatheName::C => Lathe::C,
+        }),
+        diameter: table.diameter.unwrap_or(false),
+        other_m: table.other_m.unwrap_or(false),
+        per_revolution: table.feed == Some(FeedName::PerRevolution),
+        g28_all: table.g28_all.unwrap_or(false),
+    };
+    dialect.active = dialect != Dialect::default();
+    dialect
+}
+
+/// What a number without a point means, of its name.
+pub(crate) fn point(name: PointName) -> Point {
+    match name {
+        PointName::Calculator => Point::Calculator,
+        PointName::LeastIncrement => Point::LeastIncrement,
+    }
 }
 
 fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
@@ -138,11 +171,14 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
     let Some(knob) = table
         .rapid_knob
         .as_ref()
-        .filter(|knob| knob.value == RapidKnobName::G1)
+        .filter(|knob| knob.value != RapidKnobName::None)
     else {
         return RapidKnob::None;
     };
-    if table.rapid.map(rapid_path) == Some(RapidPath::Independent) {
+    // Where the machine's rapids are independent, it takes the knob away.
+    if knob.value == RapidKnobName::G1
+        && table.rapid.map(rapid_path) == Some(RapidPath::Independent)
+    {
         let message = "`rapid_knob` = \"g1\" with independent rapids changes the path";
         let help = Some("a feed is straight; use \"none\"".to_owned());
         findings.error("machine-value", &knob.span, message, help);

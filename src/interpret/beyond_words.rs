@@ -1,0 +1,88 @@
+//! Blocks that are more than plain words: what they assign, call and say of the
+//! order of execution takes effect.
+
+use super::execute::{Control, Run};
+use super::expression::{Name, Value};
+use super::report::Report;
+use super::statement::Unread;
+use crate::machine::Family;
+use crate::syntax::Block;
+
+impl Control<'_> {
+    /// Reads a block that is more than plain words: values that are worked out,
+    /// assignments, flow. True when the program does not go on at the next line.
+    /// What is not understood stays in the block's issues and is reported.
+    #[cold]
+    pub(super) fn beyond_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
+        if self.siemens.is_some() {
+            self.begun = true;
+            return self.siemens_words(block, report);
+        }
+        let text = report.text;
+        let statement = match self.statement(text, block) {
+            Ok(statement) => statement,
+            Err(Unread::Fault(fault)) => {
+                report
+                    .error(fault.rule, fault.message, fault.span)
+                    .help(fault.help);
+                return false;
+            }
+            Err(Unread::Foreign) => {
+                for issue in &block.issues {
+                    let found = issue.diagnostic(report.line, text);
+                    report.diagnostics.push(found);
+                }
+                return false;
+            }
+        };
+        self.begun = true;
+        self.callee = statement.callee;
+        if let Some(span) = statement.alarm {
+            let message =
+                "whether this alarm (#3000) is raised only the machine knows: taken as not";
+            report.note_once("alarm-not-raised", message, span);
+        }
+        for (name, value, span) in &statement.assignments {
+            if *name == Name::Number(3000) && self.raises_alarm(*value) {
+                let message = "#3000 raises an alarm: the program ends here";
+                report.note_once("alarm", message, *span);
+                self.ended = true;
+                block.words.clear();
+                return false;
+            }
+            if let Err(reason) = self.assign(name, *value) {
+                report
+                    .error(
+                        "assignment",
+                        format!("this cannot be assigned: {reason}"),
+                        *span,
+                    )
+                    .help("use another parameter");
+            }
+        }
+        self.transfer = statement.transfer;
+        self.transfer.is_some()
+    }
+
+    fn raises_alarm(&self, value: Value) -> bool {
+        self.machine.controller.language.family != Family::Rs274
+            && value.is_some_and(|it| it != 0.0)
+    }
+
+    /// Takes an O number; true when it ends the program.
+    pub(super) fn program_number(&mut self, run: &mut Run<'_, '_>) -> bool {
+        if run.words.take(b'O').is_none() {
+            return false;
+        }
+        let another = self.has_program_number;
+        if another {
+            let span = run.words.span(b'O', run.block);
+            let message = "a second program number ends the program; \
+                           programs behind it run where they are called";
+            run.report.note_once("several-programs", message, span);
+            self.ended = true;
+        }
+        self.has_program_number = true;
+        another
+    }
+}

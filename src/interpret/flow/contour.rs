@@ -1,0 +1,93 @@
+//! Reads the blocks of a contour for a turning cycle.
+
+use super::{Flow, Trouble};
+use crate::diagnostic::Diagnostic;
+use crate::interpret::execute::Interpreter;
+use crate::interpret::moves::Step;
+use crate::interpret::report::Diagnostics;
+use crate::interpret::turning::{Contour, ContourCycle};
+use crate::syntax::{Block, scan_line};
+
+/// Lines that a contour may have.
+const LINES_MAX: usize = 10_000;
+
+impl Flow {
+    /// Executes the contour from P to Q for a cycle of the line that is being
+    /// executed, and adds the cycle's moves to `steps`.
+    pub(crate) fn turn(
+        &mut self,
+        contour: &Contour,
+        interpreter: &mut Interpreter<'_>,
+        block: &Block,
+        steps: &mut Vec<Step>,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<(), Box<Diagnostic>> {
+        self.contour(contour, interpreter, block, steps, diagnostics)
+            .map_err(|trouble| self.trouble(trouble))
+    }
+
+    fn contour(
+        &mut self,
+        contour: &Contour,
+        interpreter: &mut Interpreter<'_>,
+        block: &Block,
+        steps: &mut Vec<Step>,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<(), Trouble> {
+        let first = self.find_block(contour.first, self.next)?;
+        let before = interpreter.before_contour();
+        let errors = diagnostics.errors;
+        let mut found = Vec::new();
+        let mut own = Block::default();
+        let mut place = first;
+        loop {
+            let text = self
+                .texts
+                .get(place.text)
+                .filter(|text| place.line < text.len() && place.line < first.line + LINES_MAX)
+                .map(|text| text.line(place.line));
+            let Some(text) = text else {
+                let message = format!(
+                    "there is no block N{} behind N{} to end the contour",
+                    contour.last, contour.first
+                );
+                let help = "give the contour's first and last block as P and Q";
+                return Err(Trouble::new("contour", message, help));
+            };
+            scan_line(text, false, &mut own);
+            let number = place.line as u64 + 1;
+            interpreter.execute(number, text, &mut own, &mut found, diagnostics);
+            if diagnostics.errors != errors {
+                return Ok(());
+            }
+            if interpreter.transfer().is_some() || interpreter.ended() {
+                let message = format!("line {number} leaves the contour of a turning cycle");
+                let help = "write no calls, jumps, cycles or ends between the blocks of P and Q";
+                return Err(Trouble::new("contour", message, help));
+            }
+            place.line += 1;
+            if own
+                .number
+                .is_some_and(|word| word.value == contour.last as f64)
+            {
+                break;
+            }
+        }
+        if contour.cycle != ContourCycle::Finish {
+            self.next = place;
+        }
+        let text = self.text().to_vec();
+        let line = self.now.line as u64 + 1;
+        interpreter.turn(
+            contour,
+            before,
+            found,
+            line,
+            &text,
+            block,
+            steps,
+            diagnostics,
+        );
+        Ok(())
+    }
+}

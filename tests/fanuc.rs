@@ -1,0 +1,246 @@
+//! Programs of Fanuc, Haas and their relatives.
+//!
+//! Sources: Fanuc B-63944EN ("Decimal Point Programming", "Skip Function",
+//! "Custom Macro"), Haas mill operator's manual.
+
+use std::fmt::Write as _;
+use std::io::Cursor;
+
+use gwatt::machine::Machine;
+use gwatt::pipeline::{self, Failure, Options};
+use insta::assert_snapshot;
+
+/// A machine with linear axes X Y Z and rotary axes B C; `more` goes into its
+/// file.
+fn machine(controller: &str, more: &str) -> Machine {
+    let mut text = format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n{more}[converter]\npeak_power_w = 1e5\n"
+    );
+    for axis in ["X", "Y", "Z"] {
+        let _ = writeln!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
+        );
+    }
+    for axis in ["B", "C"] {
+        let _ = writeln!(
+            text,
+            "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
+        );
+    }
+    Machine::from_toml("test.toml", &text)
+        .expect("a valid machine")
+        .0
+}
+
+/// The moves of a program, a line each, or the messages of a refusal.
+pub(crate) fn moves(controller: &str, program: &str) -> String {
+    moves_on(&machine(controller, ""), program)
+}
+
+fn moves_on(machine: &Machine, program: &str) -> String {
+    let mut out = String::new();
+    let result = pipeline::moves(
+        Cursor::new(program),
+        machine,
+        &Options::default(),
+        &mut |mv, _| {
+            let _ = write!(out, "{} {}", mv.line, mv.kind.name());
+            for axis in mv.moving.iter() {
+                let letter = gwatt::machine::ALL_AXES[axis].letter() as char;
+                let _ = write!(out, " {letter}{:.4}", mv.end[axis] + 0.0);
+            }
+            if let Some(arc) = &mv.arc {
+                let [first, second] = arc.center;
+                let turns = arc.sweep_rad / std::f64::consts::TAU;
+                let _ = write!(out, " center {first:.4},{second:.4} turns {turns:.4}");
+            }
+            if mv.feed_mm_s.is_finite() {
+                let _ = write!(out, " F{:.4}", mv.feed_mm_s * 60.0);
+            }
+            if mv.dwell_s > 0.0 {
+                let _ = write!(out, " {} s", mv.dwell_s);
+            }
+            out.push('\n');
+            Ok(())
+        },
+    );
+    out = out.replace("-0.0000", "0.0000");
+    if let Err(Failure::Refused { diagnostics, .. }) = result {
+        out.clear();
+        for found in diagnostics {
+            if found.severity == gwatt::diagnostic::Severity::Error {
+                let _ = writeln!(out, "{} {}: {}", found.line, found.rule, found.message);
+            }
+        }
+    }
+    out
+}
+
+/// Rules of the notes on a program.
+fn notes(controller: &str, program: &str) -> Vec<&'static str> {
+    let machine = machine(controller, "");
+    pipeline::moves(
+        Cursor::new(program),
+        &machine,
+        &Options::default(),
+        &mut |_, _| Ok(()),
+    )
+    .unwrap_or_default()
+    .into_iter()
+    .map(|note| note.rule)
+    .collect()
+}
+
+#[test]
+fn numbers_without_a_point() {
+    let program = "G21 G0 X100 Y1.5\nB90\n#1=20\nX#1\nX[#1+1]\nG20 X1000\nG21 G1 X5000 F600\n";
+    assert_snapshot!(moves("fanuc", program), @r"
+1 rapid X100.0000 Y1.5000
+2 rapid B90.0000
+4 rapid X20.0000
+5 rapid X21.0000
+6 rapid X25400.0000
+7 feed X5000.0000 F600.0000
+");
+    assert!(notes("fanuc", program).contains(&"no-point"));
+    assert!(!notes("fanuc", "G0 X1. Y0\n").contains(&"no-point"));
+    // What is worked out is meant as with a point; inches have 0.0001.
+    let least = machine("fanuc", "[language]\ndecimal_point = \"least-increment\"\n");
+    assert_snapshot!(moves_on(&least, program), @r"
+1 rapid X0.1000 Y1.5000
+2 rapid B0.0900
+4 rapid X20.0000
+5 rapid X21.0000
+6 rapid X2.5400
+7 feed X5.0000 F600.0000
+");
+}
+
+#[test]
+fn diameters_may_be_off() {
+    let radius = machine("fanuc-lathe", "[language]\ndiameter = false\n");
+    assert_eq!(
+        moves_on(&radius, "G0 X40. Z1.\n"),
+        "1 rapid X40.0000 Z1.0000\n"
+    );
+}
+
+#[test]
+fn dwells_in_seconds_and_milliseconds() {
+    let program = "G0 X1.\nG04 P500\nG04 P1.5\nG04 X2.\n";
+    assert_snapshot!(moves("haas", program), @r"
+1 rapid X1.0000
+2 dwell 0.5 s
+3 dwell 1.5 s
+4 dwell 2 s
+");
+    assert_eq!(moves("fanuc-lathe", "G04 U1.5\n"), "1 dwell 1.5 s\n");
+}
+
+#[test]
+fn programs_by_number_and_by_name() {
+    let program = "%\n<MAIN>\nG0 X10.\nM98 <SUB> L2\nM98 P20012\nM98 P12345\nM198 P12\nG65 <SUB>\nM30\n<SUB>\nG91 X1.\nG90\nM99\n:0012\nX5.\nX0\nM99\nO12345\nX77.\nM99\n%\n";
+    assert_snapshot!(moves("haas", program), @r"
+3 rapid X10.0000
+11 rapid X11.0000
+11 rapid X12.0000
+15 rapid X5.0000
+16 rapid X0.0000
+15 rapid X5.0000
+16 rapid X0.0000
+19 rapid X77.0000
+15 rapid X5.0000
+16 rapid X0.0000
+11 rapid X1.0000
+");
+    assert_snapshot!(moves("fanuc", "G0 X1. <SUB>\nM98 <SUB>\n"), @r"
+1 program-name: nothing in this block calls the program that it names
+2 no-such-subprogram: there is no subprogram o<sub>
+");
+}
+
+/// A bolt circle by a macro, and the same written out.
+#[test]
+fn a_macro_and_its_twin() {
+    let by_macro = "O1000 (BOLT CIRCLE)\nG21 G17 G90 G0 X0 Y0 Z50.\nS800 M3\nG65 P9100 R40. H6. A30. Z-12. F150.\nG0 Z50. M5\nM30\nO9100\n#30=#4003\n#1=#1\n#2=0\nWHILE[#2LT#11]DO1\n#3=#1+#2*360/#11\nG90 G0 X[#18*COS[#3]] Y[#18*SIN[#3]]\nZ2.\nG1 Z#26 F#9\nG0 Z2.\n#2=#2+1\nEND1\nIF[#2NE6]THEN #3000=1(HOLES)\nG#30\nM99\n";
+    let mut expanded = "G21 G17 G90 G0 X0 Y0 Z50.\nS800 M3\n".to_owned();
+    for hole in 0..6 {
+        let angle = f64::from(30 + 60 * hole).to_radians();
+        let _ = writeln!(
+            expanded,
+            "G0 X{:.9} Y{:.9}\nZ2.\nG1 Z-12. F150.\nG0 Z2.",
+            40.0 * angle.cos(),
+            40.0 * angle.sin()
+        );
+    }
+    expanded.push_str("G0 Z50. M5\nM30\n");
+    let without_line = |program: &str| {
+        let text = moves("fanuc", program);
+        let behind = |line: &str| line.split_once(' ').unwrap_or_default().1.to_owned();
+        text.lines().map(behind).collect::<Vec<_>>()
+    };
+    let twin = without_line(&expanded);
+    assert_eq!(twin.len(), 26);
+    assert_eq!(without_line(by_macro), twin);
+}
+
+#[test]
+fn words_that_move_nothing() {
+    let program = "G5.1 Q1 R5\nG05 P10000\nG08 P1\nG0 X5. M88\nM62 P1\nM29 S500\nG2 X0 I-2.5 J0 F500. M127\nG31 Z-5. F100.\nG1 Z1.\n";
+    assert_snapshot!(moves("fanuc", program), @r"
+4 rapid X5.0000
+7 arc X0.0000 Y0.0000 center 2.5000,0.0000 turns -0.5000 F500.0000
+8 probe Z-5.0000 F100.0000
+9 feed F100.0000
+");
+    let found = notes("fanuc", program);
+    for note in ["builder-m", "probed"] {
+        assert!(found.contains(&note), "{found:?}");
+    }
+    assert!(notes("haas", "G187 P1 E0.1\nG103 P1\nG0 X1.\nG28\n").contains(&"smoothness"));
+    assert_eq!(moves("haas", "G0 X1. Y2.\nG28\n").lines().count(), 2);
+}
+
+#[test]
+fn alarms_and_state() {
+    let program = "IF[#5405GE6000]THEN#3000=15(TOOL LIFE)\nG91 G18 G20\n#1=#4003\n#2=#4002\n#3=#4006\nG0 G90 G21 X#1 Y#2 Z#3\n#3006=1(CHECK)\n#3000=1(STOP)\nG0 X500.\n";
+    assert_snapshot!(moves("fanuc", program), @"6 rapid X91.0000 Y18.0000 Z20.0000");
+    let found = notes("fanuc", program);
+    for note in ["alarm-not-raised", "alarm", "behind-the-end"] {
+        assert!(found.contains(&note), "{found:?}");
+    }
+    let time = moves("fanuc", "#3001=0\n#1=#3001\n");
+    assert!(
+        time.contains("unknown-value: #3001 depends on the time"),
+        "{time}"
+    );
+}
+
+#[test]
+fn what_is_refused_by_name() {
+    let cases = [
+        ("G1 X1. ,C2. F1.", "a chamfer (,C) is not supported"),
+        (
+            "G1 X1. ,A30. F1.",
+            "an angle of a drawing (,A) is not supported",
+        ),
+        ("G12.1", "G12.1 is polar interpolation"),
+        ("G107 C10.", "G107 is cylindrical interpolation"),
+        ("G150", "G150 is a pocket"),
+        ("G13 F1.", "G13 is a circular pocket"),
+        ("G47", "G47 is engraving of text"),
+        ("G51.2", "G51.2 is turning of polygons"),
+        (
+            "G29",
+            "G29 is a return from or a check of the reference point",
+        ),
+        ("G60", "G60 is positioning from one side"),
+        ("M96", "M96 is a jump or an interrupt by an input"),
+        ("M109", "M109 is a value that the operator types"),
+    ];
+    for (block, expected) in cases {
+        let found = moves("haas", &format!("G0 X0\n{block}\n"));
+        assert!(found.contains(expected), "{block}: {found}");
+    }
+}
