@@ -435,12 +435,16 @@ fn splines_become_lines() {
             .split(' ')
             .filter_map(|word| word.parse().ok())
             .collect();
-        assert!((numbers[1].hypot(numbers[2]) - 1.0).abs() < 1e-4, "{line}");
+        assert!(
+            (libm::hypot(numbers[1], numbers[2]) - 1.0).abs() < 1e-4,
+            "{line}"
+        );
     }
     assert_eq!(found.lines().count(), 46);
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a list of programs")]
 fn each_refusal_once() {
     let rs274 = [
         "G81 X1 Z-1",

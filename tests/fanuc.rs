@@ -170,8 +170,8 @@ fn a_macro_and_its_twin() {
         let _ = writeln!(
             expanded,
             "G0 X{:.9} Y{:.9}\nZ2.\nG1 Z-12. F150.\nG0 Z2.",
-            40.0 * angle.cos(),
-            40.0 * angle.sin()
+            40.0 * libm::cos(angle),
+            40.0 * libm::sin(angle)
         );
     }
     expanded.push_str("G0 Z50. M5\nM30\n");

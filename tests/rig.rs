@@ -94,7 +94,7 @@ fn controller() -> Controller {
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,
-            dialect: Default::default(),
+            dialect: gwatt::machine::Dialect::default(),
         },
         planner: Planner {
             rapid: RapidPath::Linear,

@@ -3,6 +3,7 @@
 
 mod contour;
 mod library;
+mod limits;
 mod macro_b;
 mod o_word;
 mod outline;
@@ -13,6 +14,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use self::library::Library;
+pub use self::limits::Limits;
 use self::siemens::Section;
 use self::text::{Search, Text};
 use super::execute::Interpreter;
@@ -66,27 +68,6 @@ pub(crate) struct Flow {
     sections: Vec<Section>,
     /// Texts that were loaded by the names of their subprograms.
     named: Vec<(String, usize)>,
-}
-
-/// Where repetition stops.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Limits {
-    /// Calls inside one another.
-    pub depth: usize,
-    /// Moves of lines that have been executed before.
-    pub repeated_moves: u64,
-    /// Lines in a row that move nothing.
-    pub idle_lines: u64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self {
-            depth: 100,
-            repeated_moves: 10_000_000,
-            idle_lines: 10_000_000,
-        }
-    }
 }
 
 /// A call that has not returned.
