@@ -2,7 +2,7 @@
 
 use arrayvec::ArrayVec;
 
-use super::code::{GCode, code_number, g_code};
+use super::code::{GCode, Motion, code_number, g_code};
 use super::dialect::{Own, dialect_code};
 use super::report::Report;
 use super::special::special_code;
@@ -107,9 +107,11 @@ impl Words {
         self.g.clear();
         self.m.clear();
         self.knobs.clear();
+        let plain = !controller.language.dialect.active;
         let mut words = block.words.iter().enumerate().peekable();
         while let Some((index, word)) = words.next() {
             match word.letter {
+                b'G' if plain && self.add_motion(word) => {}
                 b'G' | b'M' => {
                     let number = code_number(word.value);
                     let knob = number.and_then(|number| {
@@ -129,9 +131,9 @@ impl Words {
                         self.add_m(*word, report);
                     }
                 }
-                b'A'..=b'Z' => self.add(index, *word, report),
+                b'A'..=b'Z' => self.add(index, word, report),
                 b'@' | b'^' if controller.language.family == Family::Rs274 => {
-                    self.add(index, *word, report);
+                    self.add(index, word, report);
                 }
                 b'*' if block.number.is_some() => {
                     self.checksum = true;
@@ -161,23 +163,49 @@ impl Words {
         }
     }
 
-    fn add(&mut self, index: usize, word: Word, report: &mut Report<'_, '_>) {
+    #[inline]
+    fn add(&mut self, index: usize, word: &Word, report: &mut Report<'_, '_>) {
         let mask = bit(word.letter);
         let slot = slot(word.letter);
-        if self.groups & GCode::MacroCall.group() != 0 {
-            // Arguments: the macro call reads them itself.
-            return;
-        }
-        if self.present & mask != 0 {
-            let message = format!("the block has two {} words", word.letter as char);
-            report
-                .error("word-twice", message, word.span)
-                .help("write each letter once in a block");
+        if self.present & mask != 0 || self.groups & GCode::MacroCall.group() != 0 {
+            self.add_again(word, report);
             return;
         }
         self.present |= mask;
         self.values[slot] = word.value;
         self.index[slot] = index as u16;
+    }
+
+    /// A letter for the second time; those of a macro call are its arguments,
+    /// which it reads itself.
+    #[cold]
+    fn add_again(&self, word: &Word, report: &mut Report<'_, '_>) {
+        if self.groups & GCode::MacroCall.group() != 0 {
+            return;
+        }
+        let message = format!("the block has two {} words", word.letter as char);
+        report
+            .error("word-twice", message, word.span)
+            .help("write each letter once in a block");
+    }
+
+    /// G0 to G3, which every controller has, the short way; false for others.
+    #[inline]
+    fn add_motion(&mut self, word: &Word) -> bool {
+        let motion = match word.value {
+            0.0 => Motion::Rapid,
+            1.0 => Motion::Linear,
+            2.0 => Motion::ArcCw,
+            3.0 => Motion::ArcCcw,
+            _ => return false,
+        };
+        if self.groups & MOTION_GROUP != 0 || self.g.is_full() {
+            return false;
+        }
+        self.groups |= MOTION_GROUP;
+        let number = word.value as u16 * 10;
+        self.g.push((GCode::Motion(motion), number, word.span));
+        true
     }
 
     fn add_g(&mut self, word: Word, controller: &Controller, report: &mut Report<'_, '_>) {
