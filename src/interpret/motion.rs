@@ -23,6 +23,9 @@ impl Control<'_> {
         if self.special.left.is_some() && !self.may_follow_a_stop(run) {
             return;
         }
+        if run.words.only_moves() {
+            return self.move_on(run);
+        }
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
@@ -45,6 +48,12 @@ impl Control<'_> {
                 _ => {}
             }
         }
+        self.move_on(run);
+    }
+
+    /// Moves by the motion word in force.
+    #[inline]
+    fn move_on(&mut self, run: &mut Run<'_, '_>) {
         if let Motion::Special(number) = self.modal.motion {
             return self.special_motion(number, run);
         }

@@ -288,6 +288,12 @@ impl Words {
         self.g.is_empty() && self.m.is_empty() && self.knobs.is_empty()
     }
 
+    /// True where no G word but one of the motion group stands in the block.
+    #[inline]
+    pub(super) fn only_moves(&self) -> bool {
+        self.groups & !MOTION_GROUP == 0
+    }
+
     /// Whether the letter stands in the block.
     pub(super) fn has(&self, letter: u8) -> bool {
         self.present & bit(letter) != 0

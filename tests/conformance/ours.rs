@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use gwatt::interpret::{Move, MoveKind};
+use gwatt::interpret::{Move, MoveKind, ToolTable};
 use gwatt::machine::{ALL_AXES, Machine};
 use gwatt::pipeline::{Failure, Options, Reading, moves};
 
@@ -37,7 +37,12 @@ pub fn run(
     subs: &[PathBuf],
     machine: &Machine,
 ) -> Result<Vec<Event>, (String, String)> {
+    let tools = std::env::var_os("GWATT_CONFORMANCE_TABLE").map(|table| {
+        let bytes = std::fs::read(table).expect("a tool table");
+        ToolTable::parse(&bytes).expect("a tool table").into()
+    });
     let reading = Reading {
+        tools,
         sub_paths: subs.to_vec().into(),
         ..Reading::default()
     };
@@ -78,7 +83,9 @@ fn event(mv: &Move) -> Event {
     };
     let mut event = Event::new(kind, AXES.map(|letter| mv.end[place(letter)]));
     event.seconds = mv.dwell_s;
-    event.feed = mv.feed_mm_s.is_finite().then_some(mv.feed_mm_s * 60.0);
+    // The spindle leads threads: rs274 tells their F, which does not count.
+    let leads = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap);
+    event.feed = (mv.feed_mm_s.is_finite() && !leads).then_some(mv.feed_mm_s * 60.0);
     if let Some(arc) = &mv.arc {
         let axis = |axis: usize| {
             let letter = ALL_AXES[axis].letter();

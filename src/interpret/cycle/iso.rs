@@ -66,6 +66,17 @@ impl Control<'_> {
             // K0 and L0 only take the values over.
             return;
         }
+        if repeats > 1 && self.polar.is_some() && !self.modal.absolute {
+            let whole = run.whole();
+            run.report
+                .error(
+                    "cycle-repeats",
+                    "a cycle repeated by increments under G16",
+                    whole,
+                )
+                .help("write a block for each hole");
+            return;
+        }
         hole.clear_mm = if self.special.to_initial {
             initial_mm
         } else {

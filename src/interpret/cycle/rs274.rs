@@ -6,8 +6,8 @@ use super::FIXED;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::moves::{ActionKind, FeedMode, MoveKind};
 use crate::interpret::special::Turning;
-use crate::interpret::words::{AXIS_LETTERS, bit};
-use crate::machine::{ALL_AXES, AxisValues, PathMode};
+use crate::interpret::words::{AXIS_LETTERS, POLAR, bit};
+use crate::machine::{ALL_AXES, AXES, AxisValues, PathMode};
 
 /// Distance that a peck keeps off the last depth: 0.010 inch.
 const PECK_CLEARANCE_INCH: f64 = 0.010;
@@ -25,6 +25,41 @@ struct Hole {
     /// Shift in the plane and top of the counterbore of G87.
     shift_mm: [f64; 2],
     middle: f64,
+}
+
+/// How an incremental polar target goes on when a cycle is repeated: about the
+/// origin, by the same angle, and by the same length away from it.
+struct PolarStep {
+    origin: [f64; 2],
+    length_mm: f64,
+    angle_rad: f64,
+}
+
+impl PolarStep {
+    /// The step from one place to another, machine coordinates.
+    fn new(origin: &AxisValues, from: &AxisValues, to: &AxisValues) -> Self {
+        let origin = [origin[0], origin[1]];
+        let [from, to] = [from, to].map(|place| Self::polar(origin, place));
+        Self {
+            origin,
+            length_mm: to[0] - from[0],
+            angle_rad: to[1] - from[1],
+        }
+    }
+
+    /// Distance from the origin, and angle.
+    fn polar(origin: [f64; 2], place: &AxisValues) -> [f64; 2] {
+        let [x, y] = [place[0] - origin[0], place[1] - origin[1]];
+        [libm::hypot(x, y), libm::atan2(y, x)]
+    }
+
+    fn step(&self, place: &mut AxisValues) {
+        let [length_mm, angle_rad] = Self::polar(self.origin, place);
+        let (sin, cos) = libm::sincos(angle_rad + self.angle_rad);
+        let length_mm = length_mm + self.length_mm;
+        place[0] = self.origin[0] + length_mm * cos;
+        place[1] = self.origin[1] + length_mm * sin;
+    }
 }
 
 impl Control<'_> {
@@ -68,6 +103,11 @@ impl Control<'_> {
         } else {
             [first, second].map(|axis| place[axis] - from[axis])
         };
+        let polar = run.words.present & POLAR != 0 && !self.modal.absolute;
+        let circle = polar.then(|| {
+            let origin = self.position.frame.machine(&[0.0; AXES]);
+            PolarStep::new(&origin, &from, &place)
+        });
         let initial_mm = self.initial_level(normal, !series);
         let mut now_mm = from[normal];
         let mut over_mm = initial_mm;
@@ -90,8 +130,13 @@ impl Control<'_> {
         for repeat in 0..repeats {
             let before = run.steps.len();
             if repeat > 0 {
-                place[first] += step[0];
-                place[second] += step[1];
+                match &circle {
+                    Some(circle) => circle.step(&mut place),
+                    None => {
+                        place[first] += step[0];
+                        place[second] += step[1];
+                    }
+                }
             }
             place[normal] = if now_mm > hole.r_mm {
                 now_mm
