@@ -292,3 +292,20 @@ fn each_refusal_once() {
 1 no-motion-word: axis words without a motion word in force | write G0, G1, G2 or G3 in this block or before
 "#);
 }
+
+/// What plainly is another kind of file is called by its name, and nothing else
+/// is said of it.
+#[test]
+fn other_kinds_of_files_are_named() {
+    let found = moves(
+        "iso",
+        "0 BEGIN PGM PART MM\n1 L X+10 Y+20 R0 FMAX\n2 END PGM PART MM\n",
+    );
+    assert_eq!(
+        found,
+        "0 foreign-file: this is a Heidenhain conversational program (Klartext) | \
+         only programs of G-code words are read: have it posted as DIN/ISO\n"
+    );
+    let found = moves("marlin", "GCDE\u{1}\u{0}\u{0}");
+    assert!(found.contains("this is binary G-code"), "{found}");
+}
