@@ -400,6 +400,52 @@ fn a_full_disk_is_told() {
     ran.refused("cannot write /dev/full");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn an_input_without_end_is_refused() {
+    let shop = Shop::new();
+    let ran = shop.run(&["limit", "/dev/zero"]);
+    ran.refused("line 1");
+    let ran = shop.run(&["limit", "--dry-run", "/dev/zero"]);
+    ran.refused("line 1");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn only_files_are_changed_in_place() {
+    let shop = Shop::new();
+    shop.run(&["limit", "--in-place", "/dev/null"])
+        .refused("only a file can be changed in place");
+}
+
+#[test]
+fn a_folder_of_subprograms_must_be_there() {
+    let shop = Shop::new();
+    for folder in ["none", "gentle.ngc"] {
+        shop.run(&["check", "gentle.ngc", "--sub-path", folder])
+            .refused("there is no such folder");
+    }
+}
+
+/// Each example belongs to a machine, and can be read on it.
+#[test]
+fn examples_can_be_read() {
+    let shop = Shop::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    for (example, machine) in [
+        ("simultaneous-start.ngc", "three-axis"),
+        ("inch-plate.ngc", "three-axis"),
+        ("pocket.ngc", "vmc"),
+        ("indexed-five-axis.ngc", "five-axis"),
+        ("lathe-pass.ngc", "lathe"),
+        ("printer-outline.gcode", "printer"),
+    ] {
+        let path = folder.join(example);
+        let ran = shop.run(&["limit", path.to_str().unwrap(), "-m", machine]);
+        assert_eq!(ran.code, 0, "{example}: {}", ran.stderr);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_ends_quietly() {
@@ -424,6 +470,12 @@ fn machines_are_listed_shown_and_checked() {
     let shop = Shop::new();
     let list = shop.run(&["machine", "list"]).stdout;
     assert!(list.starts_with("* three-axis "), "{list}");
+    let profiles = list.split_once("Controller profiles").unwrap().1;
+    for profile in gwatt::machine::builtin::controllers() {
+        assert!(profiles.contains(&format!("  {} ", profile.name)), "{list}");
+        let text = shop.run(&["machine", "show", profile.name]).stdout;
+        assert_eq!(text, profile.text);
+    }
     for line in list.lines().take_while(|line| !line.is_empty()) {
         let name = line
             .trim_start_matches(['*', ' '])

@@ -5,10 +5,10 @@ use clap::Subcommand;
 /// What to do with machine descriptions.
 #[derive(Debug, Subcommand)]
 pub enum MachineCommand {
-    /// List the machines that are built in
+    /// List the machines and controller profiles that are built in
     #[command(after_help = "Example:\n  gwatt machine list")]
     List,
-    /// Print a built-in machine, to start a file of one's own from
+    /// Print a built-in machine or controller profile, to start a file of one's own from
     #[command(after_help = "Example:\n  gwatt machine show vmc > mill.toml")]
     Show {
         /// Its name.

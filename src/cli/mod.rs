@@ -24,7 +24,7 @@ Examples:
   gwatt check part.ngc -m vmc             does it fit?
   gwatt limit part.ngc -m vmc -o fit.ngc  write a program that fits
   gwatt report part.ngc -m mill.toml      what each move draws, as CSV
-  gwatt machine list                      the machines that are built in
+  gwatt machine list                      machines and controllers that are built in
 
 Exit status:
   0  fits

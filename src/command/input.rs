@@ -1,11 +1,12 @@
 //! Programs to read: files, or standard input.
 
 use std::fs::{self, File};
-use std::io::{self, Read, Seek};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use gwatt::diagnostic::excerpt;
 use gwatt::pipeline::Failure;
+use gwatt::source::MAX_LINE_BYTES;
 use tempfile::NamedTempFile;
 
 /// A program that is to be read.
@@ -77,7 +78,7 @@ impl Program {
     pub fn keep(&mut self) -> Result<(), Failure> {
         if matches!(self.source, Source::Stdin) {
             let mut file = NamedTempFile::new().map_err(Failure::Output)?;
-            io::copy(&mut io::stdin().lock(), &mut file).map_err(Failure::Input)?;
+            copy(&mut io::stdin().lock(), file.as_file_mut())?;
             self.source = Source::Kept(file);
         }
         Ok(())
@@ -111,9 +112,28 @@ fn open_file(path: &Path) -> Result<File, Failure> {
 /// A file with what is left to read.
 fn copied(input: &mut dyn Read) -> Result<File, Failure> {
     let mut file = tempfile::tempfile().map_err(Failure::Output)?;
-    io::copy(input, &mut file).map_err(Failure::Input)?;
+    copy(input, &mut file)?;
     file.rewind().map_err(Failure::Input)?;
     Ok(file)
+}
+
+/// Copies up to the end, or to a line that is longer than a program may have:
+/// a device that never ends must not fill the disk.
+fn copy(input: &mut dyn Read, output: &mut File) -> Result<(), Failure> {
+    let mut buffer = vec![0; 1 << 16];
+    let mut line = 0;
+    while line <= MAX_LINE_BYTES {
+        let read = match input.read(&mut buffer) {
+            Ok(0) => return Ok(()),
+            Ok(read) => buffer.get(..read).unwrap_or_default(),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(Failure::Input(error)),
+        };
+        output.write_all(read).map_err(Failure::Output)?;
+        let last = read.iter().rposition(|byte| matches!(byte, b'\n' | b'\r'));
+        line = last.map_or(line + read.len(), |last| read.len() - last);
+    }
+    Ok(())
 }
 
 /// True for `-`.

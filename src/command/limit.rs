@@ -26,6 +26,11 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
         !args.in_place || program.path().is_some(),
         "standard input cannot be changed in place: use -o"
     );
+    // A pipe cannot be kept as a copy and replaced, and waits for ever.
+    ensure!(
+        !args.in_place || args.program.is_file() || !args.program.exists(),
+        "only a file can be changed in place: use -o"
+    );
     refuse_all_clashes(args, &program)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);

@@ -25,8 +25,9 @@ pub fn run(command: &MachineCommand, terminal: Terminal) -> Result<Verdict> {
 
 fn list() -> Result<()> {
     let machines = builtin::machines();
-    let width = machines.iter().map(|machine| machine.name.len()).max();
-    let width = width.unwrap_or_default();
+    let controllers = builtin::controllers();
+    let width = machines.iter().chain(controllers).map(|it| it.name.len());
+    let width = width.max().unwrap_or_default();
     print(|out| {
         for machine in machines {
             let is_default = machine.name == builtin::DEFAULT_MACHINE;
@@ -37,20 +38,36 @@ fn list() -> Result<()> {
                 machine.name, machine.description
             )?;
         }
-        writeln!(out, "\n* used when no machine is given")
+        writeln!(out, "\n* used when no machine is given")?;
+        writeln!(
+            out,
+            "\nController profiles (`controller` in a machine file, --dialect):"
+        )?;
+        for profile in controllers {
+            writeln!(out, "  {:width$}  {}", profile.name, profile.description)?;
+        }
+        Ok(())
     })
 }
 
 fn show(name: &str) -> Result<()> {
-    let machines = builtin::machines();
-    let Some(machine) = machines.iter().find(|machine| machine.name == name) else {
-        let names: Vec<_> = machines.iter().map(|machine| machine.name).collect();
-        bail!(
-            "there is no built-in machine {name}; there are {}",
+    let (machines, controllers) = (builtin::machines(), builtin::controllers());
+    let Some(found) = machines
+        .iter()
+        .chain(controllers)
+        .find(|it| it.name == name)
+    else {
+        let names = |of: &[builtin::Builtin]| {
+            let names: Vec<_> = of.iter().map(|it| it.name).collect();
             names.join(", ")
+        };
+        bail!(
+            "there is no built-in machine {name}; there are {}, and the controller profiles {}",
+            names(machines),
+            names(controllers)
         );
     };
-    print(|out| out.write_all(machine.text.as_bytes()))
+    print(|out| out.write_all(found.text.as_bytes()))
 }
 
 fn check(file: &str, terminal: Terminal) -> Result<()> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use gwatt::diagnostic::Diagnostic;
 use gwatt::interpret::{ParameterFile, ToolTable};
 use gwatt::machine::{self, AXES, Machine, builtin};
@@ -47,6 +47,10 @@ impl Setup {
         let mut machine = load_machine(name, terminal)?;
         if let Some(dialect) = &reading.dialect {
             machine.controller.language = language(dialect)?;
+        }
+        for folder in &reading.sub_path {
+            let shown = folder.display();
+            ensure!(folder.is_dir(), "--sub-path {shown}: there is no such folder");
         }
         let options = Options {
             reading: Reading {

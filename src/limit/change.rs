@@ -15,6 +15,8 @@ pub struct Permit {
     pub as_feed: bool,
     /// Why not, for a person; empty when all is permitted.
     pub reason: &'static str,
+    /// What the programmer can do about it; empty when nothing in particular.
+    pub reason_help: &'static str,
     /// Millimetres in one program unit, for an F in the block.
     pub mm_per_unit: f64,
     /// The same for knobs, on a line before the block.

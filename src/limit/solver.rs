@@ -353,11 +353,12 @@ impl<'m> Solver<'m> {
         } else {
             format!("the rapid may not be written as a feed: {}", permit.reason)
         };
-        Obstacle::new(
-            "no-knob",
-            message,
-            "write the move as a feed by hand, or lower the rapid speed of the machine",
-        )
+        let help = if permit.reason_help.is_empty() {
+            "write the move as a feed by hand, or lower the rapid speed of the machine"
+        } else {
+            permit.reason_help
+        };
+        Obstacle::new("no-knob", message, help)
     }
 
     fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {

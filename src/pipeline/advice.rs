@@ -45,6 +45,7 @@ impl<'m> Adviser<'m> {
             feed_word: per_minute,
             as_feed: per_minute,
             reason: "",
+            reason_help: "",
             mm_per_unit: modal.mm_per_unit,
             knob_mm_per_unit: modal.mm_per_unit,
             feed_before: None,

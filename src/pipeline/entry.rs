@@ -4,10 +4,14 @@ use super::front::Line;
 use super::table::LineKey;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::machine::{Lathe, Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
+
+/// Why a rapid is not written as a feed, where the program can help.
+const PER_REVOLUTION: &str = "the feed in force is per revolution";
+const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
 
 /// A block that waits until all its moves are decided.
 pub(super) struct Entry {
@@ -153,13 +157,13 @@ impl Entry {
             ),
             (
                 self.feed_mode == FeedMode::PerRevolution,
-                "its feed is per revolution (G95)",
+                PER_REVOLUTION,
             ),
         ];
         let rapid = [
             (facts.machine_coordinates, "G53 is for rapids"),
             (facts.reference, "it moves to a reference point"),
-            (!stays, "without its stop the corner would be rounded"),
+            (!stays, WITHOUT_STOP),
         ];
         let reason = |checks: &[(bool, &'static str)]| {
             checks
@@ -168,6 +172,19 @@ impl Entry {
                 .map(|(_, reason)| *reason)
         };
         let reasons = [reason(&edit), reason(&feed), reason(&rapid)];
+        let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
+        let language = &machine.controller.language;
+        let reason_help = match reason_text {
+            PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
+                "program G98 (feed per minute) and F in it before the rapid"
+            }
+            PER_REVOLUTION => "program G94 (feed per minute) and F in it before the rapid",
+            WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
+                "program an exact stop (G61) before the block in front of it, or write the \
+                 move as a feed by hand"
+            }
+            _ => "",
+        };
         let feed_accel_mm_s2 = self
             .knobs
             .as_ref()
@@ -176,7 +193,8 @@ impl Entry {
             edit: reasons[0].is_none(),
             feed_word: reasons[..2] == [None, None],
             as_feed: reasons == [None; 3],
-            reason: reasons.into_iter().flatten().next().unwrap_or(""),
+            reason: reason_text,
+            reason_help,
             mm_per_unit: facts.feed_mm_per_unit,
             knob_mm_per_unit: self.mm_per_unit_before,
             feed_before: self.feed_before(),

@@ -76,13 +76,13 @@ impl IssueKind {
             ),
             Self::Expression => (
                 "expression",
-                format!("variables and expressions are not supported: `{shown}`"),
-                "write the number itself, or have the program posted without variables",
+                format!("a variable or expression of this form is not supported: `{shown}`"),
+                "write the number itself, or give the profile of the control that the program is for (--dialect)",
             ),
             Self::Flow => (
                 "o-word-flow",
-                format!("O-word subroutines, branches and loops are not supported: `{shown}`"),
-                "write the blocks out in the order in which they are executed",
+                format!("an O-word subroutine, branch or loop is not supported here: `{shown}`"),
+                "give --dialect linuxcnc if the program is for LinuxCNC; otherwise write the blocks out in the order in which they are executed",
             ),
         }
     }
@@ -259,26 +259,26 @@ mod tests {
     #[test]
     fn expression() {
         assert_snapshot!(shown(b"G1 X#1 Y2"), @r##"
-        error[expression]: variables and expressions are not supported: `X#1`
+        error[expression]: a variable or expression of this form is not supported: `X#1`
           --> part.ngc:12:4
            |
         12 | G1 X#1 Y2
            |    ^^^
            |
-           = help: write the number itself, or have the program posted without variables
+           = help: write the number itself, or give the profile of the control that the program is for (--dialect)
         "##);
     }
 
     #[test]
     fn flow() {
         assert_snapshot!(shown(b"N5 o100 sub (main)\n"), @r##"
-        error[o-word-flow]: O-word subroutines, branches and loops are not supported: `o100 sub`
+        error[o-word-flow]: an O-word subroutine, branch or loop is not supported here: `o100 sub`
           --> part.ngc:12:4
            |
         12 | N5 o100 sub (main)
            |    ^^^^^^^^
            |
-           = help: write the blocks out in the order in which they are executed
+           = help: give --dialect linuxcnc if the program is for LinuxCNC; otherwise write the blocks out in the order in which they are executed
         "##);
     }
 }

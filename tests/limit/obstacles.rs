@@ -160,9 +160,42 @@ fn rapids_that_are_not_written_as_feeds() {
     no_knob("G53 G0 X400\n", "G53 is for rapids");
     no_knob("G28 X400\n", "it moves to a reference point");
     no_knob("G0 G4 P1 Y400\n", "an F in it would be its dwell");
+}
+
+#[test]
+fn rapids_that_another_mode_would_help() {
+    let no_knob = |rig: Rig, program: &str, line: u64, reason: &str, help: &str| {
+        let message = format!("the rapid may not be written as a feed: {reason}");
+        stopped(rig, program, line, "no-knob", &message, help);
+    };
+    let rounded = "without its stop the corner would be rounded";
     no_knob(
+        RIG,
         "G64 G0 X400\n",
-        "without its stop the corner would be rounded",
+        1,
+        rounded,
+        "program an exact stop (G61) before the block in front of it, or write the move as a \
+         feed by hand",
+    );
+    let revolution = "the feed in force is per revolution";
+    no_knob(
+        RIG,
+        "G95 S100 M3\nG0 X400\n",
+        2,
+        revolution,
+        "program G94 (feed per minute) and F in it before the rapid",
+    );
+    let lathe = Rig {
+        controller: "fanuc-lathe",
+        rest: "[path]\nrapid = \"linear\"\n",
+        ..RIG
+    };
+    no_knob(
+        lathe,
+        "G0 X400.\n",
+        1,
+        revolution,
+        "program G98 (feed per minute) and F in it before the rapid",
     );
 }
 

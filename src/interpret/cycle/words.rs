@@ -15,7 +15,7 @@ impl Control<'_> {
                     "a canned cycle needs the linear axis {letter}, which the machine does not have"
                 );
                 run.report.error("no-such-axis", message, whole).help(
-                    "choose the plane with G17, G18 or G19; turning cycles are not supported",
+                    "choose the plane with G17, G18 or G19; for a lathe, take a machine or --dialect with a lathe's language",
                 );
                 return false;
             }
