@@ -2,6 +2,8 @@
 //! tool change, spindle, coolant, dwell, plane, units, offsets, path mode,
 //! distance mode, reference points and offsets, motion, stop.
 
+use std::cell::Cell;
+
 use super::compensation::Compensation;
 use super::facts::Facts;
 use super::knob::KnobState;
@@ -75,6 +77,8 @@ pub(super) struct Control<'m> {
     pub(super) text: u16,
     pub(super) parameters: Parameters,
     pub(super) transfer: Option<Transfer>,
+    /// A value of the block shows the motion word or the F in force.
+    pub(super) reads_state: Cell<bool>,
     /// What only SINUMERIK keeps; `None` for other languages.
     pub(super) siemens: Option<Box<Siemens>>,
 }
@@ -142,6 +146,7 @@ impl<'m> Interpreter<'m> {
             text: 0,
             parameters: Parameters::new(machine.controller.language.family),
             transfer: None,
+            reads_state: Cell::new(false),
             siemens: (machine.controller.language.family == Family::Siemens)
                 .then(|| Box::new(Siemens::new())),
         };
@@ -224,6 +229,7 @@ impl<'m> Interpreter<'m> {
             beyond |= is_beyond_words(block, text);
         }
         let transfers = beyond && self.control.beyond_words(block, &mut report);
+        let reads_state = beyond && self.control.reads_state.take();
         if let Some(siemens) = &self.control.siemens {
             acts = siemens.is_active();
         }
@@ -233,6 +239,7 @@ impl<'m> Interpreter<'m> {
             }
             return Facts {
                 transfers,
+                reads_state,
                 ..Facts::default()
             };
         }
@@ -248,6 +255,7 @@ impl<'m> Interpreter<'m> {
         let before = run.steps.len();
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
+        run.facts.reads_state = reads_state;
         self.control.execute(&mut run);
         if self.control.callee.take().is_some() {
             let whole = run.whole();

@@ -28,6 +28,9 @@ pub struct Facts {
     pub compensated: bool,
     /// A stop, tool change or end: the modal state must be the original's.
     pub boundary: bool,
+    /// One of its values is the motion word or the F in force, which must be the
+    /// original's then.
+    pub reads_state: bool,
     /// The block is executed: not deleted, not behind the end, not empty.
     pub executed: bool,
     /// The block turns a knob.

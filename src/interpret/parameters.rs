@@ -179,6 +179,9 @@ impl Variables for Control<'_> {
         if place && self.is_compensating() {
             return Read::Unknown(UNDER_COMPENSATION);
         }
+        if matches!(name, "_feed" | "_motion_mode") {
+            self.reads_state.set(true);
+        }
         if let Some(value) = self.named_parameter(name) {
             return Read::Value(Some(value));
         }
@@ -196,6 +199,9 @@ impl Variables for Control<'_> {
 impl Control<'_> {
     /// B-63944EN, "System Variables": what the program itself decides is known.
     fn fanuc_variable(&self, number: u32) -> Read {
+        if matches!(number, 4001 | 4109) {
+            self.reads_state.set(true);
+        }
         if matches!(number, 3001 | 3002 | 3011 | 3012) {
             return Read::Unknown("the time");
         }

@@ -89,6 +89,7 @@ impl<'m> Rewriter<'m> {
             // Nothing may come between blocks under compensation.
             || facts.compensated
             || facts.turns_knob
+            || facts.reads_state
             || sealed
             || view.block.tape
             || view.block.delete_level > 0;
@@ -142,6 +143,8 @@ impl<'m> Rewriter<'m> {
             motion: view.after.motion,
             feed: view.after.feed_value(),
         };
+        // Whatever the line above ends with, another may come before this one.
+        self.stopped = false;
         let written = self.write(view, out);
         self.finish(view.after, view.knobs, out);
         written

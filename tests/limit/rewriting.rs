@@ -143,3 +143,36 @@ fn feeds_beside_a_change_of_units() {
         "G21 F1000\nG1 X5\nG20 G1 X15 F944.88\nG1 X16 F39.3700787401\nM2\n"
     );
 }
+
+/// A block that asks for the feed or the motion word in force gets those of the
+/// original ("Predefined Named Parameters" of `LinuxCNC`; #4001 and #4109,
+/// B-63944EN "System Variables").
+#[test]
+fn restored_before_it_is_read() {
+    let rig = Rig {
+        controller: "linuxcnc",
+        rest: EXACT_STOP,
+        ..RIG
+    };
+    assert_eq!(
+        rig.fits("F600\nG0 X400\n#1=#<_feed>\n#2=#<_motion_mode>\nG1 X[#1] Y[#2]\nM2\n"),
+        "F600\nG1 X400 F24000\nG0 F600\n#1=#<_feed>\n#2=#<_motion_mode>\nG1 X[#1] Y[#2]\nM2\n"
+    );
+    assert_eq!(
+        rig.fits("F600\nG0 X400\nG1 X[#<_FEED>/2]\nM2\n"),
+        "F600\nG1 X400 F24000\nG0 F600\nG1 X[#<_FEED>/2]\nM2\n"
+    );
+    // A parameter that shows neither needs nothing.
+    assert_eq!(
+        rig.fits("F600\nG0 X400\n#1=#5420\nG1 X[#1+1]\nM2\n"),
+        "F600\nG1 X400 F24000\n#1=#5420\nG1 X[#1+1] F600\nM2\n"
+    );
+    let rig = Rig {
+        controller: "iso",
+        ..RIG
+    };
+    assert_eq!(
+        rig.fits("F600.\nG0 X400.\n#1=#[4100+9]\nG1 X[#4109]\nM30\n"),
+        "F600.\nG1 X400. F24000.\nG0 F600.\n#1=#[4100+9]\nG1 X[#4109]\nM30\n"
+    );
+}

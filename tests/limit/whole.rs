@@ -103,3 +103,28 @@ fn a_line_is_listed_once_among_the_worst() {
         .collect();
     assert_eq!(worst, [(5, 5), (6, 5)]);
 }
+
+/// A rapid that keeps its stops as a feed has one before it, whatever line
+/// stands above: one that was not edited, or one that another place jumps over.
+#[test]
+fn stops_do_not_depend_on_the_line_above() {
+    let rig = super::Rig {
+        controller: "linuxcnc",
+        ..RIG
+    };
+    for program in [
+        "o1 sub\no1 endsub\nF1200\nG0 X400\nG1 X1\nG0 X401 Y300\nM2\n",
+        "o1 sub\nG0 X400\nG0 X1\no1 endsub\nF1200\no1 call\nG1 X9\no1 call\nM2\n",
+    ] {
+        let text = rig.fits(program);
+        let lines: Vec<&str> = text.lines().collect();
+        for (index, line) in lines.iter().enumerate() {
+            let edited = line.starts_with("G1 ") && !program.contains(line);
+            if edited {
+                assert_eq!(lines[index - 1], "G4 P0", "{text}");
+                assert_eq!(lines[index + 1], "G4 P0", "{text}");
+            }
+        }
+        assert!(text.contains("G4 P0"), "{text}");
+    }
+}
