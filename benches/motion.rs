@@ -131,6 +131,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         feed_word: true,
         as_feed: false,
         reason: "",
+        reason_help: "",
         mm_per_unit: 1.0,
         knob_mm_per_unit: 1.0,
         feed_before: None,

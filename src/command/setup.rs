@@ -50,7 +50,10 @@ impl Setup {
         }
         for folder in &reading.sub_path {
             let shown = folder.display();
-            ensure!(folder.is_dir(), "--sub-path {shown}: there is no such folder");
+            ensure!(
+                folder.is_dir(),
+                "--sub-path {shown}: there is no such folder"
+            );
         }
         let options = Options {
             reading: Reading {

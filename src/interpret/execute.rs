@@ -238,8 +238,8 @@ impl<'m> Interpreter<'m> {
                 self.control.abort(block, &mut report);
             }
             return Facts {
-                transfers,
                 reads_state,
+                transfers,
                 ..Facts::default()
             };
         }

@@ -155,10 +155,7 @@ impl Entry {
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",
             ),
-            (
-                self.feed_mode == FeedMode::PerRevolution,
-                PER_REVOLUTION,
-            ),
+            (self.feed_mode == FeedMode::PerRevolution, PER_REVOLUTION),
         ];
         let rapid = [
             (facts.machine_coordinates, "G53 is for rapids"),

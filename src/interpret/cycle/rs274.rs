@@ -130,12 +130,11 @@ impl Control<'_> {
         for repeat in 0..repeats {
             let before = run.steps.len();
             if repeat > 0 {
-                match &circle {
-                    Some(circle) => circle.step(&mut place),
-                    None => {
-                        place[first] += step[0];
-                        place[second] += step[1];
-                    }
+                if let Some(circle) = &circle {
+                    circle.step(&mut place);
+                } else {
+                    place[first] += step[0];
+                    place[second] += step[1];
                 }
             }
             place[normal] = if now_mm > hole.r_mm {
