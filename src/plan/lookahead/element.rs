@@ -22,6 +22,8 @@ pub enum Joint {
     Blend {
         /// How far the path may be left in mm; 0: as far as it takes.
         tolerance_mm: f64,
+        /// How far lines that are put together may be left in mm; 0: none are.
+        join_mm: f64,
     },
 }
 

@@ -11,6 +11,7 @@
 
 use super::blend::{Axes, Circle, Fit, NORMAL_SHARE, Side, TANGENTIAL_SHARE, angle_between, fit};
 use super::element::{Element, Joint};
+use super::join::{Joined, Joiner};
 use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
 use super::window::{Node, Window};
@@ -28,12 +29,16 @@ pub(super) struct LinuxCnc<T> {
     kink_ratio: f64,
     gap_cycles: f64,
     pending: Option<Pending<T>>,
+    joiner: Joiner<T>,
 }
 
 /// The last element: a blend may still take a piece of it.
 #[derive(Debug, Clone)]
 struct Pending<T> {
     element: Element<T>,
+    /// Of several elements that became one line: the first.
+    first: T,
+    several: bool,
     /// What the blend before it took, mm of path.
     from_mm: f64,
     /// And what is left, mm.
@@ -48,8 +53,6 @@ struct Pending<T> {
     parabolic: bool,
     /// Largest speed at its start, squared.
     entry2: f64,
-    /// Nothing was taken into a blend before.
-    whole: bool,
 }
 
 enum Way {
@@ -70,10 +73,13 @@ struct Overlap {
 }
 
 impl<T: Copy> Pending<T> {
-    fn new(element: &Element<T>, cycle_s: f64) -> Self {
+    fn new(joined: &Joined<T>, cycle_s: f64) -> Self {
+        let element = &joined.element;
         let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
         Self {
             element: *element,
+            first: joined.first,
+            several: joined.several,
             from_mm: 0.0,
             length_mm: element.length_mm,
             sweep_rad: element.curve.map_or(0.0, |curve| curve.sweep_rad.abs()),
@@ -82,7 +88,6 @@ impl<T: Copy> Pending<T> {
             kink_behind: 0.0,
             parabolic: false,
             entry2: 0.0,
-            whole: true,
         }
     }
 
@@ -108,7 +113,6 @@ impl<T: Copy> Pending<T> {
         self.length_mm -= mm;
         if at_start {
             self.from_mm += mm;
-            self.whole = false;
         }
     }
 
@@ -117,7 +121,7 @@ impl<T: Copy> Pending<T> {
         let change = if at_end { &element.end } else { &element.start };
         let along = [change[0], change[1], change[2]];
         let tolerance_mm = match element.joint {
-            Joint::Blend { tolerance_mm } => tolerance_mm,
+            Joint::Blend { tolerance_mm, .. } => tolerance_mm,
             _ => 0.0,
         };
         let circle = match &element.curve {
@@ -152,6 +156,21 @@ impl<T: Copy> Pending<T> {
         })
     }
 
+    /// What is left of it.
+    fn piece(&self) -> Piece {
+        let change = &self.element.start;
+        if self.several {
+            Piece::Joined {
+                direction: [change[0], change[1], change[2]],
+            }
+        } else {
+            Piece::Along {
+                from_mm: self.from_mm,
+                to_mm: self.from_mm + self.length_mm,
+            }
+        }
+    }
+
     /// Whether axes other than X, Y and Z move.
     fn rotates(&self) -> bool {
         let changes = &self.element.start;
@@ -167,12 +186,19 @@ impl<T: Copy> LinuxCnc<T> {
             kink_ratio,
             gap_cycles,
             pending: None,
+            joiner: Joiner::new(),
         }
     }
 
     /// Adds an element.
     pub fn push(&mut self, element: &Element<T>, window: &mut Window<Load<T>>) {
-        let mut next = Pending::new(element, self.cycle_s);
+        for joined in self.joiner.push(element, &self.axes).into_iter().flatten() {
+            self.enqueue(&joined, window);
+        }
+    }
+
+    fn enqueue(&mut self, joined: &Joined<T>, window: &mut Window<Load<T>>) {
+        let mut next = Pending::new(joined, self.cycle_s);
         let Some(mut before) = self.pending.take() else {
             self.pending = Some(next);
             return;
@@ -199,6 +225,9 @@ impl<T: Copy> LinuxCnc<T> {
 
     /// Nothing comes behind the last element.
     pub fn stop(&mut self, window: &mut Window<Load<T>>) {
+        if let Some(joined) = self.joiner.flush(&self.axes) {
+            self.enqueue(&joined, window);
+        }
         if let Some(last) = self.pending.take() {
             self.hand_over(last, window, true);
         }
@@ -330,7 +359,8 @@ impl<T: Copy> LinuxCnc<T> {
         });
         let load = Load {
             tag,
-            next: Some(next.element.tag),
+            first: tag,
+            next: Some(next.first),
             piece,
             certain: true,
         };
@@ -390,11 +420,9 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let load = Load {
             tag: of.element.tag,
+            first: of.first,
             next: None,
-            piece: Piece::Along {
-                from_mm: of.from_mm,
-                to_mm: of.from_mm + of.length_mm,
-            },
+            piece: of.piece(),
             certain: !of.parabolic,
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);

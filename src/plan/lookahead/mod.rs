@@ -8,6 +8,7 @@ mod blend;
 mod chord;
 mod corner;
 mod element;
+mod join;
 mod linuxcnc;
 mod planner;
 mod ramp;

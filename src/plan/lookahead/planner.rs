@@ -41,6 +41,11 @@ pub enum Piece {
         /// Where it ends.
         to_mm: f64,
     },
+    /// A line that stands for all elements from the first to the tagged one.
+    Joined {
+        /// Its unit direction in X, Y and Z.
+        direction: [f64; 3],
+    },
     /// A blend; half of it belongs to the element before and half to the next.
     Blend(Blend),
 }
@@ -48,8 +53,10 @@ pub enum Piece {
 /// A planned piece of path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planned<T> {
-    /// The element's.
+    /// The element's; of several that became one line, the last one's.
     pub tag: T,
+    /// The same, but of several the first one's.
+    pub first: T,
     /// Of a blend: the next element's.
     pub next: Option<T>,
     /// What it is.
@@ -66,6 +73,7 @@ pub struct Planned<T> {
 #[derive(Debug, Clone)]
 pub(super) struct Load<T> {
     pub tag: T,
+    pub first: T,
     pub next: Option<T>,
     pub piece: Piece,
     pub certain: bool,
@@ -154,6 +162,7 @@ impl<T: Copy> PathPlanner<T> {
         }
         let load = Load {
             tag: element.tag,
+            first: element.tag,
             next: None,
             piece: Piece::Along {
                 from_mm: at[0],
@@ -192,6 +201,7 @@ impl<T: Copy> PathPlanner<T> {
         };
         Some(Planned {
             tag: span.payload.tag,
+            first: span.payload.first,
             next: span.payload.next,
             piece: span.payload.piece,
             profile: Profile::between(span.length, speeds2, span.accel),
