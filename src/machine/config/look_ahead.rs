@@ -29,7 +29,7 @@ pub(crate) struct LookAheadTable {
     pub(crate) linuxcnc: Option<At<LinuxCncTable>>,
     /// grbl, Marlin, Smoothieware, and CNCs with a corner tolerance.
     pub(crate) junction_deviation: Option<At<DeviationTable>>,
-    /// Marlin with CLASSIC_JERK.
+    /// Marlin with `CLASSIC_JERK`.
     pub(crate) classic_jerk: Option<At<StepTable>>,
     /// Klipper.
     pub(crate) square_corner: Option<At<SquareTable>>,
@@ -41,11 +41,11 @@ pub(crate) struct LookAheadTable {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LinuxCncTable {
-    /// [EMCMOT] SERVO_PERIOD in s; default 0.001.
+    /// `[EMCMOT] SERVO_PERIOD` in s; default 0.001.
     pub(crate) servo_period_s: Option<Positive>,
-    /// [TRAJ] ARC_BLEND_KINK_RATIO; default 0.1.
+    /// `[TRAJ] ARC_BLEND_KINK_RATIO`; default 0.1.
     pub(crate) kink_ratio: Option<Positive>,
-    /// [TRAJ] ARC_BLEND_GAP_CYCLES; default 4.
+    /// `[TRAJ] ARC_BLEND_GAP_CYCLES`; default 4.
     pub(crate) gap_cycles: Option<NotNegative>,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct SquareTable {
     /// Speed at a corner of 90 degrees.
     #[schemars(required)]
     pub(crate) corner_mm_s: Option<NotNegative>,
-    /// instantaneous_corner_velocity of the extruder; default 1.
+    /// `instantaneous_corner_velocity` of the extruder; default 1.
     pub(crate) extruder_step_mm_s: Option<NotNegative>,
 }
 
@@ -178,7 +178,10 @@ pub(crate) fn look_ahead(
     Some(LookAhead {
         corner,
         blocks: table.blocks.as_ref().map(|it| it.value as u32),
-        path_accel_mm_s2: table.path_accel_mm_s2.as_ref().map_or(f64::INFINITY, |it| it.value),
+        path_accel_mm_s2: table
+            .path_accel_mm_s2
+            .as_ref()
+            .map_or(f64::INFINITY, |it| it.value),
         min_cruise_ratio: table.min_cruise_ratio.as_ref().map_or(0.0, |it| it.value),
         chords: table.chords.as_ref().map(chords),
     })
@@ -196,7 +199,10 @@ fn chords(table: &ChordsTable) -> ChordRule {
     ChordRule {
         max_mm: table.max_mm.as_ref().map_or(f64::INFINITY, |it| it.value),
         min_mm: table.min_mm.as_ref().map_or(0.0, |it| it.value),
-        deviation_mm: table.deviation_mm.as_ref().map_or(f64::INFINITY, |it| it.value),
+        deviation_mm: table
+            .deviation_mm
+            .as_ref()
+            .map_or(f64::INFINITY, |it| it.value),
         per_second: table.per_second.as_ref().map_or(0.0, |it| it.value),
         per_circle: table.per_circle.as_ref().map_or(0.0, |it| it.value),
         round_up: table.round_up.unwrap_or(false),

@@ -171,7 +171,10 @@ pub(super) fn fit(sides: [&Side; 2], axes: &Axes, accel: Vector) -> Option<Fit> 
     let binormal = unit(cross(first.tangent, second.tangent))?;
     let bisector = unit(sub(second.tangent, first.tangent))?;
     let coplanar = |circle: &Circle| length(cross(binormal, circle.normal)) < ANGLE_MIN;
-    if sides.iter().any(|side| side.circle.as_ref().is_some_and(|circle| !coplanar(circle))) {
+    if sides
+        .iter()
+        .any(|side| side.circle.as_ref().is_some_and(|circle| !coplanar(circle)))
+    {
         return None;
     }
     let mut theta = theta_tangents;
@@ -254,12 +257,26 @@ fn onto_arcs(
             between_arcs(first.center, second.center, apart(0)?, apart(1)?, binormal)?
         }
         (None, Some(circle)) => {
-            let (center, d) = beside_line(scale(sides[0].tangent, -1.0), circle.center, apart(1)?, r, binormal, bisector)?;
+            let (center, d) = beside_line(
+                scale(sides[0].tangent, -1.0),
+                circle.center,
+                apart(1)?,
+                r,
+                binormal,
+                bisector,
+            )?;
             fit.trims[0] = d;
             center
         }
         (Some(circle), None) => {
-            let (center, d) = beside_line(sides[1].tangent, circle.center, apart(0)?, r, binormal, bisector)?;
+            let (center, d) = beside_line(
+                sides[1].tangent,
+                circle.center,
+                apart(0)?,
+                r,
+                binormal,
+                bisector,
+            )?;
             fit.trims[1] = d;
             center
         }
@@ -323,7 +340,13 @@ fn beside_line(
 
 /// Centre of a circle at given distances from two centres, the one nearer to
 /// the joint.
-fn between_arcs(first: Vector, second: Vector, d1: f64, d2: f64, binormal: Vector) -> Option<Vector> {
+fn between_arcs(
+    first: Vector,
+    second: Vector,
+    d1: f64,
+    d2: f64,
+    binormal: Vector,
+) -> Option<Vector> {
     let apart = sub(second, first);
     let c = length(apart);
     let along = unit(apart)?;
@@ -335,7 +358,11 @@ fn between_arcs(first: Vector, second: Vector, d1: f64, d2: f64, binormal: Vecto
     let side = scale(unit(cross(binormal, along))?, y2.sqrt());
     let base = add(first, scale(along, x));
     let (one, other) = (add(base, side), sub(base, side));
-    Some(if length(other) < length(one) { other } else { one })
+    Some(if length(other) < length(one) {
+        other
+    } else {
+        one
+    })
 }
 
 /// The inside angle of a corner.

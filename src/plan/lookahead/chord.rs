@@ -17,14 +17,19 @@ impl ChordRule {
         let flat_mm = r * curve.sweep_rad.abs();
         let mut chord_mm = self.max_mm;
         if self.deviation_mm < 2.0 * r {
-            chord_mm = chord_mm.min(2.0 * (self.deviation_mm * (2.0 * r - self.deviation_mm)).sqrt());
+            chord_mm =
+                chord_mm.min(2.0 * (self.deviation_mm * (2.0 * r - self.deviation_mm)).sqrt());
         }
         if self.per_second > 0.0 {
             chord_mm = chord_mm.min(feed_mm_s / self.per_second);
         }
         let least = self.per_circle * curve.sweep_rad.abs() / std::f64::consts::TAU;
         let count = (flat_mm / chord_mm.max(self.min_mm)).max(least);
-        let count = if self.round_up { count.ceil() } else { count.floor() };
+        let count = if self.round_up {
+            count.ceil()
+        } else {
+            count.floor()
+        };
         count.clamp(1.0, CHORDS_MAX) as u32
     }
 }
@@ -44,7 +49,9 @@ impl<'e, T: Copy> Chords<'e, T> {
     /// The chords of an element that is an arc.
     pub fn of(rule: &ChordRule, arc: &'e Element<T>) -> Option<Self> {
         let curve = arc.curve?;
-        let along = curve.plane.map(|axis| arc.start.get(axis).copied().unwrap_or(0.0));
+        let along = curve
+            .plane
+            .map(|axis| arc.start.get(axis).copied().unwrap_or(0.0));
         Some(Self {
             arc,
             curve,
@@ -70,7 +77,11 @@ impl<T: Copy> Iterator for Chords<'_, T> {
         // The chord is shorter than its piece of the arc, and points to where
         // the tangent of its middle does.
         let half = 0.5 * step_rad.abs();
-        let shorter = if half > 0.0 { libm::sin(half) / half } else { 1.0 };
+        let shorter = if half > 0.0 {
+            libm::sin(half) / half
+        } else {
+            1.0
+        };
         let (sin, cos) = libm::sincos((i + 0.5) * step_rad);
         let [x, y] = self.along;
         let flat = [x * cos - y * sin, x * sin + y * cos];
@@ -99,5 +110,7 @@ impl<T: Copy> Iterator for Chords<'_, T> {
 fn straight_accel<T>(chord: &Element<T>) -> f64 {
     let limits = chord.axis_accel_mm_s2.iter().zip(&chord.start);
     let moving = limits.filter(|(_, change)| **change != 0.0);
-    moving.fold(f64::INFINITY, |accel, (limit, change)| accel.min(limit / change.abs()))
+    moving.fold(f64::INFINITY, |accel, (limit, change)| {
+        accel.min(limit / change.abs())
+    })
 }

@@ -28,7 +28,14 @@ pub(super) fn speed2<T>(rule: &CornerRule, before: &Element<T>, after: &Element<
             angle,
             per_axis,
             small_block_mm,
-        } => deviation(*deviation_mm, *angle, *per_axis, *small_block_mm, before, after),
+        } => deviation(
+            *deviation_mm,
+            *angle,
+            *per_axis,
+            *small_block_mm,
+            before,
+            after,
+        ),
         CornerRule::ClassicJerk { step_mm_s } => jerk(step_mm_s, before, after),
         CornerRule::SquareCorner {
             velocity_mm_s,
@@ -119,15 +126,15 @@ fn deviation<T>(
 fn jerk<T>(steps: &AxisValues, before: &Element<T>, after: &Element<T>) -> f64 {
     let speed = before.top_mm_s().min(after.top_mm_s());
     let mut factor = 1.0_f64;
-    for axis in 0..AXES {
-        let (exit, entry) = (before.end[axis] * speed, after.start[axis] * speed);
+    for ((step, exit), entry) in steps.iter().zip(&before.end).zip(&after.start) {
+        let (exit, entry) = (exit * speed, entry * speed);
         let jump = if exit * entry < 0.0 {
             exit.abs().max(entry.abs())
         } else {
             (exit - entry).abs()
         };
-        if jump * factor > steps[axis] {
-            factor = steps[axis] / jump;
+        if jump * factor > *step {
+            factor = step / jump;
         }
     }
     let safe2 = start2(&CornerRule::ClassicJerk { step_mm_s: *steps }, after);
@@ -172,17 +179,21 @@ fn step<T>(
     after: &Element<T>,
 ) -> f64 {
     let prints = |element: &Element<T>| {
-        let linear = element.start.iter().take(LINEAR).any(|change| *change != 0.0);
+        let linear = element
+            .start
+            .iter()
+            .take(LINEAR)
+            .any(|change| *change != 0.0);
         (linear, element.start[EXTRUDER] > 0.0)
     };
     if same_kind_only && prints(before) != prints(after) {
         return 0.0;
     }
     let mut v = f64::INFINITY;
-    for axis in 0..AXES {
-        let change = (after.start[axis] - before.end[axis]).abs();
+    for ((step, exit), entry) in steps.iter().zip(&before.end).zip(&after.start) {
+        let change = (entry - exit).abs();
         if change > 0.0 {
-            v = v.min(steps[axis] / change);
+            v = v.min(step / change);
         }
     }
     v * v

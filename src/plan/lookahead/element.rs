@@ -78,7 +78,13 @@ pub struct Element<T> {
 impl<T> Element<T> {
     /// The element of a move that has a length and a known start; `None` for
     /// all others and where a limit is 0.
-    pub fn of(machine: &Machine, mv: &Move, overrides: Overrides, joint: Joint, tag: T) -> Option<Self> {
+    pub fn of(
+        machine: &Machine,
+        mv: &Move,
+        overrides: Overrides,
+        joint: Joint,
+        tag: T,
+    ) -> Option<Self> {
         if mv.kind == MoveKind::Dwell || mv.length_mm <= 0.0 || !mv.unknown_start.is_empty() {
             return None;
         }
@@ -133,7 +139,10 @@ impl<T> Element<T> {
                 }
             }
         }
-        let accel = of.plane.into_iter().filter_map(|axis| mv.accel_mm_s2.get(axis));
+        let accel = of
+            .plane
+            .into_iter()
+            .filter_map(|axis| mv.accel_mm_s2.get(axis));
         self.speed_mm_s = arc::axis_speed(machine, mv, of);
         self.curve_speed_mm_s = arc::limits(machine, mv, of, &Caps::default()).speed_mm_s;
         self.curve = Some(Curve {
@@ -148,6 +157,8 @@ impl<T> Element<T> {
     /// Speed that feed, axes and curvature permit, mm/s.
     #[must_use]
     pub fn top_mm_s(&self) -> f64 {
-        self.feed_mm_s.min(self.speed_mm_s).min(self.curve_speed_mm_s)
+        self.feed_mm_s
+            .min(self.speed_mm_s)
+            .min(self.curve_speed_mm_s)
     }
 }

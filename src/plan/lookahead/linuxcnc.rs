@@ -62,16 +62,6 @@ enum Way {
     Blend(Fit),
 }
 
-/// What a parabolic blend comes to.
-struct Overlap {
-    /// Speed of the element before when the next one begins.
-    speed: f64,
-    /// Accelerations of both.
-    accels: [f64; 2],
-    /// Speed along the mean direction.
-    along: f64,
-}
-
 impl<T: Copy> Pending<T> {
     fn new(joined: &Joined<T>, cycle_s: f64) -> Self {
         let element = &joined.element;
@@ -205,18 +195,18 @@ impl<T: Copy> LinuxCnc<T> {
         };
         match self.way(&mut before, &mut next) {
             Way::Stop => {
-                self.hand_over(before, window, false);
+                self.hand_over(&before, window, false);
                 window.stop();
             }
             Way::Pass(speed) => {
                 next.entry2 = speed * speed;
-                self.hand_over(before, window, false);
+                self.hand_over(&before, window, false);
             }
             Way::Parabolic(speed) => {
                 before.parabolic = true;
                 next.parabolic = true;
                 next.entry2 = speed * speed;
-                self.hand_over(before, window, false);
+                self.hand_over(&before, window, false);
             }
             Way::Blend(fit) => self.round(before, &mut next, &fit, window),
         }
@@ -229,7 +219,7 @@ impl<T: Copy> LinuxCnc<T> {
             self.enqueue(&joined, window);
         }
         if let Some(last) = self.pending.take() {
-            self.hand_over(last, window, true);
+            self.hand_over(&last, window, true);
         }
     }
 
@@ -241,10 +231,18 @@ impl<T: Copy> LinuxCnc<T> {
         }
         let blends = matches!(joint, Joint::Blend { .. });
         let (Some(first), Some(second)) = (before.side(true), next.side(false)) else {
-            return if blends { self.parabolic(before, next) } else { Way::Stop };
+            return if blends {
+                parabolic(before, next)
+            } else {
+                Way::Stop
+            };
         };
         if before.rotates() || next.rotates() {
-            return if blends { self.parabolic(before, next) } else { Way::Stop };
+            return if blends {
+                parabolic(before, next)
+            } else {
+                Way::Stop
+            };
         }
         let sum = add(first.tangent, second.tangent);
         if dot(sum, sum) < REVERSAL2 {
@@ -252,7 +250,10 @@ impl<T: Copy> LinuxCnc<T> {
         }
         let accel = self.axes.accel(&next.element.axis_accel_mm_s2);
         let v = before.target_speed().min(next.target_speed());
-        let step = scale(sub(second.tangent, first.tangent), v / self.cycle_s + next.accel());
+        let step = scale(
+            sub(second.tangent, first.tangent),
+            v / self.cycle_s + next.accel(),
+        );
         let mut share = share_of(step, accel);
         if first.circle.is_some() || second.circle.is_some() {
             share /= TANGENTIAL_SHARE;
@@ -270,10 +271,10 @@ impl<T: Copy> LinuxCnc<T> {
         let kink_speed = v * self.kink_ratio / share;
         let fit = fit([&first, &second], &self.axes, accel);
         let blend_speed = fit.as_ref().map_or(0.0, |fit| fit.speed);
-        let overlap = 0.5 * self.overlap(before, next).along;
+        let overlap = 0.5 * overlap(before, next).along;
         if overlap >= kink_speed && overlap >= blend_speed {
             (before.kink_behind, next.kink_before) = kept;
-            return self.parabolic(before, next);
+            return parabolic(before, next);
         }
         match fit {
             Some(fit) if blend_speed > kink_speed => {
@@ -282,48 +283,6 @@ impl<T: Copy> LinuxCnc<T> {
             }
             _ => Way::Pass(kink_speed),
         }
-    }
-
-    /// A parabolic blend: the next element begins while the last one still
-    /// brakes, both with half of their acceleration.
-    fn overlap(&self, before: &Pending<T>, next: &Pending<T>) -> Overlap {
-        let accel = |of: &Pending<T>| {
-            let share = 1.0 - of.kink_before.max(of.kink_behind);
-            let bent = if of.element.curve.is_some() { TANGENTIAL_SHARE } else { 1.0 };
-            0.5 * of.accel() * share * bent
-        };
-        let accels = [accel(before), accel(next)];
-        let reach = |of: &Pending<T>, a: f64| (a * of.length_mm).sqrt().min(of.target_speed());
-        let [v0, v1] = [reach(before, accels[0]), reach(next, accels[1])];
-        // As long as the longer ramp takes, if the elements are long enough.
-        let longest_s = (v0 / accels[0]).max(v1 / accels[1]);
-        let blend_s = longest_s.min((before.length_mm / v0).min(next.length_mm / v1));
-        let mut speeds = [v0.min(blend_s * accels[0]), v1.min(blend_s * accels[1])];
-        let mut along = 0.0;
-        if let (Some(first), Some(second)) = (before.side(true), next.side(false)) {
-            let theta = 0.5 * angle_between(first.tangent, second.tangent);
-            if first.tolerance_mm > 0.0 && libm::cos(theta) > 1e-3 {
-                let most = 2.0 * (accels[0] * first.tolerance_mm / libm::cos(theta)).sqrt();
-                speeds = speeds.map(|speed| speed.min(most));
-            }
-            along = 0.5 * libm::sin(theta) * (speeds[0] + speeds[1]);
-        }
-        Overlap {
-            speed: speeds[0],
-            accels,
-            along,
-        }
-    }
-
-    /// A parabolic blend as a joint that takes as long: with the top speed v on
-    /// both sides, passing at w = x·v instead of stopping saves
-    /// `Σ(w/a − w²/(2·a·v))`, the blend saves its own duration.
-    fn parabolic(&self, before: &Pending<T>, next: &Pending<T>) -> Way {
-        let Overlap { speed, accels, .. } = self.overlap(before, next);
-        let top = before.target_speed().min(next.target_speed());
-        let ramps = 1.0 / accels[0] + 1.0 / accels[1];
-        let saved = speed / (accels[0] * ramps * top);
-        Way::Parabolic(top * (1.0 - (1.0 - 2.0 * saved).max(0.0).sqrt()))
     }
 
     /// Lays a blend between two elements.
@@ -342,7 +301,7 @@ impl<T: Copy> LinuxCnc<T> {
         let (lead_mm, entry2) = if consumed {
             (before.length_mm.max(0.0), Some(before.entry2))
         } else {
-            self.hand_over(before, window, false);
+            self.hand_over(&before, window, false);
             (0.0, None)
         };
         let length_mm = lead_mm + fit.radius * fit.sweep;
@@ -378,7 +337,7 @@ impl<T: Copy> LinuxCnc<T> {
     }
 
     /// Puts an element into the window as it is now.
-    fn hand_over(&self, of: Pending<T>, window: &mut Window<Load<T>>, last: bool) {
+    fn hand_over(&self, of: &Pending<T>, window: &mut Window<Load<T>>, last: bool) {
         let mut accel = of.accel() * (1.0 - of.kink_before.max(of.kink_behind));
         let unblended = last && matches!(of.element.joint, Joint::Blend { .. });
         if of.parabolic || unblended {
@@ -439,4 +398,60 @@ fn share_of(accel: Vector, limits: Vector) -> f64 {
         .zip(limits)
         .filter(|(_, limit)| *limit > 0.0)
         .fold(0.0, |share, (a, limit)| share.max(a.abs() / limit))
+}
+
+/// What a parabolic blend comes to.
+struct Overlap {
+    /// Speed of the element before when the next one begins.
+    speed: f64,
+    /// Accelerations of both.
+    accels: [f64; 2],
+    /// Speed along the mean direction.
+    along: f64,
+}
+
+/// A parabolic blend: the next element begins while the last one still
+/// brakes, both with half of their acceleration.
+fn overlap<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Overlap {
+    let accel = |of: &Pending<T>| {
+        let share = 1.0 - of.kink_before.max(of.kink_behind);
+        let bent = if of.element.curve.is_some() {
+            TANGENTIAL_SHARE
+        } else {
+            1.0
+        };
+        0.5 * of.accel() * share * bent
+    };
+    let accels = [accel(before), accel(next)];
+    let reach = |of: &Pending<T>, a: f64| (a * of.length_mm).sqrt().min(of.target_speed());
+    let [v0, v1] = [reach(before, accels[0]), reach(next, accels[1])];
+    // As long as the longer ramp takes, if the elements are long enough.
+    let longest_s = (v0 / accels[0]).max(v1 / accels[1]);
+    let blend_s = longest_s.min((before.length_mm / v0).min(next.length_mm / v1));
+    let mut speeds = [v0.min(blend_s * accels[0]), v1.min(blend_s * accels[1])];
+    let mut along = 0.0;
+    if let (Some(first), Some(second)) = (before.side(true), next.side(false)) {
+        let theta = 0.5 * angle_between(first.tangent, second.tangent);
+        if first.tolerance_mm > 0.0 && libm::cos(theta) > 1e-3 {
+            let most = 2.0 * (accels[0] * first.tolerance_mm / libm::cos(theta)).sqrt();
+            speeds = speeds.map(|speed| speed.min(most));
+        }
+        along = 0.5 * libm::sin(theta) * (speeds[0] + speeds[1]);
+    }
+    Overlap {
+        speed: speeds[0],
+        accels,
+        along,
+    }
+}
+
+/// A parabolic blend as a joint that takes as long: with the top speed v on
+/// both sides, passing at w = x·v instead of stopping saves
+/// `Σ(w/a − w²/(2·a·v))`, the blend saves its own duration.
+fn parabolic<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Way {
+    let Overlap { speed, accels, .. } = overlap(before, next);
+    let top = before.target_speed().min(next.target_speed());
+    let ramps = 1.0 / accels[0] + 1.0 / accels[1];
+    let saved = speed / (accels[0] * ramps * top);
+    Way::Parabolic(top * (1.0 - (1.0 - 2.0 * saved).max(0.0).sqrt()))
 }

@@ -16,5 +16,5 @@ mod vector;
 mod window;
 
 pub use element::{Curve, Element, Joint};
-pub use planner::{Blend, Piece, Planned, PathPlanner};
+pub use planner::{Blend, PathPlanner, Piece, Planned};
 pub use ramp::Speeds2;

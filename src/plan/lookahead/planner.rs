@@ -80,6 +80,10 @@ pub(super) struct Load<T> {
 }
 
 #[derive(Debug, Clone)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one for each planner, and the large one is the common case"
+)]
 enum Rule<T> {
     Corner(Option<Element<T>>),
     LinuxCnc(Box<LinuxCnc<T>>),
@@ -90,6 +94,11 @@ enum Rule<T> {
 /// Elements are given with [`Self::push`], stops that other words cause with
 /// [`Self::stop`], and the finished pieces are taken with [`Self::pop`], in
 /// order. An element is final once nothing behind it can change it.
+///
+/// What changes with the limits of one element: a clone taken before it, given
+/// the changed element and those behind it, plans them anew. From the first
+/// piece on that begins as before at a joint that the change did not reach, all
+/// is as it was.
 #[derive(Debug, Clone)]
 pub struct PathPlanner<T> {
     look_ahead: LookAhead,
@@ -108,7 +117,9 @@ impl<T: Copy> PathPlanner<T> {
                 gap_cycles,
             } => {
                 let axes = Axes::of(machine);
-                Rule::LinuxCnc(Box::new(LinuxCnc::new(axes, cycle_s, kink_ratio, gap_cycles)))
+                Rule::LinuxCnc(Box::new(LinuxCnc::new(
+                    axes, cycle_s, kink_ratio, gap_cycles,
+                )))
             }
             _ => Rule::Corner(None),
         };

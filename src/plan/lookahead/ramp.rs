@@ -38,7 +38,9 @@ impl Profile {
         let down_mm = 0.5 * (top2 - end) / accel;
         let cruise_mm = length - up_mm - down_mm;
         if v > v0 {
-            profile.phases.push(phase((v - v0) / accel, 0.0, v0, v, accel));
+            profile
+                .phases
+                .push(phase((v - v0) / accel, 0.0, v0, v, accel));
         }
         // Less than rounding makes of it is no cruise.
         if cruise_mm > 1e-12 * length {
@@ -46,7 +48,9 @@ impl Profile {
         }
         if v > v1 {
             let at_mm = length - down_mm;
-            profile.phases.push(phase((v - v1) / accel, at_mm, v, v1, -accel));
+            profile
+                .phases
+                .push(phase((v - v1) / accel, at_mm, v, v1, -accel));
         }
         profile
     }

@@ -20,11 +20,17 @@
 //! A controller that sees `n` blocks ahead keeps able to stop within them:
 //! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1).
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::VecDeque;
 
 /// Elements that are not final, at most; beyond it the older half is released
 /// as if the path ended here, and marked as not certain.
 pub(super) const OPEN_MAX: usize = 1 << 14;
+/// Squared speeds and accelerations beyond this (a million km/s) are no limits;
+/// sums with it stay finite.
+const UNLIMITED: f64 = 1e24;
 /// Elements after which a first backward pass is worth its start.
 const OPEN_MIN: usize = 24;
 
@@ -67,9 +73,10 @@ pub(super) struct Node<P> {
 impl<P> Node<P> {
     /// A node; speeds and lengths as in the fields.
     pub fn new(length: f64, top2: f64, accel: f64, entry2: f64, payload: P) -> Self {
+        let accel = lower(accel, UNLIMITED);
         Self {
             length,
-            top2,
+            top2: lower(top2, UNLIMITED),
             accel,
             smooth_accel: accel,
             entry2,
@@ -124,6 +131,8 @@ pub(super) struct Window<P> {
     blocks: Option<usize>,
     /// Hills are smoothed: `Node::smooth_accel` counts.
     smooth: bool,
+    /// Open elements at which a first backward pass runs, and at most.
+    open_min: usize,
     open_max: usize,
 }
 
@@ -136,20 +145,9 @@ impl<P> Window<P> {
             now2: 0.0,
             blocks: blocks.map(|blocks| blocks.max(1) as usize),
             smooth,
+            open_min: OPEN_MIN,
             open_max: OPEN_MAX,
         }
-    }
-
-    #[cfg(test)]
-    pub fn with_open_max(mut self, open_max: usize) -> Self {
-        self.open_max = open_max;
-        self
-    }
-
-    /// Elements held.
-    #[cfg(test)]
-    pub fn len(&self) -> usize {
-        self.nodes.len()
     }
 
     /// Largest speed of the last element, squared; infinite without one.
@@ -191,7 +189,7 @@ impl<P> Window<P> {
         }
         self.backward();
         self.ready = self.nodes.len();
-        self.settle_at = OPEN_MIN;
+        self.settle_at = self.open_min;
     }
 
     fn settle(&mut self) {
@@ -212,7 +210,7 @@ impl<P> Window<P> {
             self.ready = until;
         }
         let open = self.nodes.len() - self.ready;
-        self.settle_at = (2 * open + OPEN_MIN).min(self.open_max);
+        self.settle_at = (2 * open).saturating_add(self.open_min).min(self.open_max);
     }
 
     /// Runs the backward pass from rest at the end; elements before the index
@@ -298,9 +296,14 @@ impl<P> Window<P> {
         };
         let node = self.nodes.pop_front()?;
         self.ready -= 1;
-        let start2 = self.now2.max(if self.now2 == 0.0 { node.step2 } else { 0.0 });
+        let start2 = self
+            .now2
+            .max(if self.now2 == 0.0 { node.step2 } else { 0.0 });
         let end2 = lower(end2, start2 + node.ramp2());
-        let end2 = lower(end2, lower(node.hill2, node.top2).max(start2 - node.ramp2()));
+        let end2 = lower(
+            end2,
+            lower(node.hill2, node.top2).max(start2 - node.ramp2()),
+        );
         self.now2 = end2;
         Some(Span {
             start2,
@@ -333,7 +336,6 @@ impl<P> Window<P> {
             _ => f64::INFINITY,
         }
     }
-
 }
 
 /// The lower of two numbers.
