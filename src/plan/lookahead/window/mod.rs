@@ -187,13 +187,13 @@ impl<P> Window<P> {
         if self.ready == self.nodes.len() {
             return;
         }
-        self.backward();
+        self.backward(true);
         self.ready = self.nodes.len();
         self.settle_at = self.open_min;
     }
 
     fn settle(&mut self) {
-        let anchor = self.backward();
+        let anchor = self.backward(false);
         self.ready = self.ready.max(anchor);
         if let Some(blocks) = self.blocks
             && !self.smooth
@@ -214,15 +214,25 @@ impl<P> Window<P> {
     }
 
     /// Runs the backward pass from rest at the end; elements before the index
-    /// that it gives are final.
-    fn backward(&mut self) -> usize {
+    /// that it gives are final. Where the path does not `end`, the last element
+    /// is the last that the controller sees by now.
+    fn backward(&mut self, ends: bool) -> usize {
         if self.smooth {
             return self.backward_smooth();
         }
         let mut e2 = 0.0;
         let mut anchor = None;
+        let last = if ends {
+            self.nodes.len()
+        } else {
+            self.nodes.len().saturating_sub(1)
+        };
         for (i, node) in self.nodes.iter_mut().enumerate().skip(self.ready).rev() {
-            let reach = e2 + node.ramp2();
+            let reach = if i == last {
+                node.tail2
+            } else {
+                e2 + node.ramp2()
+            };
             if reach >= node.entry2 {
                 e2 = node.entry2;
                 anchor = anchor.or(Some(i));

@@ -32,6 +32,7 @@ fn nodes(seed: u64, count: usize, stops: f64) -> Vec<Node<usize>> {
             let entry2 = f64::min(corner * corner, f64::min(top2, before_top2));
             before_top2 = top2;
             let mut node = Node::new(length, top2, accel, entry2, i);
+            node.tail2 *= random.next();
             node.smooth_accel = 0.4 * accel;
             node.block = i % 3 != 1;
             node
@@ -129,9 +130,9 @@ fn speeds_join_and_keep_all_limits() {
 fn a_controller_can_always_stop_within_the_blocks_it_sees() {
     let mut nodes = nodes(5, 5000, 0.0);
     for node in &mut nodes {
-        // Short ones, so that it matters; half is kept back of the last.
+        // Short ones, so that it matters.
         node.length *= 0.01;
-        node.tail2 = node.accel * node.length;
+        node.tail2 *= 0.01;
     }
     for blocks in [1_usize, 4, 20] {
         let (spans, _) = run(&nodes, Some(blocks as u32), false, 24, usize::MAX);
