@@ -16,8 +16,8 @@ const SPEED_MM_S: f64 = 200.0;
 const ACCEL_MM_S2: f64 = 1000.0;
 const MASS_KG: [f64; 3] = [100.0, 80.0, 120.0];
 const COULOMB_N: f64 = 50.0;
-/// Blocks this close to the servo cycle are held up by the task that feeds the
-/// planner.
+/// Chords of a ring; far more, and the blocks are held up by the task that feeds
+/// the planner one block a millisecond.
 const PIECES: [usize; 3] = [60, 150, 200];
 
 /// A point in time: velocity and acceleration of X, Y and Z.
