@@ -6,7 +6,7 @@ mod measured;
 mod profile;
 mod recorded;
 
-use gwatt::interpret::{ActionKind, Diagnostics, Interpreter, MoveKind, Reading, Step};
+use gwatt::interpret::{ActionKind, Diagnostics, Facts, Interpreter, MoveKind, Reading, Step};
 use gwatt::machine::{AXES, LookAhead, Machine};
 use gwatt::plan::Overrides;
 use gwatt::plan::lookahead::{Element, Joint, PathPlanner, Planned};
@@ -121,13 +121,21 @@ pub(crate) fn plan_elements(
     let mut interpreter = Interpreter::new(machine, &reading);
     let (mut block, mut diagnostics) = (Block::default(), Diagnostics::default());
     let mut steps = Vec::new();
+    let mut facts = Facts::default();
     let rule = machine.controller.planner.look_ahead.unwrap();
     let mut planner = PathPlanner::new(machine, rule);
     let (mut pieces, mut dwells_s, mut joint) = (Vec::new(), 0.0, FREE);
     for (text, number) in program.split_inclusive(|byte| *byte == b'\n').zip(1..) {
         scan_line(text, number == 1, &mut block);
         steps.clear();
-        interpreter.execute(number, text, &mut block, &mut steps, &mut diagnostics);
+        interpreter.execute(
+            number,
+            text,
+            &mut block,
+            &mut steps,
+            &mut facts,
+            &mut diagnostics,
+        );
         let code = String::from_utf8_lossy(text);
         let code = code.split(['(', ';']).next().unwrap();
         if code.contains("G61.1") {
