@@ -142,6 +142,7 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
         dwell_s: 0.0,
         loads: 0,
         path_mode: PathMode::ExactStop,
+        corner: gwatt::interpret::Corner::default(),
     }
 }
 

@@ -100,6 +100,7 @@ impl Control<'_> {
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
         }));
         *facts = Facts {
             feed_word: straight.feed_word.copied(),
