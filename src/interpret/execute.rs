@@ -4,7 +4,7 @@
 
 use std::cell::Cell;
 
-use super::compensation::Compensation;
+use super::compensation::{Choice, Compensation, Corners};
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
@@ -61,6 +61,10 @@ pub(super) struct Control<'m> {
     pub(super) bent: bool,
     /// Cutter compensation, while it is on or being left.
     pub(super) compensation: Option<Box<Compensation>>,
+    /// What the next one goes by.
+    pub(super) choice: Choice,
+    /// Chamfers and rounded corners, once the program has any.
+    pub(super) corners: Option<Box<Corners>>,
     pub(super) printer: printer::State,
     /// The words of a block need a second look: see `dialect`.
     adapts: bool,
@@ -134,6 +138,8 @@ impl<'m> Interpreter<'m> {
             lost: None,
             bent: false,
             compensation: None,
+            choice: Choice::default(),
+            corners: None,
             printer: printer::State::new(machine),
             adapts: machine.controller.language.dialect.adapts(),
             callee: None,
@@ -182,7 +188,9 @@ impl<'m> Interpreter<'m> {
     /// that line came before it; cut if it is long.
     #[must_use]
     pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
-        self.control.compensation.as_ref()?.text_of(mv)
+        let control = &self.control;
+        let shifted = control.compensation.as_ref().and_then(|it| it.text_of(mv));
+        shifted.or_else(|| control.corners.as_ref()?.text_of(mv))
     }
 
     /// True while cutter compensation is on, and for the block that ends it.
@@ -197,7 +205,14 @@ impl<'m> Interpreter<'m> {
     #[must_use]
     pub fn holds(&self) -> bool {
         let compensation = self.control.compensation.as_ref();
-        compensation.is_some_and(|compensation| compensation.holds())
+        compensation.is_some_and(|compensation| compensation.holds()) || self.holds_corner()
+    }
+
+    /// True while a move waits for its chamfer or rounded corner.
+    #[must_use]
+    pub fn holds_corner(&self) -> bool {
+        let corners = self.control.corners.as_ref();
+        corners.is_some_and(|corners| corners.holds())
     }
 
     /// Executes one block: appends what it does to `steps`. What is not
@@ -262,6 +277,9 @@ impl<'m> Interpreter<'m> {
             run.report
                 .error("program-name", "nothing in this block calls the program that it names", whole)
                 .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
+        }
+        if self.control.corners.is_some() {
+            self.control.insert_corners(&mut run, before, errors);
         }
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
@@ -416,10 +434,16 @@ impl Control<'_> {
     }
 
     /// Words that no code has used: they might mean motion.
-    pub(super) fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
+    pub(super) fn complain_about_rest(&mut self, run: &mut Run<'_, '_>) {
+        if run.words.unused == 0 {
+            return;
+        }
         if self.machine.controller.language.family != Family::Rs274 {
-            // Numbers of tool offsets without a code that uses them.
-            run.words.take(b'D');
+            // Numbers of tool offsets without a code that uses them: that of a
+            // radius stays in force.
+            if let Some(number) = run.words.take(b'D') {
+                self.choice.number = Some(number as u32);
+            }
             run.words.take(b'H');
         }
         while let Some(letter) = run.words.left_over() {

@@ -208,6 +208,9 @@ impl Control<'_> {
         if let Some(value) = self.parameters.number(number) {
             return Read::Value(value);
         }
+        if self.is_compensating() && matches!(number, 5001..=5009 | 5021..=5029 | 5041..=5049) {
+            return Read::Unknown(UNDER_COMPENSATION);
+        }
         let axis = |first: u32| (number - first) as usize;
         let known = match number {
             0 | 100..=199 | 500..=999 => return Read::Value(None),

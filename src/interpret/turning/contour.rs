@@ -222,6 +222,19 @@ impl Interpreter<'_> {
                 text,
             },
         };
+        let compensation = control.compensation.as_ref();
+        if compensation.is_some_and(|compensation| compensation.shifts()) {
+            let message = "a contour of a turning cycle under tool nose radius compensation, \
+                           where the radius is known";
+            let whole = run.whole();
+            contour_value(message, whole, &mut run);
+            return;
+        }
+        if control.corners.as_ref().is_some_and(|corners| corners.holds()) {
+            let whole = run.whole();
+            contour_value("a contour that ends with a rounded corner", whole, &mut run);
+            return;
+        }
         if !check(&found, &mut run) {
             return;
         }
