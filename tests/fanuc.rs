@@ -220,7 +220,6 @@ fn alarms_and_state() {
 #[test]
 fn what_is_refused_by_name() {
     let cases = [
-        ("G1 X1. ,C2. F1.", "a chamfer (,C) is not supported"),
         (
             "G1 X1. ,A30. F1.",
             "an angle of a drawing (,A) is not supported",

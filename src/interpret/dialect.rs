@@ -179,8 +179,8 @@ impl Control<'_> {
 
     /// `,C` or `,R` of the present block.
     pub(super) fn fanuc_corner(&mut self, word: &Word, text: &[u8]) {
-        let least = self.dialect().point == Some(Point::LeastIncrement)
-            && !has_point(word.number.of(text));
+        let least =
+            self.dialect().point == Some(Point::LeastIncrement) && !has_point(word.number.of(text));
         let scale = match least {
             false => 1.0,
             true if self.modal.mm_per_unit == MM_PER_INCH => LEAST_INCH,

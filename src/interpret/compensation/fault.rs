@@ -109,10 +109,22 @@ impl Fault {
                 "the compensation ends with no move in the plane behind the one that began it",
                 "write the contour between G41 or G42 and G40",
             ),
-            Self::Intersection => (
-                "an outside corner with an arc under G451",
-                "write G450",
+            Self::Intersection => ("an outside corner with an arc under G451", "write G450"),
+            Self::OtherMotion => (
+                "this motion under cutter compensation: the controller stops here",
+                "switch the compensation off before: G40",
             ),
+            Self::TooMany => (
+                "more than a thousand steps without motion in the plane of the compensation",
+                "switch the compensation off before: G40",
+            ),
+            _ => self.corner_words(),
+        }
+    }
+
+    /// Message and help of a chamfer or a rounded corner.
+    fn corner_words(self) -> (&'static str, &'static str) {
+        match self {
             Self::NoFirstMove => (
                 "a chamfer or a rounded corner behind a block that is not one feed move",
                 "write it in the block of a G1, G2 or G3, without M words that stop",
@@ -133,17 +145,9 @@ impl Fault {
                 "a chamfer or a rounded corner where the path goes straight on or back",
                 "take it out",
             ),
-            Self::ChamferAtArc => (
+            _ => (
                 "a chamfer where an arc begins or ends",
                 "write the chamfer as a move of its own",
-            ),
-            Self::OtherMotion => (
-                "this motion under cutter compensation: the controller stops here",
-                "switch the compensation off before: G40",
-            ),
-            Self::TooMany => (
-                "more than a thousand steps without motion in the plane of the compensation",
-                "switch the compensation off before: G40",
             ),
         }
     }

@@ -327,8 +327,7 @@ impl Corner {
     fn round(&self, radius_mm: f64) -> Result<(Vector, Vector, Option<Arc>), Fault> {
         let side = self.bend_rad.signum();
         let [before, after] = [&self.before, &self.after].map(|it| it.beside(side, radius_mm));
-        let center =
-            meet(&before?, &after?, side * radius_mm).map_err(|_| Fault::LargeCorner)?;
+        let center = meet(&before?, &after?, side * radius_mm).map_err(|_| Fault::LargeCorner)?;
         let from = self.before.touched_from(center);
         let to = self.after.touched_from(center);
         let (Some(from), Some(to)) = (from, to) else {

@@ -27,9 +27,9 @@ mod words;
 
 use self::fault::Fault;
 use self::hold::{Hold, place};
-use self::vector::Vector;
 pub(super) use self::insert::{Corners, Insert};
 pub(super) use self::radius::{Choice, ContourFeed};
+use self::vector::Vector;
 use super::execute::{Control, Run};
 use super::moves::{Move, MoveKind, Step};
 use crate::machine::{CompensationLead, CutterCompensation};
@@ -141,7 +141,10 @@ impl Compensation {
     fn leaves_by(&self, mv: &Move) -> bool {
         self.style.lead == CompensationLead::Beside
             || mv.arc.is_some()
-            || self.plane.iter().any(|&axis| mv.start[axis] != mv.end[axis])
+            || self
+                .plane
+                .iter()
+                .any(|&axis| mv.start[axis] != mv.end[axis])
     }
 
     /// The first move behind G40 begins where the tool is. True where its
@@ -202,7 +205,10 @@ impl Control<'_> {
             return Err(Fault::NothingBetween);
         }
         let path = |step: &&Step| matches!(step, Step::Move(mv) if mv.kind != MoveKind::Dwell);
-        let cut = self.corners.as_ref().is_some_and(|corners| corners.is_cut());
+        let cut = self
+            .corners
+            .as_ref()
+            .is_some_and(|corners| corners.is_cut());
         if compensation.is_on() && !cut && own.iter().filter(path).count() > 1 {
             return Err(Fault::OtherMotion);
         }

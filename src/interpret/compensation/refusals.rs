@@ -27,8 +27,8 @@ impl Control<'_> {
             }
         }
         let rs274 = self.machine.controller.language.family == Family::Rs274;
-        let ends = |(code, ..): &(GCode, u16, Span)| *code == GCode::CompensationOff;
-        if !rs274 && run.words.has(b'D') && !run.words.g.iter().any(ends) {
+        let switches = run.words.groups & GCode::CompensationOff.group() != 0;
+        if !rs274 && run.words.has(b'D') && !switches {
             let span = run.words.span(b'D', run.block);
             refuse("another radius", span, run);
         }
@@ -61,9 +61,10 @@ impl Control<'_> {
 
     /// Words that come behind it.
     pub(super) fn refuse_behind(&self, run: &mut Run<'_, '_>) {
+        let rs274 = self.machine.controller.language.family == Family::Rs274;
         for index in 0..run.words.g.len() {
             let (_, number, span) = run.words.g[index];
-            if number == 100 && !sets_offsets(run) {
+            if number == 100 && rs274 && !sets_offsets(run) {
                 continue;
             }
             if self.permits(number) {
@@ -88,7 +89,7 @@ fn g_name(number: u16) -> Option<&'static str> {
     Some(match number {
         50..=53 => "a spline",
         100 | 540..=593 => "another coordinate system",
-        280 | 300 => "a reference point",
+        280 | 300 | 740 | 750 => "a reference point",
         281 | 301 => "setting a reference point",
         330..=332 => "thread cutting",
         380..=389 => "probing",
@@ -96,7 +97,6 @@ fn g_name(number: u16) -> Option<&'static str> {
         520 | 920..=923 => "an offset of the axes",
         530 | 1530 => "G53",
         500 | 501 | 510 | 511 => "scaling or mirroring",
-        740 | 750 => "a reference point",
         120 | 130 | 1500 => "a pocket",
         610 | 611 | 640 => "another path mode",
         680..=692 => "a rotation of the coordinates",

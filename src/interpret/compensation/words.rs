@@ -86,9 +86,11 @@ impl Control<'_> {
     /// What SINUMERIK may change while it is on: outside corners, and what F
     /// speaks for.
     fn choose_anew(&mut self, run: &mut Run<'_, '_>) {
-        let Some(compensation) = self.compensation.as_mut().filter(|_| {
-            self.machine.controller.language.family == Family::Siemens
-        }) else {
+        let Some(compensation) = self
+            .compensation
+            .as_mut()
+            .filter(|_| self.machine.controller.language.family == Family::Siemens)
+        else {
             return;
         };
         compensation.feed = self.choice.feed;
@@ -97,10 +99,13 @@ impl Control<'_> {
         } else {
             CompensationCorner::Arc
         };
-        let [first, second] = compensation.plane;
         let plane = compensation.plane;
-        let flipped = compensation.flipped;
-        if self.plane_is_flipped(plane, 3 - first - second) != flipped {
+        let before = compensation.flipped;
+        let flipped = self.plane_is_flipped(plane, 3 - plane[0] - plane[1]);
+        if flipped != before {
+            if let Some(compensation) = &mut self.compensation {
+                compensation.flipped = flipped;
+            }
             let whole = run.whole();
             run.report
                 .error("compensation", "mirroring under cutter compensation", whole)
@@ -214,11 +219,7 @@ impl Control<'_> {
     }
 
     /// How the control shifts paths; reported where that is not known.
-    fn compensation_style(
-        &self,
-        span: Span,
-        run: &mut Run<'_, '_>,
-    ) -> Option<CutterCompensation> {
+    fn compensation_style(&self, span: Span, run: &mut Run<'_, '_>) -> Option<CutterCompensation> {
         let language = &self.machine.controller.language;
         if let Some(mut style) = language.compensation {
             if self.choice.intersects {

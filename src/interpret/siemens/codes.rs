@@ -91,8 +91,8 @@ pub(in crate::interpret) fn siemens_code(number: u16) -> Option<GCode> {
         1100 | 1110 | 1120 => GCode::Siemens(Code::Pole((number / 10 - 110) as u8)),
         // Exact stop limits; searches of the approach of the radius compensation;
         // the Siemens language.
-        6010 | 6020 | 6030 | 4600 | 4610 | 4620 | 620 | 6210 | 3400 | 3410 | 1400
-        | 1410 | 1420 | 1430 | 2900 => GCode::Ignored,
+        6010 | 6020 | 6030 | 4600 | 4610 | 4620 | 620 | 6210 | 3400 | 3410 | 1400 | 1410 | 1420
+        | 1430 | 2900 => GCode::Ignored,
         _ => return None,
     })
 }

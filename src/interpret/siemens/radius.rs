@@ -74,14 +74,10 @@ impl Reading<'_, '_, '_> {
     pub(super) fn set_radius(&mut self, wear: bool, start: usize) -> Outcome<()> {
         let index = self.index()?;
         self.cursor.expect(b'=')?;
-        let value = match Kind::Real.convert(self.expression()?) {
-            Ok(Val::Number(value)) => value,
-            _ => {
-                let message = "the radius of a tool is a number";
-                return Err(self
-                    .cursor
-                    .fault("assignment", message, "write it in mm", start));
-            }
+        let Ok(Val::Number(value)) = Kind::Real.convert(self.expression()?) else {
+            let message = "the radius of a tool is a number";
+            let help = "write it in mm";
+            return Err(self.cursor.fault("assignment", message, help, start));
         };
         let [tool, edge, _] = index.map(|index| u32::try_from(index).unwrap_or(0));
         let set = &mut self.state.radius.set;

@@ -230,7 +230,11 @@ impl Interpreter<'_> {
             contour_value(message, whole, &mut run);
             return;
         }
-        if control.corners.as_ref().is_some_and(|corners| corners.holds()) {
+        if control
+            .corners
+            .as_ref()
+            .is_some_and(|corners| corners.holds())
+        {
             let whole = run.whole();
             contour_value("a contour that ends with a rounded corner", whole, &mut run);
             return;

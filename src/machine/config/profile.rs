@@ -2,17 +2,18 @@
 
 use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
-    ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName, DwellTable, FamilyName, FeedName,
-    KnobTable, LanguageTable, LatheName, LeadName, PlannerTable, PointName, RapidJointName, RapidKnobName,
-    TargetName, UnitName, UnitsName,
+    ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
+    DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
+    PointName, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
 use crate::machine::controller::{
-    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language,
-    Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath,
+    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
+    Knob, KnobArgument, KnobTarget, KnobUnit, Language, Lathe, Planner, Point, RapidJoint,
+    RapidKnob, RapidPath,
 };
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
