@@ -30,7 +30,7 @@ use self::hold::{Hold, place};
 pub(super) use self::insert::{Corners, Insert};
 pub(super) use self::radius::{Choice, ContourFeed};
 use self::vector::Vector;
-use super::execute::{Control, Run};
+use super::execute::{Control, Interpreter, Run};
 use super::moves::{Move, MoveKind, Step};
 use crate::machine::{CompensationLead, CutterCompensation};
 
@@ -153,6 +153,39 @@ impl Compensation {
         self.state = State::Off;
         let end = self.plane.map(|axis| mv.end[axis]);
         place(mv, self.plane, self.hold.tool, end, None)
+    }
+}
+
+impl Interpreter<'_> {
+    /// The text of the line of a move that was given with the last block, if
+    /// that line came before it; cut if it is long.
+    #[must_use]
+    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
+        let control = &self.control;
+        let shifted = control.compensation.as_ref().and_then(|it| it.text_of(mv));
+        shifted.or_else(|| control.corners.as_ref()?.text_of(mv))
+    }
+
+    /// True while cutter compensation is on, and for the block that ends it.
+    #[must_use]
+    pub fn compensates(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.is_at_work())
+    }
+
+    /// True while moves are held back: cutter compensation needs the next one
+    /// to know where they end.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.holds()) || self.holds_corner()
+    }
+
+    /// True while a move waits for its chamfer or rounded corner.
+    #[must_use]
+    pub fn holds_corner(&self) -> bool {
+        let corners = self.control.corners.as_ref();
+        corners.is_some_and(|corners| corners.holds())
     }
 }
 
