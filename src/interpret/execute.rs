@@ -9,7 +9,7 @@ use super::direct::is_direct;
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Move, Step};
+use super::moves::{Action, ActionKind, Step};
 use super::parameters::Parameters;
 use super::position::{Position, Reading};
 use super::printer;
