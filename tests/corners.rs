@@ -204,11 +204,28 @@ fn the_nose_of_a_lathe_tool() {
 5 feed X29.2000 F100.00
 6 feed X35.0000 F100.00
 ");
-    let contour =
-        "T0303\nG98 G0 X60. Z10.\nG71 P10 Q20 D1. F100.\nN10 G42 G0 X20.\nN20 G1 Z-20.\nM30\n";
+    // G71 goes by the contour as it is programmed; G70 by the shifted one: in
+    // from (15, 5) to beside the first move, and back to where it began.
+    let contour = "T0303\nG98 G0 X30. Z5.\nG71 P10 Q20 D4. R1. F100.\nN10 G42 G0 X10.\nG1 Z-20. F100.\nX24.\nN20 G40 X28.\nG70 P10 Q20\nM30\n";
+    let table = "T3 D1.6 Q3\n";
+    let found = moves_on(&lathe, table, contour);
+    let (rough, finish) = found.split_at(found.find("8 rapid").unwrap_or(0));
+    let plain = moves(
+        "fanuc-lathe",
+        &contour.replace("G42", "").replace("G40", ""),
+    );
+    assert!(!rough.is_empty() && plain.starts_with(rough), "{found}");
+    assert_snapshot!(finish, @r"
+8 rapid X5.0000 Z4.2000
+8 feed Z-20.0000 F100.00
+8 feed X11.2000 F100.00
+8 feed X14.0000 F100.00
+8 rapid X15.0000 Z5.0000
+");
+    let open = contour.replace("N20 G40 X28.", "N20 X28.");
     assert_eq!(
-        moves_on(&lathe, "T3 D1.6 Q3\n", contour),
-        "3 contour: a contour of a turning cycle under tool nose radius compensation, where the radius is known\n"
+        moves_on(&lathe, table, &open),
+        "8 contour: a contour of a turning cycle under tool nose radius compensation, where the radius is known\n"
     );
 }
 

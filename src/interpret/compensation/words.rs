@@ -169,6 +169,12 @@ impl Control<'_> {
             self.nose_by_offset(run, span)
         };
         let Some(nose) = nose else { return };
+        let nose = if self.turning.reads_rough {
+            // "Tool Nose Radius Compensation", "Canned Cycles": G70 has it alone.
+            Nose::POINT
+        } else {
+            nose
+        };
         let passive = !beside && nose.radius_mm == 0.0;
         if !passive && self.refuse_style(span, run) {
             return;

@@ -171,7 +171,8 @@ impl Control<'_> {
 
 impl Interpreter<'_> {
     /// Keeps the state, before a contour is executed to be known.
-    pub(crate) fn before_contour(&self) -> Box<Before> {
+    pub(crate) fn before_contour(&mut self, contour: &Contour) -> Box<Before> {
+        self.control.turning.reads_rough = contour.cycle != ContourCycle::Finish;
         let control = &self.control;
         Box::new(Before {
             modal: control.modal.clone(),
@@ -197,6 +198,7 @@ impl Interpreter<'_> {
         diagnostics: &mut Diagnostics,
     ) {
         let control = &mut self.control;
+        control.turning.reads_rough = false;
         let from = before.position.at;
         let motion = before.modal.motion;
         let finish = contour.cycle == ContourCycle::Finish;
