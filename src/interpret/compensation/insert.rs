@@ -112,6 +112,10 @@ impl Control<'_> {
         let modal = |insert| matches!(insert, Insert::Round { modal: true, .. });
         let switches = run.words.groups & GCode::CompensationOff.group() != 0;
         if let Some((first, insert)) = corners.waits.take() {
+            if switches {
+                // The move that waits belongs to the compensation before.
+                return Err(Fault::NoSecondMove);
+            }
             let feeds = own.iter().all(|step| match step {
                 Step::Move(mv) => matches!(mv.kind, MoveKind::Feed | MoveKind::Arc),
                 Step::Action(_) => true,
@@ -126,7 +130,7 @@ impl Control<'_> {
                 } else {
                     Ok(())
                 };
-            } else if moves != 1 || !feeds || switches {
+            } else if moves != 1 || !feeds {
                 return Err(Fault::NoSecondMove);
             } else {
                 self.put_in(first, insert, before, run)?;
