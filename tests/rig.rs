@@ -90,7 +90,7 @@ fn controller() -> Controller {
             ignored_g: Vec::new(),
             ignored_m: Vec::new(),
             block_delete: true,
-            cutter_compensation: false,
+            compensation: None,
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,

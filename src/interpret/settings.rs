@@ -79,7 +79,6 @@ impl Control<'_> {
                 GCode::PathMode => self.path_mode(number, run),
                 GCode::MirrorX => self.mirror_x(span, run),
                 GCode::Ignored => self.arguments_of_ignored(number, run),
-                GCode::NoseRadius => Self::nose_radius(span, run),
                 GCode::Retract(initial) => self.retract_level(initial, span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
