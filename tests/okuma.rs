@@ -222,7 +222,7 @@ fn lathes_turn_in_diameters() {
     let program = "\
 $A.MIN%
 O0137
-VGRIN[1]=1 VGRFN[1]=1
+VGRIN[1]=1 VGRA2[1]=3
 DEF WORK
 PT LF,LC,[0,0],[80,80],[602,0]
 END

@@ -22,14 +22,12 @@ impl Flow {
             Go::Next | Go::If(true) | Go::Loop(true) | Go::Again(false) => {}
             Go::Main => {
                 let text = self.now.text;
-                match self.landmarks(text)?.main() {
-                    Some(line) => self.next.line = line + 1,
-                    None => {
-                        let message = "local subprograms without a main program behind them";
-                        let help = "write % and a name before the main program";
-                        return Err(Trouble::new("subprogram", message, help));
-                    }
-                }
+                let Some(line) = self.landmarks(text)?.main() else {
+                    let message = "local subprograms without a main program behind them";
+                    let help = "write % and a name before the main program";
+                    return Err(Trouble::new("subprogram", message, help));
+                };
+                self.next.line = line + 1;
             }
             Go::End => interpreter.end(),
             Go::If(false) => {
@@ -39,8 +37,7 @@ impl Flow {
                     interpreter.expect_next(Pending::Decide);
                 }
             }
-            Go::BehindIf => self.next.line = self.part()?.end + 1,
-            Go::Loop(false) => self.next.line = self.part()?.end + 1,
+            Go::BehindIf | Go::Loop(false) => self.next.line = self.part()?.end + 1,
             Go::Back => {
                 let part = self.part()?;
                 self.next.line = part.begin;

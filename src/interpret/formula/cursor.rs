@@ -96,14 +96,12 @@ impl<'t> Cursor<'t> {
         let value = std::str::from_utf8(text)
             .ok()
             .and_then(|text| text.parse::<f64>().ok());
-        match value.filter(|value| value.is_finite()) {
-            Some(value) => Ok(value),
-            None => {
-                let message = format!("`{}` is not a number", excerpt(text, 40));
-                let help = "write digits with at most one point";
-                Err(self.fault("expression", message, help, start))
-            }
+        if let Some(value) = value.filter(|value| value.is_finite()) {
+            return Ok(value);
         }
+        let message = format!("`{}` is not a number", excerpt(text, 40));
+        let help = "write digits with at most one point";
+        Err(self.fault("expression", message, help, start))
     }
 
     /// Passes over the rest of the block.

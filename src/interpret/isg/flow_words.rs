@@ -45,21 +45,7 @@ impl Reading<'_, '_, '_> {
             "ENDDO" => Go::Again(self.condition()?),
             "UNTIL" => Go::Again(!self.condition()?),
             "SWITCH" => Go::Switch(self.number()?),
-            "CASE" => match pending {
-                Pending::Compare(value) => {
-                    let case = self.number()?;
-                    if (case - value).abs() < SAME {
-                        Go::Next
-                    } else {
-                        Go::Switch(value)
-                    }
-                }
-                _ => {
-                    let message = "a $CASE is reached from the one before it";
-                    let help = "end each $CASE by $BREAK";
-                    return Err(self.cursor.fault("flow", message, help, start));
-                }
-            },
+            "CASE" => self.case(pending, start)?,
             "BREAK" => Go::Break,
             "CONTINUE" => Go::Continue,
             "GOTO" => self.jump()?,
@@ -77,6 +63,16 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.fault("flow", message, help, start));
         }
         Ok(Some(go))
+    }
+
+    fn case(&mut self, pending: Pending, start: usize) -> Outcome<Go> {
+        let Pending::Compare(value) = pending else {
+            let message = "a $CASE is reached from the one before it";
+            let help = "end each $CASE by $BREAK";
+            return Err(self.cursor.fault("flow", message, help, start));
+        };
+        let fits = (self.number()? - value).abs() < SAME;
+        Ok(if fits { Go::Next } else { Go::Switch(value) })
     }
 
     fn condition(&mut self) -> Outcome<bool> {

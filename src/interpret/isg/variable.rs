@@ -28,7 +28,7 @@ impl Names for Reading<'_, '_, '_> {
         let Some(value) = self.value(&name) else {
             let reason = match name.get(..4) {
                 Some("V.E.") => "comes from the PLC",
-                Some("V.G.") | Some("V.A.") => "is kept by the control",
+                Some("V.G." | "V.A.") => "is kept by the control",
                 _ => "has no value in this program",
             };
             let message = format!("{name} {reason}: what it holds, only the machine knows");

@@ -74,7 +74,7 @@ impl Reading<'_, '_> {
             return Ok(Some(Name::Local(name)));
         }
         let mut full = name.clone();
-        if number.is_empty() && cursor.peek() == Some(b'[') {
+        if (number.is_empty() || !common) && cursor.peek() == Some(b'[') {
             cursor.at += 1;
             let start = cursor.at;
             let index = expression(cursor, self)?;
