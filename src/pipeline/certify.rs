@@ -8,7 +8,7 @@
 use super::tally::Tally;
 use super::{Failure, Options, Row, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Action, Arc, Diagnostics, Interpreter, Move, MoveKind, Step};
+use crate::interpret::{Action, Arc, Diagnostics, Facts, Interpreter, Move, MoveKind, Step};
 use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::source::{Span, lines};
@@ -68,6 +68,7 @@ pub(super) struct Certifier<'m, 'r> {
     assessor: Assessor<'m>,
     block: Block,
     steps: Vec<Step>,
+    facts: Facts,
     line: u64,
     verdict: Verdict<'m, 'r>,
 }
@@ -130,6 +131,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
             block: Block::default(),
             steps: Vec::new(),
+            facts: Facts::default(),
             line: 0,
             verdict: Verdict::new(machine, options, rows),
         }
@@ -148,10 +150,11 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 assessor,
                 block,
                 steps,
+                facts,
                 verdict,
                 line,
             } = self;
-            interpreter.execute(*line, text, block, steps, diagnostics);
+            interpreter.execute(*line, text, block, steps, facts, diagnostics);
             for step in &*steps {
                 let mut text = text;
                 if let Step::Move(mv) = step
