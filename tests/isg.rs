@@ -231,6 +231,20 @@ M30
 ");
 }
 
+/// A jump behind other words is the last action of its block ("The $GOTO
+/// statement"); lines of a comment or a declaration do not move.
+#[test]
+fn plain_moves_beside_what_is_more() {
+    let program =
+        "G1 F100 X1\nX2 $GOTO N9\nX3\nN9: X4\n#COMMENT BEGIN\nX5\n#COMMENT END\nX6\n%L A\nX7\n";
+    assert_snapshot!(moves(program), @r"
+1 feed X1 F100
+2 feed X2 F100
+4 feed X4 F100
+8 feed X6 F100
+");
+}
+
 /// What depends on what the control alone knows, or moves in another way.
 #[test]
 fn what_is_not_followed_is_named() {

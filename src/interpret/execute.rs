@@ -285,6 +285,7 @@ impl<'m> Interpreter<'m> {
             return;
         }
         if beyond
+            && !transfers
             && self
                 .control
                 .direct(line, text, block, steps, facts)

@@ -1,6 +1,7 @@
 //! A block, word by word ("Structure of NC blocks", "Program structure").
 
 use super::{Isg, Note};
+use crate::interpret::direct::is_direct;
 use crate::interpret::execute::Control;
 use crate::interpret::formula::{Cursor, Outcome};
 use crate::interpret::report::Report;
@@ -38,6 +39,7 @@ impl Control<'_> {
         let Some(mut state) = self.isg.take() else {
             return false;
         };
+        state.begun |= self.begun;
         let text = report.text.get(..block.text_end as usize);
         let mut reading = Reading {
             control: self,
@@ -69,6 +71,8 @@ impl Control<'_> {
                 block.issues.clear();
             }
         }
+        // What stands in a comment or a declaration is no move.
+        self.direct = is_direct(self.machine) && !state.comments && !state.declares;
         self.isg = Some(state);
         transfers
     }
