@@ -14,6 +14,7 @@ mod plan;
 mod power;
 mod rig;
 mod limit;
+mod lookahead;
 mod machine;
 mod printers;
 mod cli;
