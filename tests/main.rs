@@ -20,5 +20,8 @@ mod machine;
 mod printers;
 mod cli;
 mod readme;
+mod listing;
+mod isg;
+mod okuma;
 mod fanuc;
 mod turning;
