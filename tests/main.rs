@@ -10,6 +10,7 @@ mod cycles;
 mod coordinates;
 mod siemens;
 mod syntax;
+mod period;
 mod plan;
 mod power;
 mod rig;
