@@ -8,11 +8,12 @@ mod bound;
 mod limits;
 pub mod period;
 mod profile;
+mod spindle;
 mod trajectory;
 
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use profile::{Phase, PhaseKind, Profile, State};
-
+pub use spindle::{SpindleCaps, SpindleDrive};
 pub use trajectory::{
     Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, path_figures, plan, plan_with,
 };
