@@ -9,6 +9,7 @@ mod compensation;
 mod cycles;
 mod coordinates;
 mod siemens;
+mod spindle;
 mod syntax;
 mod period;
 mod plan;
