@@ -512,6 +512,27 @@ fn machines_and_periods_that_do_not_do() {
 }
 
 #[test]
+fn the_check_of_a_machine_tells_the_run_up() {
+    let bench = Bench::new();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
+    command.args(["machine", "check", "m.toml"]);
+    command.current_dir(bench.folder.path());
+    let (code, out, _) = said(command.output().unwrap());
+    assert_eq!(code, 0);
+    assert!(
+        out.contains("  spindle: 3000 1/min in 1.00 s, peak "),
+        "{out}"
+    );
+    // No number for the acceleration: refused, not a riddle later.
+    bench.put(
+        "m.toml",
+        MACHINE.replace("accel_time_s = 1\n", "accel_time_s = 1e-320\n"),
+    );
+    let (code, _, err) = bench.run("0,1\n", &[]);
+    assert_eq!(code, 2, "{err}");
+}
+
+#[test]
 fn what_cannot_be_helped_is_told() {
     let bench = Bench::new();
     let (_, _, err) = bench.run("0,2000\n0.3,2000,,2000\n", &[]);

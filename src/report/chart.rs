@@ -28,7 +28,7 @@ const RIGHT: f64 = 20.0;
 const TOP: f64 = 30.0;
 const GAP: f64 = 40.0;
 /// Lines of a grid that are aimed at.
-const LINES: f64 = 4.0;
+const LINES: f64 = 6.0;
 
 /// Some samples in a row: first, least, largest and last value of each figure.
 #[derive(Debug, Clone, Copy)]
@@ -263,4 +263,39 @@ fn polyline(
         }
     }
     text.push_str("\"/>\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::period::Motion;
+
+    /// However long the run, a single sample that stands out is still drawn.
+    #[test]
+    fn extremes_survive_in_bounded_memory() {
+        let mut chart = SpindleChart::default();
+        for index in 0..100_001_u32 {
+            chart.add(&Sample {
+                time_s: f64::from(index) * 1e-3,
+                target_rpm: 0.0,
+                motion: Motion {
+                    speed: if index == 77_777 { 123.0 } else { 1.0 },
+                    accel: 0.0,
+                },
+                jerk_rpm_s2: 0.0,
+                torque_nm: 0.0,
+                power_w: 0.0,
+            });
+        }
+        assert!(chart.buckets.len() <= BUCKETS_MAX);
+        let most = chart.buckets.iter().map(|bucket| bucket.most[0]);
+        assert_eq!(most.fold(0.0, f64::max), 123.0);
+        let ends = chart.buckets.last().map(|bucket| bucket.to_s);
+        assert_eq!(ends, Some(100.0));
+        let gaps = chart
+            .buckets
+            .windows(2)
+            .map(|pair| pair[1].from_s - pair[0].to_s);
+        assert!(gaps.fold(0.0, f64::max) < 1.1e-3);
+    }
 }
