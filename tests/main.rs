@@ -16,6 +16,7 @@ mod plan;
 mod power;
 mod rig;
 mod limit;
+mod lookahead;
 mod machine;
 mod printers;
 mod cli;

@@ -6,6 +6,7 @@
 mod arc;
 mod bound;
 mod limits;
+pub mod lookahead;
 pub mod period;
 mod profile;
 mod spindle;

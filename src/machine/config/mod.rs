@@ -14,6 +14,7 @@ mod drive_curve;
 mod findings;
 mod hints;
 mod load;
+mod look_ahead;
 mod machine_file;
 mod plausible;
 mod preset;

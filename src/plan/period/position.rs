@@ -3,7 +3,7 @@
 use super::cell::bisect;
 use super::curve::{LimitError, positive};
 use super::limits::Limits;
-use super::phase::Motion;
+use super::phase::{Motion, RampPhase};
 use super::planner::{finite, inside};
 use super::ramp::Ramp;
 
@@ -22,7 +22,7 @@ pub struct PositionStep {
     /// The target is reached and held.
     pub reached: bool,
     /// By how much the target is passed before the motion turns, because it
-    /// cannot be stopped in time; the smallest possible, 0 if it is not passed.
+    /// cannot be stopped in time; 0 if it is not passed.
     pub overshoot: f64,
 }
 
@@ -74,14 +74,10 @@ impl PositionPlanner {
         let way = stop.distance();
         let near = ROUNDING * (self.position.abs() + target.abs() + way.abs());
         let missing = gap - way;
-        let overshoot = if missing * gap < 0.0 && missing.abs() > near {
-            missing.abs()
-        } else {
-            0.0
-        };
-        let (ramp, mut motion, distance) = if missing.abs() <= near {
+        let (ramp, mut motion, distance, passing) = if missing.abs() <= near {
             let (motion, distance) = stop.at(period_s);
-            (stop, motion, distance)
+            let passing = passed(&stop.phases, gap);
+            (stop, motion, distance, passing)
         } else {
             let side = missing.signum();
             let run = Ramp::new(start, side * max_speed, planned);
@@ -91,16 +87,34 @@ impl PositionPlanner {
                 let stop = Ramp::new(motion, 0.0, planned);
                 side * (gap - distance - stop.distance()) < 0.0
             };
-            let mut runs = period_s;
-            if too_long(period_s) {
-                runs = bisect(0.0, period_s, too_long).next_down().max(0.0);
-            }
+            let last = |from: f64, to: f64| {
+                if too_long(to) {
+                    bisect(from, to, too_long).next_down().max(from)
+                } else {
+                    to
+                }
+            };
+            let runs = last(0.0, period_s);
             let (motion, ran) = run.at(runs);
             let stop = Ramp::new(motion, 0.0, planned);
             let (motion, stopped) = stop.at(period_s - runs);
+            // The whole way to the rest, where it may turn behind the target.
+            let mut passing = 0.0;
+            let brakes = start.speed * start.accel < 0.0 || side * start.speed < 0.0;
+            if runs < period_s || brakes {
+                let until = if runs < period_s {
+                    runs
+                } else {
+                    last(period_s, run.duration_s().max(period_s))
+                };
+                let mut phases = run.cut(until);
+                phases.extend(Ramp::new(run.at(until).0, 0.0, planned).phases);
+                passing = passed(&phases, gap);
+            }
             let ramp = if runs < period_s { stop } else { run };
-            (ramp, motion, ran + stopped)
+            (ramp, motion, ran + stopped, passing)
         };
+        let overshoot = if passing > 4.0 * near { passing } else { 0.0 };
         inside(&mut motion, &ramp, start, period_s, limits);
         let mut position = self.position + distance;
         let at_rest = motion == Motion::default();
@@ -124,4 +138,20 @@ impl PositionPlanner {
             overshoot,
         })
     }
+}
+
+/// How far beyond the end of a way `gap` phases turn; 0 if they do not.
+fn passed(phases: &[RampPhase], gap: f64) -> f64 {
+    let (mut distance, mut most) = (0.0, 0.0_f64);
+    // At the target, any way from it passes it.
+    let first = phases.first().map_or(0.0, |phase| phase.start.speed);
+    let side = if gap == 0.0 { first } else { gap }.signum();
+    for phase in phases {
+        distance += phase.distance(phase.duration_s);
+        // The limits change at rest, so every turn is the end of a phase.
+        if phase.end.speed == 0.0 && phase.start.speed * side > 0.0 {
+            most = most.max((distance - gap) * side);
+        }
+    }
+    most
 }
