@@ -148,7 +148,7 @@ fn help_and_version_are_no_errors() {
 #[test]
 fn every_command_has_examples() {
     let shop = Shop::new();
-    for command in ["limit", "check", "report", "diff", "moves"] {
+    for command in ["limit", "check", "report", "diff", "moves", "spindle"] {
         let ran = shop.run(&[command, "--help"]);
         assert!(ran.stdout.contains("Examples:\n  gwatt"), "{command}");
     }

@@ -56,6 +56,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             mode: None,
             rapid: RapidPath::Linear,
         },
+        force_curves: Vec::new(),
         spindle: None,
         loads: Vec::new(),
         presets: Vec::new(),

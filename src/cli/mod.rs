@@ -7,6 +7,7 @@ mod machine;
 mod moves;
 mod program;
 mod report;
+mod spindle;
 
 use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
@@ -18,6 +19,7 @@ pub use machine::MachineCommand;
 pub use moves::MovesArgs;
 pub use program::{MachineArgs, ProgramArgs, StartArg};
 pub use report::ReportArgs;
+pub use spindle::SpindleArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,6 +62,8 @@ pub enum Command {
     Diff(DiffArgs),
     /// Print every move of a program as JSON, one a line
     Moves(MovesArgs),
+    /// Plan a spindle's speed period by period, and what it draws
+    Spindle(SpindleArgs),
     /// List, show and check machine descriptions
     Machine {
         /// What to do with them.

@@ -6,6 +6,7 @@ pub mod limit;
 pub mod machine;
 pub mod moves;
 pub mod report;
+pub mod spindle;
 
 mod clash;
 mod input;

@@ -92,6 +92,17 @@ impl Setup {
     }
 }
 
+/// The machine that is asked for, or the default one with a note.
+pub fn machine_name(args: &MachineArgs, terminal: Terminal) -> &str {
+    args.machine.as_deref().unwrap_or_else(|| {
+        let name = builtin::DEFAULT_MACHINE;
+        terminal.note(format_args!(
+            "no machine is given: this is for the built-in {name} (see `gwatt machine list`)"
+        ));
+        name
+    })
+}
+
 /// Loads a machine and tells what is to be told of it.
 pub fn load_machine(name: &str, terminal: Terminal) -> Result<Machine> {
     match Machine::load(name) {

@@ -25,8 +25,10 @@ mod quadrants;
 mod quadrature;
 mod robust;
 mod search;
+mod spindle;
 mod straight;
 
 pub use assess::{Assessment, Assessor, Certificate};
 pub use demand::{Demand, Want};
 pub use model::PowerModel;
+pub use spindle::{RunPhase, SpindlePower, SpindleRun, spindle_run};
