@@ -11,6 +11,7 @@ mod coordinates;
 mod siemens;
 mod syntax;
 mod plan;
+mod jerk;
 mod power;
 mod rig;
 mod limit;

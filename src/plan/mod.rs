@@ -5,6 +5,7 @@
 
 mod arc;
 mod bound;
+pub mod jerk;
 mod limits;
 mod profile;
 mod trajectory;

@@ -13,10 +13,15 @@
 use arrayvec::ArrayVec;
 
 /// What a phase keeps constant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
-    /// Acceleration (0 for a cruise).
+    /// Acceleration (0 for a cruise); forwards only.
     ConstantAcceleration,
+    /// The rate of acceleration; the path may also run backwards.
+    ConstantJerk {
+        /// Rate of acceleration in mm/s³, signed.
+        jerk_mm_s3: f64,
+    },
 }
 
 /// A piece of a profile. Along the path, mm (or degrees) and s.
@@ -58,6 +63,11 @@ impl Phase {
                 velocity_mm_s: (v + a * t).max(0.0),
                 accel_mm_s2: a,
             },
+            PhaseKind::ConstantJerk { jerk_mm_s3: j } => State {
+                position_mm: self.position_mm + (v + (0.5 * a + j / 6.0 * t) * t) * t,
+                velocity_mm_s: v + (a + 0.5 * j * t) * t,
+                accel_mm_s2: a + j * t,
+            },
         }
     }
 
@@ -67,6 +77,11 @@ impl Phase {
         match self.kind {
             PhaseKind::ConstantAcceleration => {
                 0.5 * (self.velocity_mm_s + self.end_velocity_mm_s) * self.duration_s
+            }
+            // The mean of the speeds at both ends, less j·t²/12 for the bend.
+            PhaseKind::ConstantJerk { jerk_mm_s3: j } => {
+                let (v0, v1, t) = (self.velocity_mm_s, self.end_velocity_mm_s, self.duration_s);
+                (0.5 * (v0 + v1) - j * t * t / 12.0) * t
             }
         }
     }
