@@ -13,11 +13,16 @@
 //! are counted apart. Units are mm and s in the names; any other unit of length
 //! (degrees, revolutions) does as well.
 
+mod bring_in;
+mod family;
 mod limits;
+mod position;
 mod profile;
+mod root;
 mod speed;
 
 pub use super::profile::State;
 pub use limits::{JerkError, JerkLimits};
+pub use position::position_target;
 pub use profile::JerkProfile;
 pub use speed::speed_target;

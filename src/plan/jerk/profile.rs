@@ -46,7 +46,7 @@ impl JerkProfile {
 
     #[inline]
     fn push(&mut self, duration_s: f64, jerk_mm_s3: f64) {
-        if !(duration_s > 0.0) {
+        if duration_s.is_nan() || duration_s <= 0.0 {
             return;
         }
         let mut phase = Phase {
@@ -61,6 +61,25 @@ impl JerkProfile {
         phase.end_velocity_mm_s = self.end.velocity_mm_s;
         // There is room for all that the solvers find.
         self.phases.try_push(phase).ok();
+    }
+
+    /// Takes the speed that has been reached for exactly `speed`.
+    pub(super) fn level(&mut self, speed: f64) {
+        self.end.velocity_mm_s = speed;
+        if let Some(last) = self.phases.last_mut() {
+            last.end_velocity_mm_s = speed;
+        }
+    }
+
+    /// Makes a cruise longer by `length`, or shorter.
+    pub(super) fn lengthen(&mut self, cruise: usize, length: f64) {
+        let mut later = self.phases.iter_mut().skip(cruise);
+        if let Some(phase) = later.next() {
+            let duration_s = phase.duration_s + length / phase.velocity_mm_s;
+            phase.duration_s = duration_s.max(0.0);
+        }
+        later.for_each(|phase| phase.position_mm += length);
+        self.end.position_mm += length;
     }
 
     /// Ends exactly in the target: what rounding has left is taken off.
