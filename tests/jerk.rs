@@ -21,7 +21,7 @@ fn state(position_mm: f64, velocity_mm_s: f64, accel_mm_s2: f64) -> State {
 fn shape(profile: &JerkProfile) -> Vec<(f64, f64)> {
     let jerk = |phase: &Phase| match phase.kind {
         PhaseKind::ConstantJerk { jerk_mm_s3 } => jerk_mm_s3,
-        other @ PhaseKind::ConstantAcceleration => panic!("{other:?}"),
+        other => panic!("{other:?}"),
     };
     let phases = profile.phases.iter();
     phases

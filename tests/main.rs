@@ -12,6 +12,7 @@ mod siemens;
 mod syntax;
 mod plan;
 mod jerk;
+mod curve;
 mod power;
 mod rig;
 mod limit;

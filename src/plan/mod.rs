@@ -5,9 +5,12 @@
 
 mod arc;
 mod bound;
+pub mod curve;
 pub mod jerk;
 mod limits;
+mod power_law;
 mod profile;
+mod slope;
 mod trajectory;
 
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
