@@ -13,6 +13,7 @@ mod syntax;
 mod plan;
 mod jerk;
 mod curve;
+mod phases;
 mod power;
 mod rig;
 mod limit;
