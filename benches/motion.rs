@@ -2,7 +2,7 @@
 
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
-use gwatt::limit::{Law, LimitOptions, Permit, Solver, Strategy};
+use gwatt::limit::{Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use gwatt::machine::{Axis, AxisSet, Machine, PathMode};
 use gwatt::plan::jerk::{JerkLimits, State, position_target, speed_target};
 use gwatt::plan::{Overrides, plan};
@@ -152,10 +152,10 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         allow_feed: true,
     };
     let solver = Solver::new(&machine, how);
-    if let Err(obstacle) = solver.solve(&mv, &assessment, &permit) {
+    if let Err(obstacle) = solver.solve(&mv, &assessment, &permit, Ends::Rest) {
         panic!("{obstacle:?}");
     }
-    bencher.bench(|| solver.solve(black_box(&mv), &assessment, &permit));
+    bencher.bench(|| solver.solve(black_box(&mv), &assessment, &permit, Ends::Rest));
 }
 
 fn judge(machine: &Machine, mv: &Move) -> Assessment {

@@ -17,6 +17,7 @@ mod phases;
 mod power;
 mod rig;
 mod limit;
+mod lookahead;
 mod machine;
 mod printers;
 mod cli;

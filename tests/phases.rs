@@ -6,7 +6,7 @@ use gwatt::interpret::Move;
 use gwatt::machine::{Axis, Machine};
 use gwatt::plan::curve::{AccelCurve, fastest};
 use gwatt::plan::jerk::{JerkLimits, State, position_target};
-use gwatt::plan::{Plan, Profile, Trajectory};
+use gwatt::plan::{Phase, Plan, Profile, Trajectory};
 use gwatt::power::{Demand, PowerModel, Want};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -122,7 +122,7 @@ fn a_path_that_runs_back_meets_friction_both_ways() {
     let forwards: f64 = profile
         .phases
         .iter()
-        .flat_map(|phase| phase.parts())
+        .flat_map(Phase::parts)
         .map(|part| part.length_mm().abs())
         .sum();
     assert!(forwards > 60.0);
@@ -190,16 +190,9 @@ impl Run {
 }
 
 /// Found peaks are not below sampled ones and at most 1e-6 above.
-fn agree(
-    machine: &Machine,
-    mv: &Move,
-    profile: &Profile,
-    cells: u32,
-    tolerances: [f64; 2],
-) -> Result<(), TestCaseError> {
+fn agree(machine: &Machine, mv: &Move, profile: &Profile, cells: u32) -> Result<(), TestCaseError> {
     let found = demand(machine, mv, profile);
     let sampled = sample(machine, mv, &plan_of(profile.clone()), cells);
-    let [above, energy] = tolerances;
     let idle = machine.converters[0].base_load_w;
     let scale = found.peak_w.abs().max(found.regen_w).max(1e-6);
     for (found, sampled) in [
@@ -207,14 +200,11 @@ fn agree(
         (found.regen_w, sampled.regen_w.max(0.0)),
     ] {
         prop_assert!(found >= sampled - 1e-9 * scale, "{found} below {sampled}");
-        prop_assert!(found <= sampled + above * scale, "{found} above {sampled}");
+        prop_assert!(found <= sampled + 1e-6 * scale, "{found} above {sampled}");
     }
-    let size = found
-        .energy_j
-        .abs()
-        .max(scale * profile.duration_s() * 1e-3);
+    let size = found.energy_j.abs() + 1e-2 * scale * profile.duration_s();
     prop_assert!(
-        (found.energy_j - sampled.energy_j).abs() <= energy * size,
+        (found.energy_j - sampled.energy_j).abs() <= 1e-3 * size,
         "{} J, sampled {}",
         found.energy_j,
         sampled.energy_j
@@ -223,7 +213,7 @@ fn agree(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn straight_paths_agree_with_sampling(
@@ -232,14 +222,18 @@ proptest! {
         run in any_run(),
     ) {
         let mv = straight(&machine, &delta, 100.0);
-        agree(&machine, &mv, &run.profile(mv.length_mm), 400, [2e-5, 1e-4])?;
+        agree(&machine, &mv, &run.profile(mv.length_mm), 400)?;
     }
 
     #[test]
     fn arcs_agree_with_sampling(machine in any_machine(), shape in any_arc(), run in any_run()) {
         let (plane, radius, angles, lift, feed) = shape;
         let mv = arc(&machine, plane, radius, angles, lift, feed);
-        agree(&machine, &mv, &run.profile(mv.length_mm), 1500, [1e-4, 1e-3])?;
+        let profile = run.profile(mv.length_mm);
+        // Few samples may miss the highest of several peaks.
+        if agree(&machine, &mv, &profile, 400).is_err() {
+            agree(&machine, &mv, &profile, 20_000)?;
+        }
     }
 
     #[test]
@@ -282,7 +276,7 @@ proptest! {
         machine.converters[0].credit_regen = true;
         let mv = straight(&machine, &delta, 100.0);
         let profile = run.profile(mv.length_mm);
-        let parts: Vec<_> = profile.phases.iter().flat_map(|phase| phase.parts()).collect();
+        let parts: Vec<_> = profile.phases.iter().flat_map(Phase::parts).collect();
         let way: f64 = parts.iter().map(|part| part.length_mm().abs()).sum();
         let (first, last) = (parts[0].velocity_mm_s, parts[parts.len() - 1].end_velocity_mm_s);
         let (mut kinetic, mut lost) = (0.0, 0.0);

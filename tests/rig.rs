@@ -101,6 +101,7 @@ fn controller() -> Controller {
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
             dwell_stops: false,
+            look_ahead: None,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,

@@ -5,6 +5,7 @@
 use std::cell::Cell;
 
 use super::compensation::Compensation;
+use super::direct::is_direct;
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
@@ -64,6 +65,8 @@ pub(super) struct Control<'m> {
     pub(super) printer: printer::State,
     /// The words of a block need a second look: see `dialect`.
     adapts: bool,
+    /// Blocks may take the short way: see `direct`.
+    pub(super) direct: bool,
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,
     pub(super) turning: Turning,
@@ -88,7 +91,7 @@ pub(super) struct Run<'a, 'l> {
     pub(super) line: u64,
     pub(super) block: &'a Block,
     pub(super) words: &'a mut Words,
-    pub(super) facts: Facts,
+    pub(super) facts: &'a mut Facts,
     pub(super) steps: &'a mut Vec<Step>,
     pub(super) report: Report<'a, 'l>,
 }
@@ -136,6 +139,7 @@ impl<'m> Interpreter<'m> {
             compensation: None,
             printer: printer::State::new(machine),
             adapts: machine.controller.language.dialect.adapts(),
+            direct: is_direct(machine),
             callee: None,
             turning: Turning::default(),
             block_delete: reading.block_delete,
@@ -202,25 +206,51 @@ impl<'m> Interpreter<'m> {
 
     /// Executes one block: appends what it does to `steps`. What is not
     /// understood is reported, and the block then does nothing. Words whose
-    /// values are worked out get them in `block`.
+    /// values are worked out get them in `block`. What the block is comes into
+    /// `facts`.
+    #[inline]
     pub fn execute(
         &mut self,
         line: u64,
         text: &[u8],
         block: &mut Block,
         steps: &mut Vec<Step>,
+        facts: &mut Facts,
         diagnostics: &mut Diagnostics,
-    ) -> Facts {
+    ) {
+        let plain = block.issues.is_empty();
+        if plain
+            && self
+                .control
+                .direct(line, text, block, steps, facts)
+                .is_some()
+        {
+            return;
+        }
+        *facts = Facts::default();
+        self.execute_any(line, text, block, steps, facts, diagnostics);
+    }
+
+    /// The same for any block; `facts` are those of nothing.
+    fn execute_any(
+        &mut self,
+        line: u64,
+        text: &[u8],
+        block: &mut Block,
+        steps: &mut Vec<Step>,
+        facts: &mut Facts,
+        diagnostics: &mut Diagnostics,
+    ) {
         let mut report = Report {
             diagnostics,
             line,
             text,
         };
         if self.control.passes_over(block, &mut report) {
-            return Facts::default();
+            return;
         }
         if printer::is_command(self.control.machine, block) {
-            return self.command_line(block, steps, report);
+            return self.command_line(block, steps, facts, report);
         }
         let mut beyond = !block.issues.is_empty();
         let mut acts = false;
@@ -237,18 +267,25 @@ impl<'m> Interpreter<'m> {
             if block.words.is_empty() {
                 self.control.abort(block, &mut report);
             }
-            return Facts {
-                reads_state,
-                transfers,
-                ..Facts::default()
-            };
+            facts.reads_state = reads_state;
+            facts.transfers = transfers;
+            return;
+        }
+        if beyond
+            && self
+                .control
+                .direct(line, text, block, steps, facts)
+                .is_some()
+        {
+            facts.reads_state = reads_state;
+            return;
         }
         // Built once in its place: moving parts of it costs more than it seems.
         let mut run = Run {
             line,
             block,
             words: &mut self.words,
-            facts: Facts::default(),
+            facts,
             steps,
             report,
         };
@@ -271,7 +308,6 @@ impl<'m> Interpreter<'m> {
             self.control.transfer = None;
         }
         run.facts.transfers = self.control.transfer.is_some();
-        run.facts
     }
 
     /// A printer's command.
@@ -279,19 +315,19 @@ impl<'m> Interpreter<'m> {
         &mut self,
         block: &Block,
         steps: &mut Vec<Step>,
+        facts: &mut Facts,
         report: Report<'_, '_>,
-    ) -> Facts {
+    ) {
         let mut run = Run {
             line: report.line,
             block,
             words: &mut self.words,
-            facts: Facts::default(),
+            facts,
             steps,
             report,
         };
         self.control.begun = true;
         self.control.command_line(&mut run);
-        run.facts
     }
 }
 

@@ -2,6 +2,7 @@
 //! lower speed and acceleration. Profiles are data (TOML).
 
 use super::axis::{Axis, AxisKind};
+use super::look_ahead::LookAhead;
 use super::printer::Printer;
 
 /// A controller profile.
@@ -170,6 +171,8 @@ pub struct Planner {
     /// Whether a dwell of no time ends the move before it at rest, so that a
     /// rapid may be written as a feed between two of them.
     pub dwell_stops: bool,
+    /// How corners are run through; `None`: not modelled.
+    pub look_ahead: Option<LookAhead>,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

@@ -11,8 +11,9 @@ use super::entry::Entry;
 use super::front::Front;
 use super::table::{LineKey, Table};
 use super::writer::{Writer, Written};
-use super::{Failure, LimitOptions, Options, RowSink};
+use super::{Failure, Options, RowSink};
 use crate::interpret::{Move, MoveKind, Step};
+use crate::limit::Limiter;
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Rewriter};
@@ -26,7 +27,7 @@ pub(super) fn limit_whole<R: Read + Seek>(
     mut input: R,
     machine: &Machine,
     options: &Options,
-    how: LimitOptions,
+    limiter: Limiter<'_>,
     mut output: impl Write,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<(Written, Certified), Failure> {
@@ -42,7 +43,7 @@ pub(super) fn limit_whole<R: Read + Seek>(
         source,
         machine,
         options,
-        how,
+        limiter,
         exact,
         std::io::sink(),
         Some(table),
@@ -275,6 +276,7 @@ impl<'m, 'p> Original<'m, 'p> {
         self.start_s += assessment.duration_s;
         Expected::Move(ExpectedMove {
             line: mv.line,
+            text: mv.text,
             kind: mv.kind,
             end: mv.end,
             arc: mv.arc,

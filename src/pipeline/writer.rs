@@ -12,7 +12,7 @@ use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::table::Table;
 use super::tally::Tally;
-use super::{Failure, LimitOptions, Options, Summary};
+use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, MoveKind, Step};
 use crate::limit::{Change, Limiter, Obstacle, Outcome};
 use crate::machine::{Machine, PathMode};
@@ -76,7 +76,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         input: R,
         machine: &'m Machine,
         options: &Options,
-        how: LimitOptions,
+        limiter: Limiter<'m>,
         exact: bool,
         output: W,
         table: Option<Table>,
@@ -91,7 +91,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             front,
             output,
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
-            limiter: Limiter::new(machine, how),
+            limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
             entries: VecDeque::new(),
@@ -435,6 +435,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.start_s += assessment.duration_s;
             self.batch.expected.push(Expected::Move(ExpectedMove {
                 line: mv.line,
+                text: mv.text,
                 kind: mv.kind,
                 end: mv.end,
                 arc: mv.arc,

@@ -8,6 +8,7 @@ mod bound;
 pub mod curve;
 pub mod jerk;
 mod limits;
+pub mod lookahead;
 mod power_law;
 mod profile;
 mod slope;

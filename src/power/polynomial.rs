@@ -80,7 +80,8 @@ impl Polynomial {
 /// The root between two points, between which the polynomial is monotone.
 fn between(polynomial: &Polynomial, slope: &Polynomial, from: f64, to: f64) -> Option<f64> {
     let (first, last) = (polynomial.value(from), polynomial.value(to));
-    if !(first * last < 0.0) {
+    let changes = (first < 0.0 && last > 0.0) || (first > 0.0 && last < 0.0);
+    if !changes {
         return None;
     }
     let (mut low, mut high) = (from, to);

@@ -214,7 +214,7 @@ impl Interpreter<'_> {
             line,
             block,
             words: &mut self.words,
-            facts: Facts::default(),
+            facts: &mut Facts::default(),
             steps,
             report: Report {
                 diagnostics,

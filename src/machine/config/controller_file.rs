@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::look_ahead::LookAheadTable;
 use super::machine_file::{PathModeName, RapidName};
 use super::printer::PrinterTable;
 use super::value::{At, Positive};
@@ -174,6 +175,8 @@ pub(crate) struct PlannerTable {
     /// With "g1-where-linear" only on a machine whose file says that its rapids
     /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
+    /// How corners are run through; default: not modelled.
+    pub(crate) look_ahead: Option<At<LookAheadTable>>,
 }
 
 /// How acceleration is shared on arcs.

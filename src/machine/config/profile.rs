@@ -7,6 +7,7 @@ use super::controller_file::{
     TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
+use super::look_ahead::look_ahead;
 use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
@@ -36,7 +37,7 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
             name: file.name.as_ref()?.value.clone(),
             ..language?
         },
-        planner: planner(planner_table)?,
+        planner: planner(findings, planner_table)?,
         knobs,
         rapid_knob: rapid_knob(findings, planner_table),
     })
@@ -150,7 +151,7 @@ pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Opti
     letter
 }
 
-fn planner(table: &PlannerTable) -> Option<Planner> {
+fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner> {
     Some(Planner {
         rapid: rapid_path(table.rapid?),
         arc_rule: match table.arc_rule {
@@ -163,6 +164,7 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
         dwell_stops: table.dwell_stops.unwrap_or(false),
+        look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
     })
 }
 
