@@ -14,7 +14,7 @@ pub(super) fn state(phase: &Phase, slope: f64, t: f64) -> State {
     let (v, a, x) = (phase.velocity_mm_s, phase.accel_mm_s2, slope * t);
     State {
         position_mm: phase.position_mm + (v + a * t * phi2(x)) * t,
-        velocity_mm_s: v + a * t * phi1(x),
+        velocity_mm_s: (v + a * t * phi1(x)).max(0.0),
         accel_mm_s2: a * libm::exp(x),
     }
 }
