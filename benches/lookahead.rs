@@ -75,6 +75,7 @@ fn moves() -> Vec<Move> {
             dwell_s: 0.0,
             loads: 0,
             path_mode: PathMode::LookAhead,
+            corner: gwatt::interpret::Corner::default(),
         }
     };
     (0..MOVES).map(between).collect()

@@ -49,6 +49,7 @@ fn feed() -> Move {
         dwell_s: 0.0,
         loads: 0,
         path_mode: PathMode::ExactStop,
+        corner: gwatt::interpret::Corner::default(),
     }
 }
 

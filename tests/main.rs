@@ -2,6 +2,7 @@
 
 mod layers;
 mod conformance;
+mod corners;
 mod expressions;
 mod flow;
 mod interpret;

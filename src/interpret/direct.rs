@@ -100,6 +100,7 @@ impl Control<'_> {
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
         }));
         *facts = Facts {
             feed_word: straight.feed_word.copied(),
@@ -187,6 +188,7 @@ impl Control<'_> {
             && !self.printer.adjusts
             && self.modal.feed_mode == FeedMode::PerMinute
             && self.compensation.is_none()
+            && self.corners.is_none()
             && self.special.left.is_none()
             && self.debts.is_empty()
             && self.callee.is_none()
@@ -232,6 +234,9 @@ mod tests {
                 "G81 Z-1 R1 F100",
                 "M98 P77",
                 "G65 P77",
+                "G41 D1",
+                "G40",
+                "G1 X3 F50,R1",
             ],
         ),
         (

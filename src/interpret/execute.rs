@@ -4,12 +4,12 @@
 
 use std::cell::Cell;
 
-use super::compensation::Compensation;
+use super::compensation::{Choice, Compensation, Corners};
 use super::direct::is_direct;
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Move, Step};
+use super::moves::{Action, ActionKind, Step};
 use super::parameters::Parameters;
 use super::position::{Position, Reading};
 use super::printer;
@@ -62,6 +62,10 @@ pub(super) struct Control<'m> {
     pub(super) bent: bool,
     /// Cutter compensation, while it is on or being left.
     pub(super) compensation: Option<Box<Compensation>>,
+    /// What the next one goes by.
+    pub(super) choice: Choice,
+    /// Chamfers and rounded corners, once the program has any.
+    pub(super) corners: Option<Box<Corners>>,
     pub(super) printer: printer::State,
     /// The words of a block need a second look: see `dialect`.
     adapts: bool,
@@ -137,6 +141,8 @@ impl<'m> Interpreter<'m> {
             lost: None,
             bent: false,
             compensation: None,
+            choice: Choice::default(),
+            corners: None,
             printer: printer::State::new(machine),
             adapts: machine.controller.language.dialect.adapts(),
             direct: is_direct(machine),
@@ -180,28 +186,6 @@ impl<'m> Interpreter<'m> {
     #[must_use]
     pub fn ended(&self) -> bool {
         self.control.ended
-    }
-
-    /// The text of the line of a move that was given with the last block, if
-    /// that line came before it; cut if it is long.
-    #[must_use]
-    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
-        self.control.compensation.as_ref()?.text_of(mv)
-    }
-
-    /// True while cutter compensation is on, and for the block that ends it.
-    #[must_use]
-    pub fn compensates(&self) -> bool {
-        let compensation = self.control.compensation.as_ref();
-        compensation.is_some_and(|compensation| compensation.is_at_work())
-    }
-
-    /// True while moves are held back: cutter compensation needs the next one
-    /// to know where they end.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        let compensation = self.control.compensation.as_ref();
-        compensation.is_some_and(|compensation| compensation.holds())
     }
 
     /// Executes one block: appends what it does to `steps`. What is not
@@ -299,6 +283,9 @@ impl<'m> Interpreter<'m> {
             run.report
                 .error("program-name", "nothing in this block calls the program that it names", whole)
                 .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
+        }
+        if self.control.corners.is_some() {
+            self.control.insert_corners(&mut run, before, errors);
         }
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
@@ -452,10 +439,16 @@ impl Control<'_> {
     }
 
     /// Words that no code has used: they might mean motion.
-    pub(super) fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
+    pub(super) fn complain_about_rest(&mut self, run: &mut Run<'_, '_>) {
+        if run.words.unused == 0 {
+            return;
+        }
         if self.machine.controller.language.family != Family::Rs274 {
-            // Numbers of tool offsets without a code that uses them.
-            run.words.take(b'D');
+            // Numbers of tool offsets without a code that uses them: that of a
+            // radius stays in force.
+            if let Some(number) = run.words.take(b'D') {
+                self.choice.number = Some(number as u32);
+            }
             run.words.take(b'H');
         }
         while let Some(letter) = run.words.left_over() {

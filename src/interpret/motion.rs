@@ -102,6 +102,7 @@ impl Control<'_> {
             dwell_s,
             loads: self.loads,
             path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
         }));
     }
 
@@ -278,6 +279,7 @@ impl Control<'_> {
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
         }));
         self.position.at = *end;
         self.special.left = None;

@@ -82,10 +82,15 @@ impl<'m> Limiter<'m> {
         sink: &mut impl FnMut(Outcome),
     ) {
         let joined = assessment.joined;
-        if assessment.blended && assessment.certificate == Certificate::Planned {
+        if assessment.ahead {
             self.settle(find, sink);
             let depth = self.depths.of(mv);
-            sink(self.alone(mv, assessment, Ends::Any(depth), find));
+            let ends = match assessment.certificate {
+                _ if depth == 0 && !assessment.blended => Ends::Rest,
+                Certificate::Planned => Ends::Any(depth),
+                Certificate::Robust => Ends::Any(depth.max(2)),
+            };
+            sink(self.alone(mv, assessment, ends, find));
             return;
         }
         if !assessment.blended {
@@ -163,7 +168,7 @@ impl<'m> Limiter<'m> {
         ends: Ends,
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Outcome {
-        let deeper = matches!(ends, Ends::Any(1..));
+        let deeper = assessment.ahead && self.depths.of(mv) > 0;
         if self.solver.model.fits(&assessment.demand) && !deeper {
             return Outcome::default();
         }

@@ -7,7 +7,7 @@ use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine};
+use crate::machine::{AxisValues, Machine, RapidJoint};
 use crate::plan::{Overrides, Plan, blended_bound, plan};
 use crate::power::{Assessment, PowerModel, Want};
 use crate::units::SECONDS_PER_MINUTE;
@@ -119,7 +119,7 @@ impl<'m> Solver<'m> {
     /// Load ratio of a move, changed or not, at the largest overrides.
     pub(super) fn load(&self, case: Case<'_>, mv: &Move) -> f64 {
         let depth = match case.ends {
-            Ends::Any(depth) if !becomes_a_feed(case.mv, mv) => depth,
+            Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
             _ => return self.planned(mv).1,
         };
         if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
@@ -130,6 +130,14 @@ impl<'m> Solver<'m> {
         let bound = blended_bound(self.machine, mv, self.largest);
         let load = self.model.robust(mv, &bound, &mv.accel_mm_s2).load_ratio;
         load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
+    }
+
+    /// Whether a rapid became a feed that begins and ends at rest, since feeds
+    /// would be blended otherwise than rapids.
+    fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
+        self.machine.controller.planner.rapid_joint != RapidJoint::All
+            && rapid.kind == MoveKind::Rapid
+            && changed.kind != MoveKind::Rapid
     }
 
     /// Plan and load of a move.
@@ -406,9 +414,4 @@ fn too_much(case: Case<'_>) -> Obstacle {
         ),
         "base load and friction leave too little: a larger converter, or another strategy",
     )
-}
-
-/// Whether a rapid became a feed; it begins and ends at rest then.
-fn becomes_a_feed(rapid: &Move, changed: &Move) -> bool {
-    rapid.kind == MoveKind::Rapid && changed.kind != MoveKind::Rapid
 }

@@ -87,6 +87,10 @@ pub(super) struct Verdict<'m, 'r> {
     reasons: Reasons,
     /// Lines that do not fit since their neighbours were changed.
     deeper: Vec<Place>,
+    /// The line of the move before, and whether that of the next one is to be
+    /// lowered with it.
+    before: Option<Place>,
+    deepen_next: bool,
 }
 
 /// Why the certificate does not hold: the first reasons in full.
@@ -169,11 +173,13 @@ impl<'m, 'r> Certifier<'m, 'r> {
                     text = interpreter.held_text(mv).unwrap_or(text);
                 }
                 verdict.compare_step(step, text);
-                if let Step::Move(mv) = step {
-                    assessor.want = verdict.tally.want();
-                    assessor.push(mv, text, &mut |mv, after, text| {
-                        verdict.judge(mv, after, text);
-                    });
+                assessor.want = verdict.tally.want();
+                let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
+                    verdict.judge(mv, after, text);
+                };
+                match step {
+                    Step::Move(mv) => assessor.push(mv, text, &mut sink),
+                    Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
         }
@@ -234,6 +240,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
             judged: 0,
             reasons: Reasons::default(),
             deeper: Vec::new(),
+            before: None,
+            deepen_next: false,
         }
     }
 
@@ -323,14 +331,19 @@ impl<'m, 'r> Verdict<'m, 'r> {
             return;
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
-            let as_planned = after.blended && after.certificate == Certificate::Planned;
-            if as_planned
-                && !original.hopeless
-                && !self.model.fits(&after.demand)
-                && self.deeper.len() <= Depths::wanted()
-            {
-                self.deeper.push((original.text, original.line));
+            let place = (original.text, original.line);
+            if after.ahead && !original.hopeless && !self.model.fits(&after.demand) {
+                // Under the robust bound the neighbours count as well.
+                let robust = after.certificate == Certificate::Robust;
+                let before = self.before.filter(|_| robust);
+                self.deeper.extend(before);
+                self.deeper.push(place);
+                self.deepen_next = robust;
+            } else if std::mem::take(&mut self.deepen_next) {
+                self.deeper.push(place);
             }
+            self.deeper.truncate(Depths::wanted() + 1);
+            self.before = Some(place);
             compare(&self.model, original, mv, after, text, &mut self.reasons);
             if let Some(row) = &mut original.row {
                 row.peak_after_w = Some(after.demand.peak_w);

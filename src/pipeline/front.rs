@@ -268,12 +268,16 @@ impl<'m, R: Read + Seek> Front<'m, R> {
                 .push(Diagnostic::error("no-program", message).help("give a part program"));
         }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
-            let message =
-                "the program ends under cutter compensation: where its last move ends is not known";
-            self.diagnostics.push(
-                Diagnostic::error("compensation", message)
-                    .help("write G40 and a move, or the end of the program: M2 or M30"),
-            );
+            let (rule, message, help) = if self.interpreter.holds_corner() {
+                let message = "the program ends before the second move of a corner";
+                ("corner-word", message, "write the move behind the corner")
+            } else {
+                let message = "the program ends under cutter compensation: where its last move ends is not known";
+                let help = "write G40 and a move, or the end of the program: M2 or M30";
+                ("compensation", message, help)
+            };
+            self.diagnostics
+                .push(Diagnostic::error(rule, message).help(help));
         }
         let diagnostics = std::mem::take(&mut self.diagnostics);
         refuse_on_errors(diagnostics).map_err(|failure| self.name_foreign(failure))

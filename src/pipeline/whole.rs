@@ -232,10 +232,12 @@ impl<'m, 'p> Original<'m, 'p> {
                         feed,
                         assessment: None,
                     });
-                    if let Step::Move(mv) = step {
-                        assessor.push(mv, line.text, &mut |_, assessment, _| {
-                            waiting.judge(assessment);
-                        });
+                    let mut sink = |_: &Move, assessment: &Assessment, _: &[u8]| {
+                        waiting.judge(assessment);
+                    };
+                    match step {
+                        Step::Move(mv) => assessor.push(mv, line.text, &mut sink),
+                        Step::Action(action) => assessor.act(action, &mut sink),
                     }
                 }
             } else {
@@ -317,11 +319,13 @@ fn certify(
             };
             for step in &*line.steps {
                 verdict.compare_step(step, line.text);
-                if let Step::Move(mv) = step {
-                    assessor.want = verdict.want();
-                    assessor.push(mv, line.text_of(mv), &mut |mv, after, text| {
-                        verdict.judge(mv, after, text);
-                    });
+                assessor.want = verdict.want();
+                let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
+                    verdict.judge(mv, after, text);
+                };
+                match step {
+                    Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
+                    Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
         }

@@ -15,7 +15,9 @@ mod slope;
 mod trajectory;
 
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
+pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
 pub use trajectory::{
-    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, path_figures, plan, plan_with,
+    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, is_independent, path_figures,
+    plan, plan_with,
 };

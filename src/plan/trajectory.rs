@@ -243,8 +243,9 @@ impl PathFigures {
 }
 
 /// Whether each axis of a move runs for itself.
+#[must_use]
 #[inline]
-fn is_independent(machine: &Machine, mv: &Move) -> bool {
+pub fn is_independent(machine: &Machine, mv: &Move) -> bool {
     mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent
 }
 

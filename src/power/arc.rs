@@ -167,22 +167,37 @@ impl<'a> Circle<'a> {
     fn search(&self, phase: &Phase, side: Side, search: &mut Search) {
         let steady = phase.kind == PhaseKind::ConstantAcceleration;
         for (from, to, last) in Pieces::new(self, phase) {
-            let reach = self.reach(phase, from, to);
-            let envelope = self.envelope(&reach, side);
-            if search.covers(envelope) {
-                // What is slower stays below only at the same acceleration.
-                if steady {
-                    return;
-                }
-                continue;
-            }
             if last {
-                search.take_in(envelope);
+                let envelope = self.envelope(&self.reach(phase, from, to), side);
+                if !search.covers(envelope) {
+                    search.take_in(envelope);
+                }
                 return;
             }
-            let piece = Piece::new(self, phase, side, (from, to), &reach);
-            search.run(&piece, from, to, envelope.abs());
+            // What is slower stays below only at the same acceleration.
+            if !self.search_piece(phase, (from, to), side, search) && steady {
+                return;
+            }
         }
+    }
+
+    /// The same between two instants, in s, between which no axis turns back;
+    /// false where the power at any angle is below what was found.
+    pub fn search_piece(
+        &self,
+        phase: &Phase,
+        (from, to): (f64, f64),
+        side: Side,
+        search: &mut Search,
+    ) -> bool {
+        let reach = self.reach(phase, from, to);
+        let envelope = self.envelope(&reach, side);
+        if search.covers(envelope) {
+            return false;
+        }
+        let piece = Piece::new(self, phase, side, (from, to), &reach);
+        search.run(&piece, from, to, envelope.abs());
+        true
     }
 
     /// What a piece of a phase reaches; a phase whose acceleration changes is a

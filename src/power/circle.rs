@@ -22,6 +22,15 @@ pub(super) enum Shape {
     Cosine(f64),
     /// Second axis of the plane, radius in SI.
     Sine(f64),
+    /// As `Cosine`, ahead by an angle of which sine and cosine are given.
+    Turn {
+        /// In SI.
+        radius: f64,
+        /// Of the angle.
+        sin: f64,
+        /// Of the angle.
+        cos: f64,
+    },
     /// In proportion to the path: signed SI motion per mm.
     Line(f64),
 }
@@ -83,7 +92,7 @@ impl Reach {
                 let [jerk, snap] = self.path_rates;
                 [m.v, m.a, jerk, snap].map(|rate| (direction * rate).abs())
             }
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let (w, alpha) = (m.omega, m.alpha.abs());
                 let [jerk, snap] = self.angle_rates;
                 let w2 = w * w;
@@ -118,6 +127,15 @@ impl ArcAxis<'_> {
                 r * m.sense * m.omega * m.cos,
                 r * (m.sense * m.alpha * m.cos - square * m.sin),
             ),
+            Shape::Turn { radius, sin, cos } => {
+                let turned = Motion {
+                    sin: m.sin * cos + m.cos * sin,
+                    cos: m.cos * cos - m.sin * sin,
+                    ..*m
+                };
+                let shape = Shape::Cosine(radius);
+                Self { shape, ..*self }.motion(&turned)
+            }
             Shape::Line(direction) => (direction * m.v, direction * m.a),
         }
     }
@@ -144,7 +162,7 @@ impl ArcAxis<'_> {
         }
         match self.shape {
             Shape::Line(direction) => (0.0, self.axis.viscous * (direction * m.a).abs()),
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let square = m.omega * m.omega;
                 let jerk = r * m.omega * amplitude(3.0 * m.alpha, square);
                 let accel = r * amplitude(m.alpha, square);
@@ -185,7 +203,7 @@ impl ArcAxis<'_> {
                     2.0 * axis.copper * slope * slope,
                 )
             }
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let (w2, a2) = (w * w, alpha * alpha);
                 let w4 = w2 * w2;
                 // Amplitudes of x', x'', x''', x''''.
@@ -230,7 +248,7 @@ impl ArcAxis<'_> {
                     square * (-low).max(0.0),
                 )
             }
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let w2 = m.omega * m.omega;
                 let swing = amplitude(m.alpha, w2);
                 let half = 0.5 * r * r * m.omega;

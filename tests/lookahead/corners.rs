@@ -185,6 +185,7 @@ fn chords_of_a_helix_end_where_it_ends() {
         dwell_s: 0.0,
         loads: 0,
         path_mode: PathMode::LookAhead,
+        corner: gwatt::interpret::Corner::default(),
     };
     let element = Element::of(&machine, &mv, Overrides::default(), FREE, 0).unwrap();
     let rule = machine.controller.planner.look_ahead.unwrap();

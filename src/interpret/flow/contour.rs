@@ -36,7 +36,7 @@ impl Flow {
         diagnostics: &mut Diagnostics,
     ) -> Result<(), Trouble> {
         let first = self.find_block(contour.first, self.next)?;
-        let before = interpreter.before_contour();
+        let before = interpreter.before_contour(contour);
         let errors = diagnostics.errors;
         let mut found = Vec::new();
         let (mut own, mut facts) = (Block::default(), Facts::default());

@@ -2,9 +2,9 @@
 
 use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
-    ArcRuleName, ArgumentName, ControllerFile, DistanceName, DwellTable, FamilyName, FeedName,
-    KnobTable, LanguageTable, LatheName, PlannerTable, PointName, RapidJointName, RapidKnobName,
-    TargetName, UnitName, UnitsName,
+    ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
+    DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
+    PointName, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
@@ -12,8 +12,9 @@ use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
 use crate::machine::controller::{
-    ArcRule, Controller, Dialect, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language,
-    Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath,
+    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
+    Knob, KnobArgument, KnobTarget, KnobUnit, Language, Lathe, Planner, Point, RapidJoint,
+    RapidKnob, RapidPath,
 };
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
@@ -68,11 +69,27 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         ignored_g,
         ignored_m,
         block_delete: table.block_delete.unwrap_or(true),
-        cutter_compensation: table.cutter_compensation.unwrap_or(false),
+        compensation: table.cutter_compensation.as_ref().and_then(compensation),
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         dialect: dialect(table),
+    })
+}
+
+/// How G41 and G42 shift the path.
+pub(crate) fn compensation(table: &CompensationTable) -> Option<CutterCompensation> {
+    Some(CutterCompensation {
+        corner: match table.corner? {
+            CornerName::Arc => CompensationCorner::Arc,
+            CornerName::Line => CompensationCorner::Line,
+        },
+        lead: match table.lead? {
+            LeadName::Beside => CompensationLead::Beside,
+            LeadName::Perpendicular => CompensationLead::Perpendicular,
+            LeadName::Corner => CompensationLead::Corner,
+        },
+        idle_blocks: table.idle_blocks.unwrap_or(1),
     })
 }
 
