@@ -5,10 +5,14 @@
 
 mod arc;
 mod bound;
+pub mod curve;
+pub mod jerk;
 mod limits;
 pub mod lookahead;
 pub mod period;
+mod power_law;
 mod profile;
+mod slope;
 mod spindle;
 mod trajectory;
 
