@@ -1,5 +1,6 @@
 //! Programs in, programs that fit out: `gwatt::pipeline` from the outside.
 
+mod ahead;
 mod blends;
 mod figures;
 mod knobs;

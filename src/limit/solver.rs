@@ -8,7 +8,7 @@ use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidJoint};
-use crate::plan::{Overrides, Plan, blended_bound, plan};
+use crate::plan::{Overrides, Plan, blended_bound, blended_speed, plan};
 use crate::power::{Assessment, PowerModel, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -132,6 +132,12 @@ impl<'m> Solver<'m> {
         load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
     }
 
+    /// Whether a move has to fit whatever its neighbours do, changed or not.
+    fn is_open(&self, case: Case<'_>, mv: &Move) -> bool {
+        let known = mv.unknown_start.is_empty() && mv.length_mm > 0.0;
+        known && matches!(case.ends, Ends::Any(_)) && !self.gets_stops(case.mv, mv)
+    }
+
     /// Whether a rapid became a feed that begins and ends at rest, since feeds
     /// would be blended otherwise than rapids.
     fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
@@ -171,6 +177,8 @@ impl<'m> Solver<'m> {
         };
         let top = match lever {
             SpeedLever::RapidPercent(_) => base.rapid_factor * 100.0,
+            // What its neighbours may carry it up to, however short it is.
+            _ if self.is_open(case, &base) => blended_speed(self.machine, &base, self.largest),
             _ if mv.unknown_start.is_empty() => self.planned(&base).0.top_speed_mm_s,
             _ => base.feed_mm_s.min(1e6),
         };

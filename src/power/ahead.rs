@@ -8,22 +8,21 @@
 //! ```
 //!
 //! A piece that the planner is not certain of, and the moves beside it, get the
-//! robust bound.
+//! robust bound; and so does all whose speed depends on what happens there: the
+//! moves before it that may have to brake for it, and those behind it until they
+//! run as fast as planned even from rest.
 
 use std::collections::VecDeque;
 
 use super::assess::{Assessment, Certificate};
-use super::blend;
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
+use super::piece::piece_demand;
 use super::robust::Part;
 use crate::interpret::{Corner, Move, MoveKind};
-use crate::machine::{AXES, AxisSet, LookAhead, Machine, PathMode};
+use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::lookahead::{Element, Joint, PathPlanner, Piece, Planned};
-use crate::plan::{
-    Blend, Overrides, PathFigures, Plan, Profile, SpeedBound, Trajectory, blended_bound,
-    is_independent,
-};
+use crate::plan::{Overrides, SpeedBound, blended_bound, is_independent};
 
 /// The moves that are planned together.
 #[derive(Debug)]
@@ -43,6 +42,9 @@ pub(super) struct Ahead {
     at_rest: bool,
     /// The next move follows something that may or may not stop the motion.
     in_doubt: bool,
+    /// What the motion reaches at least, from rest where it was in doubt last,
+    /// mm²/s²; nothing once that is as fast as planned.
+    reach2: Option<f64>,
 }
 
 /// A planner and how far it has come.
@@ -64,6 +66,12 @@ struct Open {
     /// Largest speeds of the axes, its neighbours left aside.
     bound: SpeedBound,
     certain: bool,
+    /// The speed with which it begins is not certain.
+    in_doubt: bool,
+    /// It ends at rest whatever follows.
+    rests: bool,
+    /// Some axis moves.
+    moves: bool,
     /// It neither begins nor ends in motion.
     alone: bool,
 }
@@ -107,6 +115,7 @@ impl Ahead {
             spare: Vec::new(),
             at_rest: true,
             in_doubt: false,
+            reach2: None,
         }
     }
 
@@ -137,6 +146,9 @@ impl Ahead {
                 role = Role::Unknown;
             }
         }
+        if role == Role::Unknown {
+            self.brake_in_doubt(model);
+        }
         let mut open = self.room(mv, text, assessment, want);
         match role {
             Role::Path => {
@@ -158,8 +170,11 @@ impl Ahead {
             }
         }
         if role != Role::Nothing {
-            open.certain &= !std::mem::take(&mut self.in_doubt);
-            self.at_rest = role == Role::Path && mv.path_mode == PathMode::ExactStop;
+            open.moves = true;
+            open.in_doubt = std::mem::replace(&mut self.in_doubt, role == Role::Unknown);
+            // The planner holds it back, even if it ends at rest.
+            self.at_rest = false;
+            open.rests = role == Role::Path && mv.path_mode == PathMode::ExactStop;
         }
         self.open.push_back(open);
         if role == Role::Path {
@@ -179,14 +194,26 @@ impl Ahead {
     pub fn stop(&mut self, model: &PowerModel) {
         self.stop_planners();
         self.at_rest = true;
+        self.in_doubt = false;
         self.pump(model);
     }
 
     /// Something stands here that may or may not stop the motion.
-    pub fn doubt(&mut self) {
+    pub fn doubt(&mut self, model: &PowerModel) {
+        if self.at_rest || self.open.back().is_some_and(|last| last.rests) {
+            return;
+        }
         self.in_doubt = true;
-        if let Some(last) = self.open.back_mut() {
-            last.certain = false;
+        self.brake_in_doubt(model);
+    }
+
+    /// The moves that a stop here would change are in doubt.
+    fn brake_in_doubt(&mut self, model: &PowerModel) {
+        self.largest.planner.settle();
+        self.pump(model);
+        let finished = self.largest.next.saturating_sub(self.first) as usize;
+        for open in self.open.iter_mut().skip(finished) {
+            open.certain = false;
         }
     }
 
@@ -206,6 +233,7 @@ impl Ahead {
             open.assessment = *assessment;
             open.want = want;
             (open.certain, open.alone) = (true, true);
+            (open.in_doubt, open.rests, open.moves) = (false, false, false);
             return open;
         }
         Box::new(Open {
@@ -215,6 +243,9 @@ impl Ahead {
             want,
             bound: SpeedBound::default(),
             certain: true,
+            in_doubt: false,
+            rests: false,
+            moves: false,
             alone: true,
         })
     }
@@ -255,6 +286,7 @@ impl Ahead {
         };
         let mut demand = piece_demand(model, &open.mv, planned, open.want);
         let joined = matches!(planned.piece, Piece::Joined { .. });
+        let certain = !peaks || self.is_certain(planned, from, to);
         let lengths: f64 = (from..=to)
             .filter_map(|index| self.open.get(index))
             .map(|open| open.mv.length_mm)
@@ -283,7 +315,7 @@ impl Ahead {
                 _ => 1.0,
             };
             let assessment = &mut open.assessment;
-            open.certain &= planned.certain;
+            open.certain &= certain;
             open.alone &=
                 from == to && start.0 == 0.0 && end.1 == 0.0 && is_whole(&open.mv, planned);
             if times {
@@ -296,6 +328,34 @@ impl Ahead {
                 assessment.demand.include(&demand);
             }
         }
+    }
+
+    /// Whether a piece runs as planned whatever happened where the motion was in
+    /// doubt before it.
+    fn is_certain(&mut self, planned: &Planned<u64>, from: usize, to: usize) -> bool {
+        let blend = matches!(planned.piece, Piece::Blend(_));
+        for index in from..=to {
+            if let Some(open) = self.open.get_mut(index)
+                && open.in_doubt
+            {
+                // Behind a stop there is no blend: the line begins at rest.
+                open.in_doubt = blend;
+                self.reach2 = Some(0.0);
+            }
+        }
+        let end = planned.profile.phases.last();
+        let end = end.map_or(0.0, |phase| phase.end_velocity_mm_s);
+        if !planned.certain {
+            self.reach2 = (end > 0.0).then_some(0.0);
+            return false;
+        }
+        let Some(reach2) = self.reach2 else {
+            return true;
+        };
+        // Half of the acceleration, since the blends differ as well.
+        let reached2 = reach2 + planned.accel_mm_s2 * planned.profile.length_mm();
+        self.reach2 = (reached2 < end * end).then_some(reached2);
+        false
     }
 
     /// Hands on the moves that are finished, and whose neighbours are. All, when
@@ -311,13 +371,9 @@ impl Ahead {
             .map_or(u64::MAX, |nominal| nominal.next);
         let finished = self.largest.next.min(nominal);
         while let Some(front) = self.open.front() {
-            // Those of no length behind it are passed.
-            let next = self
-                .open
-                .iter()
-                .skip(1)
-                .position(|open| open.mv.length_mm > 0.0);
-            let moves = front.mv.length_mm > 0.0;
+            // Those that do not move are passed.
+            let next = self.open.iter().skip(1).position(|open| open.moves);
+            let moves = front.moves;
             let known = self.first < finished
                 && match next {
                     Some(next) => self.first + 1 + (next as u64) < finished,
@@ -337,8 +393,9 @@ impl Ahead {
             }
             let next = next
                 .and_then(|next| self.open.get(next))
-                .map(|next| &**next);
-            let before = self.before.as_deref();
+                .map(|next| &**next)
+                .filter(|_| !open.rests);
+            let before = self.before.as_deref().filter(|before| !before.rests);
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
             if open.certain && certain(before) && certain(next) {
                 open.assessment.blended = !open.alone;
@@ -372,70 +429,6 @@ fn is_whole(mv: &Move, planned: &Planned<u64>) -> bool {
         if from_mm == 0.0 && to_mm >= mv.length_mm)
 }
 
-/// What a piece asks for, at the speed of its profile.
-fn piece_demand(model: &PowerModel, mv: &Move, planned: &Planned<u64>, want: Want) -> Demand {
-    match &planned.piece {
-        Piece::Along { from_mm, .. } => {
-            if let Some(demand) = below_floor(model, mv, &planned.profile, 0.0, want) {
-                return demand;
-            }
-            let mut profile = planned.profile.clone();
-            for phase in &mut profile.phases {
-                phase.position_mm += from_mm;
-            }
-            model.demand(mv, &path(profile), want)
-        }
-        Piece::Joined { direction } => {
-            let length_mm = planned.profile.length_mm();
-            let mut line = mv.clone();
-            line.length_mm = length_mm;
-            line.start = [0.0; AXES];
-            line.end = line.start;
-            line.moving = AxisSet::default();
-            for (axis, part) in direction.iter().enumerate() {
-                line.end[axis] = part * length_mm;
-                if *part != 0.0 {
-                    line.moving.insert(axis);
-                }
-            }
-            model.demand(&line, &path(planned.profile.clone()), want)
-        }
-        Piece::Blend(blend) => {
-            below_floor(model, mv, &planned.profile, 1.0 / blend.radius_mm, want)
-                .unwrap_or_else(|| model.blend_demand(mv, blend, &planned.profile, want))
-        }
-    }
-}
-
-/// A quick bound, if it stays below what is of interest; `curvature` in 1/mm.
-fn below_floor(
-    model: &PowerModel,
-    mv: &Move,
-    profile: &Profile,
-    curvature: f64,
-    want: Want,
-) -> Option<Demand> {
-    let top_speed_mm_s = profile.top_speed_mm_s();
-    let accels = profile.phases.iter().map(|phase| phase.accel_mm_s2.abs());
-    let figures = PathFigures {
-        duration_s: 0.0,
-        speed_limit_mm_s: top_speed_mm_s,
-        accel_mm_s2: accels.fold(0.0, f64::max) + curvature * top_speed_mm_s * top_speed_mm_s,
-        top_speed_mm_s,
-    };
-    model.below_floor(mv, &figures, want)
-}
-
-fn path(profile: Profile) -> Plan {
-    Plan {
-        duration_s: profile.duration_s(),
-        top_speed_mm_s: profile.top_speed_mm_s(),
-        speed_limit_mm_s: 0.0,
-        accel_mm_s2: 0.0,
-        trajectory: Trajectory::Path(profile),
-    }
-}
-
 /// How a move takes part in look-ahead.
 fn role(machine: &Machine, mv: &Move) -> Role {
     let synchronous = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap | MoveKind::Probe);
@@ -463,23 +456,5 @@ fn joint(mv: &Move) -> Joint {
             tolerance_mm,
             join_mm,
         },
-    }
-}
-
-impl PowerModel {
-    /// The peaks and the energy of a blend behind the move `mv`.
-    pub(super) fn blend_demand(
-        &self,
-        mv: &Move,
-        blend: &Blend,
-        profile: &Profile,
-        want: Want,
-    ) -> Demand {
-        let mut demand = Demand::NONE;
-        for (index, converter) in self.converters.iter().enumerate() {
-            let totals = blend::totals(self, converter, mv, blend, profile, want);
-            demand.add(index, converter, totals);
-        }
-        demand
     }
 }

@@ -181,7 +181,10 @@ impl<'m> Assessor<'m> {
                 ahead.stop(&self.model);
                 ahead.hand_on(&self.model, sink);
             }
-            Effect::Unknown => ahead.doubt(),
+            Effect::Unknown => {
+                ahead.doubt(&self.model);
+                ahead.hand_on(&self.model, sink);
+            }
         }
     }
 

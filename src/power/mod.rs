@@ -22,6 +22,7 @@ mod demand;
 mod independent;
 mod interval;
 mod model;
+mod piece;
 mod polynomial;
 mod quadrants;
 mod quadrature;

@@ -318,7 +318,7 @@ impl<T: Copy> LinuxCnc<T> {
         });
         let load = Load {
             tag,
-            first: tag,
+            first: if consumed { before.first } else { tag },
             next: Some(next.first),
             piece,
             certain: true,

@@ -63,6 +63,8 @@ pub struct Planned<T> {
     pub piece: Piece,
     /// How it runs.
     pub profile: Profile,
+    /// The acceleration that it may use, mm/s².
+    pub accel_mm_s2: f64,
     /// False where the controller may do otherwise than planned: the robust
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
@@ -201,6 +203,12 @@ impl<T: Copy> PathPlanner<T> {
         self.window.stop();
     }
 
+    /// Makes all pieces final that nothing behind can change, at once: by
+    /// itself the planner looks for them now and then.
+    pub fn settle(&mut self) {
+        self.window.settle();
+    }
+
     /// The next piece, once it is final.
     #[inline]
     pub fn pop(&mut self) -> Option<Planned<T>> {
@@ -216,6 +224,7 @@ impl<T: Copy> PathPlanner<T> {
             next: span.payload.next,
             piece: span.payload.piece,
             profile: Profile::between(span.length, speeds2, span.accel),
+            accel_mm_s2: span.accel,
             certain: span.certain && span.payload.certain,
         })
     }

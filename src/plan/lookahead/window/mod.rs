@@ -192,7 +192,8 @@ impl<P> Window<P> {
         self.settle_at = self.open_min;
     }
 
-    fn settle(&mut self) {
+    /// Looks for elements that are final.
+    pub fn settle(&mut self) {
         let anchor = self.backward(false);
         self.ready = self.ready.max(anchor);
         if let Some(blocks) = self.blocks

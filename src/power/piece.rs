@@ -1,0 +1,274 @@
+//! Demand of a piece of a plan: a stretch of a move, a line that stands for
+//! several, or a blend.
+//!
+//! Input: the piece with its profile, and the move that it belongs to. Output:
+//! its [`Demand`].
+
+use super::blend;
+use super::demand::{Demand, Want};
+use super::model::PowerModel;
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisSet};
+use crate::plan::lookahead::{Piece, Planned};
+use crate::plan::{Blend, PathFigures, Plan, Profile, Trajectory};
+
+/// What a piece asks for, at the speed of its profile.
+pub(super) fn piece_demand(
+    model: &PowerModel,
+    mv: &Move,
+    planned: &Planned<u64>,
+    want: Want,
+) -> Demand {
+    match &planned.piece {
+        Piece::Along { from_mm, .. } => {
+            if let Some(demand) = below_floor(model, mv, &planned.profile, 0.0, want) {
+                return demand;
+            }
+            let mut profile = planned.profile.clone();
+            for phase in &mut profile.phases {
+                phase.position_mm += from_mm;
+            }
+            model.demand(mv, &path(profile), want)
+        }
+        Piece::Joined { direction } => {
+            let line = straight_line(mv, direction, planned.profile.length_mm());
+            model.demand(&line, &path(planned.profile.clone()), want)
+        }
+        Piece::Blend(blend) => {
+            below_floor(model, mv, &planned.profile, 1.0 / blend.radius_mm, want)
+                .unwrap_or_else(|| model.blend_demand(mv, blend, &planned.profile, want))
+        }
+    }
+}
+
+/// A quick bound, if it stays below what is of interest; `curvature` in 1/mm.
+fn below_floor(
+    model: &PowerModel,
+    mv: &Move,
+    profile: &Profile,
+    curvature: f64,
+    want: Want,
+) -> Option<Demand> {
+    let top_speed_mm_s = profile.top_speed_mm_s();
+    let accels = profile.phases.iter().map(|phase| phase.accel_mm_s2.abs());
+    let figures = PathFigures {
+        duration_s: 0.0,
+        speed_limit_mm_s: top_speed_mm_s,
+        accel_mm_s2: accels.fold(0.0, f64::max) + curvature * top_speed_mm_s * top_speed_mm_s,
+        top_speed_mm_s,
+    };
+    model.below_floor(mv, &figures, want)
+}
+
+fn path(profile: Profile) -> Plan {
+    Plan {
+        duration_s: profile.duration_s(),
+        top_speed_mm_s: profile.top_speed_mm_s(),
+        speed_limit_mm_s: 0.0,
+        accel_mm_s2: 0.0,
+        trajectory: Trajectory::Path(profile),
+    }
+}
+
+impl PowerModel {
+    /// The peaks and the energy of a blend behind the move `mv`.
+    pub(super) fn blend_demand(
+        &self,
+        mv: &Move,
+        blend: &Blend,
+        profile: &Profile,
+        want: Want,
+    ) -> Demand {
+        let mut demand = Demand::NONE;
+        // The line before may stand for several moves: its direction is where
+        // the blend begins.
+        let lead = straight_line(mv, &blend.tangent, 1.0);
+        for (index, converter) in self.converters.iter().enumerate() {
+            let totals = blend::totals(self, converter, &lead, blend, profile, want);
+            demand.add(index, converter, totals);
+        }
+        demand
+    }
+}
+
+/// A line in X, Y and Z, otherwise like the move.
+fn straight_line(mv: &Move, direction: &[f64; 3], length_mm: f64) -> Move {
+    let mut line = mv.clone();
+    line.length_mm = length_mm;
+    line.arc = None;
+    line.start = [0.0; AXES];
+    line.end = line.start;
+    line.moving = AxisSet::default();
+    for (axis, part) in direction.iter().enumerate() {
+        line.end[axis] = part * length_mm;
+        if *part != 0.0 {
+            line.moving.insert(axis);
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::piece_demand;
+    use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
+    use crate::machine::Machine;
+    use crate::plan::lookahead::{Piece, Planned};
+    use crate::plan::{Blend, Phase, PhaseKind, Profile};
+    use crate::power::{PowerModel, Want};
+    use crate::syntax::{Block, scan_line};
+    use std::fmt::Write as _;
+
+    const MASS_KG: [f64; 3] = [500.0, 150.0, 300.0];
+    const COULOMB_N: [f64; 3] = [90.0, 40.0, 60.0];
+    const GRAVITY_N: [f64; 3] = [0.0, 0.0, 400.0];
+    const EFFICIENCY: f64 = 0.8;
+
+    fn machine() -> Machine {
+        let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
+             [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n"
+            .to_owned();
+        for (axis, letter) in ["X", "Y", "Z"].into_iter().enumerate() {
+            let _ = write!(
+                text,
+                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 2000\n\
+                 efficiency = {EFFICIENCY:?}\nmass_kg = {:?}\ncoulomb_n = {:?}\ngravity_n = {:?}\n",
+                MASS_KG[axis], COULOMB_N[axis], GRAVITY_N[axis]
+            );
+        }
+        Machine::from_toml("test.toml", &text).expect("a machine").0
+    }
+
+    /// Any move: of a piece that is a blend only its loads count.
+    fn any_move(machine: &Machine) -> Move {
+        let text = b"G21 G90 G64 P0.01 G1 X1 Y40 F600\n";
+        let reading = Reading::default();
+        let mut interpreter = Interpreter::new(machine, &reading);
+        let (mut block, mut steps) = (Block::default(), Vec::new());
+        let (mut facts, mut found) = (Facts::default(), Diagnostics::default());
+        scan_line(text, true, &mut block);
+        interpreter.execute(1, text, &mut block, &mut steps, &mut facts, &mut found);
+        let moves = steps.into_iter().find_map(|step| match step {
+            Step::Move(mv) => Some(mv),
+            Step::Action(_) => None,
+        });
+        moves.expect("a move")
+    }
+
+    /// A small generator, so that failures can be repeated (xorshift64*).
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 ^= self.0 >> 12;
+            self.0 ^= self.0 << 25;
+            self.0 ^= self.0 >> 27;
+            (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        /// Two unit directions at right angles; in the plane of X and Y if so.
+        fn frame(&mut self, flat: bool) -> [[f64; 3]; 2] {
+            let mut vector = || {
+                let v = [(); 3].map(|()| 2.0 * self.next() - 1.0);
+                [v[0], v[1], if flat { 0.0 } else { v[2] }]
+            };
+            let (a, b) = (vector(), vector());
+            let dot =
+                |a: [f64; 3], b: [f64; 3]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+            let unit = |a: [f64; 3]| a.map(|part| part / dot(a, a).sqrt());
+            let tangent = unit(a);
+            let along = dot(tangent, b);
+            let normal = unit([0, 1, 2].map(|i| b[i] - along * tangent[i]));
+            [tangent, normal]
+        }
+    }
+
+    /// Electrical power of all axes, drawn and fed back, W.
+    fn power(blend: &Blend, s: f64, v: f64, a: f64) -> [f64; 2] {
+        let angle = (s - blend.lead_mm).max(0.0) / blend.radius_mm;
+        let (sin, cos) = libm::sincos(angle);
+        let turning = if s < blend.lead_mm {
+            0.0
+        } else {
+            v * v / blend.radius_mm
+        };
+        let mut sums = [0.0; 2];
+        for n in 0..3 {
+            let tau = blend.tangent[n] * cos + blend.normal[n] * sin;
+            let nu = blend.normal[n] * cos - blend.tangent[n] * sin;
+            let speed = tau * v * 1e-3;
+            let force = MASS_KG[n] * (tau * a + nu * turning) * 1e-3
+                + COULOMB_N[n] * speed.signum()
+                + GRAVITY_N[n];
+            let mechanical = speed * force;
+            sums[0] += mechanical.max(0.0) / EFFICIENCY;
+            sums[1] += (-mechanical).max(0.0) * EFFICIENCY;
+        }
+        sums
+    }
+
+    #[test]
+    fn a_blend_asks_for_what_sampling_finds() {
+        let machine = machine();
+        let model = PowerModel::new(&machine);
+        let mv = any_move(&machine);
+        let mut random = Random(7);
+        for case in 0..200 {
+            let [tangent, normal] = random.frame(case % 2 == 0);
+            let blend = Blend {
+                lead_mm: if case % 3 == 0 {
+                    0.3 * random.next()
+                } else {
+                    0.0
+                },
+                radius_mm: 0.05 + 3.0 * random.next(),
+                sweep_rad: 0.1 + 2.9 * random.next(),
+                tangent,
+                normal,
+            };
+            let length_mm = blend.lead_mm + blend.radius_mm * blend.sweep_rad;
+            let (v0, v1) = (5.0 + 90.0 * random.next(), 5.0 + 90.0 * random.next());
+            let accel_mm_s2 = (v1 * v1 - v0 * v0) / (2.0 * length_mm);
+            let duration_s = 2.0 * length_mm / (v0 + v1);
+            let mut profile = Profile::default();
+            profile.phases.push(Phase {
+                kind: PhaseKind::ConstantAcceleration,
+                duration_s,
+                position_mm: 0.0,
+                velocity_mm_s: v0,
+                end_velocity_mm_s: v1,
+                accel_mm_s2,
+            });
+            let planned = Planned {
+                tag: 0,
+                first: 0,
+                next: Some(1),
+                piece: Piece::Blend(blend),
+                profile,
+                accel_mm_s2: accel_mm_s2.abs(),
+                certain: true,
+            };
+            let demand = piece_demand(&model, &mv, &planned, Want::ALL);
+            let (mut peaks, mut energy_j) = ([0.0_f64; 2], 0.0);
+            let samples = 4000;
+            for i in 0..samples {
+                let t = duration_s * (f64::from(i) + 0.5) / f64::from(samples);
+                let (s, v) = (v0 * t + 0.5 * accel_mm_s2 * t * t, v0 + accel_mm_s2 * t);
+                let sums = power(&blend, s, v, accel_mm_s2);
+                peaks = [peaks[0].max(sums[0]), peaks[1].max(sums[1])];
+                energy_j += sums[0] * duration_s / f64::from(samples);
+            }
+            let scale = peaks[0].max(peaks[1]);
+            for (found, sampled) in [demand.peak_w, demand.regen_w].into_iter().zip(peaks) {
+                assert!(found >= sampled * (1.0 - 1e-9), "{case}: {found} {sampled}");
+                assert!(found <= sampled + 5e-3 * scale, "{case}: {found} {sampled}");
+            }
+            let off = (demand.energy_j - energy_j).abs();
+            assert!(
+                off <= 2e-3 * scale * duration_s,
+                "{case}: {} {energy_j}",
+                demand.energy_j
+            );
+        }
+    }
+}
