@@ -35,7 +35,7 @@ pub(super) struct Case<'a> {
 }
 
 /// How a move begins and ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd)]
 pub enum Ends {
     /// At rest.
     Rest,
@@ -94,6 +94,11 @@ impl<'m> Solver<'m> {
             (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
             (Strategy::Speed, _) => self.by_speed(case, levers)?,
             (Strategy::Accel, _) => self.by_accel(case, levers)?,
+            // Under the robust bound a neighbour's speed meets this move's
+            // acceleration: where a pair was not enough, speeds alone go down.
+            (Strategy::Optimal, _) if ends > Ends::Any(2) && levers.speed.is_some() => {
+                self.by_speed(case, levers)?
+            }
             (Strategy::Optimal, _) => self.optimal(case, levers)?,
         };
         self.verify(case, change)
