@@ -21,8 +21,7 @@ use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{AXES, AxisSet, LookAhead, Machine, PathMode};
 use crate::plan::lookahead::{Element, Joint, PathPlanner, Piece, Planned};
 use crate::plan::{
-    Blend, Overrides, PathFigures, Plan, Profile, SpeedBound, Trajectory, blended_bound,
-    is_independent,
+    Blend, Overrides, PathFigures, Plan, Profile, Trajectory, blended_bound, is_independent,
 };
 
 /// The moves that are planned together.
@@ -41,7 +40,7 @@ pub(super) struct Ahead {
     spare: Vec<Box<Open>>,
     /// Nothing moves behind the last move.
     at_rest: bool,
-    /// The next move follows something that may or may not stop the motion.
+    /// Something stands behind the last move that may or may not stop it.
     in_doubt: bool,
 }
 
@@ -61,20 +60,9 @@ struct Open {
     text: Vec<u8>,
     assessment: Assessment,
     want: Want,
-    /// Largest speeds of the axes, its neighbours left aside.
-    bound: SpeedBound,
     certain: bool,
     /// It neither begins nor ends in motion.
     alone: bool,
-}
-
-impl Open {
-    fn part(&self) -> Part<'_> {
-        Part {
-            bound: &self.bound,
-            accel_mm_s2: &self.mv.accel_mm_s2,
-        }
-    }
 }
 
 /// How a move takes part.
@@ -122,7 +110,7 @@ impl Ahead {
         model: &PowerModel,
         mv: &Move,
         text: &[u8],
-        assessment: &Assessment,
+        assessment: impl FnOnce() -> Assessment,
         want: Want,
     ) {
         let number = self.first + self.open.len() as u64;
@@ -137,28 +125,35 @@ impl Ahead {
                 role = Role::Unknown;
             }
         }
-        let mut open = self.room(mv, text, assessment, want);
+        let mut open = self.room(mv, text, want);
         match role {
             Role::Path => {
-                open.assessment.ahead = true;
-                open.assessment.blended = true;
-                open.assessment.certificate = Certificate::Planned;
-                open.assessment.duration_s = 0.0;
-                open.assessment.top_speed_mm_s = 0.0;
-                open.assessment.demand = Demand::NONE;
-                open.bound = blended_bound(machine, mv, self.largest.overrides);
+                let [largest, nominal] = &elements;
+                let own = nominal.as_ref().or(largest.as_ref());
+                open.assessment = Assessment {
+                    speed_mm_s: own.map_or(0.0, Element::top_mm_s),
+                    accel_mm_s2: own.map_or(0.0, |own| own.accel_mm_s2),
+                    ..Assessment::AHEAD
+                };
             }
-            Role::Nothing => {}
+            Role::Nothing => open.assessment = assessment(),
             Role::Unknown => {
-                open.assessment.ahead = true;
-                open.assessment.blended = true;
-                open.bound = blended_bound(machine, mv, self.largest.overrides);
+                open.assessment = Assessment {
+                    blended: true,
+                    ahead: true,
+                    ..assessment()
+                };
                 open.certain = false;
                 self.stop_planners();
             }
         }
         if role != Role::Nothing {
-            open.certain &= !std::mem::take(&mut self.in_doubt);
+            if std::mem::take(&mut self.in_doubt) {
+                open.certain = false;
+                if let Some(last) = self.open.iter_mut().rfind(|open| open.mv.length_mm > 0.0) {
+                    last.certain = false;
+                }
+            }
             self.at_rest = role == Role::Path && mv.path_mode == PathMode::ExactStop;
         }
         self.open.push_back(open);
@@ -179,15 +174,13 @@ impl Ahead {
     pub fn stop(&mut self, model: &PowerModel) {
         self.stop_planners();
         self.at_rest = true;
+        self.in_doubt = false;
         self.pump(model);
     }
 
     /// Something stands here that may or may not stop the motion.
     pub fn doubt(&mut self) {
-        self.in_doubt = true;
-        if let Some(last) = self.open.back_mut() {
-            last.certain = false;
-        }
+        self.in_doubt = !self.at_rest || self.in_doubt;
     }
 
     fn stop_planners(&mut self) {
@@ -198,12 +191,11 @@ impl Ahead {
     }
 
     /// A buffer for a move.
-    fn room(&mut self, mv: &Move, text: &[u8], assessment: &Assessment, want: Want) -> Box<Open> {
+    fn room(&mut self, mv: &Move, text: &[u8], want: Want) -> Box<Open> {
         if let Some(mut open) = self.spare.pop() {
             open.mv.clone_from(mv);
             open.text.clear();
             open.text.extend_from_slice(text);
-            open.assessment = *assessment;
             open.want = want;
             (open.certain, open.alone) = (true, true);
             return open;
@@ -211,9 +203,8 @@ impl Ahead {
         Box::new(Open {
             mv: mv.clone(),
             text: text.to_vec(),
-            assessment: *assessment,
+            assessment: Assessment::AHEAD,
             want,
-            bound: SpeedBound::default(),
             certain: true,
             alone: true,
         })
@@ -260,16 +251,8 @@ impl Ahead {
             .map(|open| open.mv.length_mm)
             .sum();
         let energy_j = std::mem::take(&mut demand.energy_j);
-        let duration_s = planned.profile.duration_s();
-        let ends = [
-            planned.profile.phases.first(),
-            planned.profile.phases.last(),
-        ];
-        let [start, end] = ends.map(|phase| {
-            phase.map_or((0.0, 0.0), |phase| {
-                (phase.velocity_mm_s, phase.end_velocity_mm_s)
-            })
-        });
+        let duration_s = planned.profile().duration_s();
+        let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         for index in from..=to {
             let Some(open) = self.open.get_mut(index) else {
                 continue;
@@ -284,15 +267,14 @@ impl Ahead {
             };
             let assessment = &mut open.assessment;
             open.certain &= planned.certain;
-            open.alone &=
-                from == to && start.0 == 0.0 && end.1 == 0.0 && is_whole(&open.mv, planned);
+            open.alone &= from == to && rests && is_whole(&open.mv, planned);
             if times {
                 assessment.duration_s += share * duration_s;
                 assessment.demand.energy_j += share * energy_j;
             }
             if peaks {
-                let top = planned.profile.top_speed_mm_s();
-                assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top);
+                let top_speed_mm_s = planned.top_speed_mm_s();
+                assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top_speed_mm_s);
                 assessment.demand.include(&demand);
             }
         }
@@ -302,6 +284,7 @@ impl Ahead {
     /// nothing moves behind the last one.
     pub fn hand_on(
         &mut self,
+        machine: &Machine,
         model: &PowerModel,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
@@ -340,15 +323,20 @@ impl Ahead {
                 .map(|next| &**next);
             let before = self.before.as_deref();
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
-            if open.certain && certain(before) && certain(next) {
+            // What no piece speaks of is not known.
+            let planned = !open.assessment.ahead || open.assessment.top_speed_mm_s > 0.0;
+            if planned && open.certain && certain(before) && certain(next) {
                 open.assessment.blended = !open.alone;
             } else {
-                let own = open.part();
-                let window = [
-                    before.map_or(own, Open::part),
-                    own,
-                    next.map_or(own, Open::part),
-                ];
+                let beside = [before.unwrap_or(&open), &open, next.unwrap_or(&open)];
+                let overrides = self.largest.overrides;
+                let bounds = beside.map(|open| blended_bound(machine, &open.mv, overrides));
+                let [first, own, last] = &bounds;
+                let part = |bound, index: usize| Part {
+                    bound,
+                    accel_mm_s2: &beside[index].mv.accel_mm_s2,
+                };
+                let window = [part(first, 0), part(own, 1), part(last, 2)];
                 let demand = model.robust_over(&open.mv, &window, open.want);
                 open.assessment.demand = Demand {
                     energy_j: open.assessment.demand.energy_j,
@@ -360,7 +348,7 @@ impl Ahead {
             self.spare.extend(self.before.replace(open));
         }
         // What comes next begins at rest.
-        if self.at_rest && !self.in_doubt {
+        if self.at_rest {
             self.spare.extend(self.before.take());
         }
     }
@@ -374,66 +362,58 @@ fn is_whole(mv: &Move, planned: &Planned<u64>) -> bool {
 
 /// What a piece asks for, at the speed of its profile.
 fn piece_demand(model: &PowerModel, mv: &Move, planned: &Planned<u64>, want: Want) -> Demand {
+    let curvature = match &planned.piece {
+        Piece::Along { .. } => Some(0.0),
+        Piece::Blend(blend) => Some(1.0 / blend.radius_mm),
+        Piece::Joined { .. } => None,
+    };
+    let quick = curvature.and_then(|curvature| below_floor(model, mv, planned, curvature, want));
+    if let Some(demand) = quick {
+        return demand;
+    }
+    let mut profile = planned.profile();
     match &planned.piece {
         Piece::Along { from_mm, .. } => {
-            if let Some(demand) = below_floor(model, mv, &planned.profile, 0.0, want) {
-                return demand;
-            }
-            let mut profile = planned.profile.clone();
             for phase in &mut profile.phases {
                 phase.position_mm += from_mm;
             }
-            model.demand(mv, &path(profile), want)
+            model.path_demand(mv, profile, want)
         }
         Piece::Joined { direction } => {
-            let length_mm = planned.profile.length_mm();
             let mut line = mv.clone();
-            line.length_mm = length_mm;
+            line.length_mm = planned.length_mm;
             line.start = [0.0; AXES];
             line.end = line.start;
             line.moving = AxisSet::default();
             for (axis, part) in direction.iter().enumerate() {
-                line.end[axis] = part * length_mm;
+                line.end[axis] = part * planned.length_mm;
                 if *part != 0.0 {
                     line.moving.insert(axis);
                 }
             }
-            model.demand(&line, &path(planned.profile.clone()), want)
+            model.path_demand(&line, profile, want)
         }
-        Piece::Blend(blend) => {
-            below_floor(model, mv, &planned.profile, 1.0 / blend.radius_mm, want)
-                .unwrap_or_else(|| model.blend_demand(mv, blend, &planned.profile, want))
-        }
+        Piece::Blend(blend) => model.blend_demand(mv, blend, &profile, want),
     }
 }
 
 /// A quick bound, if it stays below what is of interest; `curvature` in 1/mm.
+#[inline]
 fn below_floor(
     model: &PowerModel,
     mv: &Move,
-    profile: &Profile,
+    planned: &Planned<u64>,
     curvature: f64,
     want: Want,
 ) -> Option<Demand> {
-    let top_speed_mm_s = profile.top_speed_mm_s();
-    let accels = profile.phases.iter().map(|phase| phase.accel_mm_s2.abs());
+    let top_speed_mm_s = planned.top_speed_mm_s();
     let figures = PathFigures {
         duration_s: 0.0,
         speed_limit_mm_s: top_speed_mm_s,
-        accel_mm_s2: accels.fold(0.0, f64::max) + curvature * top_speed_mm_s * top_speed_mm_s,
+        accel_mm_s2: planned.largest_accel_mm_s2() + curvature * top_speed_mm_s * top_speed_mm_s,
         top_speed_mm_s,
     };
     model.below_floor(mv, &figures, want)
-}
-
-fn path(profile: Profile) -> Plan {
-    Plan {
-        duration_s: profile.duration_s(),
-        top_speed_mm_s: profile.top_speed_mm_s(),
-        speed_limit_mm_s: 0.0,
-        accel_mm_s2: 0.0,
-        trajectory: Trajectory::Path(profile),
-    }
 }
 
 /// How a move takes part in look-ahead.
@@ -467,6 +447,18 @@ fn joint(mv: &Move) -> Joint {
 }
 
 impl PowerModel {
+    /// The peaks and the energy of a move that runs along its path by `profile`.
+    fn path_demand(&self, mv: &Move, profile: Profile, want: Want) -> Demand {
+        let plan = Plan {
+            duration_s: 0.0,
+            speed_limit_mm_s: 0.0,
+            accel_mm_s2: 0.0,
+            top_speed_mm_s: 0.0,
+            trajectory: Trajectory::Path(profile),
+        };
+        self.demand(mv, &plan, want)
+    }
+
     /// The peaks and the energy of a blend behind the move `mv`.
     pub(super) fn blend_demand(
         &self,
