@@ -115,20 +115,21 @@ impl Ahead {
     ) {
         let number = self.first + self.open.len() as u64;
         let mut role = role(machine, mv);
-        let mut elements = [None, None];
-        if role == Role::Path {
+        let element = |side: &Side| {
             let joint = joint(mv);
-            let sides = [Some(&self.largest), self.nominal.as_ref()];
-            elements = sides.map(|side| Element::of(machine, mv, side?.overrides, joint, number));
-            let wanted = 1 + usize::from(self.nominal.is_some());
-            if elements.iter().flatten().count() < wanted {
+            Element::of(machine, mv, side.overrides, joint, number)
+        };
+        let (mut largest, mut nominal) = (None, None);
+        if role == Role::Path {
+            largest = element(&self.largest);
+            nominal = self.nominal.as_ref().and_then(element);
+            if largest.is_none() || nominal.is_some() != self.nominal.is_some() {
                 role = Role::Unknown;
             }
         }
         let mut open = self.room(mv, text, want);
         match role {
             Role::Path => {
-                let [largest, nominal] = &elements;
                 let own = nominal.as_ref().or(largest.as_ref());
                 open.assessment = Assessment {
                     speed_mm_s: own.map_or(0.0, Element::top_mm_s),
@@ -158,13 +159,11 @@ impl Ahead {
         }
         self.open.push_back(open);
         if role == Role::Path {
-            let sides = [Some(&mut self.largest), self.nominal.as_mut()];
-            for (side, element) in sides
-                .into_iter()
-                .flatten()
-                .zip(elements.into_iter().flatten())
-            {
-                side.planner.push(&element);
+            if let Some(element) = &largest {
+                self.largest.planner.push(element);
+            }
+            if let (Some(side), Some(element)) = (&mut self.nominal, &nominal) {
+                side.planner.push(element);
             }
         }
         self.pump(model);
