@@ -13,6 +13,7 @@ mod syntax;
 mod plan;
 mod power;
 mod rig;
+mod identify;
 mod limit;
 mod machine;
 mod printers;
