@@ -103,7 +103,8 @@ pub enum MethodArg {
     Iv,
     /// Plain least squares: for recordings without noise
     Arx,
-    /// Least squares through the averaged frequency response
+    /// Least squares through the averaged frequency response: for excitation that
+    /// repeats itself, three times or more
     Frequency,
     /// Subspaces (MOESP)
     Subspace,

@@ -27,7 +27,9 @@ pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
     };
     let mut spool = BufWriter::new(target.spool()?);
     write(args, &signal, &mut spool).context("cannot write the signal")?;
-    let spool = spool.into_inner().map_err(|error| error.into_error())?;
+    let spool = spool
+        .into_inner()
+        .map_err(std::io::IntoInnerError::into_error)?;
     spool.deliver()?;
     tell(&signal, terminal);
     for warning in warnings {

@@ -20,7 +20,7 @@ use crate::cli::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
 
 /// What was found.
 enum Found {
-    Rigid(Rigid),
+    Rigid(Box<Rigid>),
     Flexible(Box<Flexible>),
 }
 
@@ -64,7 +64,7 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
             Some(path) => Some(rigid::predict_error(&found, &open(path, letter)?, ratio)?),
             None => None,
         };
-        (Found::Rigid(found), validation)
+        (Found::Rigid(Box::new(found)), validation)
     };
     let heading = heading(args, letter, &recording, ratio, validation);
     deliver(args, &heading, &found, terminal)
@@ -155,7 +155,8 @@ fn heading(
             recording.ignored.join(", ")
         ));
     }
-    if is_torque && slides && ratio.is_none() {
+    let lever_is_missing = is_torque && slides && ratio.is_none();
+    if lever_is_missing {
         notes.push(
             "torque with a motion in metres: figures are for a lever of 1 m; give --lead-mm to get mass and force".to_owned(),
         );
@@ -165,6 +166,7 @@ fn heading(
         axis,
         rotary: is_torque && ratio.is_none(),
         validation,
+        lever_is_missing,
         notes,
     }
 }
@@ -237,7 +239,7 @@ fn deliver(
                 "no mass was identified: there is nothing for --into"
             );
             ensure!(
-                !heading.notes.iter().any(|note| note.contains("lever")),
+                !heading.lever_is_missing,
                 "torque with a motion in metres: give --lead-mm, so that the machine file gets mass and force"
             );
             Some((

@@ -45,6 +45,7 @@ pub fn run(args: &PowerFitArgs, terminal: Terminal) -> Result<Verdict> {
         axis: letter,
         rotary: log.rotary,
         validation: None,
+        lever_is_missing: false,
         notes: log.notes.clone(),
     };
     let json = match &args.json {

@@ -249,7 +249,7 @@ fn random(from_hz: f64, to_hz: f64, n: usize, period_s: f64, seed: u64) -> Outco
     Ok(values.into_iter().map(|x| x / peak).collect())
 }
 
-/// A number from 0 to 1 (SplitMix64, Steele, Lea & Flood 2014).
+/// A number from 0 to 1 (`SplitMix64`, Steele, Lea & Flood 2014).
 fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut z = *state;

@@ -101,7 +101,7 @@ mod tests {
         let t = 1e-3;
         let wave = |hz: f64| -> Vec<f64> {
             (0..4000)
-                .map(|k| libm::sin(2.0 * PI * hz * k as f64 * t))
+                .map(|k| libm::sin(2.0 * PI * hz * f64::from(k) * t))
                 .collect()
         };
         let slow = wave(3.0);
@@ -122,7 +122,7 @@ mod tests {
     fn derivatives_of_a_sine() {
         let t = 1e-3;
         let w = 2.0 * PI * 10.0;
-        let x: Vec<f64> = (0..500).map(|k| libm::sin(w * k as f64 * t)).collect();
+        let x: Vec<f64> = (0..500).map(|k| libm::sin(w * f64::from(k) * t)).collect();
         let (v, a) = (derivative(&x, t), second_derivative(&x, t));
         for k in (2..498).step_by(50) {
             let phase = w * k as f64 * t;

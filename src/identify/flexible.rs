@@ -291,7 +291,17 @@ fn as_it_is(data: &Data<'_>, transfer: &TransferFunction) -> Option<Estimate> {
 }
 
 fn by_response(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
-    let response = response_of(data, prepared)?;
+    let mut response = response_of(data, prepared)?;
+    if !response.periodic {
+        // Windows blur sharp resonances: the longest stretches blur least.
+        response = measure(
+            data.input,
+            data.output,
+            prepared.excitation.as_deref(),
+            data.period_s,
+            Some((data.len() / 4).next_power_of_two()),
+        )?;
+    }
     let t = data.period_s;
     let lags = match choice.given.delay_s {
         Some(delay) => {
@@ -303,6 +313,7 @@ fn by_response(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<
     let best = lags
         .filter_map(|lag| response_fit::grow(&response, lag, choice.given.order, ORDER_MAX, t))
         .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
+    let best = response_fit::finish(&response, &best.transfer, t)?;
     let mut estimate = as_it_is(data, &best.transfer)?;
     estimate.covariance = best.covariance;
     Some(Modelled {

@@ -175,7 +175,7 @@ fn raise_margin(document: &mut DocumentMut, margin: f64) {
     let present = document
         .get("limits")
         .and_then(|limits| limits.get("margin"))
-        .and_then(|margin| margin.as_float())
+        .and_then(toml_edit::Item::as_float)
         .unwrap_or(DEFAULT);
     if margin <= present {
         return;

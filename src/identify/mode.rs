@@ -30,7 +30,9 @@ pub fn with_mode(
 ) -> Option<TransferFunction> {
     let mut sorted = response.variance.clone();
     sorted.sort_by(f64::total_cmp);
-    let floor = 0.01 * sorted.get(sorted.len() / 2)?;
+    let strongest = response.response.iter().map(C::norm_sqr);
+    let rounding = 1e-16 * strongest.fold(f64::MIN_POSITIVE, f64::max);
+    let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(rounding);
     let points: Vec<(C, C, f64)> = response
         .frequency_hz
         .iter()
@@ -85,7 +87,7 @@ fn amplitude(points: &[(C, C, f64)], omega: f64, damping: f64) -> Option<(f64, f
         rb += weight * (two.conj() * gap).re;
     }
     let determinant = aa * bb - ab * ab;
-    if !(determinant > 1e-12 * aa * bb) {
+    if determinant.is_nan() || determinant <= 1e-12 * aa * bb {
         return None;
     }
     let a = (ra * bb - rb * ab) / determinant;

@@ -18,6 +18,9 @@ pub fn autocorrelation(x: &[f64], lags: usize) -> Vec<f64> {
         .collect()
 }
 
+/// Quantile of the normal distribution at 99.9 %.
+const QUANTILE: f64 = 3.090_232;
+
 /// How a test of whiteness came out (Ljung & Box 1978).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Whiteness {
@@ -39,8 +42,7 @@ impl Whiteness {
             .skip(1)
             .map(|(lag, r)| r * r / (n - lag as f64).max(1.0))
             .sum();
-        // Wilson and Hilferty's approximation of the χ² quantile at 99.9 %.
-        const QUANTILE: f64 = 3.090_232;
+        // Wilson and Hilferty's approximation of the quantile of χ².
         let m = lags as f64;
         let root = 1.0 - 2.0 / (9.0 * m) + QUANTILE * (2.0 / (9.0 * m)).sqrt();
         Self {

@@ -101,7 +101,7 @@ impl Normal {
         let explained = x.dot(&right);
         let mut inverse = cholesky.inverse();
         // Digits that are left of the inverse: none beyond this.
-        if inverse.diagonal().iter().any(|d| !(*d < 1e13)) {
+        if inverse.diagonal().iter().any(|d| d.is_nan() || *d >= 1e13) {
             return None;
         }
         for i in 0..n {

@@ -78,10 +78,11 @@ fn polish(p: &[f64], mut x: Complex<f64>) -> Complex<f64> {
     for _ in 0..2 {
         let (here, rise) = (value(p, x), value(&slope, x));
         let next = x - here / rise;
-        if !(value(p, next).norm_sqr() < here.norm_sqr()) {
+        if value(p, next).norm_sqr() < here.norm_sqr() {
+            x = next;
+        } else {
             break;
         }
-        x = next;
     }
     x
 }

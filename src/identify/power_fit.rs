@@ -167,10 +167,9 @@ impl PowerLog {
             }
         }
         if let [Some((_, current)), Some((_, voltage))] = &electrical
-            && let Some(note) = swapped(current, voltage)
-            && !self.notes.contains(&note)
+            && !self.notes.iter().any(|note| note.contains(&current.name))
         {
-            self.notes.push(note);
+            self.notes.extend(swapped(current, voltage));
         }
         Ok(())
     }
@@ -210,9 +209,8 @@ impl PowerLog {
 fn electrical_slot(name: &str, axis: char) -> Option<usize> {
     let rest = match numbered(name) {
         Some((letter, rest)) if letter == axis => rest,
-        Some(_) => return None,
         None if axis_of(name).is_none_or(|letter| letter == axis) => name.to_ascii_lowercase(),
-        None => return None,
+        _ => return None,
     };
     let plain = rest.replace('_', "");
     if plain.contains("outputcurrent") || plain.contains("motorcurrent") {

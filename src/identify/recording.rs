@@ -194,7 +194,7 @@ fn period(time: &[f64]) -> Outcome<f64> {
     let mut sorted = intervals.clone();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-    if !(usual > 0.0) {
+    if usual.is_nan() || usual <= 0.0 {
         return Err(Trouble::new(
             "the time does not go on",
             "time_s must grow from line to line",

@@ -18,7 +18,9 @@ use super::transfer::{Factor, TransferFunction};
 
 type C = Complex<f64>;
 
-const STEPS_MAX: usize = 15;
+/// Steps of each fit while the model grows, and of the last one.
+const STEPS: usize = 15;
+const STEPS_LAST: usize = 80;
 /// Up to this share of the sampling frequency the response is used.
 const BAND: f64 = 0.47;
 
@@ -57,8 +59,10 @@ impl Points {
     fn new(response: &FrequencyResponse, period_s: f64) -> Option<Self> {
         let mut sorted = response.variance.clone();
         sorted.sort_by(f64::total_cmp);
+        let strongest = response.response.iter().map(C::norm_sqr);
+        let rounding = 1e-16 * strongest.fold(f64::MIN_POSITIVE, f64::max);
         // A few lucky frequencies must not rule.
-        let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(f64::MIN_POSITIVE);
+        let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(rounding);
         let mut points = Self {
             z: Vec::new(),
             response: Vec::new(),
@@ -130,11 +134,11 @@ impl Points {
         normal.total.is_finite().then_some(normal)
     }
 
-    fn refine(&self, start: &TransferFunction, period_s: f64) -> Option<ResponseFit> {
+    fn refine(&self, start: &TransferFunction, steps: usize, period_s: f64) -> Option<ResponseFit> {
         let mut transfer = start.clone();
         let mut normal = self.gather(&transfer, period_s)?;
         let mut damping = 1e-3;
-        for _ in 0..STEPS_MAX {
+        for _ in 0..steps {
             let moved = normal.solve_from(0, damping).map(|step| {
                 let mut theta = parameters(&transfer, false);
                 for (value, step) in theta.iter_mut().zip(step.x.iter()) {
@@ -189,7 +193,7 @@ pub fn grow(
         delay_s: lag as f64 * period_s,
         ..TransferFunction::constant(mean_gain(response))
     };
-    let mut best = points.refine(&rigid, period_s)?;
+    let mut best = points.refine(&rigid, STEPS, period_s)?;
     loop {
         let have = best.transfer.order();
         if have + 2 > order.unwrap_or(order_max) {
@@ -198,7 +202,7 @@ pub fn grow(
         let Some(start) = with_mode(&best.transfer, response, period_s) else {
             break;
         };
-        match points.refine(&start, period_s) {
+        match points.refine(&start, STEPS, period_s) {
             Some(found) if order.is_some() || found.criterion() < best.criterion() => best = found,
             _ => break,
         }
@@ -208,9 +212,33 @@ pub fn grow(
         start.poles.push(Factor::Real {
             time_constant_s: period_s,
         });
-        best = points.refine(&start, period_s)?;
+        best = points.refine(&start, STEPS, period_s)?;
     }
     Some(best)
+}
+
+/// Fits to the end; with a real zero far above the band, as dampers make it,
+/// where that is worth a parameter.
+#[must_use]
+pub fn finish(
+    response: &FrequencyResponse,
+    start: &TransferFunction,
+    period_s: f64,
+) -> Option<ResponseFit> {
+    let points = Points::new(response, period_s)?;
+    let as_it_is = points.refine(start, STEPS_LAST, period_s)?;
+    if start.zero_count() >= start.order() {
+        return Some(as_it_is);
+    }
+    let mut more = as_it_is.transfer.clone();
+    more.zeros.push(Factor::Real {
+        time_constant_s: 0.1 * period_s,
+    });
+    let more = points.refine(&more, STEPS_LAST, period_s);
+    Some(
+        more.filter(|more| more.criterion() < as_it_is.criterion())
+            .unwrap_or(as_it_is),
+    )
 }
 
 /// The gain in the lowest tenth of the band.

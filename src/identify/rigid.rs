@@ -11,6 +11,7 @@ use super::column::{Kind, Quantity};
 use super::filter::{derivative, low_pass, second_derivative};
 use super::noise::Whiteness;
 use super::normal::Normal;
+use super::quality;
 use super::recording::Recording;
 use super::trouble::{Outcome, Trouble};
 
@@ -96,6 +97,20 @@ fn equations(
 ) -> Outcome<Equations> {
     let t = recording.period_s;
     let force = force_of(recording, ratio)?;
+    for signal in &recording.signals {
+        if matches!(
+            signal.quantity,
+            Quantity::Position | Quantity::Velocity | Quantity::Acceleration
+        ) {
+            quality::moves(
+                signal,
+                "record a motion to and fro; gwatt excite makes signals",
+            )?;
+        }
+        if matches!(signal.quantity, Quantity::Force | Quantity::Acceleration) {
+            quality::not_saturated(signal)?;
+        }
+    }
     let smooth_hz = (3.4 * bandwidth_hz).min(0.4 / t);
     let smooth = |quantity| {
         recording

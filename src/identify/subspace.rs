@@ -41,7 +41,6 @@ impl Subspace {
         let data = DMatrix::from_fn(columns, 4 * BLOCK, |k, j| match j / BLOCK {
             0 => u(k + BLOCK + j),
             1 => u(k + j - BLOCK),
-            2 => y(k + j - 2 * BLOCK),
             _ => y(k + j - 2 * BLOCK),
         });
         let r = data.qr().r();

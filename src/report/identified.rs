@@ -22,6 +22,8 @@ pub struct Heading {
     pub rotary: bool,
     /// Relative error on a second recording.
     pub validation: Option<f64>,
+    /// Torque was recorded with a motion in metres, and no lead is known.
+    pub lever_is_missing: bool,
     /// Remarks.
     pub notes: Vec<String>,
 }
