@@ -2,7 +2,7 @@
 
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
-use gwatt::limit::{Law, LimitOptions, Permit, Solver, Strategy};
+use gwatt::limit::{Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use gwatt::machine::{Axis, AxisSet, Machine, PathMode};
 use gwatt::plan::{Overrides, plan};
 use gwatt::power::{Assessment, Assessor, PowerModel, Want};
@@ -48,6 +48,7 @@ fn feed() -> Move {
         dwell_s: 0.0,
         loads: 0,
         path_mode: PathMode::ExactStop,
+        corner: gwatt::interpret::Corner::default(),
     }
 }
 
@@ -151,10 +152,10 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         allow_feed: true,
     };
     let solver = Solver::new(&machine, how);
-    if let Err(obstacle) = solver.solve(&mv, &assessment, &permit) {
+    if let Err(obstacle) = solver.solve(&mv, &assessment, &permit, Ends::Rest) {
         panic!("{obstacle:?}");
     }
-    bencher.bench(|| solver.solve(black_box(&mv), &assessment, &permit));
+    bencher.bench(|| solver.solve(black_box(&mv), &assessment, &permit, Ends::Rest));
 }
 
 fn judge(machine: &Machine, mv: &Move) -> Assessment {

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
-use gwatt::interpret::{Diagnostics, Interpreter, Move, Step};
+use gwatt::interpret::{Diagnostics, Facts, Interpreter, Move, Step};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Law, LimitOptions, Options, Strategy, analyze, limit};
 use gwatt::plan::{Overrides, Plan, plan};
@@ -81,10 +81,18 @@ fn machine(name: &str) -> Machine {
 fn moves(machine: &Machine) -> Vec<Move> {
     let mut interpreter = Interpreter::new(machine, &Options::default().reading);
     let mut diagnostics = Diagnostics::default();
+    let mut facts = Facts::default();
     let (mut block, mut steps) = (Block::default(), Vec::new());
     for (text, number) in lines(program().as_bytes()).zip(1..) {
         scan_line(text, number == 1, &mut block);
-        interpreter.execute(number, text, &mut block, &mut steps, &mut diagnostics);
+        interpreter.execute(
+            number,
+            text,
+            &mut block,
+            &mut steps,
+            &mut facts,
+            &mut diagnostics,
+        );
     }
     assert_eq!(diagnostics.errors, 0, "{:?}", diagnostics.list);
     let moves = steps.into_iter().filter_map(|step| match step {
@@ -154,9 +162,17 @@ fn c_interpret(bencher: Bencher<'_, '_>) {
     bencher.counter(bytes()).bench_local(|| {
         let mut interpreter = Interpreter::new(&machine, &Options::default().reading);
         let mut diagnostics = Diagnostics::default();
+        let mut facts = Facts::default();
         for ((text, block), number) in blocks.iter_mut().zip(1..) {
             steps.clear();
-            interpreter.execute(number, text, block, &mut steps, &mut diagnostics);
+            interpreter.execute(
+                number,
+                text,
+                block,
+                &mut steps,
+                &mut facts,
+                &mut diagnostics,
+            );
             black_box(&steps);
         }
     });

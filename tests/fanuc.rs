@@ -218,9 +218,24 @@ fn alarms_and_state() {
 }
 
 #[test]
+fn arc_centres_as_the_machine_file_says() {
+    // Half a circle about (10, 0); as a distance from the start it is none.
+    let program = "G0 X10. Y5.\nG2 X10. Y-5. I10. J0. F600\nM30\n";
+    let absolute = machine("fanuc", "[language]\narc_centre = \"absolute\"\n");
+    assert_snapshot!(moves_on(&absolute, program), @r"
+1 rapid X10.0000 Y5.0000
+2 arc X10.0000 Y-5.0000 center 10.0000,0.0000 turns -0.5000 F600.0000
+");
+    let found = moves("fanuc", program);
+    assert!(
+        found.contains("2 arc-radius: the arc's end is not on its circle"),
+        "{found}"
+    );
+}
+
+#[test]
 fn what_is_refused_by_name() {
     let cases = [
-        ("G1 X1. ,C2. F1.", "a chamfer (,C) is not supported"),
         (
             "G1 X1. ,A30. F1.",
             "an angle of a drawing (,A) is not supported",

@@ -2,6 +2,7 @@
 
 mod layers;
 mod conformance;
+mod corners;
 mod expressions;
 mod flow;
 mod interpret;
@@ -15,6 +16,7 @@ mod power;
 mod rig;
 mod identify;
 mod limit;
+mod lookahead;
 mod machine;
 mod printers;
 mod cli;

@@ -90,7 +90,7 @@ fn controller() -> Controller {
             ignored_g: Vec::new(),
             ignored_m: Vec::new(),
             block_delete: true,
-            cutter_compensation: false,
+            compensation: None,
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,
@@ -101,6 +101,7 @@ fn controller() -> Controller {
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
             dwell_stops: false,
+            look_ahead: None,
         },
         knobs: Vec::new(),
         rapid_knob: RapidKnob::None,
@@ -141,6 +142,7 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
         dwell_s: 0.0,
         loads: 0,
         path_mode: PathMode::ExactStop,
+        corner: gwatt::interpret::Corner::default(),
     }
 }
 

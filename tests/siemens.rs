@@ -493,12 +493,12 @@ CYCLE86(20,10,2,-5,,1,3,-1,0,0.5)
 4 feed Z12 F300
 4 rapid Z20
 5 rapid Z12
-5 feed Z-5 F700
-5 feed Z12 F1400
+5 tap Z-5 F700
+5 tap Z12 F1400
 5 rapid Z20
 6 rapid Z12
-6 feed Z-5 F1500
-6 feed Z12 F1500
+6 tap Z-5 F1500
+6 tap Z12 F1500
 6 rapid Z20
 7 rapid Z12
 7 feed Z-5 F200
@@ -675,14 +675,6 @@ fn refusals_name_the_construct() {
         (
             "CT X10 Y10",
             "1 unsupported-word: CT is an arc tangential to the move before, which gwatt does not follow",
-        ),
-        (
-            "G41 X10",
-            "1 unsupported-code: G41 is cutter compensation, which gwatt does not support",
-        ),
-        (
-            "G33 Z10 K2",
-            "1 unsupported-code: G33 is thread cutting or tapping, which gwatt does not support",
         ),
         (
             "G58 X10",

@@ -351,10 +351,6 @@ fn what_turning_cycles_refuse() {
             "contour: the contour goes back on itself (pockets of type II), which is not supported",
         ),
         (
-            "G1 X20. ,R2. F1.",
-            "corner-word: a rounded corner (,R) is not supported",
-        ),
-        (
             "G95",
             "unsupported-code: G95 is a feed mode that G-code system A does not have (G98, G99), which gwatt does not support",
         ),

@@ -169,7 +169,8 @@ pub(super) fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {
             format!(
                 "the arc's end is not on its circle: radius {start_mm:.4} mm at the start, {end_mm:.4} mm at the end"
             ),
-            "check the end point and the centre; a G90.1/G91.1 mix-up looks like this",
+            "check the end point and the centre; a G90.1/G91.1 mix-up looks like this: \
+             arc_centre under [language] in the machine file says how I, J and K are meant",
         ),
         ArcFault::RadiusTooSmall {
             radius_mm,

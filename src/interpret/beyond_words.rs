@@ -37,6 +37,17 @@ impl Control<'_> {
         };
         self.begun = true;
         self.callee = statement.callee;
+        if let Some(word) = &statement.corner {
+            if block.words.is_empty() {
+                let message =
+                    "a chamfer or a rounded corner behind a block that is not one feed move";
+                report
+                    .error("corner-word", message, word.span)
+                    .help("write it in the block of a G1, G2 or G3, without M words that stop");
+                return false;
+            }
+            self.fanuc_corner(word, text);
+        }
         if let Some(span) = statement.alarm {
             let message =
                 "whether this alarm (#3000) is raised only the machine knows: taken as not";

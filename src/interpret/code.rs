@@ -89,8 +89,6 @@ pub(super) enum GCode {
     MirrorX,
     /// G31 of Fanuc and Haas: a feed that a signal ends.
     Skip,
-    /// G41 and G42 on a lathe.
-    NoseRadius,
     /// G70 to G76 of a lathe; number × 10 in systems A and B.
     Turning(u16),
     /// G98 (true): canned cycles return to the initial level; G99: to R.
@@ -114,7 +112,7 @@ impl GCode {
             Self::ArcAbsolute(_) => 3,
             Self::FeedMode(_) => 4,
             Self::Units { .. } => 5,
-            Self::CompensationOff | Self::CompensationOn { .. } | Self::NoseRadius => 6,
+            Self::CompensationOff | Self::CompensationOn { .. } => 6,
             Self::ToolLength(_) => 7,
             Self::WorkOffset(_) | Self::FurtherOffset => 8,
             Self::PathMode => 9,

@@ -6,6 +6,7 @@
 //! T Series", "Skip Function (G31)"), Haas mill and lathe operator's manuals.
 
 use super::code::{GCode, Motion};
+use super::compensation::Insert;
 use super::execute::{Control, Run};
 use super::moves::FeedMode;
 use super::turning::{BOX, FACE, THREAD, THREAD_BOX};
@@ -48,8 +49,6 @@ pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Own {
     let units = |mm_per_unit| GCode::Units { mm_per_unit };
     Own::Code(match (lathe, number) {
         (_, 310) => GCode::Skip,
-        // The radius of the tool nose, which only the control knows.
-        (_, 410 | 420) => GCode::NoseRadius,
         (_, 320 | 330) => special(THREAD),
         (Lathe::A, 900) | (Lathe::B, 770) | (Lathe::C, 200) => special(BOX),
         (Lathe::A, 920) | (Lathe::B, 780) | (Lathe::C, 210) => special(THREAD_BOX),
@@ -178,6 +177,28 @@ impl Control<'_> {
         Some(word.value * least * unit)
     }
 
+    /// `,C` or `,R` of the present block.
+    pub(super) fn fanuc_corner(&mut self, word: &Word, text: &[u8]) {
+        let least =
+            self.dialect().point == Some(Point::LeastIncrement) && !has_point(word.number.of(text));
+        let scale = match least {
+            false => 1.0,
+            true if self.modal.mm_per_unit == MM_PER_INCH => LEAST_INCH,
+            true => LEAST_MM,
+        };
+        let length_mm = word.value * scale * self.modal.mm_per_unit;
+        if length_mm > 0.0 {
+            self.ask_corner(if word.letter == b'C' {
+                Insert::Legs(length_mm)
+            } else {
+                Insert::Round {
+                    radius_mm: length_mm,
+                    modal: false,
+                }
+            });
+        }
+    }
+
     /// The value of an argument of a macro call (B-63944EN, "Macro Call": the
     /// decimal places of each address).
     pub(super) fn argument(&self, word: &Word, run: &Run<'_, '_>) -> f64 {
@@ -218,15 +239,6 @@ impl Control<'_> {
         } else if alone && !run.words.axes().any(|(axis, _)| axis != 9) {
             run.words.unused &= AXIS_LETTERS & !bit(b'E');
         }
-    }
-
-    /// G41 and G42 on a lathe: no path is moved, since the radius of the nose
-    /// stands in the control.
-    pub(super) fn nose_radius(span: Span, run: &mut Run<'_, '_>) {
-        run.words.take(b'D');
-        let message = "G41 and G42: the radius of the tool nose stands in the control, \
-                       it is taken as 0";
-        run.report.note_once("nose-radius", message, span);
     }
 
     /// Whether an M word (number × 10) that is not known is taken to move no axis.

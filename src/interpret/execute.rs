@@ -4,11 +4,12 @@
 
 use std::cell::Cell;
 
-use super::compensation::Compensation;
+use super::compensation::{Choice, Compensation, Corners};
+use super::direct::is_direct;
 use super::facts::Facts;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Move, Step};
+use super::moves::{Action, ActionKind, Step};
 use super::parameters::Parameters;
 use super::position::{Position, Reading};
 use super::printer;
@@ -61,9 +62,15 @@ pub(super) struct Control<'m> {
     pub(super) bent: bool,
     /// Cutter compensation, while it is on or being left.
     pub(super) compensation: Option<Box<Compensation>>,
+    /// What the next one goes by.
+    pub(super) choice: Choice,
+    /// Chamfers and rounded corners, once the program has any.
+    pub(super) corners: Option<Box<Corners>>,
     pub(super) printer: printer::State,
     /// The words of a block need a second look: see `dialect`.
     adapts: bool,
+    /// Blocks may take the short way: see `direct`.
+    pub(super) direct: bool,
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,
     pub(super) turning: Turning,
@@ -88,7 +95,7 @@ pub(super) struct Run<'a, 'l> {
     pub(super) line: u64,
     pub(super) block: &'a Block,
     pub(super) words: &'a mut Words,
-    pub(super) facts: Facts,
+    pub(super) facts: &'a mut Facts,
     pub(super) steps: &'a mut Vec<Step>,
     pub(super) report: Report<'a, 'l>,
 }
@@ -134,8 +141,11 @@ impl<'m> Interpreter<'m> {
             lost: None,
             bent: false,
             compensation: None,
+            choice: Choice::default(),
+            corners: None,
             printer: printer::State::new(machine),
             adapts: machine.controller.language.dialect.adapts(),
+            direct: is_direct(machine),
             callee: None,
             turning: Turning::default(),
             block_delete: reading.block_delete,
@@ -178,49 +188,53 @@ impl<'m> Interpreter<'m> {
         self.control.ended
     }
 
-    /// The text of the line of a move that was given with the last block, if
-    /// that line came before it; cut if it is long.
-    #[must_use]
-    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
-        self.control.compensation.as_ref()?.text_of(mv)
-    }
-
-    /// True while cutter compensation is on, and for the block that ends it.
-    #[must_use]
-    pub fn compensates(&self) -> bool {
-        let compensation = self.control.compensation.as_ref();
-        compensation.is_some_and(|compensation| compensation.is_at_work())
-    }
-
-    /// True while moves are held back: cutter compensation needs the next one
-    /// to know where they end.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        let compensation = self.control.compensation.as_ref();
-        compensation.is_some_and(|compensation| compensation.holds())
-    }
-
     /// Executes one block: appends what it does to `steps`. What is not
     /// understood is reported, and the block then does nothing. Words whose
-    /// values are worked out get them in `block`.
+    /// values are worked out get them in `block`. What the block is comes into
+    /// `facts`.
+    #[inline]
     pub fn execute(
         &mut self,
         line: u64,
         text: &[u8],
         block: &mut Block,
         steps: &mut Vec<Step>,
+        facts: &mut Facts,
         diagnostics: &mut Diagnostics,
-    ) -> Facts {
+    ) {
+        let plain = block.issues.is_empty();
+        if plain
+            && self
+                .control
+                .direct(line, text, block, steps, facts)
+                .is_some()
+        {
+            return;
+        }
+        *facts = Facts::default();
+        self.execute_any(line, text, block, steps, facts, diagnostics);
+    }
+
+    /// The same for any block; `facts` are those of nothing.
+    fn execute_any(
+        &mut self,
+        line: u64,
+        text: &[u8],
+        block: &mut Block,
+        steps: &mut Vec<Step>,
+        facts: &mut Facts,
+        diagnostics: &mut Diagnostics,
+    ) {
         let mut report = Report {
             diagnostics,
             line,
             text,
         };
         if self.control.passes_over(block, &mut report) {
-            return Facts::default();
+            return;
         }
         if printer::is_command(self.control.machine, block) {
-            return self.command_line(block, steps, report);
+            return self.command_line(block, steps, facts, report);
         }
         let mut beyond = !block.issues.is_empty();
         let mut acts = false;
@@ -237,18 +251,25 @@ impl<'m> Interpreter<'m> {
             if block.words.is_empty() {
                 self.control.abort(block, &mut report);
             }
-            return Facts {
-                reads_state,
-                transfers,
-                ..Facts::default()
-            };
+            facts.reads_state = reads_state;
+            facts.transfers = transfers;
+            return;
+        }
+        if beyond
+            && self
+                .control
+                .direct(line, text, block, steps, facts)
+                .is_some()
+        {
+            facts.reads_state = reads_state;
+            return;
         }
         // Built once in its place: moving parts of it costs more than it seems.
         let mut run = Run {
             line,
             block,
             words: &mut self.words,
-            facts: Facts::default(),
+            facts,
             steps,
             report,
         };
@@ -263,6 +284,9 @@ impl<'m> Interpreter<'m> {
                 .error("program-name", "nothing in this block calls the program that it names", whole)
                 .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
         }
+        if self.control.corners.is_some() {
+            self.control.insert_corners(&mut run, before, errors);
+        }
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
         }
@@ -271,7 +295,6 @@ impl<'m> Interpreter<'m> {
             self.control.transfer = None;
         }
         run.facts.transfers = self.control.transfer.is_some();
-        run.facts
     }
 
     /// A printer's command.
@@ -279,19 +302,19 @@ impl<'m> Interpreter<'m> {
         &mut self,
         block: &Block,
         steps: &mut Vec<Step>,
+        facts: &mut Facts,
         report: Report<'_, '_>,
-    ) -> Facts {
+    ) {
         let mut run = Run {
             line: report.line,
             block,
             words: &mut self.words,
-            facts: Facts::default(),
+            facts,
             steps,
             report,
         };
         self.control.begun = true;
         self.control.command_line(&mut run);
-        run.facts
     }
 }
 
@@ -416,10 +439,16 @@ impl Control<'_> {
     }
 
     /// Words that no code has used: they might mean motion.
-    pub(super) fn complain_about_rest(&self, run: &mut Run<'_, '_>) {
+    pub(super) fn complain_about_rest(&mut self, run: &mut Run<'_, '_>) {
+        if run.words.unused == 0 {
+            return;
+        }
         if self.machine.controller.language.family != Family::Rs274 {
-            // Numbers of tool offsets without a code that uses them.
-            run.words.take(b'D');
+            // Numbers of tool offsets without a code that uses them: that of a
+            // radius stays in force.
+            if let Some(number) = run.words.take(b'D') {
+                self.choice.number = Some(number as u32);
+            }
             run.words.take(b'H');
         }
         while let Some(letter) = run.words.left_over() {

@@ -13,6 +13,7 @@ mod compensation;
 mod cycle;
 mod data_setting;
 mod dialect;
+mod direct;
 mod execute;
 mod expression;
 mod facts;

@@ -1,7 +1,7 @@
 //! Modal state: what a controller keeps from block to block.
 
 use super::code::Motion;
-use super::moves::FeedMode;
+use super::moves::{Corner, FeedMode};
 use crate::machine::{Machine, PathMode};
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 
@@ -81,6 +81,8 @@ pub struct Modal {
     pub feed: Option<Feed>,
     /// Whether the program may run through the end of a block.
     pub path_mode: PathMode,
+    /// How corners may be taken.
+    pub corner: Corner,
     /// S in force, 1/min; 0 without one.
     pub spindle_rpm: f64,
     /// G7: words of X are diameters.
@@ -110,6 +112,7 @@ impl Modal {
             },
             feed: None,
             path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
+            corner: Corner::default(),
             spindle_rpm: 0.0,
             diameter: language.dialect.diameter,
         }

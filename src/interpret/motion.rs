@@ -102,6 +102,7 @@ impl Control<'_> {
             dwell_s,
             loads: self.loads,
             path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
         }));
     }
 
@@ -242,11 +243,6 @@ impl Control<'_> {
             };
             feed_mm_s = speed_mm_s;
         }
-        let extrudes = moving.contains(EXTRUDER);
-        let mut slot = usize::from(!extrudes);
-        if moving.0 & !self.machine.controller.language.printer.path_accel_spares.0 == 0 {
-            slot = 2;
-        }
         let mut rapid_factor = self.knobs.rapid_factor;
         if self.printer.adjusts {
             let course = Course {
@@ -278,15 +274,28 @@ impl Control<'_> {
             feed_mm_s,
             feed_mode: self.modal.feed_mode,
             accel_mm_s2: *self.knobs.accel(kind),
-            path_accel_mm_s2: self.knobs.path_accel_mm_s2[slot],
+            path_accel_mm_s2: self.path_accel(moving),
             rapid_factor,
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
         }));
         self.position.at = *end;
         self.special.left = None;
         self.position.unknown.0 &= !unknown_start.0;
+    }
+
+    /// The limit of acceleration along the path of a move.
+    #[inline]
+    pub(super) fn path_accel(&self, moving: AxisSet) -> f64 {
+        let spares = self.machine.controller.language.printer.path_accel_spares;
+        let slot = if moving.0 & !spares.0 == 0 {
+            2
+        } else {
+            usize::from(!moving.contains(EXTRUDER))
+        };
+        self.knobs.path_accel_mm_s2[slot]
     }
 
     /// The path speed that F asks for, mm/s; reports an F that is missing.

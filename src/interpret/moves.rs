@@ -107,6 +107,31 @@ pub struct Move {
     pub loads: u32,
     /// What happens at the end of this move.
     pub path_mode: PathMode,
+    /// What may happen to the corner there, if the path does not stop.
+    pub corner: Corner,
+}
+
+/// How a corner may be taken without a stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Corner {
+    /// G61: on the programmed path.
+    Exact,
+    /// G64: as the controller does it.
+    Round {
+        /// P of `LinuxCNC`, mm; 0: none was given.
+        tolerance_mm: f64,
+        /// Q of `LinuxCNC`, within which lines are put together, mm; 0: none are.
+        join_mm: f64,
+    },
+}
+
+impl Default for Corner {
+    fn default() -> Self {
+        Self::Round {
+            tolerance_mm: 0.0,
+            join_mm: 0.0,
+        }
+    }
 }
 
 /// An arc or a helix.

@@ -208,6 +208,10 @@ impl Control<'_> {
         if let Some(value) = self.parameters.number(number) {
             return Read::Value(value);
         }
+        let shifted = self.compensation.as_ref().is_some_and(|it| it.shifts());
+        if shifted && matches!(number, 5001..=5009 | 5021..=5029 | 5041..=5049) {
+            return Read::Unknown(UNDER_COMPENSATION);
+        }
         let axis = |first: u32| (number - first) as usize;
         let known = match number {
             0 | 100..=199 | 500..=999 => return Read::Value(None),

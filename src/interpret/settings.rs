@@ -4,7 +4,7 @@
 use super::code::{GCode, Motion, path_mode};
 use super::execute::{Control, Run};
 use super::modal::{Feed, NumberText};
-use super::moves::{ActionKind, FeedMode};
+use super::moves::{ActionKind, Corner, FeedMode};
 use crate::machine::{Family, PathMode};
 use crate::source::Span;
 
@@ -79,7 +79,6 @@ impl Control<'_> {
                 GCode::PathMode => self.path_mode(number, run),
                 GCode::MirrorX => self.mirror_x(span, run),
                 GCode::Ignored => self.arguments_of_ignored(number, run),
-                GCode::NoseRadius => Self::nose_radius(span, run),
                 GCode::Retract(initial) => self.retract_level(initial, span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
@@ -134,10 +133,19 @@ impl Control<'_> {
         let asked = path_mode(number, &self.machine.controller.language);
         let exact = self.machine.path.mode == Some(PathMode::ExactStop);
         self.modal.path_mode = if exact { PathMode::ExactStop } else { asked };
-        if number == 640 {
-            run.words.take(b'P');
-            run.words.take(b'Q');
-        }
+        // "G64 Path Blending" (`LinuxCNC`): Q is P where only P is given.
+        self.modal.corner = if number == 640 {
+            let mm_per_unit = self.modal.mm_per_unit;
+            let [p, q] = [b'P', b'Q'].map(|letter| run.words.take(letter));
+            let [tolerance_mm, join_mm] =
+                [p, p.and(q.or(p))].map(|value| value.unwrap_or(0.0).max(0.0) * mm_per_unit);
+            Corner::Round {
+                tolerance_mm,
+                join_mm,
+            }
+        } else {
+            Corner::Exact
+        };
         run.act(ActionKind::PathMode, f64::from(number) / 10.0);
     }
 

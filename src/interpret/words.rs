@@ -382,9 +382,18 @@ impl Iterator for Axes<'_> {
     }
 }
 
-/// Axis index of each letter from A; letters that name no axis are not asked.
+/// The axis that a letter names.
+#[inline]
+pub(super) fn axis_of(letter: u8) -> Option<usize> {
+    let axis = *AXIS_OF_LETTER.get(usize::from(letter.wrapping_sub(b'A')))?;
+    (axis != NO_AXIS).then_some(usize::from(axis))
+}
+
+const NO_AXIS: u8 = u8::MAX;
+
+/// Axis index of each letter from A.
 const AXIS_OF_LETTER: [u8; 26] = {
-    let mut table = [0; 26];
+    let mut table = [NO_AXIS; 26];
     let letters = *b"XYZABCUVWE";
     let mut axis = 0;
     while axis < letters.len() {

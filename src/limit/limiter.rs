@@ -7,13 +7,14 @@
 use std::collections::VecDeque;
 
 use super::change::{Change, Permit};
+use super::depth::Depths;
 use super::lever::Obstacle;
 use super::options::LimitOptions;
-use super::solver::Solver;
+use super::solver::{Ends, Solver};
 use super::window;
 use crate::interpret::Move;
 use crate::machine::Machine;
-use crate::power::Assessment;
+use crate::power::{Assessment, Certificate};
 
 /// What was decided for one move.
 ///
@@ -55,15 +56,18 @@ pub(super) struct Slot {
 pub struct Limiter<'m> {
     solver: Solver<'m>,
     slots: VecDeque<Slot>,
+    depths: Depths,
 }
 
 impl<'m> Limiter<'m> {
-    /// A limiter for a machine.
+    /// A limiter for a machine. `depths` is what an earlier round has found to
+    /// be needed.
     #[must_use]
-    pub fn new(machine: &'m Machine, how: LimitOptions) -> Self {
+    pub fn new(machine: &'m Machine, how: LimitOptions, depths: Depths) -> Self {
         Self {
             solver: Solver::new(machine, how),
             slots: VecDeque::new(),
+            depths,
         }
     }
 
@@ -78,8 +82,19 @@ impl<'m> Limiter<'m> {
         sink: &mut impl FnMut(Outcome),
     ) {
         let joined = assessment.joined;
+        if assessment.ahead {
+            self.settle(find, sink);
+            let depth = self.depths.of(mv);
+            let ends = match assessment.certificate {
+                _ if depth == 0 && !assessment.blended => Ends::Rest,
+                Certificate::Planned => Ends::Any(depth),
+                Certificate::Robust => Ends::Any(depth.max(2)),
+            };
+            sink(self.alone(mv, assessment, ends, find));
+            return;
+        }
         if !assessment.blended {
-            let outcome = self.alone(mv, assessment, find);
+            let outcome = self.alone(mv, assessment, Ends::Rest, find);
             if joined && !self.slots.is_empty() {
                 let mut slot = Slot::new(mv, assessment);
                 slot.rider = true;
@@ -150,17 +165,19 @@ impl<'m> Limiter<'m> {
         &self,
         mv: &Move,
         assessment: &Assessment,
+        ends: Ends,
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Outcome {
-        if self.solver.model.fits(&assessment.demand) {
+        let deeper = assessment.ahead && self.depths.of(mv) > 0;
+        if self.solver.model.fits(&assessment.demand) && !deeper {
             return Outcome::default();
         }
         let Some(Waiting { permit, .. }) = find(self.slots.len()) else {
             return Outcome::default();
         };
-        match self.solver.solve(mv, assessment, &permit) {
+        match self.solver.solve(mv, assessment, &permit, ends) {
             Ok(change) => Outcome {
-                change: Some(Box::new(change)),
+                change: (!change.is_none()).then(|| Box::new(change)),
                 obstacle: None,
             },
             Err(obstacle) => Outcome {

@@ -5,6 +5,7 @@
 //! there is none. The limiter never sees text.
 
 mod change;
+mod depth;
 mod law;
 mod lever;
 mod limiter;
@@ -15,7 +16,8 @@ mod solver;
 mod window;
 
 pub use change::{Change, Permit};
+pub use depth::{Depths, Place};
 pub use lever::Obstacle;
 pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Law, LimitOptions, Strategy};
-pub use solver::Solver;
+pub use solver::{Ends, Solver};

@@ -7,6 +7,7 @@
 use super::change::Change;
 use super::lever::SpeedLever;
 use super::solver::{Case, Solver};
+use crate::plan::plan;
 
 /// Steps of the search; each narrows the bracket to 0.618.
 const STEPS: u32 = 24;
@@ -25,9 +26,8 @@ pub(super) fn best_pair(
     let none = Change::default();
     let time = |change: &Change| {
         let changed = change.apply(solver.machine, case.mv, case.permit);
-        let (plan, load) = solver.planned(&changed);
-        if load <= 1.0 + 1e-9 {
-            plan.duration_s
+        if solver.load(case, &changed) <= 1.0 + 1e-9 {
+            plan(solver.machine, &changed, solver.largest).duration_s
         } else {
             f64::INFINITY
         }

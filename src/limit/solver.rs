@@ -7,8 +7,8 @@ use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine};
-use crate::plan::{Overrides, Plan, plan};
+use crate::machine::{AxisValues, Machine, RapidJoint};
+use crate::plan::{Overrides, Plan, blended_bound, plan};
 use crate::power::{Assessment, PowerModel, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -30,6 +30,18 @@ pub(super) struct Case<'a> {
     pub(super) mv: &'a Move,
     pub(super) assessment: &'a Assessment,
     pub(super) permit: &'a Permit,
+    /// For how much of what may happen at its ends it has to fit.
+    pub(super) ends: Ends,
+}
+
+/// How a move begins and ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// At rest.
+    Rest,
+    /// At any speed up to its own, with any acceleration up to its own: it fits
+    /// whatever its neighbours do. The depth of [`super::Depths`].
+    Any(u8),
 }
 
 impl<'m> Solver<'m> {
@@ -59,11 +71,13 @@ impl<'m> Solver<'m> {
         mv: &Move,
         assessment: &Assessment,
         permit: &Permit,
+        ends: Ends,
     ) -> Result<Change, Obstacle> {
         let case = Case {
             mv,
             assessment,
             permit,
+            ends,
         };
         let levers = levers(self.machine, self.how, mv, permit);
         if mv.kind == MoveKind::Dwell
@@ -88,7 +102,7 @@ impl<'m> Solver<'m> {
     /// Nothing is proposed that does not fit, or that breaks a floor.
     fn verify(&self, case: Case<'_>, change: Change) -> Result<Change, Obstacle> {
         self.respect_floor(case, &change)?;
-        let load = self.load(&change.apply(self.machine, case.mv, case.permit));
+        let load = self.load(case, &change.apply(self.machine, case.mv, case.permit));
         if load <= 1.0 + 1e-9 {
             return Ok(change);
         }
@@ -102,11 +116,28 @@ impl<'m> Solver<'m> {
         ))
     }
 
-    /// Load ratio of a move at the largest overrides.
-    pub(super) fn load(&self, mv: &Move) -> f64 {
-        self.model
-            .demand(mv, &plan(self.machine, mv, self.largest), Want::PEAKS)
-            .load_ratio
+    /// Load ratio of a move, changed or not, at the largest overrides.
+    pub(super) fn load(&self, case: Case<'_>, mv: &Move) -> f64 {
+        let depth = match case.ends {
+            Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
+            _ => return self.planned(mv).1,
+        };
+        if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
+            let plan = plan(self.machine, mv, self.largest);
+            let ramps = Plan::ramps(plan.speed_limit_mm_s, plan.accel_mm_s2);
+            return self.model.demand(mv, &ramps, Want::PEAKS).load_ratio;
+        }
+        let bound = blended_bound(self.machine, mv, self.largest);
+        let load = self.model.robust(mv, &bound, &mv.accel_mm_s2).load_ratio;
+        load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
+    }
+
+    /// Whether a rapid became a feed that begins and ends at rest, since feeds
+    /// would be blended otherwise than rapids.
+    fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
+        self.machine.controller.planner.rapid_joint != RapidJoint::All
+            && rapid.kind == MoveKind::Rapid
+            && changed.kind != MoveKind::Rapid
     }
 
     /// Plan and load of a move.
@@ -136,7 +167,7 @@ impl<'m> Solver<'m> {
                 SpeedLever::RapidPercent(_) => moved.rapid_factor = value / 100.0,
                 _ => moved.feed_mm_s = value / self.largest.feed,
             }
-            self.load(&moved)
+            self.load(case, &moved)
         };
         let top = match lever {
             SpeedLever::RapidPercent(_) => base.rapid_factor * 100.0,
@@ -176,7 +207,7 @@ impl<'m> Solver<'m> {
                 ..*trial
             }
             .apply(self.machine, case.mv, case.permit);
-            if feed > 0.0 && feed.is_finite() && self.load(&rounded) <= 1.0 {
+            if feed > 0.0 && feed.is_finite() && self.load(case, &rounded) <= 1.0 {
                 return Some(feed);
             }
             feed = round_feed_down(feed * (1.0 - 2e-5));
@@ -206,7 +237,7 @@ impl<'m> Solver<'m> {
         let mut moved = base.clone();
         let mut load_at = |factor: f64| {
             moved.accel_mm_s2 = base.accel_mm_s2.map(|accel| accel * factor);
-            self.load(&moved)
+            self.load(case, &moved)
         };
         let load_top = load_at(1.0);
         let factor = if load_top <= 1.0 {

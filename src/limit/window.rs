@@ -14,7 +14,7 @@ use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::{Slot, Waiting};
 use super::options::{Law, Strategy};
 use super::root::largest;
-use super::solver::{Case, Solver};
+use super::solver::{Case, Ends, Solver};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
@@ -40,6 +40,7 @@ impl Member<'_> {
             mv: self.mv,
             assessment: &slots[self.index].assessment,
             permit: &self.permit,
+            ends: Ends::Rest,
         }
     }
 }
@@ -419,7 +420,7 @@ fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64
 
 /// Why a blended move could not be brought down.
 fn obstacle(solver: &Solver<'_>, case: Case<'_>) -> Obstacle {
-    match solver.solve(case.mv, case.assessment, case.permit) {
+    match solver.solve(case.mv, case.assessment, case.permit, Ends::Rest) {
         Err(obstacle) if obstacle.rule != "no-solution" => obstacle,
         _ => Obstacle::new(
             "no-solution",

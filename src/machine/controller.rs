@@ -2,6 +2,7 @@
 //! lower speed and acceleration. Profiles are data (TOML).
 
 use super::axis::{Axis, AxisKind};
+use super::look_ahead::LookAhead;
 use super::printer::Printer;
 
 /// A controller profile.
@@ -57,8 +58,8 @@ pub struct Language {
     pub ignored_m: Vec<u16>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
-    /// Whether G41 and G42 shift the path, as LinuxCNC does.
-    pub cutter_compensation: bool,
+    /// How G41 and G42 shift the path; `None`: not known, or they do not exist.
+    pub compensation: Option<CutterCompensation>,
     /// What printers differ in; of no account outside the Marlin family.
     pub printer: Printer,
     /// Whether G73 to G89 are the canned cycles of a milling control, with G98
@@ -125,6 +126,44 @@ pub enum Lathe {
     C,
 }
 
+/// How G41 and G42 shift the path by the radius of the tool.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CutterCompensation {
+    /// How the tool gets round outside corners.
+    pub corner: CompensationCorner,
+    /// Where the first move ends, and the last begins.
+    pub lead: CompensationLead,
+    /// Blocks without motion in the plane, one behind the other, beyond which
+    /// the control no longer sees the next corner.
+    pub idle_blocks: u32,
+}
+
+/// How the tool's centre gets round an outside corner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CompensationCorner {
+    /// By an arc about the corner.
+    Arc,
+    /// Straight on, to where the shifted tangents meet; in a sharp corner (the
+    /// path bends by more than 90°) only as far as the radius, then straight
+    /// across (Fanuc).
+    Line,
+    /// Straight on, to where the shifted lines meet; by an arc where the path
+    /// bends by more than 100° (SINUMERIK G451).
+    Intersection,
+}
+
+/// Where the move that switches the compensation on ends, and where the one
+/// that switches it off begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CompensationLead {
+    /// Beside its own end; then round the corner like any other (LinuxCNC).
+    Beside,
+    /// Beside the start of the next move (Fanuc's type A, SINUMERIK NORM).
+    Perpendicular,
+    /// As Perpendicular, but round outside corners like any other (Fanuc's type B).
+    Corner,
+}
+
 /// The family of words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
@@ -170,6 +209,8 @@ pub struct Planner {
     /// Whether a dwell of no time ends the move before it at rest, so that a
     /// rapid may be written as a feed between two of them.
     pub dwell_stops: bool,
+    /// How corners are run through; `None`: not modelled.
+    pub look_ahead: Option<LookAhead>,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

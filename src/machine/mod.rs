@@ -4,6 +4,7 @@ mod axis;
 pub mod builtin;
 mod config;
 mod controller;
+mod look_ahead;
 mod model;
 mod printer;
 
@@ -11,5 +12,6 @@ pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
 pub use builtin::builtin_controller;
 pub use config::{Loaded, controller_schema, schema};
 pub use controller::*;
+pub use look_ahead::*;
 pub use model::*;
 pub use printer::*;

@@ -1,7 +1,7 @@
 //! What would bring a move down, in a few words.
 
 use crate::interpret::{FeedMode, Interpreter, Move, MoveKind};
-use crate::limit::{Change, Law, LimitOptions, Permit, Solver, Strategy};
+use crate::limit::{Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::Machine;
 use crate::power::Assessment;
 
@@ -31,7 +31,7 @@ impl<'m> Adviser<'m> {
         assessment: &Assessment,
         interpreter: &Interpreter<'_>,
     ) -> String {
-        if assessment.blended {
+        if assessment.blended && !assessment.ahead {
             return "lower feed or acceleration here and in the neighbouring blocks".to_owned();
         }
         if interpreter.compensates() {
@@ -51,7 +51,12 @@ impl<'m> Adviser<'m> {
             feed_before: None,
             feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
         };
-        match self.solver.solve(mv, assessment, &permit) {
+        let ends = if assessment.blended {
+            Ends::Any(0)
+        } else {
+            Ends::Rest
+        };
+        match self.solver.solve(mv, assessment, &permit, ends) {
             Ok(change) => self.words(mv, &change),
             Err(obstacle) => format!("{}: {}", obstacle.message, obstacle.help),
         }

@@ -10,7 +10,7 @@ use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Move, Step};
 use crate::machine::Machine;
-use crate::power::{Assessor, Want};
+use crate::power::{Assessment, Assessor, Want};
 
 /// Reads a program and gives its figures; with `rows`, every move too.
 ///
@@ -29,14 +29,17 @@ pub fn analyze<R: Read + Seek + Send>(
     let adviser = Adviser::new(machine);
     while let Some(line) = front.next_line()? {
         tally.learn_files(line.files);
+        assessor.want = tally.want();
         for step in &*line.steps {
-            if let Step::Move(mv) = step {
-                assessor.want = tally.want();
-                assessor.push(mv, line.text_of(mv), &mut |mv, assessment, text| {
-                    let help = || adviser.help(mv, assessment, line.interpreter);
-                    tally.take(mv, assessment, text, help);
-                });
+            let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
+                let help = || adviser.help(mv, assessment, line.interpreter);
+                tally.take(mv, assessment, text, help);
+            };
+            match step {
+                Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
+                Step::Action(action) => assessor.act(action, &mut sink),
             }
+            assessor.want = tally.want();
         }
         tally.check()?;
     }

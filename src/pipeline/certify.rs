@@ -8,9 +8,10 @@
 use super::tally::Tally;
 use super::{Failure, Options, Row, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Action, Arc, Diagnostics, Interpreter, Move, MoveKind, Step};
+use crate::interpret::{Action, Arc, Diagnostics, Facts, Interpreter, Move, MoveKind, Step};
+use crate::limit::{Depths, Place};
 use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
-use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
 use crate::source::{Span, lines};
 use crate::syntax::{Block, scan_line};
 
@@ -33,6 +34,7 @@ pub(super) enum Expected {
 #[derive(Debug)]
 pub(super) struct ExpectedMove {
     pub(super) line: u64,
+    pub(super) text: u16,
     pub(super) kind: MoveKind,
     pub(super) end: AxisValues,
     pub(super) arc: Option<Arc>,
@@ -68,6 +70,7 @@ pub(super) struct Certifier<'m, 'r> {
     assessor: Assessor<'m>,
     block: Block,
     steps: Vec<Step>,
+    facts: Facts,
     line: u64,
     verdict: Verdict<'m, 'r>,
 }
@@ -82,6 +85,12 @@ pub(super) struct Verdict<'m, 'r> {
     done: usize,
     judged: usize,
     reasons: Reasons,
+    /// Lines that do not fit since their neighbours were changed.
+    deeper: Vec<Place>,
+    /// The line of the move before, and whether that of the next one is to be
+    /// lowered with it.
+    before: Option<Place>,
+    deepen_next: bool,
 }
 
 /// Why the certificate does not hold: the first reasons in full.
@@ -116,6 +125,8 @@ impl Reasons {
 pub(super) struct Certified {
     pub(super) summary: Summary,
     pub(super) reasons: Reasons,
+    /// Lines that would have to be lowered deeper, in the order of the program.
+    pub(super) deeper: Vec<Place>,
 }
 
 impl<'m, 'r> Certifier<'m, 'r> {
@@ -130,6 +141,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
             block: Block::default(),
             steps: Vec::new(),
+            facts: Facts::default(),
             line: 0,
             verdict: Verdict::new(machine, options, rows),
         }
@@ -148,10 +160,11 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 assessor,
                 block,
                 steps,
+                facts,
                 verdict,
                 line,
             } = self;
-            interpreter.execute(*line, text, block, steps, diagnostics);
+            interpreter.execute(*line, text, block, steps, facts, diagnostics);
             for step in &*steps {
                 let mut text = text;
                 if let Step::Move(mv) = step
@@ -160,11 +173,13 @@ impl<'m, 'r> Certifier<'m, 'r> {
                     text = interpreter.held_text(mv).unwrap_or(text);
                 }
                 verdict.compare_step(step, text);
-                if let Step::Move(mv) = step {
-                    assessor.want = verdict.tally.want();
-                    assessor.push(mv, text, &mut |mv, after, text| {
-                        verdict.judge(mv, after, text);
-                    });
+                assessor.want = verdict.tally.want();
+                let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
+                    verdict.judge(mv, after, text);
+                };
+                match step {
+                    Step::Move(mv) => assessor.push(mv, text, &mut sink),
+                    Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
         }
@@ -224,6 +239,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
             done: 0,
             judged: 0,
             reasons: Reasons::default(),
+            deeper: Vec::new(),
+            before: None,
+            deepen_next: false,
         }
     }
 
@@ -263,7 +281,11 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         let mut summary = self.tally.finish(false);
         summary.lines = lines;
-        Ok(Certified { summary, reasons })
+        Ok(Certified {
+            summary,
+            reasons,
+            deeper: self.deeper,
+        })
     }
 
     /// Forgets what is judged and takes more.
@@ -309,6 +331,19 @@ impl<'m, 'r> Verdict<'m, 'r> {
             return;
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
+            let place = (original.text, original.line);
+            if after.ahead && !original.hopeless && !self.model.fits(&after.demand) {
+                // Under the robust bound the neighbours count as well.
+                let robust = after.certificate == Certificate::Robust;
+                let before = self.before.filter(|_| robust);
+                self.deeper.extend(before);
+                self.deeper.push(place);
+                self.deepen_next = robust;
+            } else if std::mem::take(&mut self.deepen_next) {
+                self.deeper.push(place);
+            }
+            self.deeper.truncate(Depths::wanted() + 1);
+            self.before = Some(place);
             compare(&self.model, original, mv, after, text, &mut self.reasons);
             if let Some(row) = &mut original.row {
                 row.peak_after_w = Some(after.demand.peak_w);

@@ -13,8 +13,18 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
              keeps each axis inside its own limits; times are those with a stop at each block"
                 .to_owned()
         }
+        _ if summary.ahead => format!(
+            "planned: the look-ahead of `{}`, as its profile describes it",
+            machine.controller.name
+        ),
         _ => "planned: every block ends at rest (exact stop)".to_owned(),
     }];
+    if summary.ahead && summary.certificate == Some(Certificate::Robust) {
+        conditions.push(format!(
+            "the other moves are planned with the look-ahead of `{}`",
+            machine.controller.name
+        ));
+    }
     if machine.path.mode == Some(PathMode::ExactStop) {
         conditions
             .push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());

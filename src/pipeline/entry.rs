@@ -66,10 +66,10 @@ impl Entry {
         self.text.clear();
         self.text.extend_from_slice(line.text);
         std::mem::swap(&mut self.block, line.block);
-        self.facts = line.facts;
+        std::mem::swap(&mut self.facts, line.facts);
         std::mem::swap(&mut self.steps, line.steps);
         self.earlier.clear();
-        if line.facts.compensated {
+        if self.facts.compensated {
             self.take_earlier(line);
         }
         self.moves = self

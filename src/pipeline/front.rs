@@ -26,7 +26,7 @@ pub(super) struct Line<'f, 'm> {
     /// Buffers: they may be exchanged for others.
     pub(super) block: &'f mut Block,
     pub(super) steps: &'f mut Vec<Step>,
-    pub(super) facts: Facts,
+    pub(super) facts: &'f mut Facts,
     /// Names of the files of subprograms so far.
     pub(super) files: &'f [String],
     /// The state behind it.
@@ -52,6 +52,7 @@ pub(super) struct Front<'m, R> {
     interpreter: Interpreter<'m>,
     pub(super) diagnostics: Diagnostics,
     steps: Vec<Step>,
+    facts: Facts,
     /// Number of lines read.
     pub(super) lines: u64,
     /// How many of them did something.
@@ -71,6 +72,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             interpreter: Interpreter::new(machine, &options.reading),
             diagnostics: Diagnostics::default(),
             steps: Vec::new(),
+            facts: Facts::default(),
             lines: 0,
             executed: 0,
             flow: None,
@@ -111,21 +113,23 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         self.lines = number;
         scan_line(text, number == 1, &mut self.block);
         self.steps.clear();
-        let facts = self.interpreter.execute(
+        self.interpreter.execute(
             number,
             text,
             &mut self.block,
             &mut self.steps,
+            &mut self.facts,
             &mut self.diagnostics,
         );
-        self.executed += u64::from(facts.executed);
-        if facts.transfers {
-            return self.begin_flow(facts);
+        self.executed += u64::from(self.facts.executed);
+        if self.facts.transfers {
+            return self.begin_flow();
         }
         let Self {
             reader,
             block,
             steps,
+            facts,
             interpreter,
             ..
         } = self;
@@ -143,7 +147,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
     /// Reads the program again, whole, since the line that was just executed
     /// does not go on at the next.
     #[cold]
-    fn begin_flow(&mut self, facts: Facts) -> Result<Option<Line<'_, 'm>>, Failure> {
+    fn begin_flow(&mut self) -> Result<Option<Line<'_, 'm>>, Failure> {
         let input = self.reader.get_mut();
         let mut program = Vec::new();
         input
@@ -163,7 +167,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             .flow
             .insert(Box::new(Flow::new(program, line, &self.reading)));
         self.lines = flow.lines();
-        Ok(self.conclude(facts, 1))
+        Ok(self.conclude(1))
     }
 
     #[cold]
@@ -192,25 +196,27 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         self.steps.clear();
         self.interpreter.begin_line(run, place.text);
         let said = self.diagnostics.list.len();
-        let facts = self.interpreter.execute(
+        self.interpreter.execute(
             number,
             text,
             &mut self.block,
             &mut self.steps,
+            &mut self.facts,
             &mut self.diagnostics,
         );
         for found in self.diagnostics.list.iter_mut().skip(said) {
             found.file = flow.file().map(str::to_owned);
         }
-        self.executed += u64::from(facts.executed);
-        Ok(self.conclude(facts, run))
+        self.executed += u64::from(self.facts.executed);
+        Ok(self.conclude(run))
     }
 
     /// Lets the flow go on behind a line, and hands the line over.
-    fn conclude(&mut self, facts: Facts, run: u32) -> Option<Line<'_, 'm>> {
+    fn conclude(&mut self, run: u32) -> Option<Line<'_, 'm>> {
         let Self {
             block,
             steps,
+            facts,
             interpreter,
             diagnostics,
             flow,
@@ -262,12 +268,16 @@ impl<'m, R: Read + Seek> Front<'m, R> {
                 .push(Diagnostic::error("no-program", message).help("give a part program"));
         }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
-            let message =
-                "the program ends under cutter compensation: where its last move ends is not known";
-            self.diagnostics.push(
-                Diagnostic::error("compensation", message)
-                    .help("write G40 and a move, or the end of the program: M2 or M30"),
-            );
+            let (rule, message, help) = if self.interpreter.holds_corner() {
+                let message = "the program ends before the second move of a corner";
+                ("corner-word", message, "write the move behind the corner")
+            } else {
+                let message = "the program ends under cutter compensation: where its last move ends is not known";
+                let help = "write G40 and a move, or the end of the program: M2 or M30";
+                ("compensation", message, help)
+            };
+            self.diagnostics
+                .push(Diagnostic::error(rule, message).help(help));
         }
         let diagnostics = std::mem::take(&mut self.diagnostics);
         refuse_on_errors(diagnostics).map_err(|failure| self.name_foreign(failure))

@@ -11,7 +11,7 @@ use super::writer::{Writer, Written};
 use super::{
     Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
 };
-use crate::limit::Law;
+use crate::limit::{Depths, Law, Limiter};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
 
 /// Pieces that may wait for the certifier.
@@ -34,33 +34,88 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
-    let exact = rows.is_some();
-    let mut certifier = Certifier::new(
-        machine,
-        options,
-        rows.as_mut().map(|rows| as_sink(&mut **rows)),
-    );
-    let writer = Writer::new(&mut input, machine, options, how, exact, &mut output, None);
-    let streamed = if options.threads > 1 {
-        side_by_side(writer, certifier)?
-    } else {
-        let written = writer.run(&mut |batch| certifier.take(batch))?;
-        match written {
-            Some(written) => Some((written, certifier.finish()?)),
-            None => None,
+    let mut depths = Depths::default();
+    loop {
+        let job = Job {
+            machine,
+            options,
+            how,
+            depths: depths.clone(),
+        };
+        let (written, certified) = job.run(&mut input, &mut output, &mut rows)?;
+        if certified.deeper.is_empty() || !depths.deepen(&certified.deeper) {
+            return Ok(conclude(machine, options, written, certified));
         }
-    };
-    let (written, certified) = if let Some(done) = streamed {
-        done
-    } else {
-        output.restart().map_err(Failure::Output)?;
-        if let Some(rows) = &mut rows {
-            rows.restart().map_err(Failure::Output)?;
+        // The changes made neighbours exceed the limit: planned anew with more.
+        input.rewind().map_err(Failure::Input)?;
+        restart(&mut output, &mut rows)?;
+    }
+}
+
+/// One round of limiting.
+struct Job<'a> {
+    machine: &'a Machine,
+    options: &'a Options,
+    how: LimitOptions,
+    depths: Depths,
+}
+
+impl Job<'_> {
+    /// Writes and certifies the program.
+    fn run<R: Read + Seek + Send, W: Write + Restart + Send>(
+        self,
+        mut input: R,
+        mut output: W,
+        rows: &mut Option<&mut dyn RestartRows>,
+    ) -> Result<(Written, Certified), Failure> {
+        let Self {
+            machine,
+            options,
+            how,
+            depths,
+        } = self;
+        let exact = rows.is_some();
+        let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
+        let mut certifier = Certifier::new(machine, options, sink);
+        let limiter = Limiter::new(machine, how, depths.clone());
+        let writer = Writer::new(
+            &mut input,
+            machine,
+            options,
+            limiter,
+            exact,
+            &mut output,
+            None,
+        );
+        let streamed = if options.threads > 1 {
+            side_by_side(writer, certifier)?
+        } else {
+            let written = writer.run(&mut |batch| certifier.take(batch))?;
+            match written {
+                Some(written) => Some((written, certifier.finish()?)),
+                None => None,
+            }
+        };
+        if let Some(done) = streamed {
+            return Ok(done);
         }
-        let rows = rows.map(as_sink);
-        limit_whole(input, machine, options, how, output, rows)?
-    };
-    Ok(conclude(machine, options, written, certified))
+        restart(&mut output, rows)?;
+        let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
+        let limiter = Limiter::new(machine, how, depths);
+        limit_whole(input, machine, options, limiter, output, sink)
+    }
+}
+
+/// Forgets what was written.
+fn restart(
+    output: &mut impl Restart,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<(), Failure> {
+    output.restart().map_err(Failure::Output)?;
+    match rows {
+        Some(rows) => rows.restart().map_err(Failure::Output),
+        None => Ok(()),
+    }
 }
 
 fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
@@ -134,6 +189,7 @@ fn conclude(
     let Certified {
         summary: mut after,
         reasons: found,
+        deeper: _,
     } = certified;
     reasons.count += found.count;
     reasons.list.extend(found.list);

@@ -67,6 +67,8 @@ pub struct Summary {
     pub worst: Vec<Unfit>,
     /// Which certificate the figures belong to: robust when any move needs it.
     pub certificate: Option<Certificate>,
+    /// Some moves are planned together, with the controller's look-ahead.
+    pub ahead: bool,
     /// Under which conditions they hold, in plain sentences.
     pub conditions: Vec<String>,
     /// Warnings and notes.

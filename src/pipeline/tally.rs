@@ -153,6 +153,7 @@ impl<'m, 'r> Tally<'m, 'r> {
             summary.regen_w = demand.regen_w;
             summary.regen_line = mv.line;
         }
+        summary.ahead |= assessment.ahead;
         if assessment.certificate == Certificate::Robust {
             summary.certificate = Some(Certificate::Robust);
         }

@@ -11,8 +11,9 @@ use super::entry::Entry;
 use super::front::Front;
 use super::table::{LineKey, Table};
 use super::writer::{Writer, Written};
-use super::{Failure, LimitOptions, Options, RowSink};
+use super::{Failure, Options, RowSink};
 use crate::interpret::{Move, MoveKind, Step};
+use crate::limit::Limiter;
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Rewriter};
@@ -26,7 +27,7 @@ pub(super) fn limit_whole<R: Read + Seek>(
     mut input: R,
     machine: &Machine,
     options: &Options,
-    how: LimitOptions,
+    limiter: Limiter<'_>,
     mut output: impl Write,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<(Written, Certified), Failure> {
@@ -42,7 +43,7 @@ pub(super) fn limit_whole<R: Read + Seek>(
         source,
         machine,
         options,
-        how,
+        limiter,
         exact,
         std::io::sink(),
         Some(table),
@@ -231,10 +232,12 @@ impl<'m, 'p> Original<'m, 'p> {
                         feed,
                         assessment: None,
                     });
-                    if let Step::Move(mv) = step {
-                        assessor.push(mv, line.text, &mut |_, assessment, _| {
-                            waiting.judge(assessment);
-                        });
+                    let mut sink = |_: &Move, assessment: &Assessment, _: &[u8]| {
+                        waiting.judge(assessment);
+                    };
+                    match step {
+                        Step::Move(mv) => assessor.push(mv, line.text, &mut sink),
+                        Step::Action(action) => assessor.act(action, &mut sink),
                     }
                 }
             } else {
@@ -275,6 +278,7 @@ impl<'m, 'p> Original<'m, 'p> {
         self.start_s += assessment.duration_s;
         Expected::Move(ExpectedMove {
             line: mv.line,
+            text: mv.text,
             kind: mv.kind,
             end: mv.end,
             arc: mv.arc,
@@ -315,11 +319,13 @@ fn certify(
             };
             for step in &*line.steps {
                 verdict.compare_step(step, line.text);
-                if let Step::Move(mv) = step {
-                    assessor.want = verdict.want();
-                    assessor.push(mv, line.text_of(mv), &mut |mv, after, text| {
-                        verdict.judge(mv, after, text);
-                    });
+                assessor.want = verdict.want();
+                let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
+                    verdict.judge(mv, after, text);
+                };
+                match step {
+                    Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
+                    Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
         }

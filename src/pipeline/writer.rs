@@ -12,8 +12,8 @@ use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::table::Table;
 use super::tally::Tally;
-use super::{Failure, LimitOptions, Options, Summary};
-use crate::interpret::{KnobState, MoveKind, Step};
+use super::{Failure, Options, Summary};
+use crate::interpret::{KnobState, Move, MoveKind, Step};
 use crate::limit::{Change, Limiter, Obstacle, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
@@ -76,7 +76,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         input: R,
         machine: &'m Machine,
         options: &Options,
-        how: LimitOptions,
+        limiter: Limiter<'m>,
         exact: bool,
         output: W,
         table: Option<Table>,
@@ -91,7 +91,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             front,
             output,
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
-            limiter: Limiter::new(machine, how),
+            limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
             entries: VecDeque::new(),
@@ -228,15 +228,16 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let Some(entry) = entries.back() else {
             return Ok(true);
         };
-        for (step, mv) in entry.steps.iter().enumerate() {
-            let Step::Move(mv) = mv else { continue };
-            self.mode = mv.path_mode;
-            flights.push_back(Flight {
-                entry: number,
-                step,
-                assessment: None,
-            });
+        for (index, step) in entry.steps.iter().enumerate() {
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            if let Step::Move(mv) = step {
+                self.mode = mv.path_mode;
+                flights.push_back(Flight {
+                    entry: number,
+                    step: index,
+                    assessment: None,
+                });
+            }
             let mut judge = Judge {
                 limiter,
                 queue: Queue {
@@ -248,10 +249,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 judged,
                 outcomes,
             };
-            assessor.push(mv, entry.text_of(mv), &mut |mv, assessment, text| {
+            let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
                 tally.add(mv, assessment, text);
                 judge.take(mv, assessment);
-            });
+            };
+            match step {
+                Step::Move(mv) => assessor.push(mv, entry.text_of(mv), &mut sink),
+                Step::Action(action) => assessor.act(action, &mut sink),
+            }
         }
         Ok(true)
     }
@@ -259,7 +264,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     /// Judges and decides the moves of a block none of which has to wait.
     fn decide_at_once(&mut self, entry: &mut Entry) {
         for (step, mv) in entry.steps.iter().enumerate() {
-            let Step::Move(mv) = mv else { continue };
+            let mv = match mv {
+                Step::Move(mv) => mv,
+                // No move waits that it could let go.
+                Step::Action(action) => {
+                    self.assessor.act(action, &mut |_, _, _| {});
+                    continue;
+                }
+            };
             self.mode = mv.path_mode;
             let Self {
                 assessor,
@@ -435,6 +447,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.start_s += assessment.duration_s;
             self.batch.expected.push(Expected::Move(ExpectedMove {
                 line: mv.line,
+                text: mv.text,
                 kind: mv.kind,
                 end: mv.end,
                 arc: mv.arc,

@@ -105,7 +105,12 @@ pub(super) fn feed_factor(kind: MoveKind, overrides: Overrides) -> f64 {
 
 /// What the axes permit on a straight path.
 #[inline]
-fn straight(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> PathLimits {
+pub(super) fn straight(
+    machine: &Machine,
+    mv: &Move,
+    overrides: Overrides,
+    caps: &Caps,
+) -> PathLimits {
     let factor = rapid_factor(mv, overrides, caps);
     let mut limits = PathLimits {
         speed_mm_s: f64::INFINITY,

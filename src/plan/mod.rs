@@ -6,11 +6,14 @@
 mod arc;
 mod bound;
 mod limits;
+pub mod lookahead;
 mod profile;
 mod trajectory;
 
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
+pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
 pub use trajectory::{
-    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, path_figures, plan, plan_with,
+    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, is_independent, path_figures,
+    plan, plan_with,
 };

@@ -118,6 +118,22 @@ impl Plan {
         }
     }
 
+    /// The ramps between rest and a speed (mm/s) at an acceleration (mm/s²),
+    /// however long their path: what a move that may begin and end at any speed
+    /// meets at most.
+    #[must_use]
+    pub fn ramps(speed_mm_s: f64, accel_mm_s2: f64) -> Self {
+        let length_mm = speed_mm_s * speed_mm_s / accel_mm_s2;
+        let profile = Profile::trapezoid(length_mm, speed_mm_s, accel_mm_s2);
+        Self {
+            duration_s: profile.duration_s(),
+            trajectory: Trajectory::Path(profile),
+            speed_limit_mm_s: speed_mm_s,
+            accel_mm_s2,
+            top_speed_mm_s: speed_mm_s,
+        }
+    }
+
     /// A cruise alone: what remains of a long move without its ramps.
     #[must_use]
     pub fn cruise(speed_mm_s: f64, length_mm: f64) -> Self {
@@ -227,8 +243,9 @@ impl PathFigures {
 }
 
 /// Whether each axis of a move runs for itself.
+#[must_use]
 #[inline]
-fn is_independent(machine: &Machine, mv: &Move) -> bool {
+pub fn is_independent(machine: &Machine, mv: &Move) -> bool {
     mv.kind == MoveKind::Rapid && machine.path.rapid == RapidPath::Independent
 }
 

@@ -122,19 +122,38 @@ impl<'a> Circle<'a> {
     /// Finds the peak of one phase.
     fn search(&self, phase: &Phase, side: Side, search: &mut Search) {
         for (from, to, last) in Pieces::new(self, phase) {
-            let fast = if phase.accel_mm_s2 > 0.0 { to } else { from };
-            let fastest = self.motion(phase, fast);
-            let envelope = self.envelope(&fastest, side);
-            if search.covers(envelope) {
-                return;
-            }
             if last {
-                search.take_in(envelope);
+                let fastest = self.motion(phase, if phase.accel_mm_s2 > 0.0 { to } else { from });
+                let envelope = self.envelope(&fastest, side);
+                if !search.covers(envelope) {
+                    search.take_in(envelope);
+                }
                 return;
             }
-            let piece = Piece::new(self, phase, side, (from, to), &fastest);
-            search.run(&piece, from, to, envelope.abs());
+            if !self.search_piece(phase, (from, to), side, search) {
+                return;
+            }
         }
+    }
+
+    /// The same between two instants, in s, between which no axis turns back;
+    /// false where the power at any angle is below what was found.
+    pub fn search_piece(
+        &self,
+        phase: &Phase,
+        (from, to): (f64, f64),
+        side: Side,
+        search: &mut Search,
+    ) -> bool {
+        let fast = if phase.accel_mm_s2 > 0.0 { to } else { from };
+        let fastest = self.motion(phase, fast);
+        let envelope = self.envelope(&fastest, side);
+        if search.covers(envelope) {
+            return false;
+        }
+        let piece = Piece::new(self, phase, side, (from, to), &fastest);
+        search.run(&piece, from, to, envelope.abs());
+        true
     }
 
     /// Upper bound of the power on one side at speeds up to those of `m`.

@@ -53,7 +53,7 @@ pub(super) fn phase_energy_j(circle: &Circle<'_>, phase: &Phase) -> f64 {
 }
 
 /// Energy of a piece on which no axis turns back, J.
-fn piece_energy_j(circle: &Circle<'_>, phase: &Phase, from: f64, to: f64) -> f64 {
+pub(super) fn piece_energy_j(circle: &Circle<'_>, phase: &Phase, from: f64, to: f64) -> f64 {
     let signs = circle.signs(phase, 0.5 * (from + to));
     let power = |t| nominal_w(circle, &signs, &circle.motion(phase, t));
     let mut sum = 0.0;

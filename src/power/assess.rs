@@ -4,11 +4,12 @@
 //! same order. A move that may be blended with its successor waits for it; all
 //! others are judged at once.
 
+use super::ahead::Ahead;
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
 use super::robust::Part;
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::interpret::{Action, ActionKind, Move, MoveKind};
+use crate::machine::{Family, Machine, PathMode, RapidJoint};
 use crate::plan::{
     Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
 };
@@ -55,6 +56,8 @@ pub struct Assessment {
     /// The controller may run into it from its predecessor without a stop; a
     /// move of no length is passed on the way to the next.
     pub joined: bool,
+    /// It is planned together with its neighbours.
+    pub ahead: bool,
 }
 
 /// Judges the moves of one program.
@@ -80,6 +83,8 @@ pub struct Assessor<'m> {
     pub needs_robust: bool,
     /// The last move was a dwell.
     dwelt: bool,
+    /// Moves that the controller plans together, where its rules are modelled.
+    ahead: Option<Box<Ahead>>,
 }
 
 /// A move that waits for its successor.
@@ -133,6 +138,10 @@ impl<'m> Assessor<'m> {
             spindle: largest.spindle.min(1.0),
         };
         let model = PowerModel::new(machine);
+        let rules = machine.controller.planner.look_ahead.filter(|_| {
+            requested != Some(Certificate::Robust) && machine.path.mode != Some(PathMode::ExactStop)
+        });
+        let ahead = rules.map(|rules| Box::new(Ahead::new(machine, rules, [largest, nominal])));
         Self {
             machine,
             model,
@@ -145,6 +154,7 @@ impl<'m> Assessor<'m> {
             spare: None,
             needs_robust: false,
             dwelt: false,
+            ahead,
         }
     }
 
@@ -157,7 +167,43 @@ impl<'m> Assessor<'m> {
     /// Whether the next move would wait for its successor, or others for it.
     #[must_use]
     pub fn waits(&self, mv: &Move) -> bool {
-        self.held.is_some() || self.may_blend(mv)
+        let open = self.ahead.as_ref().is_some_and(|ahead| ahead.is_open());
+        open || self.held.is_some() || self.may_blend(mv)
+    }
+
+    /// Takes something that moves no axis: it may stop the motion. Hands on what
+    /// can be judged then.
+    pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        let Some(ahead) = &mut self.ahead else { return };
+        match effect(action, self.machine.controller.language.family) {
+            Effect::None => {}
+            Effect::Stop => {
+                ahead.stop(&self.model);
+                ahead.hand_on(&self.model, sink);
+            }
+            Effect::Unknown => ahead.doubt(),
+        }
+    }
+
+    /// A move that the controller plans together with others, or that follows
+    /// such.
+    fn push_ahead(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let figures = path_figures(self.machine, mv, self.largest);
+        let mut assessment = self.alone(mv, figures.as_ref());
+        assessment.blended = false;
+        let Some(ahead) = &mut self.ahead else { return };
+        if mv.kind == MoveKind::Dwell {
+            ahead.stop(&self.model);
+            ahead.hand_on(&self.model, sink);
+            return sink(mv, &assessment, text);
+        }
+        ahead.push(self.machine, &self.model, mv, text, &assessment, self.want);
+        ahead.hand_on(&self.model, sink);
     }
 
     /// Takes the next move with the text of its line, and hands on what can be
@@ -168,6 +214,10 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
+        let open = self.ahead.as_ref().map(|ahead| ahead.is_open());
+        if open == Some(true) || open.is_some() && self.may_blend(mv) {
+            return self.push_ahead(mv, text, sink);
+        }
         let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
@@ -241,6 +291,10 @@ impl<'m> Assessor<'m> {
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.release(None, false, sink);
+        if let Some(ahead) = &mut self.ahead {
+            ahead.stop(&self.model);
+            ahead.hand_on(&self.model, sink);
+        }
     }
 
     /// Judges what is held; `next` is the move that it runs into, `dwells`
@@ -303,6 +357,7 @@ impl<'m> Assessor<'m> {
                 certificate: Certificate::Planned,
                 blended,
                 joined: false,
+                ahead: false,
             };
             if self.largest != self.nominal {
                 let nominal = plan(self.machine, mv, self.nominal);
@@ -354,6 +409,7 @@ impl<'m> Assessor<'m> {
             },
             blended,
             joined: false,
+            ahead: false,
         }
     }
 
@@ -390,4 +446,24 @@ impl<'m> Assessor<'m> {
 /// Whether any axis moves.
 fn moves(mv: &Move) -> bool {
     mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
+}
+
+/// What an action does to the motion.
+enum Effect {
+    None,
+    Stop,
+    Unknown,
+}
+
+/// Spindle, tool change, stop and end wait for the axes; those of printers that
+/// set a temperature or a limit go with the moves. What others do is not known.
+fn effect(action: &Action, family: Family) -> Effect {
+    match action.kind {
+        ActionKind::PathMode | ActionKind::ToolSelect => Effect::None,
+        ActionKind::Spindle | ActionKind::ToolChange | ActionKind::Stop | ActionKind::End => {
+            Effect::Stop
+        }
+        ActionKind::Other if family == Family::Marlin => Effect::None,
+        ActionKind::SpindleSpeed | ActionKind::Coolant | ActionKind::Other => Effect::Unknown,
+    }
 }

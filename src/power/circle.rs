@@ -22,6 +22,15 @@ pub(super) enum Shape {
     Cosine(f64),
     /// Second axis of the plane, radius in SI.
     Sine(f64),
+    /// As `Cosine`, ahead by an angle of which sine and cosine are given.
+    Turn {
+        /// In SI.
+        radius: f64,
+        /// Of the angle.
+        sin: f64,
+        /// Of the angle.
+        cos: f64,
+    },
     /// In proportion to the path: signed SI motion per mm.
     Line(f64),
 }
@@ -68,6 +77,15 @@ impl ArcAxis<'_> {
                 r * m.sense * m.omega * m.cos,
                 r * (m.sense * m.alpha * m.cos - square * m.sin),
             ),
+            Shape::Turn { radius, sin, cos } => {
+                let turned = Motion {
+                    sin: m.sin * cos + m.cos * sin,
+                    cos: m.cos * cos - m.sin * sin,
+                    ..*m
+                };
+                let shape = Shape::Cosine(radius);
+                Self { shape, ..*self }.motion(&turned)
+            }
             Shape::Line(direction) => (direction * m.v, direction * m.a),
         }
     }
@@ -86,7 +104,7 @@ impl ArcAxis<'_> {
     pub fn slopes(&self, m: &Motion, factor: f64) -> (f64, f64) {
         match self.shape {
             Shape::Line(direction) => (0.0, self.axis.viscous * (direction * m.a).abs()),
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let square = m.omega * m.omega;
                 let jerk = r * m.omega * amplitude(3.0 * m.alpha, square);
                 let accel = r * amplitude(m.alpha, square);
@@ -115,7 +133,7 @@ impl ArcAxis<'_> {
                     2.0 * axis.copper * slope * slope,
                 )
             }
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let (w2, a2) = (w * w, alpha * alpha);
                 let w4 = w2 * w2;
                 // Amplitudes of x', x'', x''', x''''.
@@ -153,7 +171,7 @@ impl ArcAxis<'_> {
                 let accel = (direction * m.a).abs();
                 (speed, accel, inertial.max(0.0), (-inertial).max(0.0))
             }
-            Shape::Cosine(r) | Shape::Sine(r) => {
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let w2 = m.omega * m.omega;
                 let swing = amplitude(m.alpha, w2);
                 let half = 0.5 * r * r * m.omega;

@@ -54,6 +54,23 @@ impl Demand {
         load_ratio: f64::NEG_INFINITY,
     };
 
+    /// Takes in what another part of the same move asks for; the energy is left
+    /// aside.
+    #[inline]
+    pub(super) fn include(&mut self, other: &Self) {
+        if other.converter == self.converter || self.load_ratio == f64::NEG_INFINITY {
+            self.converter = other.converter;
+            self.peak_w = larger(self.peak_w, other.peak_w);
+            self.regen_w = larger(self.regen_w, other.regen_w);
+            self.load_ratio = larger(self.load_ratio, other.load_ratio);
+        } else if other.load_ratio > self.load_ratio {
+            *self = Self {
+                energy_j: self.energy_j,
+                ..*other
+            };
+        }
+    }
+
     /// A demand that nobody wants to know more of; none where one of its peaks
     /// reaches what is of interest.
     #[inline]

@@ -9,10 +9,12 @@
 //! energy, and only regenerating ones towards the regenerative peak.
 
 mod assess;
+mod ahead;
 mod arc;
 mod arc_energy;
 mod arc_piece;
 mod axis;
+mod blend;
 mod ceiling;
 mod circle;
 mod demand;

@@ -48,7 +48,7 @@ fn scan_words(line: &[u8], block: &mut Block) -> Option<()> {
             b'(' => at += memchr(b')', text.get(at..)?)? + 1,
             b';' => break,
             _ if token::is_letter(byte) => {
-                let word = scan_word(text, at, byte)?;
+                let word = scan_word(line, text, at, byte)?;
                 at = word.span.end as usize;
                 if word.letter == b'N' {
                     at = block_number(text, word, block)?;
@@ -98,9 +98,9 @@ fn block_number(text: &[u8], word: Word, block: &mut Block) -> Option<usize> {
 }
 
 /// The word whose letter stands at `start`; `None` without a number, and for
-/// one that is not finite.
+/// one that is not finite. `line` is `text` with the line end.
 #[inline]
-fn scan_word(text: &[u8], start: usize, letter: u8) -> Option<Word> {
+fn scan_word(line: &[u8], text: &[u8], start: usize, letter: u8) -> Option<Word> {
     let number = skip_blanks(text, start + 1);
     let sign = *text.get(number)?;
     let first = if matches!(sign, b'+' | b'-') {
@@ -108,31 +108,9 @@ fn scan_word(text: &[u8], start: usize, letter: u8) -> Option<Word> {
     } else {
         number
     };
-    // Wraps only where there are too many digits, which is asked below.
-    let mut mantissa = 0_u64;
-    let mut at = first;
-    while let Some(digit) = digit(text, at) {
-        mantissa = mantissa.wrapping_mul(10).wrapping_add(digit);
-        at += 1;
-    }
-    let mut digits = at - first;
-    let mut decimals = 0;
-    if text.get(at) == Some(&b'.') {
-        at += 1;
-        let point = at;
-        while let Some(digit) = digit(text, at) {
-            mantissa = mantissa.wrapping_mul(10).wrapping_add(digit);
-            at += 1;
-        }
-        decimals = at - point;
-        digits += decimals;
-    }
-    let value = match POWERS_OF_TEN.get(decimals) {
-        _ if digits == 0 => return None,
-        // Both operands are exact, so the quotient is rounded once: Clinger,
-        // How to Read Floating Point Numbers Accurately (1990).
-        Some(power) if digits <= MAX_DIGITS && mantissa < 1 << 53 => mantissa as f64 / power,
-        _ => token::value(false, text.get(first..at)?),
+    let Scanned { value, end } = match short_number(line, first) {
+        Some(scanned) => scanned,
+        None => long_number(text, first)?,
     };
     if !value.is_finite() {
         return None;
@@ -140,14 +118,89 @@ fn scan_word(text: &[u8], start: usize, letter: u8) -> Option<Word> {
     Some(Word {
         letter: letter.to_ascii_uppercase(),
         value: if sign == b'-' { -value } else { value },
-        span: Span::new(start, at),
-        number: Span::new(number, at),
+        span: Span::new(start, end),
+        number: Span::new(number, end),
     })
 }
 
-/// The digit at `at`.
+/// A number without its sign.
+struct Scanned {
+    value: f64,
+    /// Offset behind it.
+    end: usize,
+}
+
+/// The number at `start`, of any length; `None` without digits.
+fn long_number(text: &[u8], start: usize) -> Option<Scanned> {
+    // Wraps only where there are too many digits, which is asked below.
+    let mut mantissa = 0_u64;
+    let mut end = start;
+    let mut point = None;
+    while let Some(&byte) = text.get(end) {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if byte == b'.' && point.is_none() {
+            point = Some(end + 1);
+        } else {
+            break;
+        }
+        end += 1;
+    }
+    let digits = end - start - usize::from(point.is_some());
+    if digits == 0 {
+        return None;
+    }
+    let decimals = point.map_or(0, |point| end - point);
+    let value = match POWERS_OF_TEN.get(decimals) {
+        // Both operands are exact, so the quotient is rounded once: Clinger,
+        // How to Read Floating Point Numbers Accurately (1990).
+        Some(power) if digits <= MAX_DIGITS && mantissa < 1 << 53 => mantissa as f64 / power,
+        _ => token::value(false, text.get(start..end)?),
+    };
+    Some(Scanned { value, end })
+}
+
+/// The same for a number of at most eight bytes, point included, all at once.
+/// `None` for others, and too near to the end of a short line.
 #[inline]
-fn digit(text: &[u8], at: usize) -> Option<u64> {
-    let digit = text.get(at)?.wrapping_sub(b'0');
-    (digit < 10).then_some(u64::from(digit))
+fn short_number(line: &[u8], start: usize) -> Option<Scanned> {
+    // The last eight bytes of the line serve for a number that is nearer to its
+    // end: zeros come behind it.
+    let from = start.min(line.len().checked_sub(8)?);
+    let bytes = line.get(from..from + 8)?.try_into().ok()?;
+    let word = u64::from_le_bytes(bytes).checked_shr(8 * (start - from) as u32)?;
+    // A digit's byte becomes its value; the first byte is the lowest one.
+    let values = word ^ 0x3030_3030_3030_3030;
+    // The highest bit of each byte that is 10 or more. A carry reaches only
+    // bytes behind one of 0x8A and more, which ends the number.
+    let others = (values.wrapping_add(0x7676_7676_7676_7676) | values) & 0x8080_8080_8080_8080;
+    let mut bytes = others.trailing_zeros() / 8;
+    let (mut digits, mut decimals) = (values, 0);
+    let mut count = bytes;
+    if bytes < 8 && (word >> (8 * bytes)) as u8 == b'.' {
+        let point = bytes;
+        let before = (1_u64 << (8 * point)) - 1;
+        digits = values & before | values >> 8 & !before;
+        bytes = (others & (others - 1)).trailing_zeros() / 8;
+        count = bytes - 1;
+        decimals = (count - point) as usize;
+    }
+    let end = start + bytes as usize;
+    if count == 0
+        || bytes == 8
+            && line
+                .get(end)
+                .is_none_or(|next| matches!(next, b'0'..=b'9' | b'.'))
+    {
+        return None;
+    }
+    // With zeros in front they are eight; pairs, fours and all are joined.
+    let eight = digits << (64 - 8 * count);
+    let pairs = eight.wrapping_mul(10).wrapping_add(eight >> 8);
+    let low = (pairs & 0x0000_00FF_0000_00FF).wrapping_mul(0x000F_4240_0000_0064);
+    let high = (pairs >> 16 & 0x0000_00FF_0000_00FF).wrapping_mul(0x0000_2710_0000_0001);
+    let mantissa = low.wrapping_add(high) >> 32;
+    let value = mantissa as f64 / POWERS_OF_TEN.get(decimals)?;
+    Some(Scanned { value, end })
 }

@@ -9,8 +9,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use super::Fault;
 use super::vector::{Vector, along, cross, dot, left, length, scale, sub, unit};
 
-/// Bends below it are passed as if the path were smooth, rad.
-const SMOOTH_RAD: f64 = 0.05;
+/// Bends below it are passed by LinuxCNC as if the path were smooth, rad.
+pub(super) const SMOOTH_RAD: f64 = 0.05;
 
 /// What the tool's centre runs on: a shifted element.
 #[derive(Debug, Clone, Copy)]
@@ -46,23 +46,23 @@ pub(super) enum Bend {
 
 /// How the path bends where the tool stands at `offset` from the corner (to its
 /// `side`, +1 left), came on `before` and leaves on `after` in the direction
-/// `tangent`.
+/// `tangent`; bends below `smooth_rad` count as none.
 pub(super) fn bend(
     side: f64,
     offset: Vector,
     tangent: Vector,
-    before: &Track,
-    after: &Track,
+    [before, after]: [&Track; 2],
+    smooth_rad: f64,
 ) -> Bend {
     let came = scale(left(offset), -side);
     let mut bend = -side * libm::atan2(cross(came, tangent), dot(came, tangent));
     if bend < -FRAC_PI_2 {
         bend += TAU;
     }
-    if !(-SMOOTH_RAD..=PI + SMOOTH_RAD).contains(&bend) {
+    if !(-smooth_rad..=PI + smooth_rad).contains(&bend) {
         return Bend::Inside;
     }
-    if bend > PI - SMOOTH_RAD {
+    if bend > PI - smooth_rad {
         // Back along where it came from: a line that leaves an arc which the
         // tool went round, and an arc that the tool goes round, are met from
         // above and not by another turn about the corner.
@@ -75,7 +75,7 @@ pub(super) fn bend(
             return Bend::Inside;
         }
     }
-    if bend > SMOOTH_RAD {
+    if bend > smooth_rad {
         Bend::Outside
     } else {
         Bend::Smooth

@@ -21,7 +21,16 @@ pub(super) enum Fault {
     InverseTime,
     UnknownStart,
     TooMany,
+    Idle,
+    NothingBetween,
+    Intersection,
     OtherMotion,
+    NoFirstMove,
+    NoSecondMove,
+    CornerPlane,
+    LargeCorner,
+    NoBend,
+    ChamferAtArc,
 }
 
 impl Fault {
@@ -91,6 +100,16 @@ impl Fault {
                 "cutter compensation begins at a position that is not known",
                 "move the axes of the plane to a known position first, or give --start X0,Y0,Z0",
             ),
+            Self::Idle => (
+                "the control does not look this far ahead for the corner: blocks without motion \
+                 in the plane of the compensation come before it",
+                "take them together, or write them outside of the compensation",
+            ),
+            Self::NothingBetween => (
+                "the compensation ends with no move in the plane behind the one that began it",
+                "write the contour between G41 or G42 and G40",
+            ),
+            Self::Intersection => ("an outside corner with an arc under G451", "write G450"),
             Self::OtherMotion => (
                 "this motion under cutter compensation: the controller stops here",
                 "switch the compensation off before: G40",
@@ -99,13 +118,62 @@ impl Fault {
                 "more than a thousand steps without motion in the plane of the compensation",
                 "switch the compensation off before: G40",
             ),
+            _ => self.corner_words(),
         }
+    }
+
+    /// Message and help of a chamfer or a rounded corner.
+    fn corner_words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::NoFirstMove => (
+                "a chamfer or a rounded corner behind a block that is not one feed move",
+                "write it in the block of a G1, G2 or G3, without M words that stop",
+            ),
+            Self::NoSecondMove => (
+                "behind a chamfer or a rounded corner comes no feed move",
+                "write the second move, G1, G2 or G3, in the next block",
+            ),
+            Self::CornerPlane => (
+                "a chamfer or a rounded corner where a move leaves the plane",
+                "write both moves in the plane of G17, G18 or G19",
+            ),
+            Self::LargeCorner => (
+                "a chamfer or a rounded corner that does not fit between its moves",
+                "make it smaller",
+            ),
+            Self::NoBend => (
+                "a chamfer or a rounded corner where the path goes straight on or back",
+                "take it out",
+            ),
+            _ => (
+                "a chamfer where an arc begins or ends",
+                "write the chamfer as a move of its own",
+            ),
+        }
+    }
+
+    /// Whether it is one of a chamfer or a rounded corner.
+    fn is_of_corner(self) -> bool {
+        matches!(
+            self,
+            Self::NoFirstMove
+                | Self::NoSecondMove
+                | Self::CornerPlane
+                | Self::LargeCorner
+                | Self::NoBend
+                | Self::ChamferAtArc
+        )
     }
 
     /// Reports the fault at the block that shows it.
     pub(super) fn report(self, run: &mut Run<'_, '_>) {
         let (message, help) = self.words();
         let span = run.whole();
-        run.report.error("compensation", message, span).help(help);
+        let rule = if self.is_of_corner() {
+            "corner-word"
+        } else {
+            "compensation"
+        };
+        run.report.error(rule, message, span).help(help);
     }
 }

@@ -1,19 +1,28 @@
 //! The tool's centre beside the programmed moves.
 
-use super::corner::{Bend, Circle, Track, bend, meet};
+use super::corner::{Bend, Circle, SMOOTH_RAD, Track, bend, meet};
 use super::hold::Guard;
 use super::vector::{Vector, add, along, distance, dot, left, scale, sub, unit};
 use super::{Compensation, Fault, State};
 use crate::interpret::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use crate::machine::{CompensationCorner, CompensationLead};
+
+/// Bends below it, where an arc meets its neighbour, come from rounded numbers:
+/// the path is off by less than a ten thousandth of the radius.
+const ROUNDED_RAD: f64 = 0.01;
+/// Bends above it are rounded by an arc in spite of G451, rad.
+const INTERSECTION_MAX_RAD: f64 = 100.0 * std::f64::consts::PI / 180.0;
+/// Two lines are one line.
+const STRAIGHT_RAD: f64 = 1e-9;
 
 /// The shifted element of a programmed move.
-struct Element {
+pub(super) struct Element {
     /// What the tool's centre runs on, and where it begins and ends.
-    track: Track,
-    start: Vector,
+    pub(super) track: Track,
+    pub(super) start: Vector,
     end: Vector,
     /// Its direction at the start.
-    tangent: Vector,
+    pub(super) tangent: Vector,
     guard: Guard,
 }
 
@@ -41,7 +50,8 @@ impl Compensation {
         let corner = [mv.start[first], mv.start[second]];
         let target = [mv.end[first], mv.end[second]];
         let stays = mv.arc.is_none() && corner == target;
-        if self.state == State::Entry {
+        let beside = self.style.lead == CompensationLead::Beside;
+        if self.state == State::Entry && (beside || !stays) {
             return self.enter(mv, corner, target);
         }
         if stays {
@@ -51,31 +61,83 @@ impl Compensation {
         let Some(before) = self.hold.track().copied() else {
             return Err(Fault::NoCorner);
         };
-        let offset = sub(self.hold.end, corner);
-        match bend(self.side, offset, element.tangent, &before, &element.track) {
-            Bend::Smooth => self.hold.release(out)?,
-            Bend::Inside => {
-                let end = meet(&before, &element.track, self.side * self.radius_mm)?;
-                self.hold.release_at(end, out)?;
-            }
-            Bend::Outside => {
-                // LinuxCNC looks back only where a line follows.
-                if mv.arc.is_none() {
-                    self.hold.finish(out)?;
-                } else {
-                    self.hold.release(out)?;
+        let entering = std::mem::take(&mut self.entering);
+        let bend = self.bend(corner, &before, &element);
+        if !beside && bend != Bend::Smooth && self.idle > self.style.idle_blocks {
+            return Err(Fault::Idle);
+        }
+        if entering && (self.style.lead == CompensationLead::Perpendicular || bend != Bend::Outside)
+        {
+            self.hold.release_to(element.start, out)?;
+        } else {
+            match bend {
+                Bend::Smooth => self.hold.release(out)?,
+                Bend::Inside => {
+                    let end = meet(&before, &element.track, self.side * self.radius_mm)?;
+                    self.hold.release_at(end, out)?;
                 }
-                self.hold
-                    .round(&mut mv, corner, element.start, self.side, out)?;
+                Bend::Outside if self.rounds(&before, &element)? => {
+                    // LinuxCNC looks back only where a line follows.
+                    if beside && mv.arc.is_some() {
+                        self.hold.release(out)?;
+                    } else {
+                        self.hold.finish(out)?;
+                    }
+                    self.hold
+                        .round(&mut mv, corner, element.start, self.side, beside, out)?;
+                }
+                Bend::Outside => self.straight_round(&mv, corner, &before, &element, out)?,
             }
+        }
+        self.moved = true;
+        if let (Track::Circle(circle), Some(arc)) = (&element.track, &mv.arc) {
+            mv.feed_mm_s *= self.feed.factor(circle, arc.radius_mm);
         }
         self.hold
             .keep(mv, element.track, element.guard, element.end);
         Ok(())
     }
 
+    /// How the path bends at `corner`.
+    pub(super) fn bend(&self, corner: Vector, before: &Track, after: &Element) -> Bend {
+        let lines = |track: &Track| matches!(track, Track::Line { .. });
+        let smooth_rad = if self.style.lead == CompensationLead::Beside {
+            SMOOTH_RAD
+        } else if lines(before) && lines(&after.track) {
+            STRAIGHT_RAD
+        } else {
+            ROUNDED_RAD
+        };
+        let offset = sub(self.hold.end, corner);
+        bend(
+            self.side,
+            offset,
+            after.tangent,
+            [before, &after.track],
+            smooth_rad,
+        )
+    }
+
+    /// Whether the tool goes round an outside corner by an arc.
+    fn rounds(&self, before: &Track, after: &Element) -> Result<bool, Fault> {
+        match self.style.corner {
+            CompensationCorner::Arc => Ok(true),
+            CompensationCorner::Line => Ok(false),
+            CompensationCorner::Intersection => {
+                let (Track::Line { along, .. }, Track::Line { .. }) = (before, &after.track) else {
+                    return Err(Fault::Intersection);
+                };
+                // MD20210 CUTCOM_CORNER_LIMIT: 100°.
+                Ok(dot(*along, after.tangent) < libm::cos(INTERSECTION_MAX_RAD))
+            }
+        }
+    }
+
     /// The first move: from where the tool is to beside its programmed end.
     fn enter(&mut self, mv: Move, from: Vector, to: Vector) -> Result<(), Fault> {
+        if self.style.lead != CompensationLead::Beside {
+            return self.lead_in(mv, from, to);
+        }
         if distance(from, to) <= self.radius_mm {
             return Err(Fault::ShortEntry);
         }
@@ -97,6 +159,25 @@ impl Compensation {
             Some(_) => return Err(Fault::ArcFirst),
         };
         self.state = State::On;
+        self.hold.keep(mv, track, Guard::None, end);
+        Ok(())
+    }
+
+    /// The first move, straight, to where the next one says; until then beside
+    /// its programmed end.
+    fn lead_in(&mut self, mv: Move, from: Vector, to: Vector) -> Result<(), Fault> {
+        if mv.arc.is_some() {
+            return Err(Fault::ArcFirst);
+        }
+        let direction = unit(sub(to, from)).ok_or(Fault::ShortEntry)?;
+        let end = along(to, left(direction), self.side * self.radius_mm);
+        let track = Track::Line {
+            through: end,
+            along: direction,
+        };
+        self.state = State::On;
+        self.entering = true;
+        self.moved = true;
         self.hold.keep(mv, track, Guard::None, end);
         Ok(())
     }
@@ -123,7 +204,7 @@ impl Compensation {
     }
 
     /// The shifted element of a move.
-    fn element(&self, mv: &Move, from: Vector, to: Vector) -> Result<Element, Fault> {
+    pub(super) fn element(&self, mv: &Move, from: Vector, to: Vector) -> Result<Element, Fault> {
         if let Some(arc) = &mv.arc {
             return self.element_of_arc(arc, from, to);
         }

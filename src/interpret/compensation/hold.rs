@@ -2,7 +2,7 @@
 
 use super::Fault;
 use super::corner::Track;
-use super::vector::{Vector, add, dot, sub};
+use super::vector::{Vector, add, distance, dot, sub};
 use crate::interpret::arc::{self, Ends};
 use crate::interpret::motion::{STANDSTILL_MM, path_length};
 use crate::interpret::moves::{Arc, Move, MoveKind, Step};
@@ -102,6 +102,12 @@ impl Hold {
         self.hand_on(self.end, out)
     }
 
+    /// Hands on what waits; it ends at `end`.
+    pub(super) fn release_to(&mut self, end: Vector, out: &mut Vec<Step>) -> Result<(), Fault> {
+        self.guard = Guard::None;
+        self.hand_on(end, out)
+    }
+
     /// Hands on what waits at the end of the compensation.
     pub(super) fn finish(&mut self, out: &mut Vec<Step>) -> Result<(), Fault> {
         self.release_at(self.end, out)
@@ -177,25 +183,32 @@ impl Hold {
     }
 
     /// The tool goes round the corner at `pivot` to `end`, in front of `mv`:
-    /// by an arc, or straight for a rapid. As in LinuxCNC the axes outside the
-    /// three of space do their part of the block here.
+    /// by an arc, or straight for a rapid. In LinuxCNC (`shares`) the axes
+    /// outside the three of space do their part of the block here.
     pub(super) fn round(
         &mut self,
         mv: &mut Move,
         pivot: Vector,
         end: Vector,
         side: f64,
+        shares: bool,
         out: &mut Vec<Step>,
     ) -> Result<(), Fault> {
         let mut first = mv.clone();
-        for axis in 0..3 {
-            first.end[axis] = mv.start[axis];
-            first.unknown_start.0 &= !(1 << axis);
+        first.arc = None;
+        if shares {
+            for axis in 0..3 {
+                first.end[axis] = mv.start[axis];
+                first.unknown_start.0 &= !(1 << axis);
+            }
+            for axis in 3..first.end.len() {
+                mv.start[axis] = mv.end[axis];
+            }
+            mv.unknown_start.0 &= 0b111;
+        } else {
+            first.end = mv.start;
+            first.unknown_start = AxisSet::default();
         }
-        for axis in 3..first.end.len() {
-            mv.start[axis] = mv.end[axis];
-        }
-        mv.unknown_start.0 &= 0b111;
         let to = add(end, self.nose);
         let arc = if mv.kind == MoveKind::Rapid {
             None
@@ -217,6 +230,27 @@ impl Hold {
         self.from = end;
         self.tool = to;
         Ok(())
+    }
+}
+
+impl Hold {
+    /// A straight move to `end` in front of `mv`, at its feed; none where the
+    /// tool is there already.
+    pub(super) fn cross(&mut self, mv: &Move, end: Vector, out: &mut Vec<Step>) {
+        let to = add(end, self.nose);
+        if distance(self.tool, to) <= STANDSTILL_MM {
+            return;
+        }
+        let mut first = mv.clone();
+        first.end = mv.start;
+        first.unknown_start = AxisSet::default();
+        if first.kind == MoveKind::Arc {
+            first.kind = MoveKind::Feed;
+        }
+        place(&mut first, self.plane, self.tool, to, None);
+        out.push(Step::Move(first));
+        self.from = end;
+        self.tool = to;
     }
 }
 

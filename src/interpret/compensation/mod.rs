@@ -1,10 +1,15 @@
 //! Cutter radius compensation: G40, G41, G42, G41.1 and G42.1.
 //!
-//! As LinuxCNC 2.9 does it (manual, "Cutter Compensation" and "G41, G42",
-//! "G41.1, G42.1"; what it leaves open was measured): the tool's centre runs
-//! beside the programmed path, and where a move ends depends on the next one.
-//! Each move is therefore held back, with what follows it without leaving its
-//! place in the plane, until the next is known.
+//! The tool's centre runs beside the programmed path, and where a move ends
+//! depends on the next one. Each move is therefore held back, with what follows
+//! it without leaving its place in the plane, until the next is known.
+//!
+//! How outside corners are passed and where the first and the last move meet
+//! the shifted path is data of the controller profile: as LinuxCNC 2.9 does it
+//! (manual, "Cutter Compensation" and "G41, G42", "G41.1, G42.1"; what it leaves
+//! open was measured), Fanuc (B-63944EN, "Details of Cutter Compensation";
+//! B-63604EN, "Details of Tool Nose Radius Compensation") or SINUMERIK
+//! ("Tool radius compensation").
 //!
 //! Blocks are executed as if there were no compensation; what a block gives
 //! then goes through here.
@@ -13,15 +18,21 @@ mod corner;
 mod fault;
 mod follow;
 mod hold;
+mod insert;
+mod radius;
 mod refusals;
+mod straight;
 mod vector;
 mod words;
 
 use self::fault::Fault;
 use self::hold::{Hold, place};
+pub(super) use self::insert::{Corners, Insert};
+pub(super) use self::radius::{Choice, ContourFeed};
 use self::vector::Vector;
-use super::execute::{Control, Run};
+use super::execute::{Control, Interpreter, Run};
 use super::moves::{Move, MoveKind, Step};
+use crate::machine::{CompensationLead, CutterCompensation};
 
 /// Why blocks under compensation stay as they are.
 const FIXED: &str = "it is under cutter compensation";
@@ -45,6 +56,19 @@ enum State {
 #[derive(Debug)]
 pub(super) struct Compensation {
     state: State,
+    style: CutterCompensation,
+    /// The radius is 0: the path is as programmed, whatever the style.
+    passive: bool,
+    /// The move that waits is the one that switched it on.
+    entering: bool,
+    /// A move in the plane has come in this block.
+    moved: bool,
+    /// Blocks without one since the last.
+    idle: u32,
+    /// What F speaks for on arcs.
+    feed: ContourFeed,
+    /// Whether the plane was mirrored when it was switched on.
+    flipped: bool,
     /// Axes of the plane.
     plane: [usize; 2],
     /// +1: the tool is to the left of its way; -1: to the right.
@@ -74,6 +98,11 @@ impl Compensation {
         let key = (mv.text, mv.line);
         let found = self.texts.iter().find(|(held, _)| *held == key);
         found.map(|(_, text)| text.as_slice())
+    }
+
+    /// Whether it shifts a path: not with a radius of 0.
+    pub(super) fn shifts(&self) -> bool {
+        !self.passive && self.state != State::Off
     }
 
     /// Whether it is on, or was until the last block.
@@ -107,12 +136,56 @@ impl Compensation {
         }
     }
 
+    /// Whether a move behind G40 takes the tool back: in LinuxCNC any, elsewhere
+    /// the first in the plane.
+    fn leaves_by(&self, mv: &Move) -> bool {
+        self.style.lead == CompensationLead::Beside
+            || mv.arc.is_some()
+            || self
+                .plane
+                .iter()
+                .any(|&axis| mv.start[axis] != mv.end[axis])
+    }
+
     /// The first move behind G40 begins where the tool is. True where its
     /// length is one of linear axes.
     fn leave(&mut self, mv: &mut Move) -> bool {
         self.state = State::Off;
         let end = self.plane.map(|axis| mv.end[axis]);
         place(mv, self.plane, self.hold.tool, end, None)
+    }
+}
+
+impl Interpreter<'_> {
+    /// The text of the line of a move that was given with the last block, if
+    /// that line came before it; cut if it is long.
+    #[must_use]
+    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
+        let control = &self.control;
+        let shifted = control.compensation.as_ref().and_then(|it| it.text_of(mv));
+        shifted.or_else(|| control.corners.as_ref()?.text_of(mv))
+    }
+
+    /// True while cutter compensation is on, and for the block that ends it.
+    #[must_use]
+    pub fn compensates(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.is_at_work())
+    }
+
+    /// True while moves are held back: cutter compensation needs the next one
+    /// to know where they end.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.holds()) || self.holds_corner()
+    }
+
+    /// True while a move waits for its chamfer or rounded corner.
+    #[must_use]
+    pub fn holds_corner(&self) -> bool {
+        let corners = self.control.corners.as_ref();
+        corners.is_some_and(|corners| corners.holds())
     }
 }
 
@@ -129,6 +202,10 @@ impl Control<'_> {
         if compensation.is_on() || compensation.holds() {
             run.facts.fixed = Some(FIXED);
             run.facts.compensated = true;
+        }
+        if compensation.passive {
+            self.compensation = Some(compensation);
+            return;
         }
         if run.report.diagnostics.errors == errors {
             compensation.forget();
@@ -152,16 +229,27 @@ impl Control<'_> {
         own: &mut Vec<Step>,
         run: &mut Run<'_, '_>,
     ) -> Result<(), Fault> {
-        if !compensation.is_on() {
+        let by_corner = compensation.style.lead == CompensationLead::Corner;
+        if !(compensation.is_on() || by_corner && compensation.state == State::Leaving) {
             compensation.hold.finish(run.steps)?;
         }
+        compensation.moved = false;
+        if compensation.entering && !compensation.is_on() {
+            return Err(Fault::NothingBetween);
+        }
         let path = |step: &&Step| matches!(step, Step::Move(mv) if mv.kind != MoveKind::Dwell);
-        if compensation.is_on() && own.iter().filter(path).count() > 1 {
+        let cut = self
+            .corners
+            .as_ref()
+            .is_some_and(|corners| corners.is_cut());
+        if compensation.is_on() && !cut && own.iter().filter(path).count() > 1 {
             return Err(Fault::OtherMotion);
         }
         for mut step in own.drain(..) {
             match (compensation.state, &mut step) {
-                (State::Leaving, Step::Move(mv)) if mv.kind != MoveKind::Dwell => {
+                (State::Leaving, Step::Move(mv))
+                    if mv.kind != MoveKind::Dwell && compensation.leaves_by(mv) =>
+                {
                     self.leave(compensation, mv, run)?;
                     run.steps.push(step);
                 }
@@ -169,6 +257,11 @@ impl Control<'_> {
                 (State::Leaving, _) => compensation.hold.stay(step, run.steps)?,
                 _ => compensation.follow(step, run.steps)?,
             }
+        }
+        if compensation.moved {
+            compensation.idle = 0;
+        } else if compensation.state == State::On {
+            compensation.idle += 1;
         }
         if self.ended {
             compensation.hold.finish(run.steps)?;
@@ -189,6 +282,9 @@ impl Control<'_> {
         let timed = mv.feed_mode == super::moves::FeedMode::InverseTime;
         if timed && mv.kind != MoveKind::Rapid {
             return Err(Fault::InverseTime);
+        }
+        if compensation.style.lead == CompensationLead::Corner {
+            compensation.turn_to_leave(mv, run.steps)?;
         }
         let linear = compensation.leave(mv);
         if mv.kind != MoveKind::Rapid

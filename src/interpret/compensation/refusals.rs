@@ -2,10 +2,13 @@
 //!
 //! LinuxCNC stops at each of these ("Cannot … with cutter radius compensation
 //! on"), except at a change of units, G92.1 to G92.3 and words that the
-//! interpreter does not follow there; those are refused here.
+//! interpreter does not follow there; those are refused here. Other controls
+//! stop at fewer, and end the compensation for a while at some of them (Fanuc:
+//! G28, G92), which is not followed.
 
 use crate::interpret::code::GCode;
 use crate::interpret::execute::{Control, Run};
+use crate::machine::Family;
 use crate::source::Span;
 
 impl Control<'_> {
@@ -23,9 +26,17 @@ impl Control<'_> {
                 _ => {}
             }
         }
+        let rs274 = self.machine.controller.language.family == Family::Rs274;
+        let switches = run.words.groups & GCode::CompensationOff.group() != 0;
+        if !rs274 && run.words.has(b'D') && !switches {
+            let span = run.words.span(b'D', run.block);
+            refuse("another radius", span, run);
+        }
         for index in 0..run.words.m.len() {
             let (number, span) = run.words.m[index];
-            if let Some(what) = m_name(number) {
+            if let Some(what) = m_name(number)
+                && (number == 60 || rs274)
+            {
                 refuse(what, span, run);
             }
         }
@@ -35,12 +46,28 @@ impl Control<'_> {
         }
     }
 
+    /// Whether other controls than LinuxCNC read a G word (number × 10) under
+    /// compensation as elsewhere: path modes, lengths along the normal axis,
+    /// the level that cycles return to, exact stop.
+    fn permits(&self, number: u16) -> bool {
+        let family = self.machine.controller.language.family;
+        let normal = self.modal.plane[2] == 2;
+        match number {
+            610 | 611 | 640 | 980 | 990 => family != Family::Rs274,
+            430 | 440 | 490 => family == Family::Iso && normal,
+            _ => false,
+        }
+    }
+
     /// Words that come behind it.
-    #[allow(clippy::unused_self, reason = "the other half of `refuse_before`")]
     pub(super) fn refuse_behind(&self, run: &mut Run<'_, '_>) {
+        let rs274 = self.machine.controller.language.family == Family::Rs274;
         for index in 0..run.words.g.len() {
             let (_, number, span) = run.words.g[index];
-            if number == 100 && !sets_offsets(run) {
+            if number == 100 && rs274 && !sets_offsets(run) {
+                continue;
+            }
+            if self.permits(number) {
                 continue;
             }
             if let Some(what) = g_name(number) {
@@ -62,13 +89,15 @@ fn g_name(number: u16) -> Option<&'static str> {
     Some(match number {
         50..=53 => "a spline",
         100 | 540..=593 => "another coordinate system",
-        280 | 300 => "a reference point",
+        280 | 300 | 740 | 750 => "a reference point",
         281 | 301 => "setting a reference point",
         330..=332 => "thread cutting",
         380..=389 => "probing",
         430..=439 | 490 => "another tool length offset",
         520 | 920..=923 => "an offset of the axes",
-        530 => "G53",
+        530 | 1530 => "G53",
+        500 | 501 | 510 | 511 => "scaling or mirroring",
+        120 | 130 | 1500 => "a pocket",
         610 | 611 | 640 => "another path mode",
         680..=692 => "a rotation of the coordinates",
         700..=799 | 810..=899 => "a canned cycle",

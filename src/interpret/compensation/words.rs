@@ -4,6 +4,7 @@ use super::hold::Hold;
 use super::{Compensation, State};
 use crate::interpret::code::GCode;
 use crate::interpret::execute::{Control, Run};
+use crate::machine::{CompensationCorner, CompensationLead, CutterCompensation, Family};
 use crate::source::Span;
 use crate::units::MM_PER_INCH;
 
@@ -17,6 +18,14 @@ pub(super) struct Nose {
     pub(super) radius_mm: f64,
     /// Orientation of a lathe tool, 0 to 9.
     pub(super) orientation: u8,
+}
+
+impl Nose {
+    /// No radius: the path stays as it is programmed.
+    pub(super) const POINT: Self = Self {
+        radius_mm: 0.0,
+        orientation: 0,
+    };
 }
 
 impl Control<'_> {
@@ -51,6 +60,7 @@ impl Control<'_> {
     fn switch_compensation(&mut self, run: &mut Run<'_, '_>) {
         if self.is_compensating() {
             self.refuse_before(run);
+            self.choose_anew(run);
         }
         for index in 0..run.words.g.len() {
             let (code, _, span) = run.words.g[index];
@@ -67,14 +77,46 @@ impl Control<'_> {
         }
     }
 
-    /// Whether G41 or G42 is in force.
+    /// Whether G41 or G42 is in force and shifts the path.
     pub(in crate::interpret) fn is_compensating(&self) -> bool {
-        self.compensation.as_ref().is_some_and(|it| it.is_on())
+        let compensation = self.compensation.as_ref();
+        compensation.is_some_and(|it| it.is_on() && !it.passive)
+    }
+
+    /// What SINUMERIK may change while it is on: outside corners, and what F
+    /// speaks for.
+    fn choose_anew(&mut self, run: &mut Run<'_, '_>) {
+        let Some(compensation) = self
+            .compensation
+            .as_mut()
+            .filter(|_| self.machine.controller.language.family == Family::Siemens)
+        else {
+            return;
+        };
+        compensation.feed = self.choice.feed;
+        compensation.style.corner = if self.choice.intersects {
+            CompensationCorner::Intersection
+        } else {
+            CompensationCorner::Arc
+        };
+        let plane = compensation.plane;
+        let before = compensation.flipped;
+        let flipped = self.plane_is_flipped(plane, 3 - plane[0] - plane[1]);
+        if flipped != before {
+            if let Some(compensation) = &mut self.compensation {
+                compensation.flipped = flipped;
+            }
+            let whole = run.whole();
+            run.report
+                .error("compensation", "mirroring under cutter compensation", whole)
+                .help("switch the compensation off before: G40");
+        }
     }
 
     fn compensation_off(&mut self) {
         if let Some(compensation) = &mut self.compensation {
             compensation.state = match compensation.state {
+                _ if compensation.passive => State::Off,
                 State::On => State::Leaving,
                 State::Entry => compensation.behind_entry(),
                 other => other,
@@ -89,19 +131,9 @@ impl Control<'_> {
         span: Span,
         run: &mut Run<'_, '_>,
     ) {
-        if !self.machine.controller.language.cutter_compensation {
-            run.report
-                .error(
-                    "unsupported-code",
-                    "cutter compensation, which gwatt follows as LinuxCNC does it only",
-                    span,
-                )
-                .help(
-                    "corners and offsets depend on settings of the machine: \
-                     let the CAM system shift the path by the tool's radius",
-                );
+        let Some(style) = self.compensation_style(span, run) else {
             return;
-        }
+        };
         if self.is_compensating() {
             run.report
                 .error("compensation", "cutter compensation is on already", span)
@@ -118,7 +150,8 @@ impl Control<'_> {
             }
         }
         let [first, second, normal] = plane;
-        if !NORMALS.contains(&normal) {
+        let beside = style.lead == CompensationLead::Beside;
+        if beside && !NORMALS.contains(&normal) {
             run.report
                 .error(
                     "compensation",
@@ -130,17 +163,29 @@ impl Control<'_> {
         }
         let nose = if by_diameter {
             nose_by_words(run, mm_per_unit, normal, span)
-        } else {
+        } else if beside {
             self.nose_by_number(run, span)
+        } else {
+            self.nose_by_offset(run, span)
         };
         let Some(nose) = nose else { return };
+        let nose = if self.turning.reads_rough {
+            // "Tool Nose Radius Compensation", "Canned Cycles": G70 has it alone.
+            Nose::POINT
+        } else {
+            nose
+        };
+        let passive = !beside && nose.radius_mm == 0.0;
+        if !passive && self.refuse_style(span, run) {
+            return;
+        }
         let plane = [first, second];
         let leaving = self
             .compensation
             .take()
             .filter(|before| before.state == State::Leaving);
         let (tool, straight_first) = match leaving {
-            Some(before) if before.plane != plane || nose.radius_mm == 0.0 => {
+            Some(before) if !beside || before.plane != plane || nose.radius_mm == 0.0 => {
                 let message = "the tool has not left the compensation before this one";
                 run.report
                     .error("compensation", message, span)
@@ -150,11 +195,24 @@ impl Control<'_> {
             Some(before) => (before.hold.tool, true),
             None => (plane.map(|axis| self.position.at[axis]), false),
         };
-        let left = left == (nose.radius_mm >= 0.0);
+        let flipped = self.plane_is_flipped(plane, normal);
+        let left = (left == (nose.radius_mm >= 0.0)) != flipped;
         let radius_mm = nose.radius_mm.abs();
-        let shift = nose_shift(nose.orientation, radius_mm, normal);
+        let mut shift = nose_shift(nose.orientation, radius_mm, normal);
+        if !beside {
+            // Fanuc's picture ("Direction of Imaginary Tool Nose") has +X up
+            // where LinuxCNC's has it down.
+            shift[1] = -shift[1];
+        }
         self.compensation = Some(Box::new(Compensation {
             state: State::Entry,
+            style,
+            passive,
+            entering: false,
+            moved: false,
+            idle: 0,
+            feed: self.choice.feed,
+            flipped,
             plane,
             side: if left { 1.0 } else { -1.0 },
             radius_mm,
@@ -164,6 +222,55 @@ impl Control<'_> {
             texts: Vec::new(),
             own: Vec::new(),
         }));
+    }
+
+    /// How the control shifts paths; reported where that is not known.
+    fn compensation_style(&self, span: Span, run: &mut Run<'_, '_>) -> Option<CutterCompensation> {
+        let language = &self.machine.controller.language;
+        if let Some(mut style) = language.compensation {
+            if self.choice.intersects {
+                style.corner = CompensationCorner::Intersection;
+            }
+            return Some(style);
+        }
+        if matches!(language.family, Family::Iso | Family::Isg) {
+            // Enough for a radius of 0; see `refuse_style`.
+            return Some(CutterCompensation {
+                corner: CompensationCorner::Line,
+                lead: CompensationLead::Perpendicular,
+                idle_blocks: 0,
+            });
+        }
+        run.report
+            .error(
+                "unsupported-code",
+                "cutter compensation, which this controller does not have",
+                span,
+            )
+            .help("let the CAM system shift the path by the tool's radius");
+        None
+    }
+
+    /// Whether a path cannot be shifted though the radius is known.
+    fn refuse_style(&self, span: Span, run: &mut Run<'_, '_>) -> bool {
+        let refused = if self.machine.controller.language.compensation.is_none() {
+            Some("how this controller shifts a path in corners is not known")
+        } else {
+            self.choice.refused
+        };
+        let Some(message) = refused else {
+            return false;
+        };
+        run.report
+            .error("compensation", message, span)
+            .help("let the CAM system shift the path by the tool's radius");
+        true
+    }
+
+    /// Whether the plane is mirrored: left is then right.
+    fn plane_is_flipped(&self, [first, second]: [usize; 2], normal: usize) -> bool {
+        let map = self.position.frame.plane([first, second, normal]);
+        self.choice.flipped != map.is_some_and(|map| map.flipped)
     }
 
     /// G41 and G42: the tool of D, or the one in the spindle.

@@ -4,7 +4,7 @@
 
 use super::FIXED;
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{ActionKind, FeedMode, MoveKind};
+use crate::interpret::moves::{ActionKind, Corner, FeedMode, MoveKind};
 use crate::interpret::special::Turning;
 use crate::interpret::words::{AXIS_LETTERS, POLAR, bit};
 use crate::machine::{ALL_AXES, AXES, AxisValues, PathMode};
@@ -112,7 +112,8 @@ impl Control<'_> {
         let mut now_mm = from[normal];
         let mut over_mm = initial_mm;
         // It runs under G61, whatever is in force.
-        let path_mode = self.modal.path_mode;
+        let before = (self.modal.path_mode, self.modal.corner);
+        self.modal.corner = Corner::Exact;
         if self.machine.path.mode != Some(PathMode::ExactStop) {
             self.modal.path_mode = self.machine.controller.language.g61;
         }
@@ -155,7 +156,7 @@ impl Control<'_> {
                 break;
             }
         }
-        self.modal.path_mode = path_mode;
+        (self.modal.path_mode, self.modal.corner) = before;
         self.special.active = number;
     }
 

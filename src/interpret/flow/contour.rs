@@ -3,6 +3,7 @@
 use super::{Flow, Trouble};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::execute::Interpreter;
+use crate::interpret::facts::Facts;
 use crate::interpret::moves::Step;
 use crate::interpret::report::Diagnostics;
 use crate::interpret::turning::{Contour, ContourCycle};
@@ -35,10 +36,10 @@ impl Flow {
         diagnostics: &mut Diagnostics,
     ) -> Result<(), Trouble> {
         let first = self.find_block(contour.first, self.next)?;
-        let before = interpreter.before_contour();
+        let before = interpreter.before_contour(contour);
         let errors = diagnostics.errors;
         let mut found = Vec::new();
-        let mut own = Block::default();
+        let (mut own, mut facts) = (Block::default(), Facts::default());
         let mut place = first;
         loop {
             let text = self
@@ -56,7 +57,7 @@ impl Flow {
             };
             scan_line(text, false, &mut own);
             let number = place.line as u64 + 1;
-            interpreter.execute(number, text, &mut own, &mut found, diagnostics);
+            interpreter.execute(number, text, &mut own, &mut found, &mut facts, diagnostics);
             if diagnostics.errors != errors {
                 return Ok(());
             }

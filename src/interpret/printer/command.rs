@@ -316,7 +316,7 @@ impl Control<'_> {
             line: run.line,
             block,
             words: &mut *run.words,
-            facts: run.facts,
+            facts: &mut *run.facts,
             steps: &mut *run.steps,
             report: Report {
                 diagnostics: &mut *run.report.diagnostics,
@@ -329,7 +329,6 @@ impl Control<'_> {
         if inner.report.diagnostics.errors == errors {
             self.general(&mut inner, errors);
         }
-        run.facts = inner.facts;
     }
 
     /// M82 and M83 (`Some`), or a change of G90 and G91.

@@ -2,7 +2,7 @@
 //! motion, then a cycle or a modal call, then stops and ends.
 
 use super::codes::Code;
-use super::{Called, Siemens, frame_words};
+use super::{Called, Siemens};
 use crate::interpret::code::{GCode, Motion};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::expression::Fault;
@@ -84,7 +84,8 @@ impl Control<'_> {
             || state.diameter
             || state.feed_in_mm
             || state.feed_factor != 1.0
-            || self.modal.motion == Motion::None;
+            || state.rounds.is_some()
+            || matches!(self.modal.motion, Motion::None | Motion::Special(_));
         if let Some(shift) = shift {
             self.position.set_shifts(&shift);
         }
@@ -123,6 +124,9 @@ impl Control<'_> {
             self.modal.path_mode = PathMode::ExactStop;
         }
         let cycle = state.extra.cycle.take();
+        if let Some(insert) = state.extra.corner.or(state.rounds) {
+            self.ask_corner(insert);
+        }
         self.siemens_motion(state, run);
         let moves = |step: &Step| matches!(step, Step::Move(mv) if mv.dwell_s == 0.0);
         let moved = run
@@ -278,6 +282,8 @@ impl Control<'_> {
 
     fn siemens_settings(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
         self.motion_word(run);
+        self.choose_radius(state, run);
+        self.compensation_words(run);
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
@@ -306,11 +312,6 @@ impl Control<'_> {
             }
         }
         run.words.take(b'H');
-        if run.words.take(b'D').is_some_and(|tool| tool > 0.0) {
-            let span = run.words.span(b'D', run.block);
-            run.report
-                .note_once("no-tool-table", frame_words::NO_TOOLS, span);
-        }
     }
 
     fn choose_path_mode(&mut self, asked: PathMode) {

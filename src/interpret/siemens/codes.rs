@@ -22,6 +22,10 @@ pub(in crate::interpret) enum Code {
     Suppress,
     /// G25 and G26.
     Limits,
+    /// G450 (false) and G451: outside corners of the radius compensation.
+    Intersects(bool),
+    /// G63: tapping, in one block.
+    Tapping,
 }
 
 impl Code {
@@ -31,9 +35,10 @@ impl Code {
             Self::SurfaceSpeed { .. } | Self::ConstantSpeed { .. } => 4,
             Self::Suppress => 11,
             Self::Reference => 12,
-            Self::ExactOnce => 16,
+            Self::ExactOnce | Self::Tapping => 16,
             Self::Pole(_) => 17,
             Self::Limits => 18,
+            Self::Intersects(_) => 19,
         }
     }
 }
@@ -52,7 +57,14 @@ pub(in crate::interpret) fn siemens_code(number: u16) -> Option<GCode> {
         180 => GCode::Plane([2, 0, 1]),
         190 => GCode::Plane([1, 2, 0]),
         250 | 260 => GCode::Siemens(Code::Limits),
+        330 | 3310 | 3320 => GCode::Motion(Motion::Special(number)),
+        630 => GCode::Siemens(Code::Tapping),
         400 => GCode::CompensationOff,
+        410 | 420 => GCode::CompensationOn {
+            left: number == 410,
+            by_diameter: false,
+        },
+        4500 | 4510 => GCode::Siemens(Code::Intersects(number == 4510)),
         530 | 1530 => GCode::Siemens(Code::Suppress),
         5000 => GCode::WorkOffset(0),
         540..=570 if number.is_multiple_of(10) => GCode::WorkOffset((number / 10 - 53) as u8),
@@ -77,10 +89,10 @@ pub(in crate::interpret) fn siemens_code(number: u16) -> Option<GCode> {
             per_revolution: false,
         }),
         1100 | 1110 | 1120 => GCode::Siemens(Code::Pole((number / 10 - 110) as u8)),
-        // Exact stop limits; corners and approach of the radius compensation,
-        // which is refused itself; the Siemens language.
-        6010 | 6020 | 6030 | 4500 | 4510 | 4600 | 4610 | 4620 | 620 | 6210 | 3400 | 3410 | 1400
-        | 1410 | 1420 | 1430 | 2900 => GCode::Ignored,
+        // Exact stop limits; searches of the approach of the radius compensation;
+        // the Siemens language.
+        6010 | 6020 | 6030 | 4600 | 4610 | 4620 | 620 | 6210 | 3400 | 3410 | 1400 | 1410 | 1420
+        | 1430 | 2900 => GCode::Ignored,
         _ => return None,
     })
 }
@@ -88,8 +100,7 @@ pub(in crate::interpret) fn siemens_code(number: u16) -> Option<GCode> {
 /// What a refused G word is, for its message.
 pub(in crate::interpret) fn refused_name(number: u16) -> &'static str {
     match number {
-        330..=359 | 3310 | 3320 | 630 => "thread cutting or tapping",
-        410 | 420 => "cutter compensation",
+        330..=359 => "thread cutting",
         580 | 590 => "an offset of single axes",
         1470 | 1480 | 2470 | 2480 | 3470 | 3480 => "a soft approach or retraction",
         2910 => "the ISO language",

@@ -4,7 +4,8 @@ use super::Siemens;
 use super::cycle::{Call, Kind, Levels};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::modal::{Feed, NumberText};
-use crate::interpret::moves::{FeedMode, MoveKind};
+use crate::interpret::moves::MoveKind;
+use crate::units::SECONDS_PER_MINUTE;
 
 /// Strokes of a deep hole that one call may make.
 const STROKES_MAX: usize = 10_000;
@@ -225,14 +226,17 @@ impl Control<'_> {
             return;
         }
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
-        let mode = std::mem::replace(&mut self.modal.feed_mode, FeedMode::PerMinute);
         // Overrides do not act on tapping.
         let factor = std::mem::replace(&mut state.feed_factor, 1.0);
-        self.plunge_at(state, Some(pitch * speed_in), &levels, levels.depth, run);
+        let mm_s = |rpm: f64| pitch * self.modal.mm_per_unit * rpm / SECONDS_PER_MINUTE;
+        let [speed_in, speed_out] = [speed_in, speed_out].map(mm_s);
+        self.special.speed_mm_s = Some(speed_in);
+        self.plunge(state, MoveKind::Tap, &levels, levels.depth, run);
         self.cycle_wait(call.value(6), run);
-        self.plunge_at(state, Some(pitch * speed_out), &levels, levels.safe, run);
+        self.special.speed_mm_s = Some(speed_out);
+        self.plunge(state, MoveKind::Tap, &levels, levels.safe, run);
+        self.special.speed_mm_s = None;
         state.feed_factor = factor;
-        self.modal.feed_mode = mode;
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
     }
 

@@ -21,11 +21,13 @@ mod function;
 mod names;
 mod pattern;
 mod polar;
+mod radius;
 mod reading;
 mod setting;
 mod statement;
 mod system;
 mod target;
+mod thread;
 mod value;
 
 use std::collections::HashMap;
@@ -34,6 +36,8 @@ pub(super) use codes::{Code, is_beyond_words, refused_name, siemens_code};
 
 use self::frame::Frame;
 use self::value::{Argument, Scope, Val};
+use super::code::{GCode, Motion};
+use super::compensation::Insert;
 use super::modal::Modal;
 use super::words::Words;
 use crate::machine::{AXES, AxisSet, AxisValues};
@@ -73,6 +77,8 @@ struct Extra {
     /// CYCLE832: a path mode that blends.
     blends: bool,
     cycle: Option<cycle::Call>,
+    /// CHF, CHR, RND.
+    corner: Option<Insert>,
 }
 
 /// What MCALL has set.
@@ -150,6 +156,11 @@ pub(super) struct Siemens {
     surface_speed: bool,
     /// G70: F stays in mm.
     feed_in_mm: bool,
+    radius: radius::Radius,
+    /// RNDM.
+    rounds: Option<Insert>,
+    /// I, J and K of G331.
+    tap_lead: [Option<f64>; 3],
 }
 
 impl Siemens {
@@ -175,6 +186,9 @@ impl Siemens {
             spindle_limit: None,
             surface_speed: false,
             feed_in_mm: false,
+            radius: radius::Radius::default(),
+            rounds: None,
+            tap_lead: [None; 3],
         }
     }
 
@@ -185,7 +199,11 @@ impl Siemens {
 
     /// Whether the words of a block are plain motion here too.
     pub(super) fn is_plain_motion(&self, words: &Words) -> bool {
-        !self.active && !self.special && words.present & super::words::bit(b'R') == 0
+        let thread = |code: &GCode| matches!(code, GCode::Motion(Motion::Special(_)));
+        !self.active
+            && !self.special
+            && words.present & super::words::bit(b'R') == 0
+            && !words.g.iter().any(|(code, ..)| thread(code))
     }
 
     /// A new block begins.

@@ -2,6 +2,7 @@
 
 use super::cursor::Outcome;
 use super::reading::Reading;
+use crate::interpret::compensation::Insert;
 use crate::syntax::Block;
 
 impl Reading<'_, '_, '_> {
@@ -49,6 +50,11 @@ impl Reading<'_, '_, '_> {
                     self.extra().polar_radius = value;
                 }
             }
+            "NORM" | "KONT" | "KONTC" | "KONTT" | "CFC" | "CFTCP" | "CFIN" | "DISC" => {
+                self.radius_word(name, start)?;
+            }
+            // "Chamfer, rounding (CHF, CHR, RND, RNDM)".
+            "CHF" | "CHR" | "RND" | "RNDM" => self.corner_word(name, start)?,
             "LIMS" => {
                 self.index()?;
                 let value = self.value_behind(name, start)?;
@@ -80,6 +86,33 @@ impl Reading<'_, '_, '_> {
         Ok(true)
     }
 
+    fn corner_word(&mut self, name: &str, start: usize) -> Outcome<()> {
+        let value = self.value_behind(name, start)?;
+        if value < 0.0 || self.extra().corner.is_some() && name != "RNDM" {
+            let message = "a block takes one chamfer or rounding, from 0 on";
+            let help = "write one of them";
+            return Err(self.cursor.fault("corner-word", message, help, start));
+        }
+        let length_mm = value * self.control.modal.mm_per_unit;
+        let round = |modal| Insert::Round {
+            radius_mm: length_mm,
+            modal,
+        };
+        let insert = match name {
+            "CHF" => Insert::Chamfer(length_mm),
+            "CHR" => Insert::Legs(length_mm),
+            "RND" => round(false),
+            _ => {
+                self.state.rounds = (value > 0.0).then(|| round(true));
+                return Ok(());
+            }
+        };
+        if value > 0.0 {
+            self.extra().corner = Some(insert);
+        }
+        Ok(())
+    }
+
     fn equals(&mut self, name: &str, start: usize) -> Outcome<()> {
         if self.cursor.take(b'=') {
             return Ok(());
@@ -89,7 +122,7 @@ impl Reading<'_, '_, '_> {
         Err(self.cursor.fault("syntax", message, help, start))
     }
 
-    fn value_behind(&mut self, name: &str, start: usize) -> Outcome<f64> {
+    pub(super) fn value_behind(&mut self, name: &str, start: usize) -> Outcome<f64> {
         self.equals(name, start)?;
         self.number()
     }

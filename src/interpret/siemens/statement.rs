@@ -174,6 +174,9 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.fault("unsupported-word", message, help, start));
         }
         self.note("no-tool-table", frame_words::NO_TOOLS, start);
+        if matches!(name, "$TC_DP6" | "$TC_DP15") {
+            return self.set_radius(name == "$TC_DP15", start);
+        }
         self.index()?;
         self.cursor.expect(b'=')?;
         self.expression().map(|_| ())

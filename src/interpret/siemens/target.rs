@@ -56,6 +56,13 @@ impl Control<'_> {
         let Some(target) = self.siemens_target(state, run) else {
             return;
         };
+        let tapping = GCode::Siemens(Code::Tapping);
+        if run.words.g.iter().any(|(code, ..)| *code == tapping) {
+            return self.floating_tap(state, &target, run);
+        }
+        if let Motion::Special(number) = self.modal.motion {
+            return self.siemens_thread(number, state, &target, run);
+        }
         if arc {
             run.facts.uses_feed = true;
             return self.siemens_arc(state, target, run);

@@ -24,6 +24,8 @@ pub(super) struct Statement<'t> {
     pub(super) transfer: Option<Transfer>,
     /// The program that a call names: `M98 <NAME>`.
     pub(super) callee: Option<String>,
+    /// `,C` or `,R`.
+    pub(super) corner: Option<Word>,
     /// An alarm whose condition nobody knows.
     pub(super) alarm: Option<Span>,
 }
@@ -58,21 +60,42 @@ fn program_name(
     });
 }
 
-/// `,C2.` `,R5.` `,A30.`: B-63604EN, "Chamfering and Corner Rounding", "Direct
-/// Drawing Dimension Programming".
-fn corner_word(reader: &mut Reader<'_>) -> Fault {
+/// `,C2.` and `,R5.`: B-63944EN, "Optional Chamfering and Corner R"; B-63604EN,
+/// "Chamfering and Corner R". `,A30.` ("Direct Drawing Dimension Programming") is
+/// not read.
+fn corner_word(
+    control: &Control<'_>,
+    reader: &mut Reader<'_>,
+    statement: &mut Statement<'_>,
+) -> Result<(), Fault> {
     let start = reader.at;
     reader.at += 1;
-    let what = match reader.peek() {
-        Some(b'C') => "a chamfer (,C)",
-        Some(b'R') => "a rounded corner (,R)",
-        Some(b'A') => "an angle of a drawing (,A)",
-        _ => "a word behind a comma",
+    let letter = reader.peek();
+    let Some(letter @ (b'C' | b'R')) = letter else {
+        let what = match letter {
+            Some(b'A') => "an angle of a drawing (,A)",
+            _ => "a word behind a comma",
+        };
+        reader.at += 1;
+        let message = format!("{what} is not supported");
+        let help = "write the corner as a move of its own";
+        return Err(reader.fault("corner-word", message, help, start));
     };
     reader.at += 1;
-    let message = format!("{what} is not supported");
-    let help = "write the corner as a move of its own";
-    reader.fault("corner-word", message, help, start)
+    reader.peek();
+    let number = reader.at;
+    let value = reader.value(control)?;
+    let word = Word {
+        letter,
+        value: value.unwrap_or(0.0),
+        span: Span::new(start, reader.at),
+        number: Span::new(number, reader.at),
+    };
+    if statement.corner.replace(word).is_some() || word.value < 0.0 {
+        let message = "a block takes one chamfer or rounded corner, from 0 on";
+        return Err(reader.fault("corner-word", message, "write one of them", start));
+    }
+    Ok(())
 }
 
 impl From<Fault> for Unread {
@@ -127,7 +150,9 @@ impl Control<'_> {
                 b':' | b'O' if family == Family::Iso => {
                     self.program_word(&mut reader, &mut statement, block)?;
                 }
-                b',' => return Err(corner_word(&mut reader).into()),
+                b',' if family == Family::Iso => {
+                    corner_word(self, &mut reader, &mut statement)?;
+                }
                 b'O' if family == Family::Rs274 => {
                     self.o_word(&mut reader, &mut statement, block)?;
                 }

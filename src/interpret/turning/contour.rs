@@ -171,7 +171,8 @@ impl Control<'_> {
 
 impl Interpreter<'_> {
     /// Keeps the state, before a contour is executed to be known.
-    pub(crate) fn before_contour(&self) -> Box<Before> {
+    pub(crate) fn before_contour(&mut self, contour: &Contour) -> Box<Before> {
+        self.control.turning.reads_rough = contour.cycle != ContourCycle::Finish;
         let control = &self.control;
         Box::new(Before {
             modal: control.modal.clone(),
@@ -197,6 +198,7 @@ impl Interpreter<'_> {
         diagnostics: &mut Diagnostics,
     ) {
         let control = &mut self.control;
+        control.turning.reads_rough = false;
         let from = before.position.at;
         let motion = before.modal.motion;
         let finish = contour.cycle == ContourCycle::Finish;
@@ -214,7 +216,7 @@ impl Interpreter<'_> {
             line,
             block,
             words: &mut self.words,
-            facts: Facts::default(),
+            facts: &mut Facts::default(),
             steps,
             report: Report {
                 diagnostics,
@@ -222,6 +224,23 @@ impl Interpreter<'_> {
                 text,
             },
         };
+        let compensation = control.compensation.as_ref();
+        if compensation.is_some_and(|compensation| compensation.shifts()) {
+            let message = "a contour of a turning cycle under tool nose radius compensation, \
+                           where the radius is known";
+            let whole = run.whole();
+            contour_value(message, whole, &mut run);
+            return;
+        }
+        if control
+            .corners
+            .as_ref()
+            .is_some_and(|corners| corners.holds())
+        {
+            let whole = run.whole();
+            contour_value("a contour that ends with a rounded corner", whole, &mut run);
+            return;
+        }
         if !check(&found, &mut run) {
             return;
         }

@@ -34,6 +34,9 @@ const FIXED: &str = "it is part of a turning cycle";
 /// What turning cycles keep from block to block.
 #[derive(Debug, Default)]
 pub(super) struct Turning {
+    /// A contour is read for G71, G72 or G73, which do without the compensation
+    /// of the tool nose radius.
+    pub(super) reads_rough: bool,
     /// End point and taper of the single cycle in force, machine coordinates.
     held: Held,
     /// Depth of cut and escape of G71 and G72, mm.

@@ -1,5 +1,6 @@
 //! The file's structs to the validated machine.
 
+use super::controller_file::DistanceName;
 use super::findings::Findings;
 use super::machine_file::{
     LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName, SpindleTable,
@@ -35,6 +36,13 @@ pub(crate) fn machine(
             .or(dialect.point);
         dialect.diameter = table.value.diameter.unwrap_or(dialect.diameter);
         dialect.active = true;
+        let language = &mut controller.language;
+        if let Some(centre) = table.value.arc_centre {
+            language.arc_absolute = centre == DistanceName::Absolute;
+        }
+        if let Some(own) = &table.value.cutter_compensation {
+            language.compensation = profile::compensation(own);
+        }
     }
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::look_ahead::LookAheadTable;
 use super::machine_file::{PathModeName, RapidName};
 use super::printer::PrinterTable;
 use super::value::{At, Positive};
@@ -62,9 +63,9 @@ pub(crate) struct LanguageTable {
     pub(crate) ignored: Option<Vec<At<String>>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
-    /// Whether G41 and G42 shift the path as LinuxCNC does; default false:
+    /// How G41 and G42 shift the path by the tool's radius; default: not known,
     /// they are refused.
-    pub(crate) cutter_compensation: Option<bool>,
+    pub(crate) cutter_compensation: Option<CompensationTable>,
     /// What 3D printers differ in; only with family = "marlin".
     pub(crate) printer: Option<At<PrinterTable>>,
     /// Whether G73 to G89, G98 and G99 are those of a milling control; default
@@ -87,6 +88,40 @@ pub(crate) struct LanguageTable {
     pub(crate) feed: Option<FeedName>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
+}
+
+/// How G41 and G42 shift the path.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CompensationTable {
+    /// How the tool gets round outside corners.
+    #[schemars(required)]
+    pub(crate) corner: Option<CornerName>,
+    /// Where the first move ends and the last begins.
+    #[schemars(required)]
+    pub(crate) lead: Option<LeadName>,
+    /// Blocks without motion in the plane, one behind the other, that the
+    /// control looks beyond; default 1.
+    pub(crate) idle_blocks: Option<u32>,
+}
+
+/// How the tool gets round outside corners: by an arc, or straight on (Fanuc).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum CornerName {
+    Arc,
+    Line,
+}
+
+/// Where the first move under compensation ends: beside its own end (LinuxCNC),
+/// beside the start of the next move (Fanuc's type A), or as at other corners
+/// (type B).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum LeadName {
+    Beside,
+    Perpendicular,
+    Corner,
 }
 
 /// What a number without a decimal point means.
@@ -174,6 +209,8 @@ pub(crate) struct PlannerTable {
     /// With "g1-where-linear" only on a machine whose file says that its rapids
     /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
+    /// How corners are run through; default: not modelled.
+    pub(crate) look_ahead: Option<At<LookAheadTable>>,
 }
 
 /// How acceleration is shared on arcs.

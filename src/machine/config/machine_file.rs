@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::controller_file::PointName;
+use super::controller_file::{CompensationTable, DistanceName, PointName};
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, Share,
@@ -118,6 +118,10 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) decimal_point: Option<PointName>,
     /// Whether words of X are diameters.
     pub(crate) diameter: Option<bool>,
+    /// How arc centres I J K are meant at power-on.
+    pub(crate) arc_centre: Option<DistanceName>,
+    /// How G41 and G42 shift the path.
+    pub(crate) cutter_compensation: Option<CompensationTable>,
 }
 
 /// What happens at the joint of two blocks.

@@ -13,6 +13,7 @@ mod document;
 mod findings;
 mod hints;
 mod load;
+mod look_ahead;
 mod machine_file;
 mod plausible;
 mod preset;

@@ -2,17 +2,19 @@
 
 use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
-    ArcRuleName, ArgumentName, ControllerFile, DistanceName, DwellTable, FamilyName, FeedName,
-    KnobTable, LanguageTable, LatheName, PlannerTable, PointName, RapidJointName, RapidKnobName,
-    TargetName, UnitName, UnitsName,
+    ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
+    DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
+    PointName, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
+use super::look_ahead::look_ahead;
 use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
 use crate::machine::controller::{
-    ArcRule, Controller, Dialect, Family, Knob, KnobArgument, KnobTarget, KnobUnit, Language,
-    Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath,
+    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
+    Knob, KnobArgument, KnobTarget, KnobUnit, Language, Lathe, Planner, Point, RapidJoint,
+    RapidKnob, RapidPath,
 };
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
@@ -36,7 +38,7 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
             name: file.name.as_ref()?.value.clone(),
             ..language?
         },
-        planner: planner(planner_table)?,
+        planner: planner(findings, planner_table)?,
         knobs,
         rapid_knob: rapid_knob(findings, planner_table),
     })
@@ -67,11 +69,27 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         ignored_g,
         ignored_m,
         block_delete: table.block_delete.unwrap_or(true),
-        cutter_compensation: table.cutter_compensation.unwrap_or(false),
+        compensation: table.cutter_compensation.as_ref().and_then(compensation),
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         dialect: dialect(table),
+    })
+}
+
+/// How G41 and G42 shift the path.
+pub(crate) fn compensation(table: &CompensationTable) -> Option<CutterCompensation> {
+    Some(CutterCompensation {
+        corner: match table.corner? {
+            CornerName::Arc => CompensationCorner::Arc,
+            CornerName::Line => CompensationCorner::Line,
+        },
+        lead: match table.lead? {
+            LeadName::Beside => CompensationLead::Beside,
+            LeadName::Perpendicular => CompensationLead::Perpendicular,
+            LeadName::Corner => CompensationLead::Corner,
+        },
+        idle_blocks: table.idle_blocks.unwrap_or(1),
     })
 }
 
@@ -150,7 +168,7 @@ pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Opti
     letter
 }
 
-fn planner(table: &PlannerTable) -> Option<Planner> {
+fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner> {
     Some(Planner {
         rapid: rapid_path(table.rapid?),
         arc_rule: match table.arc_rule {
@@ -163,6 +181,7 @@ fn planner(table: &PlannerTable) -> Option<Planner> {
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
         dwell_stops: table.dwell_stops.unwrap_or(false),
+        look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
     })
 }
 

@@ -1,0 +1,423 @@
+//! The short way through a block: straight moves with F, from state in which
+//! nothing else can come of them. Nearly every block of a long program is one.
+//!
+//! It gives up before it has touched anything, and the block then goes through
+//! `execute`; the tests of this file hold the two equal.
+
+use super::code::Motion;
+use super::execute::Control;
+use super::facts::Facts;
+use super::modal::{Feed, NumberText};
+use super::motion::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM, path_length};
+use super::moves::{FeedMode, Move, MoveKind, Step};
+use super::words::axis_of;
+use crate::machine::{AxisKind, AxisSet, AxisValues, Family, Machine};
+use crate::syntax::{Block, Word};
+
+/// Whether a controller's plain words always mean the same.
+pub(super) fn is_direct(machine: &Machine) -> bool {
+    let language = &machine.controller.language;
+    let dialect = &language.dialect;
+    language.family != Family::Siemens && !dialect.active && !dialect.adapts()
+}
+
+/// What the words of a straight move say.
+struct Straight<'a> {
+    motion: Motion,
+    motion_word: Option<&'a Word>,
+    feed_word: Option<&'a Word>,
+    end: AxisValues,
+    moving: AxisSet,
+}
+
+impl Control<'_> {
+    /// Executes a block of straight motion; `None` when it is, or may be,
+    /// anything more, and nothing has happened then.
+    #[inline]
+    pub(super) fn direct(
+        &mut self,
+        line: u64,
+        text: &[u8],
+        block: &Block,
+        steps: &mut Vec<Step>,
+        facts: &mut Facts,
+    ) -> Option<()> {
+        if !self.may_go_direct() || block.tape || block.delete_level > 0 {
+            return None;
+        }
+        let mut straight = Straight {
+            motion: self.modal.motion,
+            motion_word: None,
+            feed_word: None,
+            end: self.position.at,
+            moving: AxisSet::default(),
+        };
+        self.read_straight(block, &mut straight)?;
+        let uses_feed = match straight.motion {
+            Motion::Rapid => self.machine.controller.language.rapid_uses_feed,
+            Motion::Linear => true,
+            _ => return None,
+        };
+        let mut feed = None;
+        if let Some(word) = straight.feed_word {
+            feed = Some(plain_feed(word, text, self.modal.mm_per_unit)?);
+        }
+        let Straight { end, moving, .. } = &straight;
+        let (length_mm, linear) = path_length(&self.position.at, end, *moving, None);
+        let mut feed_mm_s = f64::INFINITY;
+        let mut kind = MoveKind::Rapid;
+        if uses_feed {
+            let feed = feed.as_ref().or(self.modal.feed.as_ref())?;
+            if feed.value <= 0.0 {
+                return None;
+            }
+            kind = MoveKind::Feed;
+            feed_mm_s = if linear {
+                feed.linear_mm_s()
+            } else {
+                feed.rotary_deg_s()
+            };
+        }
+
+        // From here on, it happens.
+        steps.push(Step::Move(Move {
+            line,
+            number: block.number.map(|word| word.value),
+            run: self.run,
+            text: self.text,
+            kind,
+            start: self.position.at,
+            end: *end,
+            moving: *moving,
+            unknown_start: AxisSet::default(),
+            arc: None,
+            length_mm,
+            feed_mm_s,
+            feed_mode: FeedMode::PerMinute,
+            accel_mm_s2: *self.knobs.accel(kind),
+            path_accel_mm_s2: self.path_accel(*moving),
+            rapid_factor: self.knobs.rapid_factor,
+            dwell_s: 0.0,
+            loads: self.loads,
+            path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
+        }));
+        *facts = Facts {
+            feed_word: straight.feed_word.copied(),
+            motion_word: straight.motion_word.copied(),
+            uses_motion: true,
+            uses_feed,
+            executed: true,
+            feed_mm_per_unit: self.modal.mm_per_unit,
+            ..Facts::default()
+        };
+        self.begun = true;
+        self.position.at = *end;
+        if straight.motion_word.is_some() {
+            self.modal.motion = straight.motion;
+            self.special.active = 0;
+            self.special.spline.end();
+        }
+        if feed.is_some() {
+            self.modal.feed = feed;
+        }
+        Some(())
+    }
+
+    /// Reads words of axes, G0, G1 and F; `None` for others, for none of an
+    /// axis, and for what is to be reported.
+    #[inline]
+    fn read_straight<'a>(&self, block: &'a Block, straight: &mut Straight<'a>) -> Option<()> {
+        let modal = &self.modal;
+        let mut named = AxisSet::default();
+        for word in &block.words {
+            let Some(axis) = axis_of(word.letter) else {
+                match word.letter {
+                    b'F' if straight.feed_word.is_none() && word.value >= 0.0 => {
+                        straight.feed_word = Some(word);
+                    }
+                    b'G' if straight.motion_word.is_none() => {
+                        straight.motion = match word.value {
+                            0.0 => Motion::Rapid,
+                            1.0 => Motion::Linear,
+                            _ => return None,
+                        };
+                        straight.motion_word = Some(word);
+                    }
+                    _ => return None,
+                }
+                continue;
+            };
+            let absolute = if axis == EXTRUDER {
+                modal.extruder_absolute
+            } else {
+                modal.absolute
+            };
+            let unknown = self.position.unknown.contains(axis) && absolute;
+            if named.contains(axis) || unknown {
+                return None;
+            }
+            named.insert(axis);
+            let mut value = word.value;
+            if self.machine.axes[axis].as_ref()?.kind == AxisKind::Linear {
+                value *= modal.mm_per_unit;
+            }
+            let start = straight.end[axis];
+            let end = if absolute {
+                self.position.frame.shifted(axis, value)
+            } else {
+                start + value
+            };
+            if end.abs() > POSITION_MAX_MM {
+                return None;
+            }
+            if (end - start).abs() > STANDSTILL_MM {
+                straight.moving.insert(axis);
+            }
+            straight.end[axis] = end;
+        }
+        (!named.is_empty()).then_some(())
+    }
+
+    /// Whether the state lets a straight move be just that.
+    #[inline]
+    fn may_go_direct(&self) -> bool {
+        self.direct
+            && !self.ended
+            && !self.bent
+            && !self.printer.adjusts
+            && self.modal.feed_mode == FeedMode::PerMinute
+            && self.compensation.is_none()
+            && self.corners.is_none()
+            && self.special.left.is_none()
+            && self.debts.is_empty()
+            && self.callee.is_none()
+            && self.transfer.is_none()
+    }
+}
+
+/// The feed that a word sets; `None` for one that is worked out.
+fn plain_feed(word: &Word, text: &[u8], mm_per_unit: f64) -> Option<Feed> {
+    let text = word.number.of(text);
+    let plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'+' | b'-' | b' ' | b'\t');
+    text.iter().all(plain).then(|| Feed {
+        value: word.value,
+        mm_per_unit,
+        text: NumberText::new(text),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::interpret::{Diagnostics, Interpreter, Reading, Start};
+    use crate::syntax::scan_line;
+
+    /// Controllers, with words that bring each into states of its own.
+    const STATES: [(&str, &[&str]); 6] = [
+        (
+            "iso",
+            &[
+                "G68 X1 Y2 R30",
+                "G69",
+                "G51 P2",
+                "G50",
+                "G16",
+                "G15",
+                "G53 G0 Z0",
+                "#1=5",
+                "G0 X#1",
+                "G81 Z-1 R1 F100",
+                "M98 P77",
+                "G65 P77",
+                "G41 D1",
+                "G40",
+                "G1 X3 F50,R1",
+            ],
+        ),
+        (
+            "linuxcnc",
+            &[
+                "#<a>=3",
+                "G1 X[#<a>*2] F[100+#<a>]",
+                "G7",
+                "G8",
+                "G41 D1",
+                "G40",
+                "G33 Z-2 K1",
+                "G5 X1 Y1 I0 J1 P0 Q-1",
+                "@3 ^40",
+                "G81 Z-1 R1",
+                "M70",
+                "M72",
+                "(abort, no)",
+                "M19 R3",
+                "G10 L2 P1 R20",
+                "G88 Z-1 R1 P1",
+            ],
+        ),
+        ("grbl", &["$J=G91 X1", "G38.2 Z-1", "G43.1 Z2", "G28.1"]),
+        ("isg", &["G130 X50", "G131 Z=20", "G129=70", "G20 G21"]),
+        (
+            "marlin",
+            &[
+                "M82",
+                "M83",
+                "M220 S50",
+                "M221 S90",
+                "M203 X1 Y1",
+                "G28",
+                "M204 S500",
+                "G10",
+                "G11",
+                "M104 S200",
+                "N3 G1 X1*95",
+                "M205 X5",
+            ],
+        ),
+        (
+            "klipper",
+            &["SET_VELOCITY_LIMIT ACCEL=500", "G28 X", "M220 S150", "M83"],
+        ),
+    ];
+    /// Words that change the state of every controller.
+    const COMMON: &[&str] = &[
+        "G20",
+        "G21",
+        "G90",
+        "G91",
+        "G93",
+        "G94",
+        "G95",
+        "G92 X1 Y2",
+        "G92.1",
+        "G54",
+        "G55",
+        "G61",
+        "G64",
+        "G2 X1 Y1 R2",
+        "G3 X3 I1",
+        "G0",
+        "F0",
+        "F-1",
+        "F 2 00",
+        "S100 M3",
+        "M5",
+        "M8",
+        "M9",
+        "G4 P0.1",
+        "G17",
+        "G18",
+        "/G1 X3",
+        "%",
+        "G80",
+        "X9999999999",
+        "N5 G1 X2 Y2 Z2",
+        "X1 X2",
+        "G1 G0 X1",
+        "Q1 X1",
+        "G28 X0",
+        "A10",
+        "B5 F30",
+        "E2",
+        "M2",
+        "G1 X1 (note)",
+        "G1 F300 ; a",
+        "G1 Y-.5",
+        "G00 X+1.",
+        "G01 z2",
+        "G1",
+        "F100",
+        "X1 F0",
+    ];
+
+    fn lines() -> impl Strategy<Value = (usize, Vec<String>, bool)> {
+        let plain = (
+            0..3_usize,
+            prop::collection::vec((0..8_usize, -20..20_i32), 1..4),
+            0..5_usize,
+        )
+            .prop_map(|(motion, words, feed)| {
+                let mut text = ["", "G0 ", "G1 "][motion].to_owned();
+                for (axis, value) in words {
+                    let letter = ['X', 'Y', 'Z', 'X', 'Y', 'Z', 'A', 'E'][axis];
+                    let value = f64::from(value) / 4.0;
+                    write!(text, "{letter}{value} ").unwrap();
+                }
+                if feed == 0 {
+                    text += "F250";
+                }
+                text
+            });
+        (0..STATES.len(), any::<bool>()).prop_flat_map(move |(controller, unknown)| {
+            let own = prop::sample::select(STATES[controller].1);
+            let line = prop_oneof![
+                6 => plain.clone(),
+                2 => prop::sample::select(COMMON).prop_map(str::to_owned),
+                1 => own.prop_map(str::to_owned),
+            ];
+            (
+                Just(controller),
+                prop::collection::vec(line, 1..30),
+                Just(unknown),
+            )
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+        #[test]
+        fn both_ways_come_to_the_same((controller, lines, unknown) in lines()) {
+            let axis = "rapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n";
+            let text = format!(
+                "schema = 1\nname = \"all\"\ncontroller = \"{}\"\n[converter]\npeak_power_w = 500\n\
+                 [axes.X]\n{axis}[axes.Y]\n{axis}[axes.Z]\n{axis}[axes.E]\n{axis}\
+                 [axes.A]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 90\ninertia_kg_m2 = 1\n",
+                STATES[controller].0
+            );
+            let (machine, _) = Machine::from_toml("all.toml", &text).unwrap();
+            let mut reading = Reading::default();
+            if unknown {
+                reading.start = Start::Unknown;
+            }
+            let mut ways = [true, false].map(|direct| {
+                let mut interpreter = Interpreter::new(&machine, &reading);
+                interpreter.control.direct &= direct;
+                (interpreter, Diagnostics::default(), Facts::default())
+            });
+            for (number, line) in (1..).zip(&lines) {
+                let [short, long] = ways.each_mut().map(|(interpreter, diagnostics, facts)| {
+                    let (mut block, mut steps) = (Block::default(), Vec::new());
+                    scan_line(line.as_bytes(), number == 1, &mut block);
+                    interpreter.execute(
+                        number, line.as_bytes(), &mut block, &mut steps, facts, diagnostics,
+                    );
+                    let control = &interpreter.control;
+                    let state = format!(
+                        "{:?} {:?} {:?} {:?} {}",
+                        control.modal, control.position, control.special, control.knobs, control.begun
+                    );
+                    (steps, *facts, state, format!("{:?}", diagnostics.list))
+                });
+                prop_assert_eq!(short, long, "{}: {:?}", line, lines);
+            }
+        }
+    }
+
+    #[test]
+    fn most_controllers_take_the_short_way() {
+        let short = |machine: &Machine| {
+            Interpreter::new(machine, &Reading::default())
+                .control
+                .direct
+        };
+        for name in ["vmc", "router-48v", "printer"] {
+            let (machine, _) = Machine::load(name).unwrap();
+            assert!(short(&machine), "{name}");
+        }
+    }
+}

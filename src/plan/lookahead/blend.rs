@@ -1,0 +1,371 @@
+//! Blend arcs: how `LinuxCNC` 2.9 rounds the corner of two elements in G64.
+//!
+//! Input: both sides of a joint. Output: the circle, what it takes from each
+//! side, and the speed that it is planned for. Facts from the planner's source
+//! (`blendmath.c`) and measurements; lengths in mm, angles in rad.
+//!
+//! ```text
+//!        P          θ half the inside angle, φ = π − 2θ the turn. A circle of
+//!       ╱│╲         radius R stands R/sin θ from P on the bisector, touches
+//!      ╱ │ ╲        the sides d = R/tan θ from P and passes P at a distance of
+//!     ╱ (R) ╲       R/sin θ − R: the tolerance, so R = s·p/(1 − s).
+//! ```
+
+use super::vector::{Vector, add, angle, cross, dot, length, scale, sub, unit};
+use crate::machine::{AxisValues, Machine};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Share of the acceleration for turning, √3/2.
+pub(super) const NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
+/// Share that it leaves for speeding up.
+pub(super) const TANGENTIAL_SHARE: f64 = 0.5;
+/// Share of an element that one blend may take.
+const LENGTH_SHARE: f64 = 0.5;
+/// Share of an element that the tolerance may be.
+const TOLERANCE_SHARE: f64 = 0.25;
+const ANGLE_MIN: f64 = 1e-6;
+const ARC_LENGTH_MIN_MM: f64 = 1e-6;
+/// Smallest half angle between two arcs.
+const ARCS_ANGLE_MIN: f64 = PI / 12.0;
+
+/// The machine's limits of X, Y and Z; 0 for axes that it does not have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axes {
+    exists: [bool; 3],
+    pub speed: Vector,
+}
+
+impl Axes {
+    pub fn of(machine: &Machine) -> Self {
+        let axis = |i: usize| machine.axes.get(i).and_then(Option::as_ref);
+        Self {
+            exists: [0, 1, 2].map(|i| axis(i).is_some()),
+            speed: [0, 1, 2].map(|i| axis(i).map_or(0.0, |axis| axis.rapid_mm_s)),
+        }
+    }
+
+    pub fn accel(&self, limits: &AxisValues) -> Vector {
+        [0, 1, 2].map(|i| if self.exists[i] { limits[i] } else { 0.0 })
+    }
+}
+
+/// One side of a joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    /// Unit direction of motion at the joint.
+    pub tangent: Vector,
+    /// Of an arc: from the joint to its centre, its radius, its angle and the
+    /// normal of its plane.
+    pub circle: Option<Circle>,
+    /// Length as programmed, and what earlier blends left of it.
+    pub nominal_mm: f64,
+    pub length_mm: f64,
+    /// Largest speed, and the one asked for.
+    pub max_speed: f64,
+    pub asked_speed: f64,
+    /// P of the program.
+    pub tolerance_mm: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Circle {
+    pub center: Vector,
+    pub radius: f64,
+    pub angle: f64,
+    pub normal: Vector,
+}
+
+/// A blend between two elements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    pub radius: f64,
+    pub sweep: f64,
+    pub tangent: Vector,
+    pub normal: Vector,
+    /// What it takes from the first side and the second: mm of a line, rad of
+    /// an arc.
+    pub trims: [f64; 2],
+    /// Speed that it is planned for, and acceleration of its plane.
+    pub speed: f64,
+    pub asked_speed: f64,
+    pub accel: f64,
+}
+
+impl Side {
+    fn target_speed(&self) -> f64 {
+        self.asked_speed.min(self.max_speed)
+    }
+
+    fn tolerance(&self) -> f64 {
+        let most = self.nominal_mm * TOLERANCE_SHARE;
+        if self.tolerance_mm == 0.0 {
+            most
+        } else {
+            self.tolerance_mm.min(most)
+        }
+    }
+}
+
+/// Diameter of the circle that fits into the box of the limits, cut through its
+/// centre by the plane with this normal.
+fn inscribed(normal: Vector, limits: Vector) -> f64 {
+    let mut smallest = f64::INFINITY;
+    for (i, limit) in limits.into_iter().enumerate() {
+        if limit > 0.0 {
+            let across = (1.0 - normal[i] * normal[i]).max(1e-24).sqrt();
+            smallest = smallest.min(limit / across);
+        }
+    }
+    smallest
+}
+
+/// The speed that both sides and the plane of the corner permit.
+fn goal(sides: [&Side; 2], turn: f64, planar: f64) -> f64 {
+    let [first, second] = sides;
+    let cos = libm::cos(turn.min(PI * 0.49));
+    let v1 = first.max_speed.min(second.max_speed / cos);
+    let v2 = second.max_speed.min(first.max_speed / cos);
+    let altitude = if first.circle.is_none() && second.circle.is_none() {
+        let base = length(sub(scale(second.tangent, v2), scale(first.tangent, v1)));
+        v1 * v2 * libm::sin(turn) / base
+    } else {
+        0.0
+    };
+    let asked = first.target_speed().max(second.target_speed());
+    asked.min(altitude.max(planar))
+}
+
+/// How an arc enters the fit: the blend lies inside its circle, how much of it
+/// the blend may take, and the length that this stands for.
+struct Bent {
+    convex: bool,
+    most: f64,
+}
+
+impl Bent {
+    fn of(circle: &Circle, bisector: Vector, theta: f64, share: f64) -> Self {
+        let convex = dot(circle.center, bisector) > 0.0;
+        let blend = if convex { theta } else { FRAC_PI_2 };
+        Self {
+            convex,
+            most: (circle.angle * share).min(blend),
+        }
+    }
+
+    fn reach(&self, circle: &Circle) -> f64 {
+        if self.convex {
+            libm::sin(self.most / 4.0) * circle.radius
+        } else {
+            self.most * circle.radius
+        }
+    }
+}
+
+/// The blend of a joint, if there is one that fits.
+pub(super) fn fit(sides: [&Side; 2], axes: &Axes, accel: Vector) -> Option<Fit> {
+    let [first, second] = sides;
+    let theta_tangents = 0.5 * angle(scale(first.tangent, -1.0), second.tangent);
+    if FRAC_PI_2 - theta_tangents < ANGLE_MIN || theta_tangents < ANGLE_MIN {
+        return None;
+    }
+    let binormal = unit(cross(first.tangent, second.tangent))?;
+    let bisector = unit(sub(second.tangent, first.tangent))?;
+    let coplanar = |circle: &Circle| length(cross(binormal, circle.normal)) < ANGLE_MIN;
+    if sides
+        .iter()
+        .any(|side| side.circle.as_ref().is_some_and(|circle| !coplanar(circle)))
+    {
+        return None;
+    }
+    let mut theta = theta_tangents;
+    let shares = [2.0 / 3.0, 1.0 / 3.0];
+    let mut bent: [Option<Bent>; 2] = [None, None];
+    for ((side, share), bent) in sides.iter().zip(shares).zip(&mut bent) {
+        if let Some(circle) = &side.circle {
+            let of = Bent::of(circle, bisector, theta_tangents, share);
+            if of.convex {
+                theta = theta.min(theta_tangents - of.most / 4.0);
+            }
+            *bent = Some(of);
+        }
+    }
+    if bent.iter().all(Option::is_some) && theta < ARCS_ANGLE_MIN {
+        return None;
+    }
+    let turn = PI - 2.0 * theta;
+    // A line gives at most half of its programmed length and what is left of it.
+    let first_mm = match (&bent[0], &first.circle) {
+        (Some(bent), Some(circle)) => bent.reach(circle),
+        _ => first.length_mm.min(first.nominal_mm * LENGTH_SHARE),
+    };
+    let second_mm = match (&bent[1], &second.circle) {
+        (Some(bent), Some(circle)) => bent.reach(circle),
+        _ => second.length_mm * LENGTH_SHARE,
+    };
+    let a = inscribed(binormal, accel);
+    let v_goal = goal(sides, turn, inscribed(binormal, axes.speed));
+    let (s, c) = (libm::sin(theta), libm::cos(theta));
+    let tolerance = first.tolerance().min(second.tolerance());
+    let d_most = (c * tolerance / (1.0 - s)).min(first_mm.min(second_mm));
+    let r_most = s / c * d_most;
+    let v = (a * NORMAL_SHARE * r_most).sqrt().min(v_goal);
+    // A circle no larger than a blend by two ramps at half the acceleration,
+    // each over its side, takes; nor smaller than the speed needs.
+    let half = 0.5 * a;
+    let ramp_s = (2.0 * half * d_most).sqrt().min(v) / half;
+    let radius = (v * v / (a * NORMAL_SHARE)).max((ramp_s * v / turn).min(r_most));
+    if radius < 1e-12 || radius * turn < ARC_LENGTH_MIN_MM {
+        return None;
+    }
+    let fit = Fit {
+        radius,
+        sweep: turn,
+        tangent: first.tangent,
+        normal: unit(cross(binormal, first.tangent))?,
+        trims: [radius * c / s; 2],
+        speed: v,
+        asked_speed: first.target_speed().max(second.target_speed()),
+        accel: a,
+    };
+    if bent.iter().all(Option::is_none) {
+        return Some(fit);
+    }
+    onto_arcs(fit, sides, &bent, binormal, bisector, tolerance)
+}
+
+/// Moves a blend that was fitted to lines so that it touches the arcs.
+fn onto_arcs(
+    mut fit: Fit,
+    sides: [&Side; 2],
+    bent: &[Option<Bent>; 2],
+    binormal: Vector,
+    bisector: Vector,
+    tolerance: f64,
+) -> Option<Fit> {
+    let r = fit.radius;
+    // Distance between the centres of blend and arc.
+    let apart = |i: usize| -> Option<f64> {
+        let circle = sides[i].circle.as_ref()?;
+        Some(if bent[i].as_ref()?.convex {
+            circle.radius - r
+        } else {
+            circle.radius + r
+        })
+    };
+    let center = match (&sides[0].circle, &sides[1].circle) {
+        (Some(first), Some(second)) => {
+            between_arcs(first.center, second.center, apart(0)?, apart(1)?, binormal)?
+        }
+        (None, Some(circle)) => {
+            let (center, d) = beside_line(
+                scale(sides[0].tangent, -1.0),
+                circle.center,
+                apart(1)?,
+                r,
+                binormal,
+                bisector,
+            )?;
+            fit.trims[0] = d;
+            center
+        }
+        (Some(circle), None) => {
+            let (center, d) = beside_line(
+                sides[1].tangent,
+                circle.center,
+                apart(0)?,
+                r,
+                binormal,
+                bisector,
+            )?;
+            fit.trims[1] = d;
+            center
+        }
+        (None, None) => return None,
+    };
+    if length(center) - r > tolerance {
+        return None;
+    }
+    for (i, side) in sides.iter().enumerate() {
+        if let (Some(circle), Some(bent)) = (&side.circle, &bent[i]) {
+            let to_joint = unit(scale(circle.center, -1.0))?;
+            let trim = angle(unit(sub(center, circle.center))?, to_joint);
+            if trim > bent.most {
+                return None;
+            }
+            fit.trims[i] = trim;
+        }
+    }
+    let touch = |i: usize, sign: f64| -> Option<Vector> {
+        Some(match &sides[i].circle {
+            None => scale(sides[i].tangent, sign * fit.trims[i]),
+            Some(circle) => {
+                let out = unit(sub(center, circle.center))?;
+                add(circle.center, scale(out, circle.radius))
+            }
+        })
+    };
+    let (from, to) = (touch(0, -1.0)?, touch(1, 1.0)?);
+    let (out, back) = (unit(sub(from, center))?, unit(sub(to, center))?);
+    fit.sweep = angle(out, back);
+    fit.radius = length(sub(from, center));
+    fit.normal = scale(out, -1.0);
+    fit.tangent = cross(binormal, out);
+    (fit.radius * fit.sweep >= ARC_LENGTH_MIN_MM).then_some(fit)
+}
+
+/// Centre of a circle of radius `r` that touches a line through the joint on
+/// the side of the bisector and stands `apart` from the arc's centre; and how
+/// far from the joint it touches the line. `away` points along the line.
+fn beside_line(
+    away: Vector,
+    arc_center: Vector,
+    apart: f64,
+    r: f64,
+    binormal: Vector,
+    bisector: Vector,
+) -> Option<(Vector, f64)> {
+    let mut side = unit(cross(binormal, away))?;
+    if dot(side, bisector) < 0.0 {
+        side = scale(side, -1.0);
+    }
+    let (along, across) = (dot(arc_center, away), dot(arc_center, side));
+    let rest2 = apart * apart - (r - across) * (r - across);
+    if rest2 < 0.0 {
+        return None;
+    }
+    let root = rest2.sqrt();
+    let d = (along + root).abs().min((along - root).abs());
+    Some((add(scale(away, d), scale(side, r)), d))
+}
+
+/// Centre of a circle at given distances from two centres, the one nearer to
+/// the joint.
+fn between_arcs(
+    first: Vector,
+    second: Vector,
+    d1: f64,
+    d2: f64,
+    binormal: Vector,
+) -> Option<Vector> {
+    let apart = sub(second, first);
+    let c = length(apart);
+    let along = unit(apart)?;
+    let x = (d1 * d1 - d2 * d2 + c * c) / (2.0 * c);
+    let y2 = d1 * d1 - x * x;
+    if y2 < 0.0 {
+        return None;
+    }
+    let side = scale(unit(cross(binormal, along))?, y2.sqrt());
+    let base = add(first, scale(along, x));
+    let (one, other) = (add(base, side), sub(base, side));
+    Some(if length(other) < length(one) {
+        other
+    } else {
+        one
+    })
+}
+
+/// The inside angle of a corner.
+pub(super) fn angle_between(before: Vector, after: Vector) -> f64 {
+    angle(scale(before, -1.0), after)
+}

@@ -1,0 +1,116 @@
+//! Arcs as controllers without arcs run them: chords of equal length.
+//!
+//! Input: an arc or a helix. Output: its chords, one after the other, as
+//! straight elements under the same tag.
+
+use super::element::{Curve, Element};
+use crate::machine::ChordRule;
+
+/// Chords of one arc, at most.
+const CHORDS_MAX: f64 = 1e6;
+
+impl ChordRule {
+    /// How many chords an arc of this length (mm) and radius gets at a feed.
+    #[must_use]
+    pub fn count(&self, curve: &Curve, feed_mm_s: f64) -> u32 {
+        let r = curve.radius_mm;
+        let flat_mm = r * curve.sweep_rad.abs();
+        let mut chord_mm = self.max_mm;
+        if self.deviation_mm < 2.0 * r {
+            chord_mm =
+                chord_mm.min(2.0 * (self.deviation_mm * (2.0 * r - self.deviation_mm)).sqrt());
+        }
+        if self.per_second > 0.0 {
+            chord_mm = chord_mm.min(feed_mm_s / self.per_second);
+        }
+        let least = self.per_circle * curve.sweep_rad.abs() / std::f64::consts::TAU;
+        let count = (flat_mm / chord_mm.max(self.min_mm)).max(least);
+        let count = if self.round_up {
+            count.ceil()
+        } else {
+            count.floor()
+        };
+        count.clamp(1.0, CHORDS_MAX) as u32
+    }
+}
+
+/// The chords of an arc.
+#[derive(Debug, Clone)]
+pub(super) struct Chords<'e, T> {
+    arc: &'e Element<T>,
+    curve: Curve,
+    count: u32,
+    next: u32,
+    /// In-plane directions of the start: along the path and to its side.
+    along: [f64; 2],
+}
+
+impl<'e, T: Copy> Chords<'e, T> {
+    /// The chords of an element that is an arc.
+    pub fn of(rule: &ChordRule, arc: &'e Element<T>) -> Option<Self> {
+        let curve = arc.curve?;
+        let along = curve
+            .plane
+            .map(|axis| arc.start.get(axis).copied().unwrap_or(0.0));
+        Some(Self {
+            arc,
+            curve,
+            count: rule.count(&curve, arc.feed_mm_s.min(arc.speed_mm_s)),
+            next: 0,
+            along,
+        })
+    }
+}
+
+impl<T: Copy> Iterator for Chords<'_, T> {
+    /// A chord, and where it begins and ends on the arc, mm.
+    type Item = (Element<T>, [f64; 2]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.next == self.count {
+            return None;
+        }
+        let i = f64::from(self.next);
+        self.next += 1;
+        let share = 1.0 / f64::from(self.count);
+        let step_rad = self.curve.sweep_rad * share;
+        // The chord is shorter than its piece of the arc, and points to where
+        // the tangent of its middle does.
+        let half = 0.5 * step_rad.abs();
+        let shorter = if half > 0.0 {
+            libm::sin(half) / half
+        } else {
+            1.0
+        };
+        let (sin, cos) = libm::sincos((i + 0.5) * step_rad);
+        let [x, y] = self.along;
+        let flat = [x * cos - y * sin, x * sin + y * cos];
+        let flat2 = (x * x + y * y).min(1.0);
+        // Axes across the plane keep their travel: the direction turns a little.
+        let stretch = (flat2 * shorter * shorter + (1.0 - flat2)).sqrt();
+        let mut chord = *self.arc;
+        let mut direction = chord.start.map(|change| change / stretch);
+        for (axis, change) in self.curve.plane.into_iter().zip(flat) {
+            if let Some(value) = direction.get_mut(axis) {
+                *value = change * shorter / stretch;
+            }
+        }
+        chord.start = direction;
+        chord.end = direction;
+        chord.curve = None;
+        chord.curve_speed_mm_s = f64::INFINITY;
+        chord.length_mm = self.arc.length_mm * share * stretch;
+        chord.accel_mm_s2 = straight_accel(&chord).min(chord.path_accel_mm_s2);
+        let at = |k: f64| self.arc.length_mm * (k * share);
+        Some((chord, [at(i), at(i + 1.0)]))
+    }
+}
+
+/// What the axes permit along a straight direction.
+fn straight_accel<T>(chord: &Element<T>) -> f64 {
+    let limits = chord.axis_accel_mm_s2.iter().zip(&chord.start);
+    let moving = limits.filter(|(_, change)| **change != 0.0);
+    moving.fold(f64::INFINITY, |accel, (limit, change)| {
+        accel.min(limit / change.abs())
+    })
+}

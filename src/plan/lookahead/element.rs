@@ -1,0 +1,164 @@
+//! Path elements: what a look-ahead planner must know of a move.
+//!
+//! Input: a move and the limits of its machine. Output: an [`Element`] with the
+//! direction at both ends, per unit of path, and the limits along the path.
+
+use super::super::arc;
+use super::super::limits::{self, PathLimits};
+use super::super::trajectory::{Caps, Overrides};
+use crate::interpret::{Arc, Move, MoveKind};
+use crate::machine::{AXES, AxisValues, Machine};
+
+/// What happens at the end of an element, if the controller's rules permit it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Joint {
+    /// A stop: exact stop mode, or a dwell, a tool change or another word
+    /// behind it for which the controller waits. Where the stop has such a
+    /// reason the planner is told with [`super::PathPlanner::stop`].
+    Stop,
+    /// The path is kept; joints without a corner are run through.
+    Exact,
+    /// Corners are rounded or taken at a speed.
+    Blend {
+        /// How far the path may be left in mm; 0: as far as it takes.
+        tolerance_mm: f64,
+        /// How far lines that are put together may be left in mm; 0: none are.
+        join_mm: f64,
+    },
+}
+
+/// The curvature of an arc or a helix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve {
+    /// Axes of the plane, first and second.
+    pub plane: [usize; 2],
+    /// In the plane, mm.
+    pub radius_mm: f64,
+    /// Signed angle, positive from the first axis to the second.
+    pub sweep_rad: f64,
+    /// How far it moves across the plane in all, mm.
+    pub rise_mm: f64,
+    /// The smaller acceleration limit of the plane's axes, mm/s².
+    pub accel_mm_s2: f64,
+}
+
+/// A path element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Element<T> {
+    /// Given back with the result, such as the line and the index of a move.
+    pub tag: T,
+    /// A rapid, or a feed.
+    pub rapid: bool,
+    /// Path length in mm, positive.
+    pub length_mm: f64,
+    /// Speed that is asked for in mm/s; infinite for a rapid.
+    pub feed_mm_s: f64,
+    /// Speed that the axes permit, mm/s. Of an arc without its curvature.
+    pub speed_mm_s: f64,
+    /// Acceleration along the path that the axes permit, mm/s². Of an arc by
+    /// the controller's rule.
+    pub accel_mm_s2: f64,
+    /// Acceleration along the path that program and controller permit whatever
+    /// the direction, mm/s²; infinite where only the axes have limits.
+    pub path_accel_mm_s2: f64,
+    /// Speed that curvature permits, mm/s; infinite on a straight path.
+    pub curve_speed_mm_s: f64,
+    /// Acceleration limits of the axes, mm/s².
+    pub axis_accel_mm_s2: AxisValues,
+    /// Change of each axis per unit of path at the start.
+    pub start: AxisValues,
+    /// The same at the end.
+    pub end: AxisValues,
+    /// The curvature of an arc.
+    pub curve: Option<Curve>,
+    /// What happens at its end.
+    pub joint: Joint,
+}
+
+impl<T> Element<T> {
+    /// The element of a move that has a length and a known start; `None` for
+    /// all others and where a limit is 0.
+    pub fn of(
+        machine: &Machine,
+        mv: &Move,
+        overrides: Overrides,
+        joint: Joint,
+        tag: T,
+    ) -> Option<Self> {
+        if mv.kind == MoveKind::Dwell || mv.length_mm <= 0.0 || !mv.unknown_start.is_empty() {
+            return None;
+        }
+        let caps = Caps::default();
+        let limits = match &mv.arc {
+            Some(_) => PathLimits::of(machine, mv, overrides, &caps),
+            None => limits::straight(machine, mv, overrides, &caps),
+        };
+        let feed_mm_s = match mv.kind {
+            MoveKind::Rapid => f64::INFINITY,
+            kind => mv.feed_mm_s * limits::feed_factor(kind, overrides),
+        };
+        let mut element = Self {
+            tag,
+            rapid: mv.kind == MoveKind::Rapid,
+            length_mm: mv.length_mm,
+            feed_mm_s,
+            speed_mm_s: limits.speed_mm_s,
+            accel_mm_s2: limits.accel_mm_s2.min(mv.path_accel_mm_s2),
+            path_accel_mm_s2: mv.path_accel_mm_s2,
+            curve_speed_mm_s: f64::INFINITY,
+            axis_accel_mm_s2: mv.accel_mm_s2,
+            start: [0.0; AXES],
+            end: [0.0; AXES],
+            curve: None,
+            joint,
+        };
+        for axis in mv.moving.iter() {
+            let change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            element.start[axis] = change;
+            element.end[axis] = change;
+        }
+        if let Some(arc) = &mv.arc {
+            element.bend(machine, mv, arc);
+        }
+        let moves = element.top_mm_s() > 0.0 && element.accel_mm_s2 > 0.0;
+        moves.then_some(element)
+    }
+
+    fn bend(&mut self, machine: &Machine, mv: &Move, of: &Arc) {
+        let share = arc::plane_share(mv, of);
+        let sense = of.sweep_rad.signum();
+        for (angle, side) in [
+            (of.start_angle_rad, &mut self.start),
+            (of.start_angle_rad + of.sweep_rad, &mut self.end),
+        ] {
+            let (sin, cos) = libm::sincos(angle);
+            let tangent = [-sense * sin * share, sense * cos * share];
+            for (axis, change) in of.plane.into_iter().zip(tangent) {
+                if let Some(value) = side.get_mut(axis) {
+                    *value = change;
+                }
+            }
+        }
+        let accel = of
+            .plane
+            .into_iter()
+            .filter_map(|axis| mv.accel_mm_s2.get(axis));
+        self.speed_mm_s = arc::axis_speed(machine, mv, of);
+        self.curve_speed_mm_s = arc::limits(machine, mv, of, &Caps::default()).speed_mm_s;
+        self.curve = Some(Curve {
+            plane: of.plane,
+            radius_mm: of.radius_mm,
+            sweep_rad: of.sweep_rad,
+            rise_mm: self.length_mm * (1.0 - share * share).max(0.0).sqrt(),
+            accel_mm_s2: accel.copied().fold(f64::INFINITY, f64::min),
+        });
+    }
+
+    /// Speed that feed, axes and curvature permit, mm/s.
+    #[must_use]
+    pub fn top_mm_s(&self) -> f64 {
+        self.feed_mm_s
+            .min(self.speed_mm_s)
+            .min(self.curve_speed_mm_s)
+    }
+}

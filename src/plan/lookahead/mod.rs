@@ -1,0 +1,20 @@
+//! Look-ahead: several moves planned together.
+//!
+//! Input: path elements in order and the rules of a controller as data. Output:
+//! a profile for each piece of path, with the speeds at its ends, and the arcs
+//! that the controller lays round corners.
+
+mod blend;
+mod chord;
+mod corner;
+mod element;
+mod join;
+mod linuxcnc;
+mod planner;
+mod ramp;
+mod vector;
+mod window;
+
+pub use element::{Curve, Element, Joint};
+pub use planner::{Blend, PathPlanner, Piece, Planned};
+pub use ramp::Speeds2;

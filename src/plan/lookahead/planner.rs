@@ -1,0 +1,222 @@
+//! The planner: elements in, profiles out, in order, with a bounded window.
+//!
+//! ```text
+//! elements ─chords→ ─corner or blend→ nodes ─window→ speeds ─→ profiles
+//! ```
+
+use super::blend::Axes;
+use super::chord::Chords;
+use super::corner;
+use super::element::{Element, Joint};
+use super::linuxcnc::LinuxCnc;
+use super::ramp::Speeds2;
+use super::window::{Node, Window};
+use crate::machine::{CornerRule, LookAhead, Machine};
+use crate::plan::Profile;
+
+/// A piece of path that a controller lays round a corner: a circle in space,
+/// begun by a straight rest of the element before where that was too short to
+/// stand alone. XYZ only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blend {
+    /// Straight path before the circle, mm.
+    pub lead_mm: f64,
+    /// Of the circle, mm.
+    pub radius_mm: f64,
+    /// By which the direction turns, positive.
+    pub sweep_rad: f64,
+    /// Unit direction at the start.
+    pub tangent: [f64; 3],
+    /// Unit direction from the start to the centre.
+    pub normal: [f64; 3],
+}
+
+/// What a piece of the plan stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Piece {
+    /// The element, from one place on its path to another, mm.
+    Along {
+        /// Where it begins.
+        from_mm: f64,
+        /// Where it ends.
+        to_mm: f64,
+    },
+    /// A line that stands for all elements from the first to the tagged one.
+    Joined {
+        /// Its unit direction in X, Y and Z.
+        direction: [f64; 3],
+    },
+    /// A blend; half of it belongs to the element before and half to the next.
+    Blend(Blend),
+}
+
+/// A planned piece of path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned<T> {
+    /// The element's; of several that became one line, the last one's.
+    pub tag: T,
+    /// The same, but of several the first one's.
+    pub first: T,
+    /// Of a blend: the next element's.
+    pub next: Option<T>,
+    /// What it is.
+    pub piece: Piece,
+    /// How it runs.
+    pub profile: Profile,
+    /// False where the controller may do otherwise than planned: the robust
+    /// bound applies. So it is where its rule is not modelled, and where more
+    /// elements were open than the window holds.
+    pub certain: bool,
+}
+
+/// What travels through the window with a node.
+#[derive(Debug, Clone)]
+pub(super) struct Load<T> {
+    pub tag: T,
+    pub first: T,
+    pub next: Option<T>,
+    pub piece: Piece,
+    pub certain: bool,
+}
+
+#[derive(Debug, Clone)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one for each planner, and the large one is the common case"
+)]
+enum Rule<T> {
+    Corner(Option<Element<T>>),
+    LinuxCnc(Box<LinuxCnc<T>>),
+}
+
+/// A look-ahead planner.
+///
+/// Elements are given with [`Self::push`], stops that other words cause with
+/// [`Self::stop`], and the finished pieces are taken with [`Self::pop`], in
+/// order. An element is final once nothing behind it can change it.
+///
+/// What changes with the limits of one element: a clone taken before it, given
+/// the changed element and those behind it, plans them anew. From the first
+/// piece on that begins as before at a joint that the change did not reach, all
+/// is as it was.
+#[derive(Debug, Clone)]
+pub struct PathPlanner<T> {
+    look_ahead: LookAhead,
+    rule: Rule<T>,
+    window: Window<Load<T>>,
+}
+
+impl<T: Copy> PathPlanner<T> {
+    /// A planner at rest.
+    #[must_use]
+    pub fn new(machine: &Machine, look_ahead: LookAhead) -> Self {
+        let rule = match look_ahead.corner {
+            CornerRule::LinuxCnc {
+                cycle_s,
+                kink_ratio,
+                gap_cycles,
+            } => {
+                let axes = Axes::of(machine);
+                Rule::LinuxCnc(Box::new(LinuxCnc::new(
+                    axes, cycle_s, kink_ratio, gap_cycles,
+                )))
+            }
+            _ => Rule::Corner(None),
+        };
+        Self {
+            look_ahead,
+            rule,
+            window: Window::new(look_ahead.blocks, look_ahead.min_cruise_ratio > 0.0),
+        }
+    }
+
+    /// Adds an element.
+    #[inline]
+    pub fn push(&mut self, element: &Element<T>) {
+        let mut limited;
+        let element = if element.path_accel_mm_s2 > self.look_ahead.path_accel_mm_s2 {
+            limited = *element;
+            limited.path_accel_mm_s2 = self.look_ahead.path_accel_mm_s2;
+            limited.accel_mm_s2 = limited.accel_mm_s2.min(limited.path_accel_mm_s2);
+            &limited
+        } else {
+            element
+        };
+        if let Rule::LinuxCnc(rule) = &mut self.rule {
+            rule.push(element, &mut self.window);
+            return;
+        }
+        let chords = self.look_ahead.chords.as_ref();
+        match chords.and_then(|rule| Chords::of(rule, element)) {
+            Some(chords) => chords.for_each(|(chord, at)| self.push_corner(&chord, at)),
+            None => self.push_corner(element, [0.0, element.length_mm]),
+        }
+    }
+
+    fn push_corner(&mut self, element: &Element<T>, at: [f64; 2]) {
+        let Rule::Corner(before) = &mut self.rule else {
+            return;
+        };
+        let rule = &self.look_ahead.corner;
+        let top = element.top_mm_s();
+        let top2 = top * top;
+        let entry2 = match before {
+            Some(before) if before.joint != Joint::Stop => {
+                let before_top = before.top_mm_s();
+                let own2 = top2.min(before_top * before_top);
+                corner::speed2(rule, before, element).min(own2)
+            }
+            _ => 0.0,
+        };
+        if entry2 == 0.0 {
+            self.window.stop();
+        }
+        let load = Load {
+            tag: element.tag,
+            first: element.tag,
+            next: None,
+            piece: Piece::Along {
+                from_mm: at[0],
+                to_mm: at[1],
+            },
+            certain: true,
+        };
+        let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
+        node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
+        node.step2 = corner::start2(rule, element);
+        self.window.push(node);
+        match before {
+            Some(before) => *before = *element,
+            None => *before = Some(*element),
+        }
+    }
+
+    /// The motion stops behind the last element: a dwell, a tool change, the
+    /// end of the program.
+    pub fn stop(&mut self) {
+        match &mut self.rule {
+            Rule::Corner(before) => *before = None,
+            Rule::LinuxCnc(rule) => rule.stop(&mut self.window),
+        }
+        self.window.stop();
+    }
+
+    /// The next piece, once it is final.
+    #[inline]
+    pub fn pop(&mut self) -> Option<Planned<T>> {
+        let span = self.window.pop()?;
+        let speeds2 = Speeds2 {
+            start: span.start2,
+            end: span.end2,
+            top: span.top2,
+        };
+        Some(Planned {
+            tag: span.payload.tag,
+            first: span.payload.first,
+            next: span.payload.next,
+            piece: span.payload.piece,
+            profile: Profile::between(span.length, speeds2, span.accel),
+            certain: span.certain && span.payload.certain,
+        })
+    }
+}

@@ -1,0 +1,355 @@
+//! The window of a look-ahead: backward and forward passes over squared speed.
+//!
+//! Input: path elements in order, each with its length, its limits and the
+//! largest speed at its start. Output: the speeds at which each begins and ends.
+//!
+//! ```text
+//!  v² │      ╱╲                 backward: e[i] = min(J[i], e[i+1] + 2·a·L)
+//!     │  ╱──╱  ╲──╲     ╱       forward:  f[i+1] = min(e[i+1], f[i] + 2·a·L)
+//!     │ ╱          ╲   ╱
+//!     │╱            ╲_╱         The path is not known beyond the window: it may
+//!     └─────────────────→ s     end there, so the backward pass begins at rest.
+//! ```
+//!
+//! What comes later can only raise e. Where e[i] = J[i] it cannot rise any more,
+//! and with it everything before is final: the result is that of the whole
+//! program at once, to the last bit. The pass is run when the elements that are
+//! not final have doubled, so that each costs a few steps however long the
+//! stopping distance is.
+//!
+//! A controller that sees `n` blocks ahead keeps able to stop within them:
+//! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1).
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+
+/// Elements that are not final, at most; beyond it the older half is released
+/// as if the path ended here, and marked as not certain.
+pub(super) const OPEN_MAX: usize = 1 << 14;
+/// Squared speeds and accelerations beyond this (a million km/s) are no limits;
+/// sums with it stay finite.
+const UNLIMITED: f64 = 1e24;
+/// Elements after which a first backward pass is worth its start.
+const OPEN_MIN: usize = 24;
+
+/// A path element as the passes see it.
+#[derive(Debug, Clone)]
+pub(super) struct Node<P> {
+    /// Length in mm.
+    pub length: f64,
+    /// Largest speed inside, squared.
+    pub top2: f64,
+    /// Acceleration along it.
+    pub accel: f64,
+    /// Acceleration of the smoothed pass; see `cruise`.
+    pub smooth_accel: f64,
+    /// Largest squared speed at its start.
+    pub entry2: f64,
+    /// Squared speed at its start from which it can end at rest where it is
+    /// the last that the controller sees.
+    pub tail2: f64,
+    /// Squared speed at which it begins where what is before it ends at rest.
+    pub step2: f64,
+    /// False for a blend, which enters the controller's queue together with
+    /// the block behind it.
+    pub block: bool,
+    /// What the caller wants back.
+    pub payload: P,
+    /// Planned speed at its start, squared.
+    e2: f64,
+    /// Sum of 2·a·L of all before it.
+    sum: f64,
+    /// Runs of motion before it.
+    run: u32,
+    /// Smoothed: largest and planned speed at its start, and cap of the hill.
+    smooth_entry2: f64,
+    hill2: f64,
+    /// Released by the count, not by its neighbours.
+    forced: bool,
+}
+
+impl<P> Node<P> {
+    /// A node; speeds and lengths as in the fields.
+    pub fn new(length: f64, top2: f64, accel: f64, entry2: f64, payload: P) -> Self {
+        let accel = lower(accel, UNLIMITED);
+        Self {
+            length,
+            top2: lower(top2, UNLIMITED),
+            accel,
+            smooth_accel: accel,
+            entry2,
+            tail2: 2.0 * accel * length,
+            step2: 0.0,
+            block: true,
+            payload,
+            e2: 0.0,
+            sum: 0.0,
+            run: 0,
+            smooth_entry2: 0.0,
+            hill2: f64::INFINITY,
+            forced: false,
+        }
+    }
+
+    #[inline]
+    fn ramp2(&self) -> f64 {
+        2.0 * self.accel * self.length
+    }
+
+    #[inline]
+    fn smooth2(&self) -> f64 {
+        2.0 * self.smooth_accel * self.length
+    }
+}
+
+/// The speeds of one element, squared, and the element itself.
+#[derive(Debug)]
+pub(super) struct Span<P> {
+    pub start2: f64,
+    pub end2: f64,
+    pub top2: f64,
+    pub length: f64,
+    pub accel: f64,
+    /// False where the count limit cut the look-ahead short.
+    pub certain: bool,
+    pub payload: P,
+}
+
+/// Elements whose speeds are not given out yet.
+#[derive(Debug, Clone)]
+pub(super) struct Window<P> {
+    nodes: VecDeque<Node<P>>,
+    /// How many of the first are final.
+    ready: usize,
+    /// Open elements at which the next backward pass runs.
+    settle_at: usize,
+    /// Speed at which the first one really starts, squared.
+    now2: f64,
+    /// The controller's own look-ahead.
+    blocks: Option<usize>,
+    /// Hills are smoothed: `Node::smooth_accel` counts.
+    smooth: bool,
+    /// Open elements at which a first backward pass runs, and at most.
+    open_min: usize,
+    open_max: usize,
+}
+
+impl<P> Window<P> {
+    pub fn new(blocks: Option<u32>, smooth: bool) -> Self {
+        Self {
+            nodes: VecDeque::with_capacity(128),
+            ready: 0,
+            settle_at: OPEN_MIN,
+            now2: 0.0,
+            blocks: blocks.map(|blocks| blocks.max(1) as usize),
+            smooth,
+            open_min: OPEN_MIN,
+            open_max: OPEN_MAX,
+        }
+    }
+
+    /// Largest speed of the last element, squared; infinite without one.
+    pub fn last_top2(&self) -> f64 {
+        self.nodes.back().map_or(f64::INFINITY, |node| node.top2)
+    }
+
+    /// Adds an element.
+    #[inline]
+    pub fn push(&mut self, mut node: Node<P>) {
+        if let Some(last) = self.nodes.back() {
+            // What cannot be reached from before is no limit that matters.
+            node.entry2 = lower(node.entry2, last.entry2.max(last.step2) + last.ramp2());
+            node.sum = last.sum + last.ramp2();
+            node.run = last.run;
+            let reach = last.smooth_entry2.max(last.step2) + last.smooth2();
+            node.smooth_entry2 = lower(node.entry2, reach);
+            if node.entry2 == 0.0 {
+                node.sum = 0.0;
+                node.run = last.run.wrapping_add(1);
+            }
+        } else {
+            node.entry2 = 0.0;
+            node.smooth_entry2 = 0.0;
+        }
+        if node.smooth_accel > node.accel {
+            node.smooth_accel = node.accel;
+        }
+        self.nodes.push_back(node);
+        if self.nodes.len() - self.ready >= self.settle_at {
+            self.settle();
+        }
+    }
+
+    /// The path stops behind the last element: all are final.
+    pub fn stop(&mut self) {
+        if self.ready == self.nodes.len() {
+            return;
+        }
+        self.backward(true);
+        self.ready = self.nodes.len();
+        self.settle_at = self.open_min;
+    }
+
+    fn settle(&mut self) {
+        let anchor = self.backward(false);
+        self.ready = self.ready.max(anchor);
+        if let Some(blocks) = self.blocks
+            && !self.smooth
+        {
+            // The sum behind it bounds all that is further behind.
+            self.ready = self.ready.max(self.nodes.len().saturating_sub(blocks + 3));
+        }
+        let open = self.nodes.len() - self.ready;
+        if open >= self.open_max {
+            let until = self.ready + open / 2;
+            for node in self.nodes.range_mut(self.ready..until) {
+                node.forced = true;
+            }
+            self.ready = until;
+        }
+        let open = self.nodes.len() - self.ready;
+        self.settle_at = (2 * open).saturating_add(self.open_min).min(self.open_max);
+    }
+
+    /// Runs the backward pass from rest at the end; elements before the index
+    /// that it gives are final. Where the path does not `end`, the last element
+    /// is the last that the controller sees by now.
+    fn backward(&mut self, ends: bool) -> usize {
+        if self.smooth {
+            return self.backward_smooth();
+        }
+        let mut e2 = 0.0;
+        let mut anchor = None;
+        let last = if ends {
+            self.nodes.len()
+        } else {
+            self.nodes.len().saturating_sub(1)
+        };
+        for (i, node) in self.nodes.iter_mut().enumerate().skip(self.ready).rev() {
+            let reach = if i == last {
+                node.tail2
+            } else {
+                e2 + node.ramp2()
+            };
+            if reach >= node.entry2 {
+                e2 = node.entry2;
+                anchor = anchor.or(Some(i));
+            } else {
+                e2 = reach;
+            }
+            node.e2 = e2;
+        }
+        anchor.unwrap_or(0)
+    }
+
+    /// As [`Self::backward`], with the smoothed pass beside it: a hill of speed
+    /// is cut at the height that the lower acceleration reaches (Klipper's
+    /// minimum cruise ratio).
+    ///
+    /// Going back, the elements in which the smoothed speed falls all through
+    /// wait for the peak that stands before them. Final is what stands before a
+    /// peak behind which both passes have met their limits.
+    fn backward_smooth(&mut self) -> usize {
+        let (mut e2, mut s2, mut peak2) = (0.0, 0.0, f64::INFINITY);
+        let (mut anchored, mut smooth_anchored) = (false, false);
+        let mut waiting: Option<usize> = None;
+        let mut boundary = None;
+        for i in (self.ready..self.nodes.len()).rev() {
+            let Some(node) = self.nodes.get_mut(i) else {
+                break;
+            };
+            let was_final = anchored && smooth_anchored;
+            let next_s2 = s2;
+            let reach = e2 + node.ramp2();
+            e2 = lower(reach, node.entry2);
+            anchored |= reach >= node.entry2;
+            let smooth_reach = s2 + node.smooth2();
+            s2 = lower(smooth_reach, node.smooth_entry2);
+            smooth_anchored |= smooth_reach >= node.smooth_entry2;
+            node.e2 = e2;
+            if s2 < smooth_reach {
+                if s2 + node.smooth2() > next_s2 || waiting.is_some() {
+                    peak2 = lower(node.top2, 0.5 * (s2 + smooth_reach));
+                    if was_final {
+                        boundary = boundary.or(Some(i));
+                    }
+                    if let Some(end) = waiting.take() {
+                        for node in self.nodes.range_mut(i + 1..end) {
+                            node.hill2 = peak2;
+                        }
+                    }
+                }
+                if let Some(node) = self.nodes.get_mut(i) {
+                    node.hill2 = peak2;
+                }
+            } else if waiting.is_none() {
+                waiting = Some(i + 1);
+            }
+        }
+        boundary.unwrap_or(0)
+    }
+
+    /// The next element in order, once it is final.
+    #[inline]
+    pub fn pop(&mut self) -> Option<Span<P>> {
+        if self.ready == 0 {
+            return None;
+        }
+        let end2 = match self.nodes.get(1) {
+            Some(next) => {
+                let cap2 = lower(next.e2, self.rest2(1));
+                lower(cap2, next.hill2)
+            }
+            None => 0.0,
+        };
+        let node = self.nodes.pop_front()?;
+        self.ready -= 1;
+        let start2 = self
+            .now2
+            .max(if self.now2 == 0.0 { node.step2 } else { 0.0 });
+        let end2 = lower(end2, start2 + node.ramp2());
+        let end2 = lower(
+            end2,
+            lower(node.hill2, node.top2).max(start2 - node.ramp2()),
+        );
+        self.now2 = end2;
+        Some(Span {
+            start2,
+            end2,
+            top2: lower(node.top2, node.hill2).max(start2).max(end2),
+            length: node.length,
+            accel: node.accel,
+            certain: !node.forced,
+            payload: node.payload,
+        })
+    }
+
+    /// Speed, squared, from which the controller can stop within the blocks
+    /// that it sees from element `i` on; infinite where it sees enough.
+    #[inline]
+    fn rest2(&self, i: usize) -> f64 {
+        let Some(blocks) = self.blocks else {
+            return f64::INFINITY;
+        };
+        let Some(first) = self.nodes.get(i) else {
+            return f64::INFINITY;
+        };
+        // A blend enters the queue together with the line behind it.
+        let mut last = i + blocks;
+        if self.nodes.get(last).is_some_and(|node| !node.block) {
+            last -= 1;
+        }
+        match self.nodes.get(last) {
+            Some(node) if node.run == first.run => node.sum - first.sum + node.tail2,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// The lower of two numbers.
+#[inline]
+pub(super) fn lower(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}

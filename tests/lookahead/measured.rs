@@ -1,0 +1,67 @@
+//! A print whose duration was measured.
+
+use super::{plan_program, total_s};
+use gwatt::machine::{AXES, ChordRule, CornerAngle, CornerRule, LookAhead, Machine};
+use std::fmt::Write as _;
+
+/// Smoothieware: `acceleration`, `junction_deviation` and `planner_queue_size`
+/// of the printer's configuration.
+const RULE: LookAhead = LookAhead {
+    corner: CornerRule::JunctionDeviation {
+        deviation_mm: 0.02,
+        angle: CornerAngle::Linear,
+        per_axis: false,
+        small_block_mm: 0.0,
+    },
+    blocks: Some(31),
+    path_accel_mm_s2: 1000.0,
+    min_cruise_ratio: 0.0,
+    chords: Some(ChordRule {
+        max_mm: 0.5,
+        min_mm: 0.0,
+        deviation_mm: f64::INFINITY,
+        per_second: 0.0,
+        per_circle: 0.0,
+        round_up: false,
+    }),
+};
+
+fn printer() -> Machine {
+    let mut text = String::from(
+        "schema = 1\nname = \"printer\"\ncontroller = \"marlin\"\n[converter]\npeak_power_w = 1e9\n",
+    );
+    for (axis, speed, accel) in [
+        ("X", 30_000, 100_000),
+        ("Y", 30_000, 100_000),
+        ("Z", 1200, 100_000),
+        ("E", 3000, 500),
+    ] {
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {speed}\naccel_mm_s2 = {accel}\nmass_kg = 1\n"
+        );
+        if axis != "E" {
+            text += "home_mm_min = 3000\n";
+        }
+    }
+    let mut machine = Machine::from_toml("printer.toml", &text)
+        .expect("a machine")
+        .0;
+    assert_eq!(machine.axes.len(), AXES);
+    machine.controller.planner.look_ahead = Some(RULE);
+    machine
+}
+
+#[test]
+fn a_print_lasts_as_long_as_was_measured() {
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
+    let shared = std::env::var("GWATT_SHARED").unwrap_or_else(|_| beside.to_owned());
+    let path = format!("{shared}/measured/print_times/31min17sec.gcode");
+    let Ok(program) = std::fs::read(&path) else {
+        println!("skipped: no {path}");
+        return;
+    };
+    // 1877 s were measured, heating of about 110 s included.
+    let total_s = total_s(&plan_program(&printer(), &program));
+    assert!((1750.0..1790.0).contains(&total_s), "{total_s}");
+}
