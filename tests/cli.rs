@@ -543,6 +543,7 @@ fn tool_tables_and_parameter_files() {
 
 /// An axis of 50 kg that goes to and fro, as CSV.
 fn axis_recording() -> String {
+    use std::fmt::Write as _;
     let mut text = "time_s,force_n,position_m\n".to_owned();
     for k in 0..2000 {
         let t = f64::from(k) * 1e-3;
@@ -552,7 +553,7 @@ fn axis_recording() -> String {
         let a =
             -0.02 * slow * slow * libm::sin(slow * t) - 0.004 * fast * fast * libm::sin(fast * t);
         let force = 50.0 * a + 100.0 * v + 20.0 * v.signum();
-        text += &format!("{t:.3},{force},{x}\n");
+        writeln!(text, "{t:.3},{force},{x}").unwrap();
     }
     text
 }

@@ -2,16 +2,15 @@
 
 use super::arx;
 use super::column::{Kind, Quantity};
+use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
 use super::noise::Whiteness;
-use super::output_error::{Data, Effort, Estimate, parameters, refine, residuals};
+use super::output_error::{Data, parameters, residuals};
 use super::quality;
 use super::recording::Recording;
-use super::response_fit;
 use super::rigid::Figure;
-use super::search::{Given, LAG_MAX, LAGS, ORDER_MAX, filtered, search};
-use super::spectrum::{FrequencyResponse, measure};
+use super::search::{Given, LAGS, filtered};
+use super::spectrum::FrequencyResponse;
 use super::state_space::Measured;
-use super::subspace::{Subspace, with_poles};
 use super::transfer::{Factor, TransferFunction};
 use super::trouble::{Outcome, Trouble};
 
@@ -89,10 +88,10 @@ pub struct Flexible {
 const DIP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Input and output as they are fitted.
-struct Prepared {
+pub(super) struct Prepared {
     input: Vec<f64>,
     output: Vec<f64>,
-    excitation: Option<Vec<f64>>,
+    pub(super) excitation: Option<Vec<f64>>,
     measured: Measured,
     period_s: f64,
     is_force: bool,
@@ -245,159 +244,6 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         )
     })?;
     describe(found, &data, &prepared)
-}
-
-/// A model with what is known of it.
-struct Modelled {
-    estimate: Estimate,
-    delay_is_free: bool,
-    whitening: Vec<f64>,
-    response: FrequencyResponse,
-    has_errors: bool,
-}
-
-fn by_search(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
-    let found = search(data, prepared.excitation.as_deref(), choice.given)?;
-    Some(Modelled {
-        estimate: found.estimate,
-        delay_is_free: found.delay_is_free,
-        whitening: found.whitening,
-        response: found.response,
-        has_errors: true,
-    })
-}
-
-fn response_of(data: &Data<'_>, prepared: &Prepared) -> Option<FrequencyResponse> {
-    measure(
-        data.input,
-        data.output,
-        prepared.excitation.as_deref(),
-        data.period_s,
-        None,
-    )
-}
-
-/// The model as it is, with its offset and first state.
-fn as_it_is(data: &Data<'_>, transfer: &TransferFunction) -> Option<Estimate> {
-    let effort = Effort {
-        steps: 0,
-        to_beat: f64::MAX,
-    };
-    let open = Data {
-        undisturbed: None,
-        ..*data
-    };
-    refine(&open, transfer, false, &[], effort)
-}
-
-fn by_response(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
-    let mut response = response_of(data, prepared)?;
-    if !response.periodic {
-        // Windows blur sharp resonances: the longest stretches blur least.
-        response = measure(
-            data.input,
-            data.output,
-            prepared.excitation.as_deref(),
-            data.period_s,
-            Some((data.len() / 4).next_power_of_two()),
-        )?;
-    }
-    let t = data.period_s;
-    let lags = match choice.given.delay_s {
-        Some(delay) => {
-            let lag = libm::round(delay / t) as usize;
-            lag..=lag
-        }
-        None => 0..=LAG_MAX,
-    };
-    let best = lags
-        .filter_map(|lag| response_fit::grow(&response, lag, choice.given.order, ORDER_MAX, t))
-        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
-    let best = response_fit::finish(&response, &best.transfer, t)?;
-    let mut estimate = as_it_is(data, &best.transfer)?;
-    estimate.covariance = best.covariance;
-    Some(Modelled {
-        estimate,
-        delay_is_free: false,
-        whitening: Vec::new(),
-        response,
-        has_errors: true,
-    })
-}
-
-/// Zeros beyond this many rad per period are artefacts of the conversion.
-const FAR: f64 = 1.5 * std::f64::consts::PI;
-
-fn by_arx(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
-    let orders = match choice.given.order {
-        Some(order) => order..=order,
-        None => 1..=ORDER_MAX,
-    };
-    let t = data.period_s;
-    let lag = choice
-        .given
-        .delay_s
-        .map_or(0, |d| libm::round(d / t) as usize);
-    let input = late(data.input, lag);
-    let best = orders
-        .filter_map(|order| arx::fit(&input, data.output, order))
-        .min_by(|a, b| a.criterion.total_cmp(&b.criterion))?;
-    let transfer = best.discrete()?.to_continuous(t, FAR / t).ok()?;
-    finish_plain(data, prepared, transfer, lag)
-}
-
-fn by_subspace(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
-    let t = data.period_s;
-    let lag = choice
-        .given
-        .delay_s
-        .map_or(0, |d| libm::round(d / t) as usize);
-    let input = late(data.input, lag);
-    let subspace = Subspace::new(&input, data.output)?;
-    let orders: Vec<usize> = match choice.given.order {
-        Some(order) => vec![order],
-        None => (1..=ORDER_MAX).collect(),
-    };
-    let mut best: Option<(f64, TransferFunction)> = None;
-    for order in orders {
-        let transfer = subspace
-            .poles(order)
-            .and_then(|poles| with_poles(poles, &input, data.output))
-            .and_then(|model| model.to_continuous(t, FAR / t).ok());
-        if let Some(transfer) = transfer
-            && let Some(estimate) = as_it_is(data, &transfer)
-            && best
-                .as_ref()
-                .is_none_or(|(least, _)| estimate.criterion() < *least)
-        {
-            best = Some((estimate.criterion(), transfer));
-        }
-    }
-    finish_plain(data, prepared, best?.1, lag)
-}
-
-fn late(x: &[f64], lag: usize) -> Vec<f64> {
-    let first = x.first().copied().unwrap_or_default();
-    std::iter::repeat_n(first, lag)
-        .chain(x.iter().copied())
-        .take(x.len())
-        .collect()
-}
-
-fn finish_plain(
-    data: &Data<'_>,
-    prepared: &Prepared,
-    mut transfer: TransferFunction,
-    lag: usize,
-) -> Option<Modelled> {
-    transfer.delay_s = lag as f64 * data.period_s;
-    Some(Modelled {
-        estimate: as_it_is(data, &transfer)?,
-        delay_is_free: false,
-        whitening: Vec::new(),
-        response: response_of(data, prepared)?,
-        has_errors: false,
-    })
 }
 
 fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {

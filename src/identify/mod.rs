@@ -16,6 +16,7 @@ mod arx;
 mod column;
 mod discrete;
 mod filter;
+mod methods;
 mod mode;
 mod noise;
 mod normal;
