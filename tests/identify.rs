@@ -98,10 +98,16 @@ fn one_side() -> TransferFunction {
 }
 
 fn m_sequence(samples: usize) -> Vec<f64> {
-    let order = (3..20).find(|order| (1 << order) > samples).unwrap();
+    held_m_sequence(samples, 1)
+}
+
+fn held_m_sequence(samples: usize, hold: usize) -> Vec<f64> {
+    let order = (3..20)
+        .find(|order| (1 << order) > samples / hold + 1)
+        .unwrap();
     let shape = Shape::MSequence {
         order,
-        hold: 1,
+        hold,
         repetitions: 1,
     };
     let mut values = make(shape, 1.0, PERIOD_S).unwrap().values;
@@ -112,14 +118,18 @@ fn m_sequence(samples: usize) -> Vec<f64> {
 /// A recording of torque and the load's acceleration with white noise.
 fn recording(axis: &TransferFunction, seconds: f64, noise: f64, seed: u64) -> Recording {
     let torque = m_sequence((seconds / PERIOD_S) as usize);
-    let clean = simulate(axis, Measured::Direct, PERIOD_S, &torque).unwrap();
+    noisy_recording(axis, &torque, noise, seed)
+}
+
+fn noisy_recording(axis: &TransferFunction, torque: &[f64], noise: f64, seed: u64) -> Recording {
+    let clean = simulate(axis, Measured::Direct, PERIOD_S, torque).unwrap();
     let rms = (clean.iter().map(|a| a * a).sum::<f64>() / clean.len() as f64).sqrt();
     let mut random = Noise(seed.wrapping_mul(7919).wrapping_add(1));
     let noisy: Vec<f64> = clean
         .iter()
         .map(|a| a + noise * rms * random.normal())
         .collect();
-    table(&["torque_nm", "accel_rad_s2"], &[&torque, &noisy])
+    table(&["torque_nm", "accel_rad_s2"], &[torque, &noisy])
 }
 
 fn csv(names: &[&str], columns: &[&[f64]]) -> String {
@@ -337,19 +347,23 @@ fn in_a_closed_loop_the_excitation_is_the_instrument() {
     assert!(inertia.std < 2e-4);
 }
 
-/// The figures that the accuracy is held to, over 200 seeds; minutes.
+/// Accuracy and honesty over 200 seeds; minutes. The errors are as small as the
+/// noise allows, and that depends on axis and excitation: steps of 8 ms put most
+/// of the power where the anti-resonance is.
 #[test]
 #[ignore = "takes minutes: cargo test --release -- --ignored seeds"]
 fn two_hundred_seeds_are_as_accurate_as_promised() {
     let axis = one_side();
     for (seconds, noise, limits) in [
-        (4.0, 0.05, [0.0005, 0.025, 0.001]),
-        (16.0, 0.2, [0.001, 0.04, 0.003]),
+        (4.0, 0.05, [0.0006, 0.02, 0.002]),
+        (16.0, 0.2, [0.0012, 0.04, 0.004]),
     ] {
         let mut squares = [0.0; 3];
         let mut inside = [0; 3];
         for seed in 0..200 {
-            let found = found(&axis, seconds, noise, seed);
+            let torque = held_m_sequence((seconds / PERIOD_S) as usize, 8);
+            let recording = noisy_recording(&axis, &torque, noise, seed);
+            let found = flexible::identify(&recording, &choice(Method::Iv)).unwrap();
             for (index, (error, std)) in errors(&axis, &found).into_iter().enumerate() {
                 squares[index] += error * error / 200.0;
                 inside[index] += usize::from(error.abs() <= 2.0 * std);

@@ -15,15 +15,28 @@ use super::transfer::{Factor, TransferFunction, factors};
 
 type C = Complex<f64>;
 
-/// Dampings that are tried.
-const DAMPINGS: [f64; 4] = [0.01, 0.04, 0.15, 0.6];
+/// Dampings that are tried: of modes that ring, and of those that do not.
+const RINGING: &[f64] = &[0.01, 0.04, 0.15];
+const DAMPED: &[f64] = &[0.6];
 /// Up to this share of the sampling frequency.
 const BAND: f64 = 0.45;
 
-/// The model with one mode more, the best of the grid. `None` when the response
-/// says nothing.
+/// The model with one mode more, the best of the grid: one that rings, and one
+/// that does not. None when the response says nothing.
 #[must_use]
 pub fn with_mode(
+    transfer: &TransferFunction,
+    response: &FrequencyResponse,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    [RINGING, DAMPED]
+        .into_iter()
+        .filter_map(|dampings| best_of(dampings, transfer, response, period_s))
+        .collect()
+}
+
+fn best_of(
+    dampings: &[f64],
     transfer: &TransferFunction,
     response: &FrequencyResponse,
     period_s: f64,
@@ -55,7 +68,7 @@ pub fn with_mode(
     let mut best: Option<(f64, Factor, f64, f64)> = None;
     let mut omega = first;
     while omega < last {
-        for damping in DAMPINGS {
+        for &damping in dampings {
             let pole = Factor::Pair {
                 omega_rad_s: omega,
                 damping,

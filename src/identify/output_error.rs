@@ -191,29 +191,33 @@ pub(super) fn probes(transfer: &TransferFunction, delay_is_free: bool, period_s:
 
 /// True for a model that can be simulated and makes sense.
 pub(super) fn is_admissible(transfer: &TransferFunction, period_s: f64) -> bool {
-    let corner_max = 20.0 / period_s;
-    transfer.poles.iter().all(|pole| match *pole {
+    let nyquist = std::f64::consts::PI / period_s;
+    let is_in_range = |omega: f64| omega > 1e-6 / period_s && omega < 20.0 / period_s;
+    let sound_pole = |pole: &Factor| match *pole {
+        // What swings faster than half the sampling rate cannot be told from
+        // its image below.
         Factor::Pair {
-            omega_rad_s,
+            omega_rad_s: w,
             damping,
         } => {
-            damping > 1e-7
-                && damping < 50.0
-                && omega_rad_s < corner_max
-                && omega_rad_s > 1e-6 / period_s
+            let swing = w * (1.0 - damping * damping).max(0.0).sqrt();
+            is_in_range(w) && damping > 1e-7 && damping < 50.0 && swing < nyquist
         }
         Factor::Real { time_constant_s } => {
             time_constant_s > 1e-3 * period_s && time_constant_s < 1e6 * period_s
         }
-    }) && transfer.zeros.iter().all(|zero| match *zero {
+    };
+    let sound_zero = |zero: &Factor| match *zero {
         Factor::Pair {
-            omega_rad_s,
+            omega_rad_s: w,
             damping,
-        } => damping.abs() < 50.0 && omega_rad_s < corner_max && omega_rad_s > 1e-6 / period_s,
+        } => is_in_range(w) && damping.abs() < 50.0,
         Factor::Real { time_constant_s } => time_constant_s.abs() < 1e6 * period_s,
-    }) && transfer.gain.is_finite()
-        && transfer.delay_s >= 0.0
-        && transfer.delay_s < 1000.0 * period_s
+    };
+    transfer.poles.iter().all(sound_pole)
+        && transfer.zeros.iter().all(sound_zero)
+        && transfer.gain.is_finite()
+        && (0.0..1000.0 * period_s).contains(&transfer.delay_s)
 }
 
 /// A finite impulse response over signals as they pass.
@@ -377,7 +381,7 @@ pub fn refine(
                 // step brought.
                 let missing = criterion(least, power, normal.rows, count) - effort.to_beat;
                 let brought = normal.rows as f64 * gained / least;
-                if round >= 4 && missing > 20.0 && brought < 0.3 * missing {
+                if round >= 7 && missing > 20.0 && brought < 0.2 * missing {
                     break;
                 }
             }

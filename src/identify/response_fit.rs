@@ -199,10 +199,11 @@ pub fn grow(
         if have + 2 > order.unwrap_or(order_max) {
             break;
         }
-        let Some(start) = with_mode(&best.transfer, response, period_s) else {
-            break;
-        };
-        match points.refine(&start, STEPS, period_s) {
+        let more = with_mode(&best.transfer, response, period_s)
+            .iter()
+            .filter_map(|start| points.refine(start, STEPS, period_s))
+            .min_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        match more {
             Some(found) if order.is_some() || found.criterion() < best.criterion() => best = found,
             _ => break,
         }

@@ -19,7 +19,7 @@ const COMPARED: usize = 8_000;
 /// A model better by this much is gone on from without looking at others.
 const CLEAR: f64 = 4.0;
 /// Steps of each fit on the way.
-const SEARCH_STEPS: usize = 15;
+const SEARCH_STEPS: usize = 20;
 /// Steps from model to model at most.
 const ROUNDS_MAX: usize = 8;
 /// Order of the filter that makes noise white, at most.
@@ -226,8 +226,8 @@ fn lean(from: &TransferFunction) -> TransferFunction {
     let mut zeros: Vec<Factor> = from.zeros.iter().filter(swings).copied().collect();
     zeros.truncate(order / 2);
     TransferFunction {
-        zeros,
         poles,
+        zeros,
         ..from.clone()
     }
 }
