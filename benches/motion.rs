@@ -4,6 +4,7 @@ use divan::{Bencher, black_box};
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
 use gwatt::limit::{Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use gwatt::machine::{Axis, AxisSet, Machine, PathMode};
+use gwatt::plan::jerk::{JerkLimits, State, position_target, speed_target};
 use gwatt::plan::{Overrides, plan};
 use gwatt::power::{Assessment, Assessor, PowerModel, Want};
 
@@ -183,4 +184,48 @@ fn solve_optimal(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn solve_arc(bencher: Bencher<'_, '_>) {
     solve(bencher, "vmc", Strategy::Speed, &arc(10.0, 1.57));
+}
+
+/// Starts and targets spread over the limits 10 mm/s, 10 mm/s² and 50 mm/s³.
+fn states() -> Vec<(State, State)> {
+    let spread = |i: f64, step: f64| 20.0 * ((i * step) % 1.0) - 10.0;
+    (0..1000)
+        .map(f64::from)
+        .map(|i| {
+            let start = State {
+                position_mm: 0.0,
+                velocity_mm_s: 0.9 * spread(i, 0.618),
+                accel_mm_s2: 0.4 * spread(i, 0.414),
+            };
+            let target = State {
+                position_mm: spread(i, 0.732),
+                velocity_mm_s: 0.9 * spread(i, 0.236),
+                accel_mm_s2: 0.0,
+            };
+            (start, target)
+        })
+        .collect()
+}
+
+#[divan::bench(items_count = 1000_u32)]
+fn speed_profiles(bencher: Bencher<'_, '_>) {
+    let states = states();
+    let limits = JerkLimits::symmetric(10.0, 10.0, 50.0);
+    bencher.bench(|| {
+        for (start, target) in &states {
+            let speed = black_box(target.velocity_mm_s);
+            black_box(speed_target(*start, speed, 0.0, &limits)).ok();
+        }
+    });
+}
+
+#[divan::bench(items_count = 1000_u32)]
+fn position_profiles(bencher: Bencher<'_, '_>) {
+    let states = states();
+    let limits = JerkLimits::symmetric(10.0, 10.0, 50.0);
+    bencher.bench(|| {
+        for (start, target) in &states {
+            black_box(position_target(*start, black_box(*target), &limits)).ok();
+        }
+    });
 }

@@ -60,6 +60,7 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Report(args) => command::report::run(args, terminal),
         Command::Diff(args) => command::diff::run(args, terminal),
         Command::Moves(args) => command::moves::run(args, terminal),
+        Command::Spindle(args) => command::spindle::run(args, terminal),
         Command::Machine { command } => command::machine::run(command, terminal),
         Command::Excite(args) => command::excite::run(args, terminal),
         Command::Identify(args) => command::identify::run(args, terminal),

@@ -9,5 +9,7 @@ pub const MM_PER_INCH: f64 = 25.4;
 pub const M_PER_MM: f64 = 1e-3;
 /// Radians in one degree: joins rotary motion to power in SI.
 pub const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
+/// Radians per second in one revolution per minute.
+pub const RAD_S_PER_RPM: f64 = std::f64::consts::TAU / SECONDS_PER_MINUTE;
 /// Seconds in one minute: feeds are given per minute.
 pub const SECONDS_PER_MINUTE: f64 = 60.0;

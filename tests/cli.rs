@@ -154,6 +154,7 @@ fn every_command_has_examples() {
         "report",
         "diff",
         "moves",
+        "spindle",
         "excite",
         "identify",
         "power-fit",
@@ -252,7 +253,8 @@ fn without_a_machine_the_default_is_named() {
     let shop = Shop::new();
     let ran = shop.run(&["check", "gentle.ngc"]);
     assert_eq!(ran.code, 0);
-    assert!(ran.stderr.contains("built-in three-axis"), "{}", ran.stderr);
+    let told = "the built-in three-axis, with programs read as iso";
+    assert!(ran.stderr.contains(told), "{}", ran.stderr);
 }
 
 #[test]
@@ -374,7 +376,7 @@ fn moves_are_lines_of_json() {
     let shop = Shop::new();
     shop.put(
         "arc.ngc",
-        "G90 G17 G21\nG1 X10 F600\nG3 X0 Y10 I-10 J0\nG4 P1\n",
+        "G90 G17 G21\nG1 X10 F600\nG3 X0 Y10 I-10 J0\nG4 P1\nG2 X0 Y10 I5 J0\n",
     );
     let ran = shop.run(&["moves", "arc.ngc", "-m", "three-axis"]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
@@ -383,10 +385,12 @@ fn moves_are_lines_of_json() {
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
         .collect();
-    assert_eq!(moves.len(), 3);
+    assert_eq!(moves.len(), 4);
     assert_eq!(moves[1]["center"], serde_json::json!({"X": 0, "Y": 0}));
     assert_eq!(moves[1]["plane"], "XY");
+    // Counter-clockwise is positive, clockwise negative.
     assert_eq!(moves[1]["turns"], 0.25);
+    assert_eq!(moves[3]["turns"], -1.0);
     assert_eq!(moves[2]["feed_mm_min"], serde_json::Value::Null);
 }
 

@@ -56,6 +56,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             mode: None,
             rapid: RapidPath::Linear,
         },
+        force_curves: Vec::new(),
         spindle: None,
         loads: Vec::new(),
         presets: Vec::new(),
@@ -352,7 +353,9 @@ fn refine(f: &dyn Fn(f64, f64) -> f64, cells: &[(f64, f64)], h: f64, end: f64) -
             let mut next = centre;
             for step in -10..=10 {
                 let t = (centre + half * f64::from(step) / 10.0).clamp(0.0, end);
-                let at = f(t, t);
+                // Just at rest rounding may show a speed backwards.
+                let inside = t.clamp(1e-6 * end, (1.0 - 1e-6) * end);
+                let at = f(t, inside);
                 if at > value {
                     (value, next) = (at, t);
                 }

@@ -10,6 +10,7 @@ mod moves;
 mod power_fit;
 mod program;
 mod report;
+mod spindle;
 
 use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
@@ -24,6 +25,7 @@ pub use moves::MovesArgs;
 pub use power_fit::PowerFitArgs;
 pub use program::{MachineArgs, ProgramArgs, StartArg};
 pub use report::ReportArgs;
+pub use spindle::SpindleArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -66,6 +68,8 @@ pub enum Command {
     Diff(DiffArgs),
     /// Print every move of a program as JSON, one a line
     Moves(MovesArgs),
+    /// Plan a spindle's speed period by period, and what it draws
+    Spindle(SpindleArgs),
     /// List, show and check machine descriptions
     Machine {
         /// What to do with them.

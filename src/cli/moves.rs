@@ -11,7 +11,8 @@ Examples:
   gwatt moves part.ngc -m vmc
   gwatt moves part.ngc -m vmc | jq 'select(.kind == \"arc\")'
 
-Positions are machine coordinates in mm or degrees.";
+Positions are machine coordinates in mm or degrees. `turns` of an arc is positive
+counter-clockwise, from the first letter of `plane` to the second.";
 
 /// Arguments of `moves`.
 #[derive(Debug, Args)]

@@ -1,8 +1,9 @@
 //! `gwatt machine`.
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use gwatt::machine::{builtin, schema};
-use gwatt::report::{Verdict, axis_table, power};
+use gwatt::power::spindle_run;
+use gwatt::report::{Verdict, axis_table, duration, power};
 
 use super::output::print;
 use super::setup::load_machine;
@@ -72,6 +73,13 @@ fn show(name: &str) -> Result<()> {
 
 fn check(file: &str, terminal: Terminal) -> Result<()> {
     let machine = load_machine(file, terminal)?;
+    let run = machine
+        .spindle
+        .as_ref()
+        .map(|spindle| spindle_run(spindle, 0.0, spindle.max_rpm));
+    let run = run
+        .transpose()
+        .with_context(|| format!("{file}: [spindle]"))?;
     print(|out| {
         writeln!(out, "{file}: {}", machine.name)?;
         write!(out, "{}", axis_table(&machine))?;
@@ -87,6 +95,10 @@ fn check(file: &str, terminal: Terminal) -> Result<()> {
                 write!(out, ", {} fed back", power(share * regen))?;
             }
             writeln!(out)?;
+        }
+        if let (Some(spindle), Some(run)) = (&machine.spindle, &run) {
+            let (max, time, peak) = (spindle.max_rpm, duration(run.duration_s), power(run.peak_w));
+            writeln!(out, "  spindle: {max} 1/min in {time}, peak {peak}")?;
         }
         Ok(())
     })

@@ -9,6 +9,7 @@ pub mod machine;
 pub mod moves;
 pub mod power_fit;
 pub mod report;
+pub mod spindle;
 
 mod clash;
 mod input;

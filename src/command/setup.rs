@@ -32,14 +32,17 @@ pub struct Setup {
 impl Setup {
     /// The machine that is asked for, or the default one.
     pub fn new(args: &MachineArgs, reading: &ProgramArgs, terminal: Terminal) -> Result<Self> {
-        let name = args.machine.as_deref().unwrap_or_else(|| {
-            let name = builtin::DEFAULT_MACHINE;
-            terminal.note(format_args!(
-                "no machine is given: this is for the built-in {name} (see `gwatt machine list`)"
-            ));
-            name
-        });
-        Self::of(name, reading, terminal)
+        if let Some(name) = args.machine.as_deref() {
+            return Self::of(name, reading, terminal);
+        }
+        let name = builtin::DEFAULT_MACHINE;
+        let setup = Self::of(name, reading, terminal)?;
+        let language = &setup.machine.controller.language.name;
+        terminal.note(format_args!(
+            "no machine is given: this is for the built-in {name}, \
+             with programs read as {language} (see `gwatt machine list`)"
+        ));
+        Ok(setup)
     }
 
     /// The machine of that name.
@@ -87,6 +90,17 @@ impl Setup {
         options.reading.sub_paths = folders.chain(given).map(Path::to_owned).collect();
         options
     }
+}
+
+/// The machine that is asked for, or the default one with a note.
+pub fn machine_name(args: &MachineArgs, terminal: Terminal) -> &str {
+    args.machine.as_deref().unwrap_or_else(|| {
+        let name = builtin::DEFAULT_MACHINE;
+        terminal.note(format_args!(
+            "no machine is given: this is for the built-in {name} (see `gwatt machine list`)"
+        ));
+        name
+    })
 }
 
 /// Loads a machine and tells what is to be told of it.

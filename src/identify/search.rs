@@ -226,8 +226,8 @@ fn lean(from: &TransferFunction) -> TransferFunction {
     let mut zeros: Vec<Factor> = from.zeros.iter().filter(swings).copied().collect();
     zeros.truncate(order / 2);
     TransferFunction {
-        poles,
         zeros,
+        poles,
         ..from.clone()
     }
 }

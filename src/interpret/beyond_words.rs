@@ -18,6 +18,12 @@ impl Control<'_> {
             self.begun = true;
             return self.siemens_words(block, report);
         }
+        if self.isg.is_some() {
+            return self.isg_words(block, report);
+        }
+        if self.osp.is_some() {
+            return self.osp_words(block, report);
+        }
         let text = report.text;
         let statement = match self.statement(text, block) {
             Ok(statement) => statement,

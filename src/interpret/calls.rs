@@ -3,6 +3,7 @@
 
 use super::execute::Interpreter;
 use super::expression::{Fault, Name, Reader, Value};
+use super::isg::Pending;
 use super::parameters::{LOCALS, Scope};
 use super::transfer::Transfer;
 use crate::machine::Family;
@@ -30,6 +31,12 @@ impl Interpreter<'_> {
         if let Some(siemens) = &mut self.control.siemens {
             siemens.enter();
         }
+        if let Some(isg) = &mut self.control.isg {
+            isg.enter();
+        }
+        if let Some(osp) = &mut self.control.osp {
+            osp.enter();
+        }
     }
 
     /// A subprogram with its own variables has ended.
@@ -40,6 +47,25 @@ impl Interpreter<'_> {
         if let Some(siemens) = &mut self.control.siemens {
             siemens.leave(modal);
             self.control.settle_siemens();
+        }
+        if let Some(isg) = &mut self.control.isg {
+            isg.leave();
+        }
+        if let Some(osp) = &mut self.control.osp {
+            osp.leave();
+        }
+    }
+
+    /// Whether programs are written in the language of the ISG kernel.
+    pub(super) fn is_isg(&self) -> bool {
+        self.control.isg.is_some()
+    }
+
+    /// What the line that is executed next has to do with where it is reached
+    /// from.
+    pub(super) fn expect_next(&mut self, pending: Pending) {
+        if let Some(isg) = &mut self.control.isg {
+            isg.pending = pending;
         }
     }
 

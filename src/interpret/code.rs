@@ -97,6 +97,8 @@ pub(super) enum GCode {
     MacroCall,
     /// A word of SINUMERIK alone.
     Siemens(super::siemens::Code),
+    /// A word of OSP alone.
+    Osp(super::osp::OspCode),
     Ignored,
 }
 
@@ -138,6 +140,7 @@ impl GCode {
             Self::MacroCall => 21,
             Self::Retract(_) => 22,
             Self::Siemens(code) => code.group(),
+            Self::Osp(code) => code.group(),
         }
     }
 }
@@ -157,8 +160,6 @@ pub(super) fn code_number(value: f64) -> Option<u16> {
 pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
     match (family, number) {
         (Family::Siemens, _) => super::siemens::siemens_code(number),
-        // ISG: G21 mirrors X and G20 ends it; G70 and G71 set the unit.
-        (Family::Isg, 200 | 210) => Some(GCode::MirrorX),
         // Marlin: G60 and G61 save a position and return to it.
         (Family::Marlin, 600..=640) => None,
         (Family::Rs274, 410 | 411 | 420 | 421) | (Family::Iso | Family::Isg, 410 | 420) => {
@@ -168,8 +169,7 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
             })
         }
         (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
-        (Family::Isg, 700) => common_g_code(200),
-        (Family::Isg, 710) => common_g_code(210),
+        (Family::Isg, _) => isg_g_code(number),
         _ => common_g_code(number).or_else(|| coordinate_g_code(number, family)),
     }
 }
@@ -197,6 +197,34 @@ fn coordinate_g_code(number: u16, family: Family) -> Option<GCode> {
         (Family::Iso, 511) => GCode::Mirror(true),
         _ => return None,
     })
+}
+
+/// The G words of the ISG kernel (TF5200, "G functions").
+fn isg_g_code(number: u16) -> Option<GCode> {
+    match number {
+        // G21 mirrors X and G20 ends it; G70 and G71 set the unit.
+        200 | 210 => Some(GCode::MirrorX),
+        700 => common_g_code(200),
+        710 => common_g_code(210),
+        // "Zero offsets (G53/G54/...G59)": G53 deselects them until further
+        // notice, it is no word for one block.
+        530 => Some(GCode::WorkOffset(0)),
+        // G80 to G89 call subprograms of the machine's builder.
+        800 => None,
+        1610 => Some(GCode::ArcAbsolute(true)),
+        1620 => Some(GCode::ArcAbsolute(false)),
+        680 => Some(GCode::Rotation(true)),
+        690 => Some(GCode::Rotation(false)),
+        // Where speed changes, exact stop and blending at the ends of blocks,
+        // feed forward, corrections of centres, weightings that are off.
+        80 | 90 | 9000 | 9010 | 100..=130 if number.is_multiple_of(10) => Some(GCode::Ignored),
+        960 | 970 => Some(GCode::SurfaceSpeed),
+        600 | 3590 | 3600 | 2600 | 2610 => Some(GCode::Ignored),
+        1150..=1170 | 1350..=1370 | 1640 | 1650 | 1660 | 250 | 260 if number.is_multiple_of(10) => {
+            Some(GCode::Ignored)
+        }
+        _ => common_g_code(number),
+    }
 }
 
 /// The G words that most families share.

@@ -38,6 +38,9 @@ pub(super) enum Own {
 /// The G word with this number × 10, where the dialect has a meaning of its own
 /// for it.
 pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Own {
+    if dialect.osp {
+        return super::osp::osp_code(number, dialect.diameter);
+    }
     let Some(lathe) = dialect.lathe else {
         return if number == 310 {
             Own::Code(GCode::Skip)

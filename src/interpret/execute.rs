@@ -7,9 +7,11 @@ use std::cell::Cell;
 use super::compensation::{Choice, Compensation, Corners};
 use super::direct::is_direct;
 use super::facts::Facts;
+use super::isg::Isg;
 use super::knob::KnobState;
 use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
+use super::osp::Osp;
 use super::parameters::Parameters;
 use super::position::{Position, Reading};
 use super::printer;
@@ -88,6 +90,10 @@ pub(super) struct Control<'m> {
     pub(super) reads_state: Cell<bool>,
     /// What only SINUMERIK keeps; `None` for other languages.
     pub(super) siemens: Option<Box<Siemens>>,
+    /// The same for the ISG kernel.
+    pub(super) isg: Option<Box<Isg>>,
+    /// The same for OSP.
+    pub(super) osp: Option<Box<Osp>>,
 }
 
 /// The block that is being executed.
@@ -159,6 +165,8 @@ impl<'m> Interpreter<'m> {
             reads_state: Cell::new(false),
             siemens: (machine.controller.language.family == Family::Siemens)
                 .then(|| Box::new(Siemens::new())),
+            isg: (machine.controller.language.family == Family::Isg).then(|| Box::new(Isg::new())),
+            osp: (machine.controller.language.dialect.osp).then(|| Box::new(Osp::new())),
         };
         if let Some(file) = &reading.parameters {
             control.parameters.keep(file);
@@ -241,6 +249,11 @@ impl<'m> Interpreter<'m> {
         if let Some(siemens) = &mut self.control.siemens {
             siemens.begin_block();
             beyond |= is_beyond_words(block, text);
+        } else if let Some(isg) = &self.control.isg {
+            beyond |= isg.is_beyond_words(block);
+        } else if let Some(osp) = &mut self.control.osp {
+            osp.only_keeps = false;
+            beyond |= osp.is_beyond_words(block);
         }
         let transfers = beyond && self.control.beyond_words(block, &mut report);
         let reads_state = beyond && self.control.reads_state.take();
@@ -256,6 +269,7 @@ impl<'m> Interpreter<'m> {
             return;
         }
         if beyond
+            && !transfers
             && self
                 .control
                 .direct(line, text, block, steps, facts)
@@ -335,7 +349,7 @@ impl Control<'_> {
             }
             return true;
         }
-        if block.tape {
+        if block.tape && self.isg.is_none() {
             // The first `%` opens the tape; one behind any block ends it.
             self.ended = self.begun;
             return true;

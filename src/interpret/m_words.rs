@@ -93,6 +93,7 @@ impl Control<'_> {
             let value = f64::from(number) / 10.0;
             self.switch_loads(value);
             self.switches.switch(number);
+            self.osp_return(number);
             if self.state_word(number, span, run) {
                 continue;
             }

@@ -87,8 +87,28 @@ impl Control<'_> {
         });
     }
 
+    /// TF5200, "Reference point offset (G92)": the values are the offset itself,
+    /// under G91 what is added to it.
+    fn isg_offset(&mut self, words: &[(usize, f64)], run: &mut Run<'_, '_>) {
+        for &(axis, value) in words {
+            let letter = ALL_AXES[axis].letter();
+            run.words.take(letter);
+            if !self.axis_exists_at(axis, letter, run) {
+                continue;
+            }
+            let value_mm = self.length_mm(axis, value);
+            let before = self.position.shifts()[axis];
+            let base = if self.modal.absolute { 0.0 } else { before };
+            self.position
+                .change(|offsets| offsets.set_g92(axis, base + value_mm));
+        }
+    }
+
     pub(super) fn set_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
         let mut words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
+        if self.isg.is_some() {
+            return self.isg_offset(&words, run);
+        }
         if self.refuse_while_turned(span, run) {
             return;
         }

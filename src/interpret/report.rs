@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::code::{code_number, refused_g_name, refused_m_name};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::machine::Family;
+use crate::machine::{Family, Language};
 use crate::source::Span;
 use crate::syntax::Word;
 
@@ -77,10 +77,13 @@ impl Report<'_, '_> {
     }
 
     /// Reports a G word that is not supported.
-    pub(super) fn refused_g(&mut self, word: Word, family: Family) {
-        let name = code_number(word.value).map_or("a word", |number| match family {
-            Family::Siemens => super::siemens::refused_name(number),
-            _ => refused_g_name(number),
+    pub(super) fn refused_g(&mut self, word: Word, language: &Language) {
+        let name = code_number(word.value).map_or("a word", |number| {
+            let own = super::osp::refused_name(number).filter(|_| language.dialect.osp);
+            match language.family {
+                Family::Siemens => super::siemens::refused_name(number),
+                _ => own.unwrap_or_else(|| refused_g_name(number)),
+            }
         });
         self.refused(b'G', word, name);
     }

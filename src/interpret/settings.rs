@@ -71,7 +71,7 @@ impl Control<'_> {
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
-                GCode::Plane(plane) => self.modal.plane = plane,
+                GCode::Plane(plane) => self.choose_plane(plane, span, run),
                 GCode::Units { mm_per_unit } => self.modal.mm_per_unit = mm_per_unit,
                 GCode::ToolLength(form) => self.tool_length(form, span, run),
                 GCode::Diameter(on) => self.modal.diameter = on,
@@ -88,11 +88,19 @@ impl Control<'_> {
                 GCode::MachineCoordinates => run.facts.machine_coordinates = true,
                 GCode::WorkOffset(system) => self.select_system(u16::from(system), span, run),
                 GCode::FurtherOffset => self.further_offset(span, run),
+                GCode::Osp(code) => self.osp_setting(code, span, run),
                 _ => {}
             }
         }
         self.tool_length_again(run);
         self.note_bent();
+    }
+
+    /// The ISG kernel ends a turn where the plane changes, with a warning.
+    fn choose_plane(&mut self, plane: [usize; 3], span: Span, run: &mut Run<'_, '_>) {
+        if self.isg.is_none() || plane == self.modal.plane || !self.refuse_while_turned(span, run) {
+            self.modal.plane = plane;
+        }
     }
 
     /// The word of the motion group.

@@ -101,6 +101,7 @@ impl Control<'_> {
         let own = self
             .machine
             .spindle
+            .as_ref()
             .map_or(f64::INFINITY, |spindle| spindle.max_rpm);
         let radius = self.smallest_radius(end, arc);
         (surface / (TAU * radius))

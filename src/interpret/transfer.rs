@@ -43,6 +43,8 @@ pub(crate) enum Transfer {
     EndLoop(u8),
     /// A word of SINUMERIK.
     Siemens(Siemens),
+    /// A word of the ISG kernel or of OSP.
+    Go(Go),
     /// A turning cycle about a contour that stands elsewhere in the program.
     Contour(Box<Contour>),
 }
@@ -80,6 +82,45 @@ pub(crate) enum Siemens {
         again: bool,
     },
     /// RET, M17.
+    Return,
+}
+
+/// What a block of the ISG kernel or of OSP says about the order of execution.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Go {
+    /// At the next line.
+    Next,
+    /// Local subprograms stand before the main program: behind them.
+    Main,
+    /// The program ends.
+    End,
+    /// $IF, or an $ELSEIF that decides.
+    If(bool),
+    /// $ELSE and $ELSEIF behind a branch that was taken.
+    BehindIf,
+    /// $WHILE and $FOR: whether the loop runs.
+    Loop(bool),
+    /// $ENDWHILE, $ENDFOR.
+    Back,
+    /// $ENDDO, $UNTIL: whether it runs again.
+    Again(bool),
+    /// $SWITCH, or a $CASE that does not fit: the next one compares.
+    Switch(f64),
+    Break,
+    Continue,
+    /// A label as it is written: `N100`, `[NAME]`.
+    Jump(String),
+    /// A subprogram of the same file.
+    Local(String),
+    /// A subprogram in a file of its own.
+    File(String),
+    /// MODIN and MODOUT: a subprogram of OSP behind each block that moves.
+    Modal(Option<String>),
+    /// A subprogram of OSP, wherever it stands.
+    Call {
+        name: String,
+        times: u64,
+    },
     Return,
 }
 

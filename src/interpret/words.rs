@@ -231,7 +231,7 @@ impl Words {
                 .map(|code| (code, number))
         });
         let Some((code, number)) = known else {
-            report.refused_g(word, controller.language.family);
+            report.refused_g(word, &controller.language);
             return;
         };
         if self.groups & code.group() != 0 && code != GCode::Ignored {

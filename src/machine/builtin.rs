@@ -58,6 +58,7 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "mazak",
     "syntec",
     "okuma",
+    "okuma-lathe",
 );
 
 /// All built-in machines, the default first.

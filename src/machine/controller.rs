@@ -90,6 +90,8 @@ pub struct Dialect {
     pub lathe: Option<Lathe>,
     /// Words of X are diameters at power-on.
     pub diameter: bool,
+    /// The words of Okuma's OSP.
+    pub osp: bool,
     /// M words from M10 on that are not known move no axis.
     pub other_m: bool,
     /// F is a feed per revolution at power-on.

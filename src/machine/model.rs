@@ -1,6 +1,6 @@
 //! The validated machine: what the rest of gwatt reads.
 
-use super::axis::{AXES, Axis, AxisSet, AxisValues};
+use super::axis::{AXES, Axis, AxisId, AxisSet, AxisValues};
 use super::controller::{Controller, PathMode, RapidPath};
 
 /// A machine: its axes, converters and limits, all values checked.
@@ -18,6 +18,8 @@ pub struct Machine {
     pub converters: Vec<Converter>,
     /// How the path is followed; from `[path]`, else from the controller.
     pub path: Path,
+    /// Force or torque over speed of the axes for which it is given.
+    pub force_curves: Vec<(AxisId, Vec<ForcePoint>)>,
     /// The spindle, if described.
     pub spindle: Option<Spindle>,
     /// What program words switch on and off.
@@ -58,7 +60,7 @@ pub struct Path {
 }
 
 /// The spindle's data, SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Spindle {
     /// Inertia at the spindle in kg·m².
     pub inertia_kg_m2: f64,
@@ -68,12 +70,41 @@ pub struct Spindle {
     pub max_rpm: f64,
     /// Speed up to which the torque is constant, in 1/min; 0: not given.
     pub base_rpm: f64,
-    /// Time to `max_rpm` in s.
-    pub accel_time_s: f64,
+    /// Time to `max_rpm` in s; `None` where the torque curve tells it.
+    pub accel_time_s: Option<f64>,
+    /// The largest torque over speed, ascending from rest, straight between the
+    /// points; empty where `accel_time_s` tells it.
+    pub torque_curve: Vec<TorquePoint>,
     /// Time to full acceleration in s.
     pub jerk_time_s: f64,
+    /// Mechanical by electrical power; (0, 1].
+    pub efficiency: f64,
+    /// What its drive draws as long as it is switched on, in W.
+    pub base_load_w: f64,
+    /// Largest electrical power that its drive draws, in W; `None`: no limit.
+    pub peak_power_w: Option<f64>,
+    /// Largest electrical power that its drive feeds back; `None`: no limit.
+    pub regen_power_w: Option<f64>,
     /// Whether feed moves wait for the speed.
     pub wait: bool,
+}
+
+/// A point of a spindle's torque curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TorquePoint {
+    /// Speed in 1/min.
+    pub rpm: f64,
+    /// Largest torque there in N·m.
+    pub torque_nm: f64,
+}
+
+/// A point of an axis' force curve, load side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForcePoint {
+    /// Speed in mm/s, or degrees/s.
+    pub speed_mm_s: f64,
+    /// Largest force there in N, or torque in N·m.
+    pub force_n: f64,
 }
 
 /// A load that program words switch.

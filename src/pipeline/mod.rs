@@ -13,6 +13,8 @@ mod limiting;
 mod options;
 mod restart;
 mod row;
+mod schedule;
+mod spindle;
 mod summary;
 mod table;
 mod tally;
@@ -25,6 +27,8 @@ pub use limiting::limit;
 pub use options::{Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
 pub use restart::{Restart, RestartRows};
 pub use row::{Certificate, Row, RowSink};
+pub use schedule::{Command, Schedule};
+pub use spindle::{Change, Sample, SpindleSummary, run_schedule};
 pub use summary::{LimitSummary, Summary, Unfit};
 
 use crate::diagnostic::Diagnostic;

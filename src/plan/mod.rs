@@ -5,14 +5,21 @@
 
 mod arc;
 mod bound;
+pub mod curve;
+pub mod jerk;
 mod limits;
 pub mod lookahead;
+pub mod period;
+mod power_law;
 mod profile;
+mod slope;
+mod spindle;
 mod trajectory;
 
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
+pub use spindle::{SpindleCaps, SpindleDrive};
 pub use trajectory::{
     Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, is_independent, path_figures,
     plan, plan_with,

@@ -10,13 +10,33 @@
 //!    └─────────────────→ t
 //! ```
 
+use super::power_law::PowerLaw;
+use super::slope;
 use arrayvec::ArrayVec;
 
 /// What a phase keeps constant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
-    /// Acceleration (0 for a cruise).
+    /// Acceleration (0 for a cruise); forwards only.
     ConstantAcceleration,
+    /// The rate of acceleration; the path may also run backwards.
+    ConstantJerk {
+        /// Rate of acceleration in mm/s³, signed.
+        jerk_mm_s3: f64,
+    },
+    /// The power of inertia and a drag, `a = p/v − d`: what a drive at its
+    /// limit of power can do, or a converter at its own. Forwards only, and
+    /// never from or to rest.
+    ConstantPower {
+        /// p, power by mass in mm²/s³; negative while braking.
+        power_mm2_s3: f64,
+    },
+    /// How acceleration changes with speed: along a straight piece of a curve
+    /// of torque over speed. Forwards only.
+    ConstantSlope {
+        /// Change of acceleration by change of speed in 1/s.
+        slope_per_s: f64,
+    },
 }
 
 /// A piece of a profile. Along the path, mm (or degrees) and s.
@@ -58,7 +78,136 @@ impl Phase {
                 velocity_mm_s: (v + a * t).max(0.0),
                 accel_mm_s2: a,
             },
+            PhaseKind::ConstantJerk { jerk_mm_s3: j } => State {
+                position_mm: self.position_mm + (v + (0.5 * a + j / 6.0 * t) * t) * t,
+                velocity_mm_s: v + (a + 0.5 * j * t) * t,
+                accel_mm_s2: a + j * t,
+            },
+            PhaseKind::ConstantPower { power_mm2_s3 } => {
+                PowerLaw::through(power_mm2_s3, v, a).state(self, t)
+            }
+            PhaseKind::ConstantSlope { slope_per_s } => slope::state(self, slope_per_s, t),
         }
+    }
+
+    /// What the phase does between two instants, s after its beginning.
+    #[must_use]
+    pub fn between(&self, from_s: f64, to_s: f64) -> Self {
+        let (start, end) = (self.state_at(from_s), self.state_at(to_s));
+        Self {
+            kind: self.kind,
+            duration_s: to_s - from_s,
+            position_mm: start.position_mm,
+            velocity_mm_s: start.velocity_mm_s,
+            end_velocity_mm_s: if to_s >= self.duration_s {
+                self.end_velocity_mm_s
+            } else {
+                end.velocity_mm_s
+            },
+            accel_mm_s2: start.accel_mm_s2,
+        }
+    }
+
+    /// The phase in parts on which neither speed nor acceleration changes its
+    /// sign.
+    #[must_use]
+    pub fn parts(&self) -> ArrayVec<Self, 4> {
+        let mut parts = ArrayVec::new();
+        let PhaseKind::ConstantJerk { jerk_mm_s3: j } = self.kind else {
+            parts.push(*self);
+            return parts;
+        };
+        let (v, a) = (self.velocity_mm_s, self.accel_mm_s2);
+        // v + a·t + j·t²/2 = 0 without cancellation.
+        let root = -a - (a * a - 2.0 * j * v).sqrt().copysign(a);
+        let mut instants = [-a / j, root / j, 2.0 * v / root];
+        instants.sort_unstable_by(f64::total_cmp);
+        let mut from = 0.0;
+        for instant in instants {
+            if instant > from && instant < self.duration_s {
+                parts.push(self.between(from, instant));
+                from = instant;
+            }
+        }
+        parts.push(self.between(from, self.duration_s));
+        parts
+    }
+
+    /// The same motion of a path that is counted the other way.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            kind: match self.kind {
+                PhaseKind::ConstantJerk { jerk_mm_s3 } => PhaseKind::ConstantJerk {
+                    jerk_mm_s3: -jerk_mm_s3,
+                },
+                PhaseKind::ConstantPower { power_mm2_s3 } => PhaseKind::ConstantPower {
+                    power_mm2_s3: -power_mm2_s3,
+                },
+                kind => kind,
+            },
+            duration_s: self.duration_s,
+            position_mm: -self.position_mm,
+            velocity_mm_s: -self.velocity_mm_s,
+            end_velocity_mm_s: -self.end_velocity_mm_s,
+            accel_mm_s2: -self.accel_mm_s2,
+        }
+    }
+
+    /// Rate of acceleration where the phase has the speed `v` and the
+    /// acceleration `a`, mm/s³.
+    #[must_use]
+    pub fn jerk_at(&self, v: f64, a: f64) -> f64 {
+        match self.kind {
+            PhaseKind::ConstantAcceleration => 0.0,
+            PhaseKind::ConstantJerk { jerk_mm_s3 } => jerk_mm_s3,
+            PhaseKind::ConstantPower { power_mm2_s3 } => -power_mm2_s3 * a / (v * v),
+            PhaseKind::ConstantSlope { slope_per_s } => slope_per_s * a,
+        }
+    }
+
+    /// Bounds of the rate of acceleration (mm/s³) and of its own rate (mm/s⁴)
+    /// while the speed is at least `v` and the acceleration of size `a` at
+    /// most.
+    #[must_use]
+    pub fn rates(&self, v: f64, a: f64) -> [f64; 2] {
+        let jerk = self.jerk_at(v, a).abs();
+        let snap = match self.kind {
+            PhaseKind::ConstantAcceleration | PhaseKind::ConstantJerk { .. } => 0.0,
+            // The rate of −p·a/v² is p²·a/v⁴ + 2p·a²/v³.
+            PhaseKind::ConstantPower { power_mm2_s3 } => {
+                jerk * (power_mm2_s3.abs() / (v * v) + 2.0 * a / v)
+            }
+            PhaseKind::ConstantSlope { slope_per_s } => jerk * slope_per_s.abs(),
+        };
+        [jerk, snap]
+    }
+
+    /// Acceleration at the end of the phase in mm/s².
+    #[must_use]
+    pub fn end_accel_mm_s2(&self) -> f64 {
+        let (v, a) = (self.velocity_mm_s, self.accel_mm_s2);
+        match self.kind {
+            PhaseKind::ConstantAcceleration => a,
+            PhaseKind::ConstantJerk { jerk_mm_s3 } => a + jerk_mm_s3 * self.duration_s,
+            PhaseKind::ConstantPower { power_mm2_s3 } => {
+                PowerLaw::through(power_mm2_s3, v, a).accel(self.end_velocity_mm_s)
+            }
+            PhaseKind::ConstantSlope { slope_per_s } => {
+                a + slope_per_s * (self.end_velocity_mm_s - v)
+            }
+        }
+    }
+
+    /// True where nothing changes but the position.
+    #[must_use]
+    #[inline]
+    pub fn is_cruise(&self) -> bool {
+        let changes = match self.kind {
+            PhaseKind::ConstantJerk { jerk_mm_s3 } => jerk_mm_s3 != 0.0,
+            _ => false,
+        };
+        self.accel_mm_s2 == 0.0 && !changes
     }
 
     /// Path length of the phase in mm.
@@ -67,6 +216,19 @@ impl Phase {
         match self.kind {
             PhaseKind::ConstantAcceleration => {
                 0.5 * (self.velocity_mm_s + self.end_velocity_mm_s) * self.duration_s
+            }
+            // The mean of the speeds at both ends, less j·t²/12 for the bend.
+            PhaseKind::ConstantJerk { jerk_mm_s3: j } => {
+                let (v0, v1, t) = (self.velocity_mm_s, self.end_velocity_mm_s, self.duration_s);
+                (0.5 * (v0 + v1) - j * t * t / 12.0) * t
+            }
+            PhaseKind::ConstantPower { power_mm2_s3 } => {
+                let law = PowerLaw::through(power_mm2_s3, self.velocity_mm_s, self.accel_mm_s2);
+                law.length(self.velocity_mm_s, self.end_velocity_mm_s)
+            }
+            PhaseKind::ConstantSlope { slope_per_s } => {
+                let end = slope::state(self, slope_per_s, self.duration_s);
+                end.position_mm - self.position_mm
             }
         }
     }

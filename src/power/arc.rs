@@ -12,14 +12,14 @@
 use super::arc_energy;
 use super::arc_piece::Piece;
 use super::axis::{AxisPower, Side};
-use super::circle::{ArcAxis, Motion, Shape};
+use super::circle::{ArcAxis, Motion, Reach, Shape};
 use super::demand::{Totals, Want};
 use super::model::{ConverterPower, PowerModel};
 use super::quadrants::Pieces;
 use super::search::Search;
 use crate::interpret::{Arc, Move};
 use crate::machine::{AXES, AxisSet};
-use crate::plan::{Phase, Profile};
+use crate::plan::{Phase, PhaseKind, Profile};
 use arrayvec::ArrayVec;
 use std::f64::consts::TAU;
 
@@ -35,6 +35,11 @@ pub(super) fn totals(
 ) -> Totals {
     let circle = Circle::new(model, converter, mv, arc, idle_w);
     let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
+    let steady = |phase: &Phase| phase.kind == PhaseKind::ConstantAcceleration;
+    if !profile.phases.iter().all(steady) {
+        changing_totals(&circle, profile, want, &mut totals);
+        return totals;
+    }
     let mut peak = Search::new(idle_w, want.floor_w);
     let mut regen = Search::new(0.0, want.regen_floor_w);
     for phase in &profile.phases {
@@ -54,7 +59,34 @@ pub(super) fn totals(
     totals
 }
 
+/// The same where acceleration changes in phases: in parts on which neither
+/// speed nor acceleration changes its sign, and with the circle turned round
+/// where the path runs backwards.
+fn changing_totals(circle: &Circle<'_>, profile: &Profile, want: Want, totals: &mut Totals) {
+    let reversed = circle.reversed();
+    let mut peak = Search::new(totals.idle_w, want.floor_w);
+    let mut regen = Search::new(0.0, want.regen_floor_w);
+    for phase in &profile.phases {
+        for part in phase.parts() {
+            let backwards = part.velocity_mm_s + part.end_velocity_mm_s < 0.0;
+            let (circle, part) = if backwards {
+                (&reversed, part.mirrored())
+            } else {
+                (circle, part)
+            };
+            circle.search(&part, Side::Motor, &mut peak);
+            circle.search(&part, Side::Regen, &mut regen);
+            if want.energy {
+                totals.energy_j += arc_energy::phase_energy_j(circle, &part);
+            }
+        }
+    }
+    totals.raise_peak(peak.upper());
+    totals.raise_regen(regen.upper());
+}
+
 /// The axes of a converter on an arc.
+#[derive(Clone)]
 pub(super) struct Circle<'a> {
     /// Those that move.
     pub axes: ArrayVec<ArcAxis<'a>, AXES>,
@@ -119,18 +151,31 @@ impl<'a> Circle<'a> {
         }
     }
 
-    /// Finds the peak of one phase.
+    /// The same circle for a path that is counted the other way.
+    fn reversed(&self) -> Self {
+        let mut reversed = self.clone();
+        reversed.sense = -self.sense;
+        for axis in &mut reversed.axes {
+            if let Shape::Line(direction) = &mut axis.shape {
+                *direction = -*direction;
+            }
+        }
+        reversed
+    }
+
+    /// Finds the peak of one phase, or of a part of one.
     fn search(&self, phase: &Phase, side: Side, search: &mut Search) {
+        let steady = phase.kind == PhaseKind::ConstantAcceleration;
         for (from, to, last) in Pieces::new(self, phase) {
             if last {
-                let fastest = self.motion(phase, if phase.accel_mm_s2 > 0.0 { to } else { from });
-                let envelope = self.envelope(&fastest, side);
+                let envelope = self.envelope(&self.reach(phase, from, to), side);
                 if !search.covers(envelope) {
                     search.take_in(envelope);
                 }
                 return;
             }
-            if !self.search_piece(phase, (from, to), side, search) {
+            // What is slower stays below only at the same acceleration.
+            if !self.search_piece(phase, (from, to), side, search) && steady {
                 return;
             }
         }
@@ -145,19 +190,57 @@ impl<'a> Circle<'a> {
         side: Side,
         search: &mut Search,
     ) -> bool {
-        let fast = if phase.accel_mm_s2 > 0.0 { to } else { from };
-        let fastest = self.motion(phase, fast);
-        let envelope = self.envelope(&fastest, side);
+        let reach = self.reach(phase, from, to);
+        let envelope = self.envelope(&reach, side);
         if search.covers(envelope) {
             return false;
         }
-        let piece = Piece::new(self, phase, side, (from, to), &fastest);
+        let piece = Piece::new(self, phase, side, (from, to), &reach);
         search.run(&piece, from, to, envelope.abs());
         true
     }
 
-    /// Upper bound of the power on one side at speeds up to those of `m`.
-    fn envelope(&self, m: &Motion, side: Side) -> f64 {
+    /// What a piece of a phase reaches; a phase whose acceleration changes is a
+    /// part on which neither speed nor acceleration changes its sign, so that
+    /// the extremes of both are at the ends.
+    fn reach(&self, phase: &Phase, from: f64, to: f64) -> Reach {
+        if phase.kind == PhaseKind::ConstantAcceleration {
+            let fast = if phase.accel_mm_s2 > 0.0 { to } else { from };
+            let fastest = self.motion(phase, fast);
+            return Reach {
+                fastest,
+                accel: [fastest.a; 2],
+                alpha: [fastest.alpha; 2],
+                path_rates: [0.0; 2],
+                angle_rates: [0.0; 2],
+            };
+        }
+        let (start, end) = (phase.state_at(from), phase.state_at(to));
+        let (v0, v1) = (start.velocity_mm_s, end.velocity_mm_s);
+        let (a0, a1) = (start.accel_mm_s2, end.accel_mm_s2);
+        let v = v0.max(v1);
+        let a = a0.abs().max(a1.abs());
+        let rates = phase.rates(v0.min(v1), a);
+        let by_angle = self.angle_per_mm;
+        Reach {
+            fastest: Motion {
+                v,
+                a,
+                omega: v * by_angle,
+                alpha: a * by_angle,
+                sin: 0.0,
+                cos: 1.0,
+                sense: self.sense,
+            },
+            accel: [a0.min(a1), a0.max(a1)],
+            alpha: [a0.min(a1) * by_angle, a0.max(a1) * by_angle],
+            path_rates: rates,
+            angle_rates: rates.map(|rate| rate * by_angle),
+        }
+    }
+
+    /// Upper bound of the power on one side within a reach.
+    fn envelope(&self, reach: &Reach, side: Side) -> f64 {
         let sum = |which: usize| -> f64 {
             let factors = |axis: &AxisPower| {
                 [
@@ -167,7 +250,7 @@ impl<'a> Circle<'a> {
             };
             self.axes
                 .iter()
-                .map(|axis| axis.envelope(m, factors(axis.axis))[which])
+                .map(|axis| axis.envelope(reach, factors(axis.axis))[which])
                 .sum()
         };
         match side {

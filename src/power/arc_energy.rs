@@ -25,7 +25,7 @@ const TURN_POINTS: u32 = 64;
 pub(super) fn phase_energy_j(circle: &Circle<'_>, phase: &Phase) -> f64 {
     let mut sum = 0.0;
     let turn_s = circle.turn_s(phase);
-    let turns = if phase.accel_mm_s2 == 0.0 && turn_s > 0.0 {
+    let turns = if phase.is_cruise() && turn_s > 0.0 {
         (phase.duration_s / turn_s).floor()
     } else {
         0.0

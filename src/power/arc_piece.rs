@@ -6,7 +6,7 @@
 
 use super::arc::Circle;
 use super::axis::Side;
-use super::circle::Motion;
+use super::circle::{Motion, Reach};
 use super::search::Bounded;
 use crate::machine::AXES;
 use crate::plan::Phase;
@@ -58,14 +58,13 @@ struct AxisSample {
 }
 
 impl<'a> Piece<'a> {
-    /// The piece from `from` to `to` (s) of a phase; `fastest` is its motion at
-    /// the end that is faster.
+    /// The piece from `from` to `to` (s) of a phase; `reach` bounds its motion.
     pub fn new(
         circle: &'a Circle<'a>,
         phase: &'a Phase,
         side: Side,
         (from, to): (f64, f64),
-        fastest: &Motion,
+        reach: &Reach,
     ) -> Self {
         let signs = circle.signs(phase, 0.5 * (from + to));
         let bounds = circle.axes.iter().zip(signs).map(|(arc_axis, sign)| {
@@ -74,8 +73,8 @@ impl<'a> Piece<'a> {
                 axis.accel_factor(side, true),
                 axis.accel_factor(side, false),
             );
-            let (mechanical, copper) = arc_axis.curvature(fastest, factor);
-            let (jerk, force_slope) = arc_axis.slopes(fastest, factor);
+            let (mechanical, copper) = arc_axis.curvature(reach, factor);
+            let (jerk, force_slope) = arc_axis.slopes(reach, factor);
             let conversion = match side {
                 Side::Regen if !circle.credit_regen => axis.efficiency,
                 _ => axis.inverse_efficiency,

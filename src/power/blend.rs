@@ -5,7 +5,8 @@
 //!
 //! On the circle an axis with the parts `t` of the tangent and `n` of the normal
 //! has `v_n = v·(t·cos θ + n·sin θ)`: a sinusoid as on an arc, with a phase of
-//! its own. Each phase of the profile is cut where an axis turns back.
+//! its own. Each phase of the profile is cut where an axis turns back; all are
+//! of constant acceleration.
 
 use super::arc::Circle;
 use super::arc_energy;

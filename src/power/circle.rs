@@ -63,6 +63,56 @@ pub(super) struct Motion {
     pub sense: f64,
 }
 
+/// What the motion along the arc reaches over a piece.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    /// The largest speeds, and the acceleration: where it changes, the largest
+    /// size of it. The angle is of no account.
+    pub fastest: Motion,
+    /// Smallest and largest acceleration: of the path, mm/s², and of the angle.
+    pub accel: [f64; 2],
+    /// See `accel`.
+    pub alpha: [f64; 2],
+    /// Largest sizes of the third and fourth derivatives of the path, mm/s³
+    /// and mm/s⁴, and of the angle; 0 at constant acceleration.
+    pub path_rates: [f64; 2],
+    /// See `path_rates`.
+    pub angle_rates: [f64; 2],
+}
+
+impl Reach {
+    /// Bounds of the first to fourth derivative of the position of an axis.
+    ///
+    /// With ω, α, j, s those of the angle the third is at most
+    /// `R·(j + 3·ω·α + ω³)`, the fourth `R·(s + 4·ω·j + 3·α² + 6·ω²·α + ω⁴)`.
+    fn derivatives(&self, shape: Shape) -> [f64; 4] {
+        let m = &self.fastest;
+        match shape {
+            Shape::Line(direction) => {
+                let [jerk, snap] = self.path_rates;
+                [m.v, m.a, jerk, snap].map(|rate| (direction * rate).abs())
+            }
+            Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
+                let (w, alpha) = (m.omega, m.alpha.abs());
+                let [jerk, snap] = self.angle_rates;
+                let w2 = w * w;
+                [
+                    w,
+                    alpha + w2,
+                    jerk + w * (3.0 * alpha + w2),
+                    snap + 4.0 * w * jerk + 3.0 * alpha * alpha + w2 * (6.0 * alpha + w2),
+                ]
+                .map(|rate| r * rate)
+            }
+        }
+    }
+
+    /// Whether acceleration is constant.
+    fn is_steady(&self) -> bool {
+        self.path_rates == [0.0; 2]
+    }
+}
+
 impl ArcAxis<'_> {
     /// Speed and acceleration of the axis, SI.
     #[inline]
@@ -100,8 +150,16 @@ impl ArcAxis<'_> {
     }
 
     /// Bounds of the rates at which acceleration (SI) and force change while
-    /// speeds are at most those of `m`.
-    pub fn slopes(&self, m: &Motion, factor: f64) -> (f64, f64) {
+    /// speeds are at most those of the reach.
+    pub fn slopes(&self, reach: &Reach, factor: f64) -> (f64, f64) {
+        let m = &reach.fastest;
+        if !reach.is_steady() {
+            let [_, accel, jerk, _] = reach.derivatives(self.shape);
+            return (
+                jerk,
+                self.axis.mass * factor * jerk + self.axis.viscous * accel,
+            );
+        }
         match self.shape {
             Shape::Line(direction) => (0.0, self.axis.viscous * (direction * m.a).abs()),
             Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
@@ -117,12 +175,24 @@ impl ArcAxis<'_> {
     }
 
     /// Bound of `|d²/dt²|` of any smooth branch of the electrical power,
-    /// conversion left out, while speeds are at most those of `m`: of `v·F`
-    /// and of `R·F²`. `factor` is how far acceleration may exceed the command.
-    pub fn curvature(&self, m: &Motion, factor: f64) -> (f64, f64) {
+    /// conversion left out, while speeds are at most those of the reach: of
+    /// `v·F` and of `R·F²`. `factor` is how far acceleration may exceed the
+    /// command.
+    pub fn curvature(&self, reach: &Reach, factor: f64) -> (f64, f64) {
         let axis = self.axis;
+        let m = &reach.fastest;
         let mass = axis.mass * factor;
         let constant = axis.coulomb + axis.gravity.abs();
+        if !reach.is_steady() {
+            let [x1, x2, x3, x4] = reach.derivatives(self.shape);
+            let force = mass * x2 + axis.viscous * x1 + constant;
+            let slope = mass * x3 + axis.viscous * x2;
+            let bend = mass * x4 + axis.viscous * x3;
+            return (
+                x3 * force + 2.0 * x2 * slope + x1 * bend,
+                axis.copper * 2.0 * (slope * slope + force * bend),
+            );
+        }
         let (w, alpha) = (m.omega, m.alpha.abs());
         match self.shape {
             Shape::Line(direction) => {
@@ -161,21 +231,29 @@ impl ArcAxis<'_> {
     }
 
     /// Upper bounds of the power drawn (W) and fed back at speeds up to those
-    /// of `m`, whatever the angle; `factors` for drawing and feeding back.
-    pub fn envelope(&self, m: &Motion, factors: [f64; 2]) -> [f64; 2] {
+    /// of the reach, whatever the angle; `factors` for drawing and feeding back.
+    pub fn envelope(&self, reach: &Reach, factors: [f64; 2]) -> [f64; 2] {
         let axis = self.axis;
+        let m = &reach.fastest;
         let (speed, accel, drawn, fed_back) = match self.shape {
             Shape::Line(direction) => {
-                let inertial = direction * direction * m.v * m.a;
+                let square = direction * direction * m.v;
                 let speed = (direction * m.v).abs();
                 let accel = (direction * m.a).abs();
-                (speed, accel, inertial.max(0.0), (-inertial).max(0.0))
+                let [low, high] = reach.accel;
+                (
+                    speed,
+                    accel,
+                    square * high.max(0.0),
+                    square * (-low).max(0.0),
+                )
             }
             Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let w2 = m.omega * m.omega;
                 let swing = amplitude(m.alpha, w2);
                 let half = 0.5 * r * r * m.omega;
-                let (drawn, fed_back) = (half * (swing + m.alpha), half * (swing - m.alpha));
+                let [low, high] = reach.alpha;
+                let (drawn, fed_back) = (half * (swing + high), half * (swing - low));
                 (r * m.omega, r * swing, drawn, fed_back)
             }
         };

@@ -2,18 +2,20 @@
 //!
 //! Input: the profile of each axis, all starting together. Output: the
 //! [`Totals`] of one converter. The instants at which any axis switches are
-//! merged; between two of them every acceleration is constant.
+//! merged; between two of them every acceleration is constant, or else
+//! `changing` takes over.
 
+use super::changing;
 use super::demand::{Totals, Want};
 use super::interval::{Interval, Ramp};
 use super::model::{ConverterPower, PowerModel};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
-use crate::plan::{Phase, Profile};
+use crate::plan::{Phase, PhaseKind, Profile};
 use arrayvec::ArrayVec;
 
-/// Switching instants of all axes: seven phases each.
-const INSTANTS: usize = 7 * AXES;
+/// Switching instants of all axes: seven phases each, of four parts at most.
+const INSTANTS: usize = 7 * 4 * AXES;
 
 /// The converter's share of an independent rapid.
 pub(super) fn totals(
@@ -29,19 +31,39 @@ pub(super) fn totals(
     for (axis, profile) in profiles {
         duration_s = duration_s.max(profile.duration_s());
         if converter.axes.contains(*axis) {
-            let mut end = 0.0;
+            let mut start = 0.0;
             for phase in &profile.phases {
-                end += phase.duration_s;
+                let mut end = start;
+                if !is_steady(phase) {
+                    for part in phase.parts() {
+                        end += part.duration_s;
+                        instants.try_push(end).ok();
+                    }
+                }
+                start += phase.duration_s;
                 // More axes than exist cannot come from `plan`.
-                instants.try_push(end).ok();
+                instants.try_push(start).ok();
             }
         }
     }
     instants.sort_unstable_by(f64::total_cmp);
     let mut totals = Totals::at_rest(idle_w, duration_s, want);
+    let mut phases = profiles.iter().flat_map(|(_, profile)| &profile.phases);
+    let steady = phases.all(is_steady);
     let mut start = 0.0;
     for end in instants {
-        if end > start {
+        if end > start && !steady {
+            changing::interval(
+                model,
+                converter,
+                mv,
+                profiles,
+                (start, end),
+                want,
+                &mut totals,
+            );
+            start = end;
+        } else if end > start {
             let ramps = ramps(model, converter, mv, profiles, start, end);
             Interval {
                 credit_regen: converter.credit_regen,
@@ -63,6 +85,11 @@ pub(super) fn totals(
         }
     }
     totals
+}
+
+/// Whether a phase has one acceleration.
+fn is_steady(phase: &Phase) -> bool {
+    phase.kind == PhaseKind::ConstantAcceleration
 }
 
 /// The ramp of each axis of the converter between two switching instants.

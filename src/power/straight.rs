@@ -11,15 +11,17 @@
 //! and without viscous friction and copper loss `c_n` is constant in a phase:
 //! power is linear in v, its extremes are at the ends of the phases and the
 //! energy is `c_n` times the length of the phase. Otherwise the phases go to
-//! [`interval`](super::interval).
+//! [`interval`](super::interval), and those whose acceleration changes to
+//! [`stretch`](super::stretch).
 
 use super::axis::{AxisPower, Side};
 use super::demand::{Totals, Want};
 use super::interval::{Interval, Ramp};
 use super::model::{ConverterPower, PowerModel};
+use super::stretch::{Course, Follower, Stretch};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
-use crate::plan::{Phase, Profile};
+use crate::plan::{Phase, PhaseKind, Profile};
 use arrayvec::ArrayVec;
 
 /// One axis that moves: its coefficients per unit of path.
@@ -49,7 +51,8 @@ pub(super) fn totals(
         profile.phases.as_slice(),
         want.energy,
         active.0 & converter.curved.0 == 0,
-    ) && up.end_velocity_mm_s == down.velocity_mm_s
+    ) && profile.phases.iter().all(is_steady)
+        && up.end_velocity_mm_s == down.velocity_mm_s
         && (up.velocity_mm_s, down.end_velocity_mm_s) == (0.0, 0.0)
     {
         return ramp_peaks(model, converter, mv, active, [up, down], idle_w);
@@ -69,12 +72,13 @@ pub(super) fn totals(
         });
     }
     let factored = active.0 & converter.factored.0 != 0;
-    if active.0 & converter.curved.0 == 0 {
-        for phase in &profile.phases {
-            linear_phase(converter, &shares, phase, factored, want, &mut totals);
-        }
-    } else {
-        for phase in &profile.phases {
+    let curved = active.0 & converter.curved.0 != 0;
+    for phase in &profile.phases {
+        if !is_steady(phase) {
+            for part in phase.parts() {
+                changing_phase(converter, &shares, &part, want, &mut totals);
+            }
+        } else if curved {
             let ramps: ArrayVec<Ramp<'_>, AXES> = shares
                 .iter()
                 .map(|share| Ramp {
@@ -92,9 +96,42 @@ pub(super) fn totals(
                 duration_s: phase.duration_s,
             }
             .evaluate(want, &mut totals);
+        } else {
+            linear_phase(converter, &shares, phase, factored, want, &mut totals);
         }
     }
     totals
+}
+
+/// Whether a phase has one acceleration.
+#[inline]
+fn is_steady(phase: &Phase) -> bool {
+    phase.kind == PhaseKind::ConstantAcceleration
+}
+
+/// A part of a phase whose acceleration changes.
+fn changing_phase(
+    converter: &ConverterPower,
+    shares: &[Share<'_>],
+    part: &Phase,
+    want: Want,
+    totals: &mut Totals,
+) {
+    let course = Course::new(part);
+    let axes: ArrayVec<Follower<'_>, AXES> = shares
+        .iter()
+        .map(|share| Follower {
+            axis: share.axis,
+            course,
+            direction: share.direction,
+        })
+        .collect();
+    Stretch {
+        credit_regen: converter.credit_regen,
+        idle_w: totals.idle_w,
+        axes: &axes,
+    }
+    .evaluate(want, totals);
 }
 
 /// Peaks of a trapezoid or triangle in which power is linear in speed.

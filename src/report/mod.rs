@@ -1,5 +1,6 @@
 //! Results for people and for other programs: one writer for each format.
 
+mod chart;
 mod checked;
 mod comparison;
 mod csv;
@@ -14,8 +15,10 @@ mod patch;
 mod quantity;
 mod record;
 mod sarif;
+mod spindle;
 mod text;
 
+pub use chart::SpindleChart;
 pub use checked::{Checked, Verdict, chain};
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
 pub use csv::CsvRows;
@@ -31,4 +34,5 @@ pub use patch::unified_diff;
 pub use quantity::{duration, power};
 pub use record::COLUMNS;
 pub use sarif::sarif;
+pub use spindle::{SpindleRows, spindle_text};
 pub use text::{axis_table, check_text, limit_text};

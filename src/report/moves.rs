@@ -40,6 +40,8 @@ struct MoveLine<'a> {
     center: Option<Center>,
     #[serde(skip_serializing_if = "Option::is_none")]
     plane: Option<String>,
+    /// Positive from the first axis of the plane to the second: counter-clockwise,
+    /// as the `rotation` of `LinuxCNC`'s canonical arcs.
     #[serde(skip_serializing_if = "Option::is_none")]
     turns: Option<Figure>,
     feed_mm_min: Option<Figure>,
@@ -67,7 +69,7 @@ impl<'a> MoveLine<'a> {
                 center: arc.center,
             }),
             plane: mv.arc.map(|arc| plane_name(arc.plane)),
-            turns: mv.arc.map(|arc| Figure(arc.sweep_rad.abs() / TAU)),
+            turns: mv.arc.map(|arc| Figure(arc.sweep_rad / TAU)),
             feed_mm_min: has_feed.then_some(Figure(mv.feed_mm_s * SECONDS_PER_MINUTE)),
             seconds: seconds.map(Figure),
         }

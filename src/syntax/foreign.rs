@@ -12,8 +12,12 @@ pub struct Foreign {
     pub help: &'static str,
 }
 
+const MODEL: &str = "give the program that a CAM system makes of it";
+const UNPACK: &str = "unpack it first";
+const PROGRAM: &str = "give a part program";
+
 /// How files begin that are no programs of words.
-const BEGINNINGS: [(&[u8], &str, &str); 10] = [
+const BEGINNINGS: [(&[u8], &str, &str); 27] = [
     (
         b"GCDE",
         "binary G-code",
@@ -21,11 +25,16 @@ const BEGINNINGS: [(&[u8], &str, &str); 10] = [
     ),
     (
         b"PK\x03\x04",
-        "a packed file, such as a project (3MF, FCStd, F3Z)",
+        "a packed file, such as a project (3MF, FCStd, F3D, F3Z)",
         "give the G-code that it produces",
     ),
-    (b"\x1f\x8b", "a packed file (gzip)", "unpack it first"),
-    (b"7z\xbc\xaf", "a packed file (7z)", "unpack it first"),
+    (b"PK\x05\x06", "an empty packed file (zip)", PROGRAM),
+    (b"\x1f\x8b", "a packed file (gzip)", UNPACK),
+    (b"7z\xbc\xaf", "a packed file (7z)", UNPACK),
+    (b"BZh", "a packed file (bzip2)", UNPACK),
+    (b"\xfd7zXZ", "a packed file (xz)", UNPACK),
+    (b"\x28\xb5\x2f\xfd", "a packed file (zstd)", UNPACK),
+    (b"Rar!", "a packed file (RAR)", UNPACK),
     (
         b"\xff\xfe",
         "text in UTF-16",
@@ -36,18 +45,34 @@ const BEGINNINGS: [(&[u8], &str, &str); 10] = [
         "text in UTF-16",
         "save the program as plain text (ASCII or UTF-8)",
     ),
-    (b"%PDF", "a PDF document", "give a part program"),
-    (b"<", "an XML or HTML file", "give a part program"),
+    (b"%PDF", "a PDF document", PROGRAM),
+    (b"<svg", "an SVG drawing", MODEL),
+    (b"<", "an XML or HTML file", PROGRAM),
+    (b"{\"", "a JSON file", PROGRAM),
     (
-        b"ISO-10303-21",
-        "a STEP model",
-        "give the program that a CAM system makes of it",
+        b"{\\rtf",
+        "a document (RTF)",
+        "save the program as plain text",
     ),
+    (
+        b"\xd0\xcf\x11\xe0",
+        "a document or project of an office or CAD program",
+        MODEL,
+    ),
+    (b"ISO-10303-21", "a STEP model", MODEL),
+    (b"AutoCAD Binary DXF", "a DXF drawing", MODEL),
+    (b"AC10", "a DWG drawing", MODEL),
+    (b"3D Geometry File Format", "a Rhino model", MODEL),
+    (b"SQLite format 3", "a database", PROGRAM),
     (
         b"solid ",
         "an STL model",
         "give the program that a slicer or CAM system makes of it",
     ),
+    (b"\x89PNG", "a picture (PNG)", PROGRAM),
+    (b"\xff\xd8\xff", "a picture (JPEG)", PROGRAM),
+    (b"MZ\x90", "a program for Windows", PROGRAM),
+    (b"\x7fELF", "a program for Linux", PROGRAM),
 ];
 
 /// What the file is that begins with `bytes`, if it plainly is no program of
@@ -55,11 +80,23 @@ const BEGINNINGS: [(&[u8], &str, &str); 10] = [
 #[must_use]
 pub fn foreign(bytes: &[u8]) -> Option<Foreign> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if is_svg(bytes) {
+        return Some(Foreign {
+            what: "an SVG drawing",
+            help: MODEL,
+        });
+    }
     let begins = BEGINNINGS
         .iter()
         .find(|(beginning, ..)| bytes.starts_with(beginning));
     if let Some((_, what, help)) = begins {
         return Some(Foreign { what, help });
+    }
+    if is_binary_stl(bytes) {
+        return Some(Foreign {
+            what: "an STL model",
+            help: "give the program that a slicer or CAM system makes of it",
+        });
     }
     let mut lines = bytes
         .split(|byte| matches!(byte, b'\n' | b'\r'))
@@ -71,13 +108,39 @@ pub fn foreign(bytes: &[u8]) -> Option<Foreign> {
             help: "only programs of G-code words are read: have it posted as DIN/ISO",
         });
     }
+    // IGES: the 73rd column of its first line names the section S.
+    let first = lines.clone().next().unwrap_or_default();
+    if first.len() >= 73 && first.get(72) == Some(&b'S') && first.ends_with(b"1") {
+        return Some(Foreign {
+            what: "an IGES model",
+            help: MODEL,
+        });
+    }
+    // A comment of a DXF drawing has the code 999.
+    while lines.clone().next() == Some(b"999") {
+        lines.nth(1);
+    }
     if lines.next() == Some(b"0") && lines.next() == Some(b"SECTION") {
         return Some(Foreign {
             what: "a DXF drawing",
-            help: "give the program that a CAM system makes of it",
+            help: MODEL,
         });
     }
     None
+}
+
+/// `<svg`, with or without a declaration of XML before it.
+fn is_svg(bytes: &[u8]) -> bool {
+    bytes.trim_ascii_start().starts_with(b"<") && memchr::memmem::find(bytes, b"<svg").is_some()
+}
+
+/// 80 bytes of header, then the number of triangles and 50 bytes for each, with
+/// zeros among them.
+fn is_binary_stl(bytes: &[u8]) -> bool {
+    let count = bytes.get(80..84).unwrap_or_default();
+    let body = bytes.get(84..).unwrap_or_default();
+    let some = count.iter().any(|byte| *byte != 0) && body.iter().any(|byte| *byte != 0);
+    some && count.last() == Some(&0) && body.contains(&0)
 }
 
 /// `0 BEGIN PGM NAME MM`.
@@ -101,6 +164,24 @@ mod tests {
         assert_eq!(what(b"GCDE\x01"), Some("binary G-code"));
         assert_eq!(what(b"  0\r\nSECTION\r\n"), Some("a DXF drawing"));
         assert_eq!(what(b"<?xml"), Some("an XML or HTML file"));
+        let svg = b"<?xml version=\"1.0\"?>\n<!-- part -->\n<svg width=\"1\">";
+        assert_eq!(what(svg), Some("an SVG drawing"));
+        assert_eq!(
+            what(b"PK\x03\x04\x14"),
+            Some("a packed file, such as a project (3MF, FCStd, F3D, F3Z)")
+        );
+        assert_eq!(what(b"%PDF-1.7"), Some("a PDF document"));
+        assert_eq!(what(b"ISO-10303-21;\nHEADER;"), Some("a STEP model"));
+        assert_eq!(
+            what(b"999\nmade by hand\n0\nSECTION\n"),
+            Some("a DXF drawing")
+        );
+        let mut stl = vec![b' '; 80];
+        stl.extend_from_slice(&12_u32.to_le_bytes());
+        stl.extend_from_slice(&[0, 0, 128, 63].repeat(150));
+        assert_eq!(what(&stl), Some("an STL model"));
+        let iges = format!("{:72}S      1\n", "a plate");
+        assert_eq!(what(iges.as_bytes()), Some("an IGES model"));
         for program in [&b"%\nO1\nG0 X0\n"[..], b"(BEGIN PGM)\nG1", b"0\nG1", b""] {
             assert_eq!(what(program), None);
         }

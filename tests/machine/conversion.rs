@@ -1,6 +1,6 @@
 //! Motor-side data, worked by hand.
 
-use gwatt::machine::{Axis, AxisId};
+use gwatt::machine::{Axis, AxisId, ForcePoint};
 
 use super::{edited, machine};
 
@@ -139,4 +139,42 @@ fn rotary_speed_of_the_table() {
 fn kind_follows_the_letter() {
     let text = edited("kind = \"linear\"\n", "").replace("kind = \"rotary\"\n", "");
     assert_eq!(machine(&text).axes, machine(super::BASE).axes);
+}
+
+/// Lead 10 mm: 3000 rpm are 500 mm/s, and 2 N·m are 2·628.3185 N. A table behind
+/// a gear of 90 turns with 3000/90 rpm = 200 degrees/s, with 90 times the torque.
+#[test]
+fn torque_curves_at_the_motor() {
+    let curve = "torque_curve = [{ rpm = 0, torque_nm = 3 }, { rpm = 3000, torque_nm = 2 }]\n";
+    let last = |text: &str| -> ForcePoint {
+        let machine = machine(text);
+        assert_eq!(machine.force_curves.len(), 1);
+        assert!(
+            machine
+                .unchecked
+                .iter()
+                .any(|name| name.contains("torque_curve"))
+        );
+        machine.force_curves[0].1[1]
+    };
+    let motor = format!(
+        "max_speed_rpm = 3000\naccel_time_s = 0.1\ninertia_kg_m2 = 0.001\nlead_mm = 10\n{curve}"
+    );
+    let x = last(&edited(X, &motor));
+    near(x.speed_mm_s, 500.0);
+    near(x.force_n, 1256.637);
+    let motor = format!(
+        "max_speed_rpm = 3000\naccel_time_s = 0.2\ninertia_kg_m2 = 0.002\ngear_ratio = 90\n{curve}"
+    );
+    let b = last(&edited(B, &motor));
+    near(b.speed_mm_s, 200.0);
+    near(b.force_n, 180.0);
+    let x = machine(&edited(
+        X,
+        &format!(
+            "{X}force_curve = [{{ speed_mm_min = 0, force_n = 9 }}, {{ speed_mm_min = 6000, force_n = 5 }}]\n"
+        ),
+    ));
+    let point = x.force_curves[0].1[1];
+    assert_eq!((point.speed_mm_s, point.force_n), (100.0, 5.0));
 }

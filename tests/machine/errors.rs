@@ -227,7 +227,7 @@ fn missing_in_lists() {
     line 25, error machine-missing: `max_rpm` is missing in `spindle` / Largest speed in 1/min
       | [spindle]
       | ^^^^^^^^^
-    line 25, error machine-missing: `accel_time_s` is missing in `spindle` / Time to `max_rpm` in s
+    line 25, error machine-missing: the spindle needs an acceleration / give `accel_time_s` or `torque_curve`
       | [spindle]
       | ^^^^^^^^^
     ");

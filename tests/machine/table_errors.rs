@@ -194,9 +194,82 @@ fn contradictions_of_the_spindle() {
 }
 
 #[test]
+fn torque_curves_of_the_spindle() {
+    let spindle = |more: &str| {
+        findings(&with(&format!(
+            "[spindle]\ninertia_kg_m2 = 0.1\nmax_rpm = 4000\n{more}"
+        )))
+    };
+    assert_eq!(
+        spindle("torque_curve = [{ rpm = 0, torque_nm = 20 }, { rpm = 4000, torque_nm = 8 }]"),
+        ""
+    );
+    assert_snapshot!(spindle("base_rpm = 1000\naccel_time_s = 1\ntorque_curve = [{ rpm = 0, torque_nm = 20 }]"), @r"
+    line 22, error machine-twice: `base_rpm` and `torque_curve` give the same quantity / keep one of the two
+      | base_rpm = 1000
+      |            ^^^^
+    line 23, error machine-twice: `accel_time_s` and `torque_curve` give the same quantity / keep one of the two
+      | accel_time_s = 1
+      |                ^
+    ");
+    assert_snapshot!(spindle("torque_curve = []"), @r"
+    line 19, error machine-spindle: `torque_curve` has no points
+      | [spindle]
+      | ^^^^^^^^^
+    ");
+    assert_snapshot!(spindle("friction_nm = 9\ntorque_curve = [\n{ rpm = 0, torque_nm = 20 },\n{ rpm = 4000, torque_nm = 8 }]"), @r"
+    line 25, error machine-spindle: the torque does not overcome `friction_nm`
+      | { rpm = 4000, torque_nm = 8 }]
+      | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(spindle("torque_curve = [\n{ rpm = 10, torque_nm = 20 },\n{ rpm = 5, torque_nm = 8 }]"), @r"
+    line 23, error machine-curve: `torque_curve`: the first point must be at speed 0
+      | { rpm = 10, torque_nm = 20 },
+      | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    line 24, error machine-curve: `torque_curve`: speeds must ascend
+      | { rpm = 5, torque_nm = 8 }]
+      | ^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    // 9 N·m at 4000/min are 3770 W.
+    assert_snapshot!(spindle("friction_nm = 9\naccel_time_s = 1\nbase_load_w = 100\npeak_power_w = 3800"), @r"
+    line 25, error machine-spindle: `peak_power_w` leaves nothing to accelerate with at `max_rpm`: friction and base load take 3870 W
+      | peak_power_w = 3800
+      |                ^^^^
+    ");
+}
+
+#[test]
+fn curves_of_axes() {
+    let axis = |more: &str| findings(&edited("mass_kg = 900", &format!("mass_kg = 900\n{more}")));
+    assert_snapshot!(axis("force_curve = [{ speed_mm_min = 0, force_n = 9000 }]\ntorque_curve = [{ rpm = 0, torque_nm = 9 }]"), @r"
+    line 14, error machine-twice: `force_curve` and `torque_curve` give the same quantity of axis X / keep one of the two
+      | torque_curve = [{ rpm = 0, torque_nm = 9 }]
+      |                 ^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(axis("torque_curve = [{ rpm = 0, torque_nm = 9 }]"), @r"
+    line 13, error machine-missing: `torque_curve` is at the motor, but axis X has no `lead_mm` / give the screw's `lead_mm`, or a `force_curve`
+      | torque_curve = [{ rpm = 0, torque_nm = 9 }]
+      |                 ^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&edited("inertia_kg_m2 = 12", "inertia_kg_m2 = 12\nforce_curve = [{ speed_mm_min = 0, force_n = 9 }]")), @r"
+    line 19, error machine-kind: `force_curve` is for linear axes; axis B turns / give `torque_curve`
+      | force_curve = [{ speed_mm_min = 0, force_n = 9 }]
+      |                ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    let points: Vec<String> = (0..17)
+        .map(|i| format!("{{ speed_mm_min = {i}, force_n = 9 }}"))
+        .collect();
+    let many = axis(&format!("force_curve = [{}]", points.join(",\n")));
+    assert!(
+        many.contains("`force_curve`: more than 16 points"),
+        "{many}"
+    );
+}
+
+#[test]
 fn unknown_controller() {
     assert_snapshot!(findings(&edited("controller = \"iso\"", "controller = \"linuxcn\"")), @r#"
-    line 3, error machine-controller: no built-in controller profile and no file is named "linuxcn" / did you mean "linuxcnc"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, mitsubishi, mazak, syntec, okuma
+    line 3, error machine-controller: no built-in controller profile and no file is named "linuxcn" / did you mean "linuxcnc"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, mitsubishi, mazak, syntec, okuma, okuma-lathe
       | controller = "linuxcn"
       |              ^^^^^^^^^
     "#);
@@ -214,7 +287,7 @@ fn controller_file_missing() {
 #[test]
 fn many_at_once() {
     assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"isso\"\n[converter]\npeak_power_w = -1\n[axes.X]\nrapid_mm_mim = 1000\naccel_mm_s2 = \"a\"\n[limits]\nmargin = 2\n"), @r#"
-    line 3, error machine-controller: no built-in controller profile and no file is named "isso" / did you mean "iso"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, mitsubishi, mazak, syntec, okuma
+    line 3, error machine-controller: no built-in controller profile and no file is named "isso" / did you mean "iso"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, mitsubishi, mazak, syntec, okuma, okuma-lathe
       | controller = "isso"
       |              ^^^^^^
     line 5, error machine-range: `peak_power_w` must be greater than 0, but is -1

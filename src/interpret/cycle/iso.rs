@@ -58,7 +58,9 @@ impl Control<'_> {
         let Some(unknown) = self.targets(run, false, &mut place) else {
             return;
         };
+        let keeps = self.osp.as_ref().is_some_and(|osp| osp.only_keeps);
         if repeats == 0
+            || keeps
             || self
                 .feed_speed(run, &self.position.at, None, 1.0, true)
                 .is_none()
@@ -77,7 +79,12 @@ impl Control<'_> {
                 .help("write a block for each hole");
             return;
         }
-        hole.clear_mm = if self.special.to_initial {
+        hole.clear_mm = if self.osp.is_some() {
+            let Some(clear_mm) = self.osp_clear(hole.r_mm, run) else {
+                return;
+            };
+            clear_mm
+        } else if self.special.to_initial {
             initial_mm
         } else {
             hole.r_mm
@@ -199,7 +206,9 @@ impl Control<'_> {
         let word = run.words.word(b'P', run.block);
         let own = run.words.take(b'P');
         if let (Some(value), Some(word)) = (own, word) {
-            let seconds = if word.number.of(run.report.text).contains(&b'.') {
+            let point = word.number.of(run.report.text).contains(&b'.');
+            // OSP takes P in seconds.
+            let seconds = if point || self.osp.is_some() {
                 value
             } else {
                 value * MILLISECOND_S

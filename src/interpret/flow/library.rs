@@ -53,13 +53,28 @@ impl Library {
             format!("_N_{name}_MPF"),
             format!("{name}_SPF"),
         ];
+        let Some(bytes) = self.load_named(&wanted)? else {
+            let message = format!("there is no subprogram {name}, and no word of this name");
+            let help = format!(
+                "define it in the program, or put {name}.SPF into its folder or one given by --sub-path"
+            );
+            return Err(Trouble::new("no-such-subprogram", message, help));
+        };
+        Ok(bytes)
+    }
+
+    /// The contents of the file with one of these names, whatever the case of
+    /// their letters; the first name that exists counts.
+    pub(super) fn load_named(&mut self, wanted: &[String]) -> Result<Option<Vec<u8>>, Trouble> {
         let find = |folder: &PathBuf| {
             let mut found: Vec<(usize, PathBuf)> = fs::read_dir(folder)
                 .ok()?
                 .flatten()
                 .filter_map(|entry| {
-                    let file = entry.file_name().to_string_lossy().to_ascii_uppercase();
-                    let rank = wanted.iter().position(|name| *name == file)?;
+                    let file = entry.file_name().to_string_lossy().into_owned();
+                    let rank = wanted
+                        .iter()
+                        .position(|name| name.eq_ignore_ascii_case(&file))?;
                     Some((rank, entry.path()))
                 })
                 .filter(|(_, path)| path.is_file())
@@ -67,14 +82,10 @@ impl Library {
             found.sort();
             found.into_iter().next().map(|(_, path)| path)
         };
-        let Some(path) = self.folders.iter().find_map(find) else {
-            let message = format!("there is no subprogram {name}, and no word of this name");
-            let help = format!(
-                "define it in the program, or put {name}.SPF into its folder or one given by --sub-path"
-            );
-            return Err(Trouble::new("no-such-subprogram", message, help));
-        };
-        self.read(&path)
+        match self.folders.iter().find_map(find) {
+            Some(path) => self.read(&path).map(Some),
+            None => Ok(None),
+        }
     }
 
     /// The contents of the file that holds a subprogram, if there is one.

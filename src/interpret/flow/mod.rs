@@ -2,6 +2,8 @@
 //! held whole.
 
 mod contour;
+mod go;
+mod landmarks;
 mod library;
 mod limits;
 mod macro_b;
@@ -58,12 +60,16 @@ pub(crate) struct Flow {
     undecided: Option<Label>,
     /// The macro that each block which moves calls (G66).
     modal: Option<Call>,
+    /// The same by its name, and calls that are open where it was set (MODIN).
+    modal_named: Option<(String, usize)>,
     repeated_moves: u64,
     idle_lines: u64,
     /// The program has begun again (M99 in the main program).
     again: bool,
     /// It is a program of SINUMERIK.
     is_siemens: bool,
+    /// It is one of the ISG kernel, whose `%` lines are executed.
+    is_isg: bool,
     /// Sections that are repeated.
     sections: Vec<Section>,
     /// Texts that were loaded by the names of their subprograms.
@@ -151,10 +157,12 @@ impl Flow {
             broke: false,
             undecided: None,
             modal: None,
+            modal_named: None,
             repeated_moves: 0,
             idle_lines: 0,
             again: false,
             is_siemens: false,
+            is_isg: false,
             sections: Vec::new(),
             named: Vec::new(),
         }
@@ -181,7 +189,7 @@ impl Flow {
                 // The header of the next program.
                 return Err(self.without_return());
             }
-            if tape && self.next.text > 0 {
+            if tape && self.next.text > 0 && !self.is_isg {
                 self.next.line += 1;
                 continue;
             }
@@ -195,6 +203,8 @@ impl Flow {
         let message = "the subprogram ends without a return";
         let help = if self.is_siemens {
             "end it with M17 or RET"
+        } else if self.is_isg {
+            "end it with M17 or M29"
         } else {
             "end it with M99, or endsub"
         };
@@ -282,6 +292,11 @@ impl Flow {
         &mut self,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), Box<Diagnostic>> {
+        if self.modal_named.is_some() {
+            return self
+                .modal_call(interpreter)
+                .map_err(|trouble| self.trouble(trouble));
+        }
         let Some(call) = &self.modal else {
             return Ok(());
         };
@@ -312,6 +327,7 @@ impl Flow {
             Transfer::Loop { number, holds } => self.begin_loop(number, holds),
             Transfer::EndLoop(number) => self.end_loop(number),
             Transfer::Siemens(word) => self.siemens(word, interpreter),
+            Transfer::Go(word) => self.go(word, interpreter),
             // Its moves belong to its line: see `turn`.
             Transfer::Contour(_) => Ok(()),
         };

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::landmarks::Landmarks;
 use super::outline::Outline;
 use crate::interpret::statement::{Keyword, glance};
 use crate::interpret::transfer::Label;
@@ -20,6 +21,7 @@ pub(super) struct Text {
     blocks: Vec<Option<Box<Block>>>,
     index: Option<Index>,
     outline: Option<Box<Outline>>,
+    landmarks: Option<Box<Landmarks>>,
     /// Places that have been looked for before.
     found: HashMap<(Search, usize), Option<usize>>,
 }
@@ -63,6 +65,7 @@ impl Text {
             blocks: Vec::new(),
             index: None,
             outline: None,
+            landmarks: None,
             found: HashMap::new(),
         }
     }
@@ -73,6 +76,14 @@ impl Text {
             self.outline = Some(Box::new(Outline::new(self)));
         }
         self.outline.get_or_insert_default()
+    }
+
+    /// What the lines of a text of the ISG kernel (`dollar`) or of OSP are.
+    pub(super) fn landmarks(&mut self, dollar: bool) -> &Landmarks {
+        if self.landmarks.is_none() {
+            self.landmarks = Some(Box::new(Landmarks::new(self, dollar)));
+        }
+        self.landmarks.get_or_insert_default()
     }
 
     /// Number of lines.

@@ -3,13 +3,13 @@
 use super::controller_file::DistanceName;
 use super::findings::Findings;
 use super::machine_file::{
-    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName, SpindleTable,
+    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName,
 };
 use super::value::{At, Num};
-use super::{axis, converter, plausible, preset, profile, unchecked, word};
+use super::{axis, converter, drive_curve, plausible, preset, profile, spindle, unchecked, word};
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
-use crate::machine::model::{Converter, Limits, Load, Machine, Path, Spindle};
+use crate::machine::model::{Converter, Limits, Load, Machine, Path};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Share of the peak power that is kept free if the file does not say.
@@ -46,10 +46,12 @@ pub(crate) fn machine(
     }
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();
+    let mut force_curves = Vec::new();
     let mut complete = true;
     for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
         axes[id as usize] = axis::axis(findings, id, table);
         axis_set.insert(id as usize);
+        force_curves.extend(drive_curve::force(findings, id, &table.value).map(|c| (id, c)));
         complete &= axes[id as usize].is_some();
     }
     if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
@@ -79,10 +81,11 @@ pub(crate) fn machine(
         axes,
         axis_set,
         converters,
+        force_curves,
         spindle: file
             .spindle
             .as_ref()
-            .and_then(|table| spindle(findings, &table.value)),
+            .and_then(|table| spindle::spindle(findings, table)),
         loads,
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
@@ -119,35 +122,6 @@ fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
 
 fn value<B>(number: Option<&Num<B>>, default: f64) -> f64 {
     number.map_or(default, |number| number.value)
-}
-
-fn spindle(findings: &mut Findings<'_>, table: &SpindleTable) -> Option<Spindle> {
-    let (max, time) = (table.max_rpm.as_ref()?, table.accel_time_s.as_ref()?);
-    if let Some(base) = table
-        .base_rpm
-        .as_ref()
-        .filter(|base| base.value > max.value)
-    {
-        let message = "`base_rpm` is above `max_rpm`";
-        findings.error("machine-spindle", &base.span, message, None);
-    }
-    if let Some(jerk) = table
-        .jerk_time_s
-        .as_ref()
-        .filter(|jerk| jerk.value > time.value)
-    {
-        let message = "`jerk_time_s` is longer than `accel_time_s`";
-        findings.error("machine-spindle", &jerk.span, message, None);
-    }
-    Some(Spindle {
-        inertia_kg_m2: table.inertia_kg_m2.as_ref()?.value,
-        friction_nm: value(table.friction_nm.as_ref(), 0.0),
-        max_rpm: max.value,
-        base_rpm: value(table.base_rpm.as_ref(), 0.0),
-        accel_time_s: time.value,
-        jerk_time_s: value(table.jerk_time_s.as_ref(), 0.0),
-        wait: table.wait.unwrap_or(true),
-    })
 }
 
 fn load(

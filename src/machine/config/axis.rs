@@ -40,7 +40,7 @@ pub(crate) fn axis(findings: &mut Findings<'_>, id: AxisId, table: &At<AxisTable
 }
 
 /// The kind as given, else by the letter.
-fn kind(id: AxisId, table: &AxisTable) -> AxisKind {
+pub(super) fn kind(id: AxisId, table: &AxisTable) -> AxisKind {
     match table.kind.as_ref().map(|kind| kind.value) {
         Some(KindName::Rotary) => AxisKind::Rotary,
         None if matches!(id, AxisId::A | AxisId::B | AxisId::C) => AxisKind::Rotary,

@@ -81,6 +81,8 @@ pub(crate) struct LanguageTable {
     pub(crate) lathe: Option<LatheName>,
     /// Whether words of X are diameters; default false.
     pub(crate) diameter: Option<bool>,
+    /// Whether the words are those of Okuma's OSP; default false.
+    pub(crate) osp: Option<bool>,
     /// Whether M words from M10 on that are not known move no axis, which is
     /// then said once; default false: they are refused.
     pub(crate) other_m: Option<bool>,

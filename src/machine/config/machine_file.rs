@@ -203,12 +203,42 @@ pub(crate) struct AxisTable {
     pub(crate) jerk_mm_s3: Option<NotNegative>,
     /// Rotary: jerk limit in degrees/s³; 0: none.
     pub(crate) jerk_deg_s3: Option<NotNegative>,
+    /// Linear: largest force of the drive over the speed, straight between the
+    /// points, the first at speed 0.
+    pub(crate) force_curve: Option<Vec<At<ForcePointTable>>>,
+    /// Largest torque of the motor (of the table without `gear_ratio`) over its
+    /// speed, straight between the points, the first at speed 0.
+    pub(crate) torque_curve: Option<Vec<At<TorquePointTable>>>,
     /// How far real acceleration exceeds the command when driving; default 1.
     pub(crate) servo_factor_motor: Option<AtLeastOne>,
     /// The same when braking; default 1.
     pub(crate) servo_factor_regen: Option<AtLeastOne>,
     /// Friction of the warm machine by that of the cold one; default 1.
     pub(crate) friction_min_ratio: Option<Share>,
+}
+
+/// A point of a force curve.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ForcePointTable {
+    /// Speed in mm/min.
+    #[schemars(required)]
+    pub(crate) speed_mm_min: Option<NotNegative>,
+    /// Largest force there in N.
+    #[schemars(required)]
+    pub(crate) force_n: Option<Positive>,
+}
+
+/// A point of a torque curve.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TorquePointTable {
+    /// Speed in 1/min.
+    #[schemars(required)]
+    pub(crate) rpm: Option<NotNegative>,
+    /// Largest torque there in N·m.
+    #[schemars(required)]
+    pub(crate) torque_nm: Option<Positive>,
 }
 
 /// The spindle.
@@ -225,11 +255,25 @@ pub(crate) struct SpindleTable {
     pub(crate) max_rpm: Option<Positive>,
     /// Speed up to which the torque is constant, in 1/min; 0: not given.
     pub(crate) base_rpm: Option<NotNegative>,
-    /// Time to `max_rpm` in s.
-    #[schemars(required)]
+    /// Time from rest to `max_rpm` in s; from it comes the acceleration.
     pub(crate) accel_time_s: Option<Positive>,
+    /// Instead of `accel_time_s` and `base_rpm`: the largest torque over the
+    /// speed, straight between the points, the first at speed 0; the last holds
+    /// beyond.
+    pub(crate) torque_curve: Option<Vec<At<TorquePointTable>>>,
     /// Time to full acceleration in s; default 0.
     pub(crate) jerk_time_s: Option<NotNegative>,
+    /// Mechanical by electrical power, 0 to 1; default 1.
+    pub(crate) efficiency: Option<Share>,
+    /// What the spindle's drive draws as long as it is switched on, in W;
+    /// default 0.
+    pub(crate) base_load_w: Option<NotNegative>,
+    /// Largest electrical power that the spindle's drive draws, in W, base load
+    /// included; absent: no limit.
+    pub(crate) peak_power_w: Option<Positive>,
+    /// Largest electrical power that the spindle's drive feeds back, in W;
+    /// absent: no limit.
+    pub(crate) regen_power_w: Option<Positive>,
     /// Whether feed moves wait for the speed; default true.
     pub(crate) wait: Option<bool>,
 }

@@ -2,7 +2,7 @@
 //!
 //! Text → tree (`document`) → checked against the schema (`structure`) →
 //! structs (`machine_file`, `controller_file`) → `Machine`, `Controller`
-//! (`assemble`, `axis`, `converter`, `preset`, `profile`). All mistakes of a file are
+//! (`assemble`, `axis`, `converter`, `preset`, `profile`, `spindle`). All mistakes of a file are
 //! collected on the way, each with its line.
 
 mod assemble;
@@ -10,6 +10,7 @@ mod axis;
 mod controller_file;
 mod converter;
 mod document;
+mod drive_curve;
 mod findings;
 mod hints;
 mod load;
@@ -21,6 +22,7 @@ mod printer;
 mod profile;
 mod quantity;
 mod schema;
+mod spindle;
 mod structure;
 mod unchecked;
 mod value;

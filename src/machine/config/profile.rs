@@ -108,6 +108,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
             LatheName::C => Lathe::C,
         }),
         diameter: table.diameter.unwrap_or(false),
+        osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
         g28_all: table.g28_all.unwrap_or(false),

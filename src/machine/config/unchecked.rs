@@ -18,6 +18,13 @@ pub(crate) fn list(file: &MachineFile) -> Vec<String> {
             };
             names.push(format!("axes.{}.jerk_{unit}_s3", axis.letter() as char));
         }
+        let curves = [
+            ("force_curve", table.value.force_curve.is_some()),
+            ("torque_curve", table.value.torque_curve.is_some()),
+        ];
+        for (key, _) in curves.into_iter().filter(|(_, given)| *given) {
+            names.push(format!("axes.{}.{key}", axis.letter() as char));
+        }
     }
     if file.spindle.is_some() {
         names.push("spindle".to_owned());

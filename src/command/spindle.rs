@@ -1,0 +1,125 @@
+//! `gwatt spindle`.
+
+use std::io::{self, BufWriter, Read};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use gwatt::machine::Spindle;
+use gwatt::pipeline::{Failure, Schedule, run_schedule};
+use gwatt::plan::SpindleDrive;
+use gwatt::power::SpindlePower;
+use gwatt::report::{SpindleChart, SpindleRows, Verdict, spindle_text};
+
+use super::clash::refuse_clashes;
+use super::input::Program;
+use super::output::Target;
+use super::setup::{load_machine, machine_file, machine_name};
+use super::terminal::Terminal;
+use crate::cli::SpindleArgs;
+
+/// Largest schedule that is read.
+const SCHEDULE_BYTES_MAX: u64 = 64 << 20;
+
+/// Runs a spindle through a schedule.
+pub fn run(args: &SpindleArgs, terminal: Terminal) -> Result<Verdict> {
+    let input = Program::new(&args.schedule);
+    let machine = machine_file(args.machine.machine.as_deref());
+    let inputs: Vec<&Path> = input.path().into_iter().chain(machine).collect();
+    let stdout = Path::new("-");
+    let csv = args.output.as_deref().unwrap_or(stdout);
+    let outputs: Vec<&Path> = [Some(csv), args.svg.as_deref()]
+        .into_iter()
+        .flatten()
+        .collect();
+    refuse_clashes(&inputs, &outputs)?;
+    let name = machine_name(&args.machine, terminal);
+    let machine = load_machine(name, terminal)?;
+    let Some(spindle) = &machine.spindle else {
+        bail!(
+            "{name}: the machine has no [spindle]: describe it with inertia_kg_m2, max_rpm and accel_time_s or torque_curve"
+        );
+    };
+    let drive = SpindleDrive::new(spindle).with_context(|| format!("{name}: [spindle]"))?;
+    follow(spindle, &drive, name, terminal);
+
+    let schedule = match Schedule::parse(&read(&input, terminal)?, &drive) {
+        Ok(schedule) => schedule,
+        Err(errors) => {
+            terminal.diagnostics(&input.name, &errors);
+            return Ok(Verdict::Refused);
+        }
+    };
+    let mut rows = SpindleRows::new(BufWriter::new(Target::new(csv)?.spool()?))?;
+    let svg = args.svg.as_deref().map(Target::new).transpose()?;
+    let svg = svg.map(Target::spool).transpose()?;
+    let mut chart = svg.is_some().then(SpindleChart::default);
+
+    let power = SpindlePower::new(spindle);
+    let outcome = run_schedule(
+        &schedule,
+        &drive,
+        &power,
+        args.period_ms * 1e-3,
+        &mut |sample| {
+            if let Some(chart) = &mut chart {
+                chart.add(sample);
+            }
+            rows.row(sample)
+        },
+    );
+    let summary = match outcome {
+        Ok(summary) => summary,
+        Err(failure) => {
+            terminal.failure(&input.name, &failure);
+            return Ok(Verdict::Refused);
+        }
+    };
+    let rows = rows.finish()?;
+    let rows = rows.into_inner().map_err(io::IntoInnerError::into_error)?;
+    let picture = match (svg, chart) {
+        (Some(spool), Some(chart)) => {
+            let mut out = BufWriter::new(spool);
+            chart.write(&mut out)?;
+            Some(out.into_inner().map_err(io::IntoInnerError::into_error)?)
+        }
+        _ => None,
+    };
+    terminal.diagnostics(&input.name, &summary.notes);
+    terminal.text(&spindle_text(&input.name, &summary));
+    if let Some(picture) = picture {
+        picture.deliver()?;
+    }
+    rows.deliver()?;
+    Ok(Verdict::Fits)
+}
+
+/// Warns where the jerk limit cannot follow the acceleration limit.
+fn follow(spindle: &Spindle, drive: &SpindleDrive, name: &str, terminal: Terminal) {
+    if let Some(needed) = drive.missing_jerk() {
+        let jerk = drive.limits().jerk.smallest();
+        terminal.note(format_args!(
+            "{name}: [spindle]: the acceleration limit falls faster than a jerk of {jerk:.0} 1/min/s² \
+             can follow, which would have to be {needed:.0}: the acceleration stays below it; \
+             shorten `jerk_time_s` = {}",
+            spindle.jerk_time_s
+        ));
+    }
+}
+
+fn read(input: &Program, terminal: Terminal) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = input.open().and_then(|file| {
+        let mut file = file.take(SCHEDULE_BYTES_MAX + 1);
+        file.read_to_end(&mut bytes).map_err(Failure::Input)
+    });
+    if let Err(failure) = read {
+        terminal.failure(&input.name, &failure);
+        bail!(super::Shown);
+    }
+    ensure!(
+        bytes.len() as u64 <= SCHEDULE_BYTES_MAX,
+        "{} is larger than a schedule can be",
+        input.name
+    );
+    Ok(bytes)
+}

@@ -1,0 +1,168 @@
+//! A place in the text of a block, which moves on as the text is understood.
+
+use crate::diagnostic::excerpt;
+use crate::interpret::expression::Fault;
+use crate::source::Span;
+
+pub(in crate::interpret) type Outcome<T> = Result<T, Fault>;
+
+/// A place in the text of a block. `( … )` and what follows `;` is not there.
+#[derive(Debug, Clone)]
+pub(in crate::interpret) struct Cursor<'t> {
+    pub(in crate::interpret) text: &'t [u8],
+    pub(in crate::interpret) at: usize,
+    /// Brackets and signs inside one another.
+    pub(super) depth: u32,
+}
+
+impl<'t> Cursor<'t> {
+    pub(in crate::interpret) fn new(text: &'t [u8]) -> Self {
+        Self {
+            text,
+            at: 0,
+            depth: 0,
+        }
+    }
+
+    /// The next byte behind blanks and comments; it stays. `None` at the end.
+    pub(in crate::interpret) fn peek(&mut self) -> Option<u8> {
+        loop {
+            match self.text.get(self.at)? {
+                b' ' | b'\t' => self.at += 1,
+                b';' => return None,
+                b'(' => {
+                    let rest = self.text.get(self.at..)?;
+                    self.at += memchr::memchr(b')', rest).map_or(rest.len(), |end| end + 1);
+                }
+                byte => return Some(*byte),
+            }
+        }
+    }
+
+    /// The byte at the place itself, upper case; 0 at the end.
+    pub(in crate::interpret) fn byte(&self, ahead: usize) -> u8 {
+        let byte = self.text.get(self.at + ahead).copied();
+        byte.unwrap_or_default().to_ascii_uppercase()
+    }
+
+    /// Takes `byte` if it is next.
+    pub(in crate::interpret) fn take(&mut self, byte: u8) -> bool {
+        let next = self.peek() == Some(byte);
+        self.at += usize::from(next);
+        next
+    }
+
+    /// `=` that is not `==`.
+    pub(in crate::interpret) fn assigns(&mut self) -> bool {
+        self.peek() == Some(b'=') && self.byte(1) != b'='
+    }
+
+    /// The name that is next, upper case; empty where none begins. It stays.
+    pub(in crate::interpret) fn name(&mut self) -> String {
+        let begins = self.peek().is_some_and(|byte| byte.is_ascii_alphabetic());
+        if !begins {
+            return String::new();
+        }
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
+        let length = rest.iter().take_while(inside).count();
+        String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).to_ascii_uppercase()
+    }
+
+    /// Takes a name if it is next, as a whole.
+    pub(in crate::interpret) fn take_name(&mut self, name: &str) -> bool {
+        let next = self.name() == name;
+        self.at += if next { name.len() } else { 0 };
+        next
+    }
+
+    /// Passes over digits.
+    pub(in crate::interpret) fn digits(&mut self) {
+        while self.text.get(self.at).is_some_and(u8::is_ascii_digit) {
+            self.at += 1;
+        }
+    }
+
+    /// An unsigned number.
+    pub(in crate::interpret) fn number(&mut self) -> Outcome<f64> {
+        self.peek();
+        let start = self.at;
+        self.digits();
+        if self.text.get(self.at) == Some(&b'.') {
+            self.at += 1;
+            self.digits();
+        }
+        let text = self.text.get(start..self.at).unwrap_or_default();
+        let value = std::str::from_utf8(text)
+            .ok()
+            .and_then(|text| text.parse::<f64>().ok());
+        if let Some(value) = value.filter(|value| value.is_finite()) {
+            return Ok(value);
+        }
+        let message = format!("`{}` is not a number", excerpt(text, 40));
+        let help = "write digits with at most one point";
+        Err(self.fault("expression", message, help, start))
+    }
+
+    /// Passes over the rest of the block.
+    pub(in crate::interpret) fn pass_over_rest(&mut self) {
+        self.at = self.text.len();
+    }
+
+    /// Passes over `[ … ]`, whatever it holds; gives what is inside.
+    pub(in crate::interpret) fn brackets(&mut self) -> Outcome<&'t [u8]> {
+        let start = self.at;
+        self.expect(b'[')?;
+        let from = self.at;
+        let mut depth = 1_usize;
+        while let Some(byte) = self.text.get(self.at) {
+            match byte {
+                b'[' => depth += 1,
+                b']' => depth -= 1,
+                _ => {}
+            }
+            self.at += 1;
+            if depth == 0 {
+                return Ok(self.text.get(from..self.at - 1).unwrap_or_default());
+            }
+        }
+        Err(self.missing("]", start))
+    }
+
+    /// `byte` must be next.
+    pub(in crate::interpret) fn expect(&mut self, byte: u8) -> Outcome<()> {
+        if self.take(byte) {
+            return Ok(());
+        }
+        let at = self.at;
+        Err(self.missing(char::from(byte).encode_utf8(&mut [0; 4]), at))
+    }
+
+    fn missing(&self, what: &str, at: usize) -> Fault {
+        let help = "close each bracket, and write operators between values";
+        self.fault("expression", format!("`{what}` is missing here"), help, at)
+    }
+
+    /// A fault of what stands from `start` to the place.
+    pub(in crate::interpret) fn fault(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        help: &'static str,
+        start: usize,
+    ) -> Fault {
+        Fault::new(rule, message, help, self.span(start))
+    }
+
+    /// What stands from `start` to the place; a byte at least.
+    pub(in crate::interpret) fn span(&self, start: usize) -> Span {
+        let end = self.end().max(start + 1).min(self.text.len());
+        Span::new(start.min(end), end)
+    }
+
+    /// The place without the blanks before it.
+    pub(in crate::interpret) fn end(&self) -> usize {
+        let before = self.text.get(..self.at).unwrap_or(self.text);
+        before.trim_ascii_end().len()
+    }
+}

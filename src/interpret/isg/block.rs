@@ -1,0 +1,240 @@
+//! A block, word by word ("Structure of NC blocks", "Program structure").
+
+use super::{Isg, Note};
+use crate::interpret::direct::is_direct;
+use crate::interpret::execute::Control;
+use crate::interpret::formula::{Cursor, Outcome};
+use crate::interpret::report::Report;
+use crate::interpret::transfer::{Go, Transfer};
+use crate::source::Span;
+use crate::syntax::{Block, IssueKind, Word};
+
+/// Most words of a block.
+const WORDS_MAX: usize = 256;
+
+/// A block while it is read.
+pub(super) struct Reading<'c, 'm, 't> {
+    pub(super) control: &'c Control<'m>,
+    pub(super) state: &'c mut Isg,
+    pub(super) cursor: Cursor<'t>,
+    pub(super) notes: Vec<Note>,
+    /// Text and line.
+    pub(super) place: (u16, u64),
+    /// Variables that the block has read and assigned so far.
+    pub(super) read: Vec<String>,
+    pub(super) assigned: Vec<String>,
+    /// G4 stands in the block.
+    pub(super) dwells: bool,
+}
+
+impl Control<'_> {
+    /// Reads a block that is more than plain words. True when the program does
+    /// not go on at the next line.
+    #[cold]
+    pub(in crate::interpret) fn isg_words(
+        &mut self,
+        block: &mut Block,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        let Some(mut state) = self.isg.take() else {
+            return false;
+        };
+        state.begun |= self.begun;
+        let text = report.text.get(..block.text_end as usize);
+        let mut reading = Reading {
+            control: self,
+            state: &mut state,
+            cursor: Cursor::new(text.unwrap_or(report.text)),
+            notes: Vec::new(),
+            place: (self.text, report.line),
+            read: Vec::new(),
+            assigned: Vec::new(),
+            dwells: false,
+        };
+        let read = reading.read(block);
+        for (rule, message, span) in reading.notes {
+            report.note_once(rule, message, span);
+        }
+        let mut transfers = false;
+        match read {
+            Ok(go) => {
+                transfers = go.is_some();
+                self.transfer = go.map(Transfer::Go);
+                self.begun |= transfers || !block.words.is_empty();
+            }
+            Err(fault) => {
+                report
+                    .error(fault.rule, fault.message, fault.span)
+                    .help(fault.help);
+                // Nothing of it is executed.
+                block.words.clear();
+                block.issues.clear();
+            }
+        }
+        // What stands in a comment or a declaration is no move.
+        self.direct = is_direct(self.machine) && !state.comments && !state.declares;
+        self.isg = Some(state);
+        transfers
+    }
+}
+
+impl Reading<'_, '_, '_> {
+    /// Reads the block: its words get their values. Gives where the program
+    /// goes on, if that is not the next line.
+    fn read(&mut self, block: &mut Block) -> Outcome<Option<Go>> {
+        let huge = |issue: &&crate::syntax::Issue| issue.kind == IssueKind::NotFinite;
+        if let Some(issue) = block.issues.iter().find(huge) {
+            let (message, help) = ("a number beyond all reason", "write a smaller one");
+            return Err(crate::interpret::expression::Fault::new(
+                "syntax", message, help, issue.span,
+            ));
+        }
+        let tape = block.tape;
+        block.words.clear();
+        block.issues.clear();
+        if self.state.comments {
+            self.comment_goes_on();
+            return Ok(None);
+        }
+        if tape {
+            return Ok(self.program_head());
+        }
+        self.state.begun = true;
+        self.front(block);
+        if self.state.declares {
+            self.declaration()?;
+            return Ok(None);
+        }
+        let mut go = None;
+        while let Some(byte) = self.cursor.peek() {
+            let start = self.cursor.at;
+            if let Some(found) = self.item(byte, block)? {
+                if go.is_some() {
+                    let message = "two words of a block say where the program goes on";
+                    let help = "write two blocks";
+                    return Err(self.cursor.fault("flow", message, help, start));
+                }
+                go = Some(found);
+            }
+            block.words_end = self.cursor.end() as u32;
+        }
+        self.end(go, block)
+    }
+
+    /// Passes over block delete, block number and labels.
+    fn front(&mut self, block: &Block) {
+        if self.cursor.text.starts_with(b"\xEF\xBB\xBF") {
+            self.cursor.at = 3;
+        }
+        for _ in 0..2 {
+            if block.delete_level > 0 && self.cursor.take(b'/') {
+                self.cursor.digits();
+            }
+            if matches!(self.cursor.peek(), Some(b'N' | b'n')) && block.number.is_some() {
+                self.cursor.at += 1;
+                self.cursor.peek();
+                self.cursor.digits();
+                self.cursor.take(b':');
+            }
+        }
+        // `[NAME]`: a label ("The $GOTO statement").
+        if self.cursor.peek() == Some(b'[') {
+            let _ = self.cursor.brackets();
+        }
+    }
+
+    /// `%L NAME`, `%NAME` ("Subroutine techniques"): local subprograms stand
+    /// before the main program, and end before the next `%`.
+    fn program_head(&mut self) -> Option<Go> {
+        if self.state.is_called() {
+            return Some(Go::Return);
+        }
+        if is_local(self.cursor.text) && !self.state.begun {
+            return Some(Go::Main);
+        }
+        if self.state.begun {
+            return Some(Go::End);
+        }
+        self.state.begun = true;
+        None
+    }
+
+    /// M17, M29, M2 and M30.
+    fn end(&mut self, go: Option<Go>, block: &mut Block) -> Outcome<Option<Go>> {
+        let ends = |word: &Word| word.letter == b'M' && matches!(word.value, 17.0 | 29.0);
+        if let Some(word) = block.words.iter().copied().find(ends) {
+            if !self.state.is_called() {
+                let message = "M17 and M29 end subprograms: taken as the end of the program";
+                self.notes.push(("subprogram-end", message, word.span));
+                for found in block.words.iter_mut().filter(|word| ends(word)) {
+                    found.value = 30.0;
+                }
+                return Ok(go);
+            }
+            block.words.retain(|word| !ends(word));
+            return Ok(Some(Go::Return));
+        }
+        let aborts = |word: &&Word| word.letter == b'M' && matches!(word.value, 2.0 | 30.0);
+        if self.state.is_called()
+            && let Some(word) = block.words.iter().find(aborts)
+        {
+            let message = "M2 and M30 in a subprogram: the control warns, and aborts the program";
+            let help = "end a subprogram by M17 or M29";
+            return Err(crate::interpret::expression::Fault::new(
+                "subprogram",
+                message,
+                help,
+                word.span,
+            ));
+        }
+        Ok(go)
+    }
+
+    /// Adds a word to the block.
+    pub(super) fn push(
+        &mut self,
+        letter: u8,
+        value: f64,
+        start: usize,
+        number: usize,
+        block: &mut Block,
+    ) -> Outcome<()> {
+        if block.words.len() >= WORDS_MAX {
+            let message = "more than 256 words in a block";
+            let help = "write two blocks";
+            return Err(self.cursor.fault("too-many-words", message, help, start));
+        }
+        block.words.push(Word {
+            letter,
+            value,
+            span: self.cursor.span(start),
+            number: Span::new(number, self.cursor.end().max(number)),
+        });
+        Ok(())
+    }
+
+    pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {
+        let span = self.cursor.span(start);
+        self.notes.push((rule, message, span));
+    }
+
+    pub(super) fn refused(
+        &self,
+        name: &str,
+        reason: &str,
+        start: usize,
+    ) -> crate::interpret::expression::Fault {
+        let message = format!("{name} is {reason}, which gwatt does not follow");
+        let help = "nothing is estimated for a program with motion that is not understood";
+        self.cursor.fault("unsupported-word", message, help, start)
+    }
+}
+
+/// Whether a `%` line begins a local subprogram.
+pub(in crate::interpret) fn is_local(line: &[u8]) -> bool {
+    let line = line.trim_ascii_start();
+    let Some(rest) = line.strip_prefix(b"%") else {
+        return false;
+    };
+    matches!(rest.trim_ascii_start(), [b'L' | b'l', b' ' | b'\t', ..])
+}

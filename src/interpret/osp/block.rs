@@ -1,0 +1,191 @@
+//! A block, word by word ("Program Configuration", "Sequence Name").
+
+use super::{Note, Osp};
+use crate::interpret::execute::Control;
+use crate::interpret::expression::Fault;
+use crate::interpret::formula::{Cursor, Outcome};
+use crate::interpret::report::Report;
+use crate::interpret::transfer::{Go, Transfer};
+use crate::source::Span;
+use crate::syntax::{Block, IssueKind, Word};
+
+/// Most words of a block.
+const WORDS_MAX: usize = 256;
+
+/// A block while it is read.
+pub(super) struct Reading<'c, 't> {
+    pub(super) state: &'c mut Osp,
+    pub(super) cursor: Cursor<'t>,
+    pub(super) notes: Vec<Note>,
+    pub(super) read: Vec<String>,
+    pub(super) assigned: Vec<String>,
+    /// NOEX stands in the block.
+    pub(super) passive: bool,
+}
+
+impl Control<'_> {
+    /// Reads a block that is more than plain words. True when the program does
+    /// not go on at the next line.
+    #[cold]
+    pub(in crate::interpret) fn osp_words(
+        &mut self,
+        block: &mut Block,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        let Some(mut state) = self.osp.take() else {
+            return false;
+        };
+        let text = report.text.get(..block.text_end as usize);
+        let mut reading = Reading {
+            state: &mut state,
+            cursor: Cursor::new(text.unwrap_or(report.text)),
+            notes: Vec::new(),
+            read: Vec::new(),
+            assigned: Vec::new(),
+            passive: false,
+        };
+        let read = reading.read(block);
+        for (rule, message, span) in reading.notes {
+            report.note_once(rule, message, span);
+        }
+        let mut transfers = false;
+        match read {
+            Ok(go) => {
+                transfers = go.is_some();
+                self.transfer = go.map(Transfer::Go);
+                self.begun = true;
+            }
+            Err(fault) => {
+                report
+                    .error(fault.rule, fault.message, fault.span)
+                    .help(fault.help);
+                // Nothing of it is executed.
+                block.words.clear();
+                block.issues.clear();
+            }
+        }
+        self.osp = Some(state);
+        transfers
+    }
+}
+
+impl Reading<'_, '_> {
+    /// Reads the block: its words get their values. Gives where the program
+    /// goes on, if that is not the next line.
+    fn read(&mut self, block: &mut Block) -> Outcome<Option<Go>> {
+        let huge = |issue: &&crate::syntax::Issue| issue.kind == IssueKind::NotFinite;
+        if let Some(issue) = block.issues.iter().find(huge) {
+            let (message, help) = ("a number beyond all reason", "write a smaller one");
+            return Err(Fault::new("syntax", message, help, issue.span));
+        }
+        block.words.clear();
+        block.issues.clear();
+        if self.cursor.peek() == Some(b'$') {
+            // `$NAME.MIN%`: the header of the file.
+            return Ok(None);
+        }
+        if self.cursor.take(b'/') {
+            self.cursor.digits();
+        }
+        if self.state.draws {
+            self.state.draws = self.cursor.name() != "END";
+            return Ok(None);
+        }
+        let name = self.cursor.name();
+        if name.starts_with('O') && name.len() > 1 && !self.assigns(&name) {
+            return self.program_name(&name);
+        }
+        let statement = matches!(name.as_str(), "NCYL" | "NMSG" | "NOEX");
+        if name.starts_with('N') && name.len() > 1 && !self.assigns(&name) && !statement {
+            self.cursor.at += name.len();
+        }
+        let mut go = None;
+        while self.cursor.peek().is_some() {
+            let start = self.cursor.at;
+            if let Some(found) = self.item(block)? {
+                if go.is_some() {
+                    let message = "two words of a block say where the program goes on";
+                    let help = "write two blocks";
+                    return Err(self.cursor.fault("flow", message, help, start));
+                }
+                go = Some(found);
+            }
+            block.words_end = self.cursor.end() as u32;
+        }
+        let moves = |word: &&Word| word.letter == b'G' && word.value < 4.0;
+        if self.state.only_keeps
+            && let Some(word) = block.words.iter().find(moves)
+        {
+            let message = "NCYL without a canned cycle";
+            let help = "write it in the block of G73 to G89";
+            return Err(Fault::new("unsupported-word", message, help, word.span));
+        }
+        if self.passive
+            && let Some(word) = block.words.first()
+        {
+            let message = "NOEX with words: whether they move, the control's mode says";
+            let help = "keep assignments in it, and write the words in a block of their own";
+            return Err(Fault::new("unsupported-word", message, help, word.span));
+        }
+        Ok(go)
+    }
+
+    fn assigns(&self, name: &str) -> bool {
+        let mut ahead = self.cursor.clone();
+        ahead.at += name.len();
+        ahead.assigns()
+    }
+
+    /// `O1000`, `OMAIN`: where a program begins.
+    fn program_name(&mut self, name: &str) -> Outcome<Option<Go>> {
+        let start = self.cursor.at;
+        self.cursor.at += name.len();
+        let begun = std::mem::replace(&mut self.state.begun, true);
+        if !begun {
+            return Ok(None);
+        }
+        if self.state.is_called() {
+            let message = "the subprogram ends without RTS";
+            let help = "write RTS at its end";
+            return Err(self.cursor.fault("subprogram", message, help, start));
+        }
+        let message = "a second program name ends the program; \
+                       programs behind it run where they are called";
+        self.note("several-programs", message, start);
+        Ok(Some(Go::End))
+    }
+
+    /// Adds a word to the block.
+    pub(super) fn push(
+        &mut self,
+        letter: u8,
+        value: f64,
+        start: usize,
+        number: usize,
+        block: &mut Block,
+    ) -> Outcome<()> {
+        if block.words.len() >= WORDS_MAX {
+            let message = "more than 256 words in a block";
+            let help = "write two blocks";
+            return Err(self.cursor.fault("too-many-words", message, help, start));
+        }
+        block.words.push(Word {
+            letter,
+            value,
+            span: self.cursor.span(start),
+            number: Span::new(number, self.cursor.end().max(number)),
+        });
+        Ok(())
+    }
+
+    pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {
+        let span = self.cursor.span(start);
+        self.notes.push((rule, message, span));
+    }
+
+    pub(super) fn refused(&self, name: &str, reason: &str, start: usize) -> Fault {
+        let message = format!("{name} is {reason}, which gwatt does not follow");
+        let help = "nothing is estimated for a program with motion that is not understood";
+        self.cursor.fault("unsupported-word", message, help, start)
+    }
+}

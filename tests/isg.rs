@@ -1,0 +1,421 @@
+//! ISG kernel, `TwinCAT` CNC: what each word means, by hand-worked programs.
+//! The sections named are those of Beckhoff's TF5200 programming manual.
+
+use std::fmt::Write as _;
+
+use insta::assert_snapshot;
+use proptest::prelude::*;
+
+use crate::listing::{listing, machine, refusals, without_lines};
+
+fn moves(program: &str) -> String {
+    listing(program, &machine("isg"), None)
+}
+
+fn refused(program: &str) -> String {
+    refusals(program, &machine("isg"))
+}
+
+/// "Arithmetic expressions <expr>", "Programming of coordinates by parameters",
+/// "Indirect parameters".
+#[test]
+fn expressions_have_the_values_of_the_manual() {
+    let cases: [(&str, f64); 30] = [
+        ("X[2+3*4]", 14.0),
+        ("X=[2+3]*-4", -20.0),
+        ("X 2**3", 8.0),
+        ("X 45 MOD 12", 9.0),
+        ("X SIN[30]*10", 5.0),
+        ("X10*COS[60]", 5.0),
+        ("X TAN[45]", 1.0),
+        ("X COT[45]", 1.0),
+        ("X ASIN[0.5]", 30.0),
+        ("X ACOS[0.5]", 60.0),
+        ("X ATAN[1]", 45.0),
+        ("X ACOT[1]", 45.0),
+        ("X SQRT[SQR[3]+SQR[4]]", 5.0),
+        ("X ABS[-3]", 3.0),
+        ("X INT[2.9]+ROUND[2.5]", 5.0),
+        ("X 10*FRACT[2.5]", 5.0),
+        ("X EXP[LN[7]]", 7.0),
+        ("X DEXP[LOG[7]]", 7.0),
+        ("X MIN[2,3]+10*MAX[2,3]", 32.0),
+        ("X[6&3]+10*[6|3]+100*[6^3]", 572.0),
+        ("X 10*[1==1]+[2!=2]", 10.0),
+        ("X 1+[2>=2 && 1<0 || 1]", 2.0),
+        ("X 1+[NOT 0 AND TRUE]", 2.0),
+        ("X 100*[PI>3.14]", 100.0),
+        // The examples of "Indirect parameters".
+        ("P120=10\nPP120=123.5\nX P10", 123.5),
+        ("P1=20 P2=40\nPP1=50\nPP2=PP1\nXP40", 50.0),
+        ("P1=4\nP[P1+1]=7\nXP5", 7.0),
+        ("P1=2\nP1+=3\nP1*=2\nX-P1", -10.0),
+        (
+            "#VAR\nV.S.VAR[5] = [5,10,10,15,20]\n#ENDVAR\nXV.S.VAR[4]",
+            20.0,
+        ),
+        (
+            "#VAR\nP20[2][3] : REAL64 = [1,2,3,4,5,6]\nV.L.A\n#ENDVAR\nX=P20[1][0]+V.L.A",
+            4.0,
+        ),
+    ];
+    let mut wrong = String::new();
+    for (program, expected) in cases {
+        let found = moves(&format!("G0\n{program}\n"));
+        let ends = format!(" X{}", (expected * 1e4).round() / 1e4);
+        if !(found.trim_end().ends_with(&ends) && found.lines().count() == 1) {
+            let _ = writeln!(wrong, "{program}: {found}");
+        }
+    }
+    assert_eq!(wrong, "");
+}
+
+/// "The IF - ELSE branch", "Switch branching", "Counting loop", loops with a
+/// condition at their beginning and end, "The $GOTO statement".
+#[test]
+fn statements_choose_the_blocks() {
+    assert_snapshot!(moves("\
+G0 P1=0.4 P2=3
+$IF P1 (less than 0.5: false)
+X1
+$ELSEIF P2 == 3
+X2
+$IF P1 > 7
+X3
+$ENDIF
+$ELSE
+X4
+$ENDIF
+$FOR P3 = 6, 2, -2
+Y P3
+$IF P3 == 4 $GOTO N100
+$ENDFOR
+N100: Z1
+$WHILE P2 > 0
+P2 = P2 - 1
+$IF P2 == 1
+$CONTINUE
+$ENDIF
+ZP2
+$ENDWHILE
+$SWITCH 5.0004
+$CASE 4
+A4
+$BREAK
+$CASE 2+3
+A5
+$BREAK
+$DEFAULT
+A6
+$ENDSWITCH
+$DO
+P2 = P2 + 1
+CP2
+$ENDDO P2 < 2
+$REPEAT
+P2 = P2 + 1
+$IF P2 == 4
+$BREAK
+$ENDIF
+$UNTIL P2 > 7
+X=P2
+$GOTO [LAST]
+X99
+[LAST] Y0
+M30
+"), @r"
+5 rapid X2
+13 rapid Y6
+13 rapid Y4
+16 rapid Z1
+22 rapid Z2
+22 rapid Z0
+29 rapid A5
+36 rapid C1
+36 rapid C2
+44 rapid X4
+47 rapid Y0
+");
+}
+
+/// "Local subroutines (Call LL)", "Global sub-routines (Call L)", "Local, valid
+/// throughout subroutine (V.L.)", "Global, valid to program end (V.P.)".
+#[test]
+fn subprograms_are_called_and_keep_their_variables() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let global = "%L INNER\nG0 Z[P1+V.P.A]\nM17\n%MAIN\nLL INNER\nV.P.A=V.P.A+1\nM29\n";
+    std::fs::write(folder.path().join("gup_1.nc"), global).expect("written");
+    let program = "\
+%L UP1 (first)
+#VAR
+V.L.DEEP = 3
+#ENDVAR
+X=V.L.DEEP
+LL UP2
+X=V.L.DEEP
+M17
+%L UP2
+V.L.DEEP = V.L.DEEP + 1
+Y=V.L.DEEP
+%PART
+#VAR
+V.P.A = 10 V.L.DEEP = 1
+#ENDVAR
+G0 P1=0.5
+LL UP1
+Z=V.L.DEEP
+L gup_1.nc
+L D:\\prog\\gup_1.nc
+M30
+";
+    let found = listing(program, &machine("isg"), Some(folder.path()));
+    assert_snapshot!(found, @r"
+5 rapid X3
+11 rapid Y4
+7 rapid X4
+18 rapid Z1
+2 rapid Z10.5
+2 rapid Z11.5
+");
+}
+
+/// "Dwell time (G04), (#TIME)", "Reference point offset (G92)", "Zero offsets
+/// (G53/G54/...G59)", "Specifying centre point (G161/G162)", "Rotate the
+/// coordinate system in the plane (#ROTATION ON/OFF)", "Comments".
+#[test]
+fn words_of_the_kernel() {
+    assert_snapshot!(moves("\
+%MAIN
+G04 X4.13
+P1=2
+G04 P1
+#TIME 2.5
+G04 3.0
+G0 X10 Y0
+G92 X5
+X10
+G91 G92 X1
+G90 X10 F600
+G53 X0
+#COMMENT BEGIN
+X500
+#COMMENT END
+G92 X0
+G1 X10 Y0
+G161 G2 X20 I15 J0
+G162 G3 X10 I-5 J0
+#ROTATION ON [ANGLE=90 CENTER1=10 CENTER2=0]
+G1 X20
+#ROTATION OFF
+X10 Y0
+#MSG [\"what \\%d\", 5]
+#SLOPE [TYPE=STEP]
+#CONTOUR MODE [DEV PATH_DEV=0.1]
+G60 G08 X0 (end
+M30
+"), @r"
+2 dwell 4.13 s
+4 dwell 2 s
+5 dwell 2.5 s
+6 dwell 3 s
+7 rapid X10
+9 rapid X15
+11 rapid X16
+12 rapid X6
+17 feed X10 F600
+18 arc X20 Y0 center 15,0 turns -0.5 F600
+19 arc X10 Y0 center 15,0 turns 0.5 F600
+21 feed Y10 F600
+23 feed Y0 F600
+27 feed X0 F600
+");
+}
+
+/// A jump behind other words is the last action of its block ("The $GOTO
+/// statement"); lines of a comment or a declaration do not move.
+#[test]
+fn plain_moves_beside_what_is_more() {
+    let program =
+        "G1 F100 X1\nX2 $GOTO N9\nX3\nN9: X4\n#COMMENT BEGIN\nX5\n#COMMENT END\nX6\n%L A\nX7\n";
+    assert_snapshot!(moves(program), @r"
+1 feed X1 F100
+2 feed X2 F100
+4 feed X4 F100
+8 feed X6 F100
+");
+}
+
+/// What depends on what the control alone knows, or moves in another way.
+#[test]
+fn what_is_not_followed_is_named() {
+    let cases = [
+        "X=V.E.POS",
+        "XP7",
+        "V.G.NP[1].V.X=10",
+        "#CS ON [0,0,10,0,0,45]",
+        "#TRAFO ON",
+        "#CYL [EDGES=0]",
+        "#HSC ON [OPMODE=2]",
+        "#OVERRIDE [FEED_FACT=150]",
+        "#MACHINE DATA [AX=X P-AXIS-00008=1]",
+        "#SOMETHING [1]",
+        "X[OVERRIDE FEED_FACT=20]",
+        "X1=10",
+        "G80",
+        "L CYCLE.CYC [@P1=5]",
+        "$IF P1",
+        "$JUMP",
+        "$BREAK",
+        "LL NOWHERE",
+        "L nowhere.nc",
+        "$GOTO N77",
+        "P1=1 XP1",
+        "X[1/0]",
+        "X\"MACRO\"",
+        "$FOR P1=0,1,0",
+        "#ROTATION ON [ANGLE=30]\nG18",
+    ];
+    let mut said = String::new();
+    for case in cases {
+        let _ = writeln!(said, "{case}: {}", refused(&format!("{case}\n")));
+    }
+    assert_snapshot!(said, @r##"
+X=V.E.POS: 1 unknown-value: V.E.POS comes from the PLC: what it holds, only the machine knows
+XP7: 1 unknown-value: P7 has no value in this program: what it holds, only the machine knows
+V.G.NP[1].V.X=10: 1 unsupported-word: V.G.NP[1] belongs to the control or the PLC, and may change offsets
+#CS ON [0,0,10,0,0,45]: 1 unsupported-word: #CS ON is another coordinate system, which gwatt does not follow
+#TRAFO ON: 1 unsupported-word: #TRAFO ON is a kinematic transformation, which gwatt does not follow
+#CYL [EDGES=0]: 1 unsupported-word: #CYL is machining on a cylinder, which gwatt does not follow
+#HSC ON [OPMODE=2]: 1 unsupported-word: #HSC ON [OPMODE=2] is a spline, which gwatt does not follow
+#OVERRIDE [FEED_FACT=150]: 1 unsupported-word: #OVERRIDE with more than 100 percent
+#MACHINE DATA [AX=X P-AXIS-00008=1]: 1 unsupported-word: #MACHINE DATA is new data of the machine's axes, which gwatt does not follow
+#SOMETHING [1]: 1 unsupported-word: #SOMETHING is a command of this control, which gwatt does not follow
+X[OVERRIDE FEED_FACT=20]: 1 unsupported-word: X[OVERRIDE …] is a command to one axis or spindle, which gwatt does not follow
+X1=10: 1 unsupported-word: X1 is an axis or spindle by a name, which gwatt does not follow
+G80: 1 unknown-code: G80 is not known to this controller profile
+L CYCLE.CYC [@P1=5]: 1 unsupported-word: L … [ … ] is a cycle with parameters (@P), which gwatt does not follow
+$IF P1: 1 unknown-value: P1 has no value in this program: what it holds, only the machine knows
+$JUMP: 1 flow: $JUMP is no statement of this language
+$BREAK: 1 structure: there is no loop around this
+LL NOWHERE: 1 no-such-subprogram: there is no local subprogram NOWHERE in this file
+L nowhere.nc: 1 no-such-subprogram: there is no subprogram nowhere.nc
+$GOTO N77: 1 no-such-block: there is no N77 to jump to in this program
+P1=1 XP1: 1 assignment: the block assigns P1 and uses it
+X[1/0]: 1 arithmetic: a division by zero
+X"MACRO": 1 expression: a value is missing here
+$FOR P1=0,1,0: 1 endless: $FOR with the step 0 never ends
+#ROTATION ON [ANGLE=30]
+G18: 2 turned-system: another coordinate system while the program is turned or scaled
+"##);
+}
+
+/// A grid of slots, once with everything that the language has, once as moves.
+#[test]
+fn parametrised_and_expanded_twins_move_alike() {
+    let parametrised = "\
+%L SLOT (one slot at V.P.X, V.P.Y)
+G0 XV.P.X YV.P.Y
+G1 Z-V.P.DEEP
+X[V.P.X+P10]
+G3 X[V.P.X+P10] Y[V.P.Y+2] I0 J1
+G1 X=V.P.X
+G0 Z2
+M17
+%GRID
+#VAR
+V.P.X V.P.Y V.P.DEEP
+P20[2] = [1, 2.5]
+#ENDVAR
+P10 = SQRT[25] P1 = 2 P2 = 3
+G0 X0 Y0 Z2 F[60*10]
+$FOR P3 = 0, P1-1, 1
+P4 = 0
+$WHILE P4 < P2
+V.P.X = P4*12.5 V.P.Y = P3*12.5 V.P.DEEP = P20[P3]
+LL SLOT
+P4 += 1
+$ENDWHILE
+$ENDFOR
+$IF P1*P2 > 5 $GOTO [CORNER]
+X99
+[CORNER] G0 X-P1 Y-P1
+M30
+";
+    let mut expanded = String::from("G0 X0 Y0 Z2 F600\n");
+    for (y, deep) in [(0.0, 1.0), (12.5, 2.5)] {
+        for x in [0.0, 12.5, 25.0] {
+            let (right, top) = (x + 5.0, y + 2.0);
+            let _ = write!(
+                expanded,
+                "G0 X{x} Y{y}\nG1 Z-{deep}\nX{right}\nG3 X{right} Y{top} I0 J1\nG1 X{x}\nG0 Z2\n"
+            );
+        }
+    }
+    expanded.push_str("G0 X-2 Y-2\nM30\n");
+    let [parametrised, expanded] = [parametrised, &expanded].map(moves);
+    assert_eq!(without_lines(&parametrised), without_lines(&expanded));
+}
+
+/// Pieces that programs are made of, right and wrong.
+const PIECES: [&str; 44] = [
+    "\n",
+    "\n",
+    "\n",
+    " ",
+    "X1",
+    "G1 Y[P1]",
+    "P1=1",
+    "P1+=1",
+    "P2=P1*2",
+    "$IF P1>1",
+    "$ELSE",
+    "$ELSEIF P1<3",
+    "$ENDIF",
+    "$FOR P1=0,3,1",
+    "$ENDFOR",
+    "$WHILE P1<9",
+    "$ENDWHILE",
+    "$DO",
+    "$ENDDO P1<3",
+    "$REPEAT",
+    "$UNTIL 1",
+    "$SWITCH P1",
+    "$CASE 1",
+    "$BREAK",
+    "$DEFAULT",
+    "$ENDSWITCH",
+    "$CONTINUE",
+    "$GOTO N5",
+    "N5:",
+    "[A]",
+    "$GOTO [A]",
+    "%L A",
+    "%B",
+    "LL A",
+    "M17",
+    "#VAR",
+    "#ENDVAR",
+    "V.L.A[3]=[1,2,3]",
+    "#COMMENT BEGIN",
+    "#COMMENT END",
+    "#TIME 1",
+    "[",
+    "]",
+    "#ROTATION ON [ANGLE=30]",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Any program ends, in moves or in a message.
+    #[test]
+    fn any_program_ends(pieces in prop::collection::vec(prop::sample::select(&PIECES[..]), 0..40)) {
+        let _ = moves(&pieces.concat());
+    }
+
+    /// Any text has a value or a message.
+    #[test]
+    fn any_text_is_read(text in "[0-9.P#$V\\[\\]=+*/&|<> XGMLNa-z(),%:\"@-]{0,40}") {
+        let _ = moves(&format!("{text}\nP1={text}\nX{text}\n$FOR P1={text}\n#VAR\n{text}\n"));
+    }
+}

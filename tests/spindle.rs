@@ -1,0 +1,558 @@
+//! The spindle: what its runs take and draw, and `gwatt spindle` from outside.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use gwatt::machine::{Machine, Spindle, TorquePoint};
+use gwatt::plan::SpindleDrive;
+use gwatt::plan::period::{Motion, Ramp};
+use gwatt::power::{SpindlePower, spindle_run};
+use proptest::prelude::*;
+use tempfile::TempDir;
+
+const RAD_S_PER_RPM: f64 = std::f64::consts::TAU / 60.0;
+
+/// 0.1 kg·m², 3000/min in one second, without friction, jerk limit and losses.
+fn plain() -> Spindle {
+    Spindle {
+        inertia_kg_m2: 0.1,
+        friction_nm: 0.0,
+        max_rpm: 3000.0,
+        base_rpm: 0.0,
+        accel_time_s: Some(1.0),
+        torque_curve: Vec::new(),
+        jerk_time_s: 0.0,
+        efficiency: 1.0,
+        base_load_w: 0.0,
+        peak_power_w: None,
+        regen_power_w: None,
+        wait: true,
+    }
+}
+
+#[track_caller]
+fn near(found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() <= 1e-6 * expected.abs().max(1e-6),
+        "{found}, not {expected}"
+    );
+}
+
+/// 314.159 rad/s² and 0.1 kg·m² are 31.4159 N·m, at 314.159 rad/s 9869.6 W;
+/// ½·0.1·314.159² = 4934.8 J.
+#[test]
+fn constant_torque() {
+    let run = spindle_run(&plain(), 0.0, 3000.0).unwrap();
+    near(run.duration_s, 1.0);
+    near(run.peak_w, 9869.604);
+    near(run.energy_j, 4934.802);
+    assert_eq!(run.regen_w, 0.0);
+    let back = spindle_run(&plain(), 3000.0, 0.0).unwrap();
+    near(back.regen_w, 9869.604);
+    near(back.energy_j, -4934.802);
+}
+
+/// `V_f/A + (V_max² − V_f²)/(2·A·V_f)` = (1000 + 4000)/A = 1 s: A = 5000/min per s,
+/// 52.36 N·m, and 5483.11 W from 1000/min on.
+#[test]
+fn constant_power() {
+    let spindle = Spindle {
+        base_rpm: 1000.0,
+        ..plain()
+    };
+    let run = spindle_run(&spindle, 0.0, 3000.0).unwrap();
+    near(run.duration_s, 1.0);
+    near(run.peak_w, 5483.114);
+    let [torque, power] = &run.phases[..] else {
+        panic!("{run:?}");
+    };
+    near(torque.duration_s, 0.2);
+    near(torque.start.accel, 5000.0);
+    near(power.least_w, power.peak_w);
+    near(run.energy_j, 4934.802);
+}
+
+/// 80 % efficiency and 100 W of base load; 3 N·m of friction over
+/// 314.159/2 rad are 471.24 J.
+#[test]
+fn losses() {
+    let spindle = Spindle {
+        friction_nm: 3.0,
+        efficiency: 0.8,
+        base_load_w: 100.0,
+        ..plain()
+    };
+    let run = spindle_run(&spindle, 0.0, 3000.0).unwrap();
+    near(run.peak_w, 100.0 + (31.415_93 + 3.0) * 314.159_27 / 0.8);
+    near(run.energy_j, 100.0 + (4934.802 + 471.238_9) / 0.8);
+    let back = spindle_run(&spindle, 3000.0, 0.0).unwrap();
+    near(back.regen_w, (31.415_93 - 3.0) * 314.159_27 * 0.8 - 100.0);
+    near(back.energy_j, 100.0 - (4934.802 - 471.238_9) * 0.8);
+}
+
+/// A reversal brakes first and drives then.
+#[test]
+fn a_reversal_feeds_back_and_draws() {
+    let run = spindle_run(&plain(), 3000.0, -3000.0).unwrap();
+    near(run.duration_s, 2.0);
+    near(run.peak_w, 9869.604);
+    near(run.regen_w, 9869.604);
+    assert!(run.energy_j.abs() < 1e-6);
+}
+
+#[test]
+fn a_torque_curve_drives_less_and_brakes_more_by_the_friction() {
+    let torque_curve = [(0.0, 20.0), (1000.0, 20.0), (3000.0, 8.0)];
+    let point = |(rpm, torque_nm)| TorquePoint { rpm, torque_nm };
+    let spindle = Spindle {
+        accel_time_s: None,
+        torque_curve: torque_curve.map(point).to_vec(),
+        friction_nm: 2.0,
+        ..plain()
+    };
+    let drive = SpindleDrive::new(&spindle).unwrap();
+    near(drive.limits().drive.at(0.0) * RAD_S_PER_RPM, 180.0);
+    near(drive.limits().brake.at(2000.0) * RAD_S_PER_RPM, 160.0);
+    let up = spindle_run(&spindle, 0.0, 3000.0).unwrap();
+    let down = spindle_run(&spindle, 3000.0, 0.0).unwrap();
+    assert!(down.duration_s < up.duration_s);
+    // (14 − 0.006·(n − 2000))·ω has its largest value at n = 2166.7: 13 N·m.
+    near(up.peak_w, 13.0 * 6500.0 / 3.0 * RAD_S_PER_RPM);
+}
+
+#[test]
+fn largest_powers_are_kept() {
+    let spindle = Spindle {
+        friction_nm: 2.0,
+        efficiency: 0.9,
+        base_load_w: 50.0,
+        jerk_time_s: 0.05,
+        peak_power_w: Some(4000.0),
+        regen_power_w: Some(2000.0),
+        ..plain()
+    };
+    let up = spindle_run(&spindle, 0.0, 3000.0).unwrap();
+    near(up.peak_w, 4000.0);
+    let down = spindle_run(&spindle, 3000.0, 0.0).unwrap();
+    assert!(down.regen_w <= 2000.0 - 50.0 + 1e-6, "{}", down.regen_w);
+    assert!(down.regen_w >= 0.95 * 1950.0, "{}", down.regen_w);
+}
+
+fn spindles() -> impl Strategy<Value = Spindle> {
+    let numbers = (
+        0.01..1.0,
+        0.0..3.0,
+        prop_oneof![Just(0.0), 200.0..3000.0],
+        0.3..5.0,
+        0.0..0.3,
+        0.6..1.0,
+    );
+    let powers = prop::option::of(2000.0..9000.0);
+    (numbers, powers).prop_map(
+        |((inertia, friction, base, time, jerk, efficiency), power)| Spindle {
+            inertia_kg_m2: inertia,
+            friction_nm: friction,
+            base_rpm: base,
+            accel_time_s: Some(time),
+            jerk_time_s: jerk,
+            efficiency,
+            base_load_w: 80.0,
+            peak_power_w: power,
+            ..plain()
+        },
+    )
+}
+
+proptest! {
+    /// Without a power limit, the time to the largest speed is the one given.
+    #[test]
+    fn the_acceleration_fits_its_time(spindle in spindles()) {
+        let spindle = Spindle { peak_power_w: None, ..spindle };
+        let run = spindle_run(&spindle, 0.0, spindle.max_rpm).unwrap();
+        let time = spindle.accel_time_s.unwrap();
+        prop_assert!((run.duration_s - time).abs() <= 1e-9 * time, "{}", run.duration_s);
+    }
+
+    /// Peaks are those of a fine comb, and the energy is its integral; without
+    /// losses the balance closes: kinetic change, friction, base load.
+    #[test]
+    fn figures_are_exact(spindle in spindles(), from in -3000.0..3000.0, to in -3000.0..3000.0) {
+        let drive = SpindleDrive::new(&spindle).unwrap();
+        let start = Motion { speed: from, accel: 0.0 };
+        let ramp = Ramp::new(start, to, drive.limits());
+        let power = SpindlePower::new(&spindle);
+        let run = power.run(&ramp);
+        let (mut most, mut least, mut energy) = (80.0_f64, f64::INFINITY, 0.0);
+        for phase in &ramp.phases {
+            let steps = 2000;
+            let dt = phase.duration_s / f64::from(steps);
+            for step in 0..=steps {
+                let w = power.electrical_w(phase.at(f64::from(step) * dt));
+                most = most.max(w);
+                least = least.min(w);
+                let weight = if step == 0 || step == steps { 0.5 } else { 1.0 };
+                energy += w * dt * weight;
+            }
+        }
+        let size = most.max(-least);
+        prop_assert!(run.peak_w >= most - 1e-6 * size && run.peak_w <= most + 1e-4 * size);
+        prop_assert!(run.regen_w >= -least - 1e-6 * size && run.regen_w <= (-least).max(0.0) + 1e-4 * size);
+        let scale = size * run.duration_s;
+        prop_assert!((run.energy_j - energy).abs() <= 1e-4 * scale, "{} {energy}", run.energy_j);
+
+        let lossless = Spindle { efficiency: 1.0, ..spindle.clone() };
+        let energy = SpindlePower::new(&lossless).run(&ramp).energy_j;
+        let kinetic = 0.5 * spindle.inertia_kg_m2 * (to * to - from * from) * RAD_S_PER_RPM.powi(2);
+        let turned: f64 = ramp.phases.iter().map(|phase| {
+            // Through rest the angle turns back.
+            let parts = 4000;
+            let dt = phase.duration_s / f64::from(parts);
+            (0..parts).map(|i| phase.at((f64::from(i) + 0.5) * dt).speed.abs() * dt).sum::<f64>()
+        }).sum();
+        let friction = spindle.friction_nm * turned * RAD_S_PER_RPM;
+        let balance = kinetic + friction + 80.0 * run.duration_s;
+        prop_assert!((energy - balance).abs() <= 1e-5 * scale, "{energy} {balance}");
+    }
+}
+
+#[test]
+fn without_friction_the_balance_closes_to_the_last_digits() {
+    let spindle = Spindle {
+        base_rpm: 700.0,
+        jerk_time_s: 0.13,
+        ..plain()
+    };
+    for (from, to) in [(0.0, 3000.0), (2500.0, -1800.0), (-3000.0, 10.0)] {
+        let run = spindle_run(&spindle, from, to).unwrap();
+        let kinetic = 0.05 * (to * to - from * from) * RAD_S_PER_RPM.powi(2);
+        assert!((run.energy_j - kinetic).abs() <= 1e-9 * 4934.8);
+    }
+}
+
+/// A machine whose spindle reaches 3000/min in 1 s.
+const MACHINE: &str = r#"schema = 1
+name = "test"
+controller = "iso"
+
+[converter]
+peak_power_w = 9000
+
+[axes.X]
+rapid_mm_min = 36000
+accel_mm_s2 = 6000
+mass_kg = 900
+
+[spindle]
+inertia_kg_m2 = 0.1
+friction_nm = 1
+max_rpm = 3000
+base_rpm = 1000
+accel_time_s = 1
+jerk_time_s = 0.05
+"#;
+
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let bench = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        bench.put("m.toml", MACHINE);
+        bench
+    }
+
+    fn path(&self, name: &str) -> std::path::PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn put(&self, name: &str, text: impl AsRef<[u8]>) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
+        command
+            .arg("spindle")
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// Runs a schedule: exit code, standard output and error.
+    fn run(&self, schedule: &str, more: &[&str]) -> (i32, String, String) {
+        self.put("s.csv", schedule);
+        let arguments = [&["s.csv", "-m", "m.toml"], more].concat();
+        said(self.command(&arguments).output().unwrap())
+    }
+
+    /// Asserts that a schedule is refused, and leaves no file; gives why.
+    fn refused(&self, schedule: &str) -> String {
+        let (code, out, err) = self.run(schedule, &["-o", "out.csv", "--svg", "out.svg"]);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(!Path::exists(&self.path("out.csv")) && !Path::exists(&self.path("out.svg")));
+        err
+    }
+}
+
+fn said(output: Output) -> (i32, String, String) {
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn numbers(csv: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split(',').map(|f| f.parse().unwrap()).collect();
+    csv.lines().skip(1).map(row).collect()
+}
+
+const SCHEDULE: &str = "time_s,target_rpm,accel_rpm_s,jerk_rpm_s2,power_w,period_ms\n\
+                        0,2500\n0.4,800,3000\n1.5,-2500,,40000\n3.2,3000,,,4000,2\n";
+
+#[test]
+fn every_period_is_a_row_inside_all_limits() {
+    let bench = Bench::new();
+    let (code, csv, err) = bench.run(SCHEDULE, &[]);
+    assert_eq!(code, 0, "{err}");
+    assert!(csv.starts_with(
+        "time_s,speed_rpm,accel_rpm_s,jerk_rpm_s2,torque_nm,power_w,target_rpm\r\n0,0,0,0,0,0,2500\r\n"
+    ));
+    let rows = numbers(&csv);
+    let (machine, _) = Machine::load(bench.path("m.toml").to_str().unwrap()).unwrap();
+    let drive = SpindleDrive::new(machine.spindle.as_ref().unwrap()).unwrap();
+    let limits = drive.limits();
+    for (before, now) in rows.iter().zip(rows.iter().skip(1)) {
+        let [t, v, a, j, _, w, target] = now[..] else {
+            panic!("{now:?}");
+        };
+        let step = if t > 3.2 + 1e-9 { 2e-3 } else { 1e-3 };
+        near(t - before[0], step);
+        assert!(a.abs() <= limits.up(v * a.signum()), "{now:?}");
+        assert!(j.abs() <= limits.jerk.largest(), "{now:?}");
+        assert!((a - before[2] - j * step).abs() < 1e-6);
+        if target == -2500.0 {
+            assert!(j.abs() <= 40_000.0);
+        }
+        if target == 3000.0 {
+            assert!(w <= 4000.0 * (1.0 + 1e-9), "{now:?}");
+        }
+    }
+    let last = rows.last().unwrap();
+    assert_eq!((last[1], last[2]), (3000.0, 0.0));
+    let (_, again, _) = bench.run(SCHEDULE, &[]);
+    assert_eq!(again, csv, "the same input gives the same bytes");
+}
+
+#[test]
+fn files_appear_whole() {
+    let bench = Bench::new();
+    let (code, out, err) = bench.run(SCHEDULE, &["-o", "run.csv", "--svg", "run.svg"]);
+    assert_eq!((code, out.as_str()), (0, ""), "{err}");
+    assert!(err.contains("line 2  0 → 2500 1/min not reached"), "{err}");
+    assert!(err.contains("→ 3000 1/min in "), "{err}");
+    let svg = fs::read_to_string(bench.path("run.svg")).unwrap();
+    assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
+    assert_eq!(
+        svg.matches("<polyline").count(),
+        6,
+        "five panels and the target"
+    );
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    let (_, csv, _) = bench.run(SCHEDULE, &[]);
+    assert_eq!(fs::read_to_string(bench.path("run.csv")).unwrap(), csv);
+    let (code, _, err) = bench.run(SCHEDULE, &["-o", "x", "--svg", "x"]);
+    assert_eq!(code, 2, "{err}");
+    let (code, _, err) = bench.run(SCHEDULE, &["-o", "s.csv"]);
+    assert!(code == 2 && err.contains("is read by this run"), "{err}");
+    let (code, _, err) = bench.run(SCHEDULE, &["--svg", "-"]);
+    assert!(code == 2 && err.contains("standard output"), "{err}");
+}
+
+#[test]
+fn a_schedule_may_come_without_a_header_and_from_a_pipe() {
+    let bench = Bench::new();
+    let (_, with, _) = bench.run(
+        "target;time\n1000;0\n\n# back\n0;0.5\n",
+        &["--period-ms", "4"],
+    );
+    let mut child = bench
+        .command(&["-", "-m", "m.toml", "--period-ms", "4"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    stdin.write_all(b"0,1000\r\n\"0.5\",0\r\n").unwrap();
+    drop(stdin);
+    let (code, without, err) = said(child.wait_with_output().unwrap());
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(with, without);
+    assert_eq!(numbers(&with)[1][0], 0.004);
+}
+
+#[test]
+fn mistakes_are_shown_with_their_place() {
+    let bench = Bench::new();
+    let head = "time_s,target_rpm,power_w\n";
+    for (schedule, message, place, help) in [
+        (
+            "",
+            "the schedule has no rows",
+            "s.csv\n",
+            "a line `time_s,target_rpm`",
+        ),
+        (
+            "time_s,target_rpm,foo\n",
+            "unknown column `foo`",
+            ":1:19",
+            "columns are time_s",
+        ),
+        (
+            "time_s,rpm,rpm\n",
+            "column `rpm` is there twice",
+            ":1:12",
+            "keep one",
+        ),
+        (
+            "time_s,accel_rpm_s\n",
+            "there is no column `target_rpm`",
+            ":1:1",
+            "",
+        ),
+        (&format!("{head}x,1\n"), "`x` is not a number", ":2:1", ""),
+        (
+            &format!("{head}0,nan\n"),
+            "`nan` is not a number",
+            ":2:3",
+            "",
+        ),
+        (&format!("{head}0\n"), "`target_rpm` is missing", ":2:2", ""),
+        (
+            &format!("{head}0,1,5000,7\n"),
+            "more values than columns",
+            ":2:10",
+            "",
+        ),
+        (&format!("{head}-1,1\n"), "a time below 0", ":2:1", ""),
+        (
+            &format!("{head}1,1\n1,2\n"),
+            "time 1 s does not come after 1 s",
+            ":3:1",
+            "order of time",
+        ),
+        (
+            &format!("{head}0,3001\n"),
+            "does not reach 3001 1/min",
+            ":2:3",
+            "`max_rpm` is 3000",
+        ),
+        (
+            &format!("{head}0,1,-5\n"),
+            "`power_w` must be greater than 0",
+            ":2:5",
+            "leave it blank",
+        ),
+        // 1 N·m at 3000/min are 314 W.
+        (
+            &format!("{head}0,3000,300\n"),
+            "with 300 W the spindle does not reach 3000",
+            ":2:8",
+            "take 314 W",
+        ),
+        (
+            "0,3000,1e-9\n",
+            "more than 50000000 periods",
+            ":1:1",
+            "--period-ms",
+        ),
+    ] {
+        let said = bench.refused(schedule);
+        for part in [message, place, help] {
+            assert!(said.contains(part), "{part:?} is not in\n{said}");
+        }
+    }
+    bench.put("s.csv", b"0,\xFF\n");
+    let (code, _, err) = said(bench.command(&["s.csv", "-m", "m.toml"]).output().unwrap());
+    assert!(code == 2 && err.contains("this line is not text"), "{err}");
+}
+
+#[test]
+fn machines_and_periods_that_do_not_do() {
+    let bench = Bench::new();
+    bench.put("s.csv", "0,1000\n");
+    let run = |arguments: &[&str]| said(bench.command(arguments).output().unwrap());
+    let (code, _, err) = run(&["s.csv", "-m", "three-axis"]);
+    assert!(
+        code == 2 && err.contains("the machine has no [spindle]"),
+        "{err}"
+    );
+    let (code, _, err) = run(&["s.csv", "-m", "m.toml", "--period-ms", "0"]);
+    assert!(code == 2 && err.contains("0.001 to 100000"), "{err}");
+    let (code, _, err) = run(&["none.csv", "-m", "m.toml"]);
+    assert!(code == 2 && err.contains("none.csv"), "{err}");
+    // J = A/0.5 s against A²/V_f.
+    bench.put(
+        "m.toml",
+        MACHINE.replace("jerk_time_s = 0.05", "jerk_time_s = 0.5"),
+    );
+    let (code, _, err) = run(&["s.csv", "-m", "m.toml"]);
+    assert!(
+        code == 0 && err.contains("falls faster than a jerk of"),
+        "{err}"
+    );
+}
+
+#[test]
+fn the_check_of_a_machine_tells_the_run_up() {
+    let bench = Bench::new();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
+    command.args(["machine", "check", "m.toml"]);
+    command.current_dir(bench.folder.path());
+    let (code, out, _) = said(command.output().unwrap());
+    assert_eq!(code, 0);
+    assert!(
+        out.contains("  spindle: 3000 1/min in 1.00 s, peak "),
+        "{out}"
+    );
+    // No number for the acceleration: refused, not a riddle later.
+    bench.put(
+        "m.toml",
+        MACHINE.replace("accel_time_s = 1\n", "accel_time_s = 1e-320\n"),
+    );
+    let (code, _, err) = bench.run("0,1\n", &[]);
+    assert_eq!(code, 2, "{err}");
+}
+
+#[test]
+fn what_cannot_be_helped_is_told() {
+    let bench = Bench::new();
+    let (_, _, err) = bench.run("0,2000\n0.3,2000,,2000\n", &[]);
+    assert!(
+        err.contains("warning[spindle-limit]: the speed passes 2000 1/min by"),
+        "{err}"
+    );
+    let (_, _, err) = bench.run("0,2000\n0.1,2000,500\n", &[]);
+    assert!(err.contains("above the limit, which has shrunk"), "{err}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let bench = Bench::new();
+    bench.put("s.csv", SCHEDULE);
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let mut command = bench.command(&["s.csv", "-m", "m.toml"]);
+    let (code, _, err) = said(command.stdout(writer).output().unwrap());
+    assert_eq!(code, 0, "{err}");
+    assert!(!err.contains("cannot write"), "{err}");
+}
