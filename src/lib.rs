@@ -7,6 +7,7 @@
 //! ```text
 //! bytes ─syntax→ blocks ─interpret→ moves ─plan→ profiles ─power→ demand ─limit→ adjustments ─rewrite→ bytes
 //! TOML  ─machine→ Machine ─────────────────┴──────┴────────────────┘            └→ analysed again: certificate
+//! CSV   ─identify→ masses, friction, transfer functions → TOML
 //! ```
 pub mod units;
 pub mod source;
@@ -20,4 +21,5 @@ pub mod power;
 pub mod limit;
 pub mod rewrite;
 pub mod pipeline;
+pub mod identify;
 pub mod report;

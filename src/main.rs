@@ -62,6 +62,9 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Moves(args) => command::moves::run(args, terminal),
         Command::Spindle(args) => command::spindle::run(args, terminal),
         Command::Machine { command } => command::machine::run(command, terminal),
+        Command::Excite(args) => command::excite::run(args, terminal),
+        Command::Identify(args) => command::identify::run(args, terminal),
+        Command::PowerFit(args) => command::power_fit::run(args, terminal),
         Command::Completions { shell } => completions(*shell),
         Command::Man => manual(),
     }

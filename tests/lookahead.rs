@@ -79,7 +79,7 @@ pub(crate) fn plan(
 /// Speed at the start of a piece, mm/s.
 pub(crate) fn start(piece: &Planned<usize>) -> f64 {
     piece
-        .profile
+        .profile()
         .phases
         .first()
         .map_or(0.0, |phase| phase.velocity_mm_s)
@@ -88,7 +88,7 @@ pub(crate) fn start(piece: &Planned<usize>) -> f64 {
 /// Speed at its end, mm/s.
 pub(crate) fn end(piece: &Planned<usize>) -> f64 {
     piece
-        .profile
+        .profile()
         .phases
         .last()
         .map_or(0.0, |phase| phase.end_velocity_mm_s)
@@ -184,7 +184,7 @@ pub(crate) fn total_s(planned: &Run) -> f64 {
     planned
         .0
         .iter()
-        .map(|piece| piece.profile.duration_s())
+        .map(|piece| piece.profile().duration_s())
         .sum::<f64>()
         + planned.1
 }

@@ -19,6 +19,7 @@ mod curve;
 mod phases;
 mod power;
 mod rig;
+mod identify;
 mod limit;
 mod lookahead;
 mod machine;

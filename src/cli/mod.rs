@@ -2,9 +2,12 @@
 
 mod check;
 mod diff;
+mod excite;
+mod identify;
 mod limit;
 mod machine;
 mod moves;
+mod power_fit;
 mod program;
 mod report;
 mod spindle;
@@ -14,9 +17,12 @@ use clap_complete::Shell;
 
 pub use check::{CheckArgs, Format};
 pub use diff::DiffArgs;
+pub use excite::{ExciteArgs, ShapeArg, ValueName};
+pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
 pub use limit::{Allow, LimitArgs};
 pub use machine::MachineCommand;
 pub use moves::MovesArgs;
+pub use power_fit::PowerFitArgs;
 pub use program::{MachineArgs, ProgramArgs, StartArg};
 pub use report::ReportArgs;
 pub use spindle::SpindleArgs;
@@ -70,6 +76,12 @@ pub enum Command {
         #[command(subcommand)]
         command: MachineCommand,
     },
+    /// Make a signal that excites an axis
+    Excite(ExciteArgs),
+    /// Find mass, friction and resonances of an axis in a recording
+    Identify(IdentifyArgs),
+    /// Fit the power model of an axis to a log of the drive's power
+    PowerFit(PowerFitArgs),
     /// Print a completion script for a shell
     #[command(
         after_help = "Example:\n  gwatt completions bash > ~/.local/share/bash-completion/completions/gwatt"

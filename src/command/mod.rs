@@ -2,14 +2,18 @@
 
 pub mod check;
 pub mod diff;
+pub mod excite;
+pub mod identify;
 pub mod limit;
 pub mod machine;
 pub mod moves;
+pub mod power_fit;
 pub mod report;
 pub mod spindle;
 
 mod clash;
 mod input;
+mod into;
 mod output;
 mod rows;
 mod setup;

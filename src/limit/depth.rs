@@ -33,6 +33,9 @@ impl Depths {
     /// as planned.
     #[must_use]
     pub fn of(&self, mv: &Move) -> u8 {
+        if self.lines.is_empty() {
+            return self.everywhere;
+        }
         let own = self.lines.get(&(mv.text, mv.line)).copied();
         own.unwrap_or(0).max(self.everywhere)
     }

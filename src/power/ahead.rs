@@ -22,7 +22,7 @@ use super::robust::Part;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::lookahead::{Element, Joint, PathPlanner, Piece, Planned};
-use crate::plan::{Overrides, SpeedBound, blended_bound, is_independent};
+use crate::plan::{Overrides, blended_bound, is_independent};
 
 /// The moves that are planned together.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub(super) struct Ahead {
     spare: Vec<Box<Open>>,
     /// Nothing moves behind the last move.
     at_rest: bool,
-    /// The next move follows something that may or may not stop the motion.
+    /// Something stands behind the last move that may or may not stop it.
     in_doubt: bool,
     /// What the motion reaches at least, from rest where it was in doubt last,
     /// mm²/s²; nothing once that is as fast as planned.
@@ -63,8 +63,6 @@ struct Open {
     text: Vec<u8>,
     assessment: Assessment,
     want: Want,
-    /// Largest speeds of the axes, its neighbours left aside.
-    bound: SpeedBound,
     certain: bool,
     /// The speed with which it begins is not certain.
     in_doubt: bool,
@@ -74,15 +72,6 @@ struct Open {
     moves: bool,
     /// It neither begins nor ends in motion.
     alone: bool,
-}
-
-impl Open {
-    fn part(&self) -> Part<'_> {
-        Part {
-            bound: &self.bound,
-            accel_mm_s2: &self.mv.accel_mm_s2,
-        }
-    }
 }
 
 /// How a move takes part.
@@ -131,40 +120,43 @@ impl Ahead {
         model: &PowerModel,
         mv: &Move,
         text: &[u8],
-        assessment: &Assessment,
+        assessment: impl FnOnce() -> Assessment,
         want: Want,
     ) {
         let number = self.first + self.open.len() as u64;
         let mut role = role(machine, mv);
-        let mut elements = [None, None];
-        if role == Role::Path {
+        let element = |side: &Side| {
             let joint = joint(mv);
-            let sides = [Some(&self.largest), self.nominal.as_ref()];
-            elements = sides.map(|side| Element::of(machine, mv, side?.overrides, joint, number));
-            let wanted = 1 + usize::from(self.nominal.is_some());
-            if elements.iter().flatten().count() < wanted {
+            Element::of(machine, mv, side.overrides, joint, number)
+        };
+        let (mut largest, mut nominal) = (None, None);
+        if role == Role::Path {
+            largest = element(&self.largest);
+            nominal = self.nominal.as_ref().and_then(element);
+            if largest.is_none() || nominal.is_some() != self.nominal.is_some() {
                 role = Role::Unknown;
             }
         }
-        if role == Role::Unknown {
+        if role == Role::Unknown || role == Role::Path && self.in_doubt {
             self.brake_in_doubt(model);
         }
-        let mut open = self.room(mv, text, assessment, want);
+        let mut open = self.room(mv, text, want);
         match role {
             Role::Path => {
-                open.assessment.ahead = true;
-                open.assessment.blended = true;
-                open.assessment.certificate = Certificate::Planned;
-                open.assessment.duration_s = 0.0;
-                open.assessment.top_speed_mm_s = 0.0;
-                open.assessment.demand = Demand::NONE;
-                open.bound = blended_bound(machine, mv, self.largest.overrides);
+                let own = nominal.as_ref().or(largest.as_ref());
+                open.assessment = Assessment {
+                    speed_mm_s: own.map_or(0.0, Element::top_mm_s),
+                    accel_mm_s2: own.map_or(0.0, |own| own.accel_mm_s2),
+                    ..Assessment::AHEAD
+                };
             }
-            Role::Nothing => {}
+            Role::Nothing => open.assessment = assessment(),
             Role::Unknown => {
-                open.assessment.ahead = true;
-                open.assessment.blended = true;
-                open.bound = blended_bound(machine, mv, self.largest.overrides);
+                open.assessment = Assessment {
+                    blended: true,
+                    ahead: true,
+                    ..assessment()
+                };
                 open.certain = false;
                 self.stop_planners();
             }
@@ -178,13 +170,11 @@ impl Ahead {
         }
         self.open.push_back(open);
         if role == Role::Path {
-            let sides = [Some(&mut self.largest), self.nominal.as_mut()];
-            for (side, element) in sides
-                .into_iter()
-                .flatten()
-                .zip(elements.into_iter().flatten())
-            {
-                side.planner.push(&element);
+            if let Some(element) = &largest {
+                self.largest.planner.push(element);
+            }
+            if let (Some(side), Some(element)) = (&mut self.nominal, &nominal) {
+                side.planner.push(element);
             }
         }
         self.pump(model);
@@ -199,12 +189,9 @@ impl Ahead {
     }
 
     /// Something stands here that may or may not stop the motion.
-    pub fn doubt(&mut self, model: &PowerModel) {
-        if self.at_rest || self.open.back().is_some_and(|last| last.rests) {
-            return;
-        }
-        self.in_doubt = true;
-        self.brake_in_doubt(model);
+    pub fn doubt(&mut self) {
+        let rests = self.at_rest || self.open.back().is_some_and(|last| last.rests);
+        self.in_doubt |= !rests;
     }
 
     /// The moves that a stop here would change are in doubt.
@@ -225,12 +212,11 @@ impl Ahead {
     }
 
     /// A buffer for a move.
-    fn room(&mut self, mv: &Move, text: &[u8], assessment: &Assessment, want: Want) -> Box<Open> {
+    fn room(&mut self, mv: &Move, text: &[u8], want: Want) -> Box<Open> {
         if let Some(mut open) = self.spare.pop() {
             open.mv.clone_from(mv);
             open.text.clear();
             open.text.extend_from_slice(text);
-            open.assessment = *assessment;
             open.want = want;
             (open.certain, open.alone) = (true, true);
             (open.in_doubt, open.rests, open.moves) = (false, false, false);
@@ -239,9 +225,8 @@ impl Ahead {
         Box::new(Open {
             mv: mv.clone(),
             text: text.to_vec(),
-            assessment: *assessment,
+            assessment: Assessment::AHEAD,
             want,
-            bound: SpeedBound::default(),
             certain: true,
             in_doubt: false,
             rests: false,
@@ -292,16 +277,8 @@ impl Ahead {
             .map(|open| open.mv.length_mm)
             .sum();
         let energy_j = std::mem::take(&mut demand.energy_j);
-        let duration_s = planned.profile.duration_s();
-        let ends = [
-            planned.profile.phases.first(),
-            planned.profile.phases.last(),
-        ];
-        let [start, end] = ends.map(|phase| {
-            phase.map_or((0.0, 0.0), |phase| {
-                (phase.velocity_mm_s, phase.end_velocity_mm_s)
-            })
-        });
+        let duration_s = planned.profile().duration_s();
+        let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         for index in from..=to {
             let Some(open) = self.open.get_mut(index) else {
                 continue;
@@ -316,15 +293,14 @@ impl Ahead {
             };
             let assessment = &mut open.assessment;
             open.certain &= certain;
-            open.alone &=
-                from == to && start.0 == 0.0 && end.1 == 0.0 && is_whole(&open.mv, planned);
+            open.alone &= from == to && rests && is_whole(&open.mv, planned);
             if times {
                 assessment.duration_s += share * duration_s;
                 assessment.demand.energy_j += share * energy_j;
             }
             if peaks {
-                let top = planned.profile.top_speed_mm_s();
-                assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top);
+                let top_speed_mm_s = planned.top_speed_mm_s();
+                assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top_speed_mm_s);
                 assessment.demand.include(&demand);
             }
         }
@@ -343,18 +319,17 @@ impl Ahead {
                 self.reach2 = Some(0.0);
             }
         }
-        let end = planned.profile.phases.last();
-        let end = end.map_or(0.0, |phase| phase.end_velocity_mm_s);
+        let end2 = planned.speeds2.end;
         if !planned.certain {
-            self.reach2 = (end > 0.0).then_some(0.0);
+            self.reach2 = (end2 > 0.0).then_some(0.0);
             return false;
         }
         let Some(reach2) = self.reach2 else {
             return true;
         };
         // Half of the acceleration, since the blends differ as well.
-        let reached2 = reach2 + planned.accel_mm_s2 * planned.profile.length_mm();
-        self.reach2 = (reached2 < end * end).then_some(reached2);
+        let reached2 = reach2 + planned.accel_mm_s2 * planned.length_mm;
+        self.reach2 = (reached2 < end2).then_some(reached2);
         false
     }
 
@@ -362,6 +337,7 @@ impl Ahead {
     /// nothing moves behind the last one.
     pub fn hand_on(
         &mut self,
+        machine: &Machine,
         model: &PowerModel,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
@@ -397,15 +373,20 @@ impl Ahead {
                 .filter(|_| !open.rests);
             let before = self.before.as_deref().filter(|before| !before.rests);
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
-            if open.certain && certain(before) && certain(next) {
+            // What no piece speaks of is not known.
+            let planned = !open.assessment.ahead || open.assessment.top_speed_mm_s > 0.0;
+            if planned && open.certain && certain(before) && certain(next) {
                 open.assessment.blended = !open.alone;
             } else {
-                let own = open.part();
-                let window = [
-                    before.map_or(own, Open::part),
-                    own,
-                    next.map_or(own, Open::part),
-                ];
+                let beside = [before.unwrap_or(&open), &open, next.unwrap_or(&open)];
+                let overrides = self.largest.overrides;
+                let bounds = beside.map(|open| blended_bound(machine, &open.mv, overrides));
+                let [first, own, last] = &bounds;
+                let part = |bound, index: usize| Part {
+                    bound,
+                    accel_mm_s2: &beside[index].mv.accel_mm_s2,
+                };
+                let window = [part(first, 0), part(own, 1), part(last, 2)];
                 let demand = model.robust_over(&open.mv, &window, open.want);
                 open.assessment.demand = Demand {
                     energy_j: open.assessment.demand.energy_j,
@@ -417,7 +398,7 @@ impl Ahead {
             self.spare.extend(self.before.replace(open));
         }
         // What comes next begins at rest.
-        if self.at_rest && !self.in_doubt {
+        if self.at_rest {
             self.spare.extend(self.before.take());
         }
     }

@@ -60,6 +60,21 @@ pub struct Assessment {
     pub ahead: bool,
 }
 
+impl Assessment {
+    /// Nothing known yet of a move that is planned with others.
+    pub(super) const AHEAD: Self = Self {
+        duration_s: 0.0,
+        speed_mm_s: 0.0,
+        accel_mm_s2: 0.0,
+        top_speed_mm_s: 0.0,
+        demand: Demand::NONE,
+        certificate: Certificate::Planned,
+        blended: true,
+        joined: false,
+        ahead: true,
+    };
+}
+
 /// Judges the moves of one program.
 #[derive(Debug)]
 pub struct Assessor<'m> {
@@ -179,12 +194,9 @@ impl<'m> Assessor<'m> {
             Effect::None => {}
             Effect::Stop => {
                 ahead.stop(&self.model);
-                ahead.hand_on(&self.model, sink);
+                ahead.hand_on(self.machine, &self.model, sink);
             }
-            Effect::Unknown => {
-                ahead.doubt(&self.model);
-                ahead.hand_on(&self.model, sink);
-            }
+            Effect::Unknown => ahead.doubt(),
         }
     }
 
@@ -196,17 +208,22 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let figures = path_figures(self.machine, mv, self.largest);
-        let mut assessment = self.alone(mv, figures.as_ref());
-        assessment.blended = false;
-        let Some(ahead) = &mut self.ahead else { return };
+        let Some(mut ahead) = self.ahead.take() else {
+            return;
+        };
+        let alone = || Assessment {
+            blended: false,
+            ..self.alone(mv, path_figures(self.machine, mv, self.largest).as_ref())
+        };
         if mv.kind == MoveKind::Dwell {
             ahead.stop(&self.model);
-            ahead.hand_on(&self.model, sink);
-            return sink(mv, &assessment, text);
+            ahead.hand_on(self.machine, &self.model, sink);
+            sink(mv, &alone(), text);
+        } else {
+            ahead.push(self.machine, &self.model, mv, text, alone, self.want);
+            ahead.hand_on(self.machine, &self.model, sink);
         }
-        ahead.push(self.machine, &self.model, mv, text, &assessment, self.want);
-        ahead.hand_on(&self.model, sink);
+        self.ahead = Some(ahead);
     }
 
     /// Takes the next move with the text of its line, and hands on what can be
@@ -296,7 +313,7 @@ impl<'m> Assessor<'m> {
         self.release(None, false, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(&self.model);
-            ahead.hand_on(&self.model, sink);
+            ahead.hand_on(self.machine, &self.model, sink);
         }
     }
 

@@ -19,58 +19,63 @@ pub(super) fn piece_demand(
     planned: &Planned<u64>,
     want: Want,
 ) -> Demand {
+    let curvature = match &planned.piece {
+        Piece::Along { .. } => Some(0.0),
+        Piece::Blend(blend) => Some(1.0 / blend.radius_mm),
+        Piece::Joined { .. } => None,
+    };
+    let quick = curvature.and_then(|curvature| below_floor(model, mv, planned, curvature, want));
+    if let Some(demand) = quick {
+        return demand;
+    }
+    let mut profile = planned.profile();
     match &planned.piece {
         Piece::Along { from_mm, .. } => {
-            if let Some(demand) = below_floor(model, mv, &planned.profile, 0.0, want) {
-                return demand;
-            }
-            let mut profile = planned.profile.clone();
             for phase in &mut profile.phases {
                 phase.position_mm += from_mm;
             }
-            model.demand(mv, &path(profile), want)
+            model.path_demand(mv, profile, want)
         }
         Piece::Joined { direction } => {
-            let line = straight_line(mv, direction, planned.profile.length_mm());
-            model.demand(&line, &path(planned.profile.clone()), want)
+            let line = straight_line(mv, direction, planned.length_mm);
+            model.path_demand(&line, profile, want)
         }
-        Piece::Blend(blend) => {
-            below_floor(model, mv, &planned.profile, 1.0 / blend.radius_mm, want)
-                .unwrap_or_else(|| model.blend_demand(mv, blend, &planned.profile, want))
-        }
+        Piece::Blend(blend) => model.blend_demand(mv, blend, &profile, want),
     }
 }
 
 /// A quick bound, if it stays below what is of interest; `curvature` in 1/mm.
+#[inline]
 fn below_floor(
     model: &PowerModel,
     mv: &Move,
-    profile: &Profile,
+    planned: &Planned<u64>,
     curvature: f64,
     want: Want,
 ) -> Option<Demand> {
-    let top_speed_mm_s = profile.top_speed_mm_s();
-    let accels = profile.phases.iter().map(|phase| phase.accel_mm_s2.abs());
+    let top_speed_mm_s = planned.top_speed_mm_s();
     let figures = PathFigures {
         duration_s: 0.0,
         speed_limit_mm_s: top_speed_mm_s,
-        accel_mm_s2: accels.fold(0.0, f64::max) + curvature * top_speed_mm_s * top_speed_mm_s,
+        accel_mm_s2: planned.largest_accel_mm_s2() + curvature * top_speed_mm_s * top_speed_mm_s,
         top_speed_mm_s,
     };
     model.below_floor(mv, &figures, want)
 }
 
-fn path(profile: Profile) -> Plan {
-    Plan {
-        duration_s: profile.duration_s(),
-        top_speed_mm_s: profile.top_speed_mm_s(),
-        speed_limit_mm_s: 0.0,
-        accel_mm_s2: 0.0,
-        trajectory: Trajectory::Path(profile),
-    }
-}
-
 impl PowerModel {
+    /// The peaks and the energy of a move that runs along its path by `profile`.
+    fn path_demand(&self, mv: &Move, profile: Profile, want: Want) -> Demand {
+        let plan = Plan {
+            duration_s: 0.0,
+            speed_limit_mm_s: 0.0,
+            accel_mm_s2: 0.0,
+            top_speed_mm_s: 0.0,
+            trajectory: Trajectory::Path(profile),
+        };
+        self.demand(mv, &plan, want)
+    }
+
     /// The peaks and the energy of a blend behind the move `mv`.
     pub(super) fn blend_demand(
         &self,
@@ -113,8 +118,8 @@ mod tests {
     use super::piece_demand;
     use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
     use crate::machine::Machine;
-    use crate::plan::lookahead::{Piece, Planned};
-    use crate::plan::{Blend, Phase, PhaseKind, Profile};
+    use crate::plan::Blend;
+    use crate::plan::lookahead::{Piece, Planned, Speeds2};
     use crate::power::{PowerModel, Want};
     use crate::syntax::{Block, scan_line};
     use std::fmt::Write as _;
@@ -230,21 +235,17 @@ mod tests {
             let (v0, v1) = (5.0 + 90.0 * random.next(), 5.0 + 90.0 * random.next());
             let accel_mm_s2 = (v1 * v1 - v0 * v0) / (2.0 * length_mm);
             let duration_s = 2.0 * length_mm / (v0 + v1);
-            let mut profile = Profile::default();
-            profile.phases.push(Phase {
-                kind: PhaseKind::ConstantAcceleration,
-                duration_s,
-                position_mm: 0.0,
-                velocity_mm_s: v0,
-                end_velocity_mm_s: v1,
-                accel_mm_s2,
-            });
             let planned = Planned {
                 tag: 0,
                 first: 0,
                 next: Some(1),
                 piece: Piece::Blend(blend),
-                profile,
+                length_mm,
+                speeds2: Speeds2 {
+                    start: v0 * v0,
+                    end: v1 * v1,
+                    top: v0.max(v1) * v0.max(v1),
+                },
                 accel_mm_s2: accel_mm_s2.abs(),
                 certain: true,
             };

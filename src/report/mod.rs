@@ -7,6 +7,7 @@ mod csv;
 mod figure;
 mod finding;
 mod github;
+mod identified;
 mod json;
 mod junit;
 mod moves;
@@ -22,6 +23,10 @@ pub use checked::{Checked, Verdict, chain};
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
 pub use csv::CsvRows;
 pub use github::github;
+pub use identified::{
+    Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
+    rigid_text,
+};
 pub use json::{JsonRows, check_json, limit_json, report_json};
 pub use junit::junit;
 pub use moves::write_move;

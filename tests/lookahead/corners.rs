@@ -108,7 +108,11 @@ fn the_cruise_ratio_cuts_short_hills() {
     let machine = machine("klipper", 1000.0, 1000.0);
     let mut rule = machine.controller.planner.look_ahead.unwrap();
     let element = line([10.0, 0.0, 0.0], 500.0, 1000.0, FREE);
-    let top = |rule| plan(&machine, rule, &[element])[0].profile.top_speed_mm_s();
+    let top = |rule| {
+        plan(&machine, rule, &[element])[0]
+            .profile()
+            .top_speed_mm_s()
+    };
     assert_close(top(rule), 5000.0_f64.sqrt());
     rule.min_cruise_ratio = 0.0;
     assert_close(top(rule), 100.0);
@@ -201,7 +205,7 @@ fn chords_of_a_helix_end_where_it_ends() {
     }
     assert_close(at, mv.length_mm);
     // The chords are shorter than the arc by their sagittas only.
-    let length: f64 = pieces.iter().map(|piece| piece.profile.length_mm()).sum();
+    let length: f64 = pieces.iter().map(|piece| piece.profile().length_mm()).sum();
     assert!(
         length < mv.length_mm && length > mv.length_mm * 0.9999,
         "{length}"

@@ -51,14 +51,14 @@ fn a_corner_is_rounded_by_the_circle_of_its_tolerance() {
     assert_close(blend.sweep_rad, std::f64::consts::FRAC_PI_2);
     assert_eq!((piece.tag, piece.next), (2, Some(3)));
     assert_close(
-        piece.profile.top_speed_mm_s(),
+        piece.profile().top_speed_mm_s(),
         (0.75_f64.sqrt() * 1000.0 * radius).sqrt(),
     );
     for (value, expected) in blend.normal.iter().zip([0.0, 1.0, 0.0]) {
         assert!((value - expected).abs() < 1e-12);
     }
     // What the blend cuts off is missing on both sides.
-    assert_close(pieces[0].profile.length_mm(), 40.0 - radius);
+    assert_close(pieces[0].profile().length_mm(), 40.0 - radius);
     let Piece::Along { from_mm, to_mm } = pieces[2].piece else {
         panic!("{:?}", pieces[2]);
     };
@@ -85,7 +85,7 @@ fn blocks_are_seen_fifty_ahead() {
         let _ = writeln!(program, "X{:.1}", 0.2 * f64::from(i));
     }
     let (pieces, _) = planned(&(program + "M2\n"));
-    let top = pieces.iter().map(|piece| piece.profile.top_speed_mm_s());
+    let top = pieces.iter().map(|piece| piece.profile().top_speed_mm_s());
     let top = top.fold(0.0, f64::max);
     let seen = (2.0 * 1000.0 * 50.0 * 0.2_f64).sqrt();
     assert!(top >= seen && top < seen * 1.01, "{top}");

@@ -90,7 +90,7 @@ impl Figures {
             ..Self::default()
         };
         for piece in &planned.0 {
-            for phase in &piece.profile.phases {
+            for phase in &piece.profile().phases {
                 for step in 0..=32 {
                     let mut state = phase.state_at(phase.duration_s * f64::from(step) / 32.0);
                     state.accel_mm_s2 = phase.accel_mm_s2;

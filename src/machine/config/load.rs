@@ -30,7 +30,7 @@ impl Machine {
     /// Every mistake of the file (and of its controller profile), by line.
     pub fn from_toml(name: &str, text: &str) -> Loaded<Self> {
         let mut findings = Findings::new(text);
-        let file = document::read::<MachineFile>(text, &schema::schema(), &mut findings);
+        let file = document::read::<MachineFile>(text, &schema::MACHINE, &mut findings);
         let machine = file.and_then(|file| {
             version(&mut findings, file.schema.as_ref());
             not_empty(&mut findings, "name", file.name.as_ref());
@@ -74,8 +74,7 @@ impl Controller {
     /// Every mistake of the file, by line.
     pub fn from_toml(text: &str) -> Loaded<Self> {
         let mut findings = Findings::new(text);
-        let schema = schema::controller_schema();
-        let file = document::read::<ControllerFile>(text, &schema, &mut findings);
+        let file = document::read::<ControllerFile>(text, &schema::CONTROLLER, &mut findings);
         let controller = file.and_then(|file| {
             version(&mut findings, file.schema.as_ref());
             not_empty(&mut findings, "name", file.name.as_ref());

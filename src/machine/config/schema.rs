@@ -1,5 +1,7 @@
 //! JSON Schema of the files, made from the same structs that read them.
 
+use std::sync::LazyLock;
+
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
@@ -10,14 +12,18 @@ use super::machine_file::MachineFile;
 /// JSON Schema of a machine file.
 #[must_use]
 pub fn schema() -> Value {
-    of::<MachineFile>()
+    MACHINE.clone()
 }
 
 /// JSON Schema of a controller profile.
 #[must_use]
 pub fn controller_schema() -> Value {
-    of::<ControllerFile>()
+    CONTROLLER.clone()
 }
+
+// Made once: it takes longer than reading a file with it.
+pub(super) static MACHINE: LazyLock<Value> = LazyLock::new(of::<MachineFile>);
+pub(super) static CONTROLLER: LazyLock<Value> = LazyLock::new(of::<ControllerFile>);
 
 /// The schema of `T`, all in one piece: the structure check walks along it.
 fn of<T: JsonSchema>() -> Value {

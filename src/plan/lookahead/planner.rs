@@ -61,14 +61,42 @@ pub struct Planned<T> {
     pub next: Option<T>,
     /// What it is.
     pub piece: Piece,
-    /// How it runs.
-    pub profile: Profile,
-    /// The acceleration that it may use, mm/s².
+    /// Its length, mm.
+    pub length_mm: f64,
+    /// Its speeds, squared.
+    pub speeds2: Speeds2,
+    /// Its acceleration, mm/s².
     pub accel_mm_s2: f64,
     /// False where the controller may do otherwise than planned: the robust
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
     pub certain: bool,
+}
+
+impl<T> Planned<T> {
+    /// The largest speed, mm/s.
+    #[must_use]
+    #[inline]
+    pub fn top_speed_mm_s(&self) -> f64 {
+        let Speeds2 { start, end, top } = self.speeds2;
+        let reached = 0.5 * (start + end) + self.accel_mm_s2 * self.length_mm;
+        top.min(reached).max(start).max(end).sqrt()
+    }
+
+    /// The largest acceleration of [`Self::profile`], mm/s².
+    #[must_use]
+    #[inline]
+    pub fn largest_accel_mm_s2(&self) -> f64 {
+        let needed = 0.5 * (self.speeds2.start - self.speeds2.end).abs() / self.length_mm;
+        self.accel_mm_s2.max(needed)
+    }
+
+    /// How it runs.
+    #[must_use]
+    #[inline]
+    pub fn profile(&self) -> Profile {
+        Profile::between(self.length_mm, self.speeds2, self.accel_mm_s2)
+    }
 }
 
 /// What travels through the window with a node.
@@ -213,17 +241,17 @@ impl<T: Copy> PathPlanner<T> {
     #[inline]
     pub fn pop(&mut self) -> Option<Planned<T>> {
         let span = self.window.pop()?;
-        let speeds2 = Speeds2 {
-            start: span.start2,
-            end: span.end2,
-            top: span.top2,
-        };
         Some(Planned {
             tag: span.payload.tag,
             first: span.payload.first,
             next: span.payload.next,
             piece: span.payload.piece,
-            profile: Profile::between(span.length, speeds2, span.accel),
+            length_mm: span.length,
+            speeds2: Speeds2 {
+                start: span.start2,
+                end: span.end2,
+                top: span.top2,
+            },
             accel_mm_s2: span.accel,
             certain: span.certain && span.payload.certain,
         })

@@ -1,0 +1,110 @@
+//! Arguments of `excite`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+const EXAMPLES: &str = "\
+Examples:
+  gwatt excite --order 12 --amplitude 5 > torque.csv
+  gwatt excite --resolution-hz 0.5 --hold 2 --amplitude 5 --repeat 3 -o torque.csv
+  gwatt excite --shape log-sweep --from-hz 1 --to-hz 200 --seconds 20 --amplitude 3 -o sweep.csv
+  gwatt excite --amplitude 50 --name force_n --mass-kg 90 --stroke-mm 100 --speed-mm-min 6000 -o f.csv
+
+Writes two columns, time_s and the value. What the signal covers goes to
+standard error, with a warning where the axis would leave its stroke or speed.";
+
+/// Arguments of `excite`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ExciteArgs {
+    /// What to make
+    #[arg(long, value_enum, default_value_t = ShapeArg::MSequence)]
+    pub shape: ShapeArg,
+    /// Largest value, in the unit of --name
+    #[arg(long)]
+    pub amplitude: f64,
+    /// Samples a second
+    #[arg(long, default_value_t = 1000.0)]
+    pub rate_hz: f64,
+    /// M-sequence: length of the register, 3 to 20; 2^order − 1 steps
+    /// [default: as --resolution-hz asks, else 12]
+    #[arg(long)]
+    pub order: Option<u32>,
+    /// M-sequence: samples that each step is held
+    #[arg(long, default_value_t = 1)]
+    pub hold: usize,
+    /// M-sequence: how often it is repeated
+    #[arg(long, default_value_t = 1)]
+    pub repeat: usize,
+    /// What is to be told apart, Hz: sets the length
+    #[arg(long)]
+    pub resolution_hz: Option<f64>,
+    /// Sweeps and random: lowest frequency
+    #[arg(long, default_value_t = 1.0)]
+    pub from_hz: f64,
+    /// Sweeps and random: highest frequency [default: 0.4 of the rate]
+    #[arg(long)]
+    pub to_hz: Option<f64>,
+    /// Sweeps and random: length [default: as --resolution-hz asks, else 10]
+    #[arg(long)]
+    pub seconds: Option<f64>,
+    /// Random: other seeds give other signals
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Name of the column of the value
+    #[arg(long, value_enum, default_value_t = ValueName::ExcitationNm)]
+    pub name: ValueName,
+    /// Mass that a force moves, for the warnings
+    #[arg(long, value_name = "KG", conflicts_with = "inertia_kg_m2")]
+    pub mass_kg: Option<f64>,
+    /// Inertia that a torque turns, for the warnings
+    #[arg(long, value_name = "KGM2")]
+    pub inertia_kg_m2: Option<f64>,
+    /// Stroke that is free, from end to end
+    #[arg(long, value_name = "MM")]
+    pub stroke_mm: Option<f64>,
+    /// Speed that is allowed
+    #[arg(long, value_name = "MM_MIN")]
+    pub speed_mm_min: Option<f64>,
+    /// Angle that is free, from end to end
+    #[arg(long, value_name = "DEG")]
+    pub stroke_deg: Option<f64>,
+    /// Speed that is allowed
+    #[arg(long, value_name = "RPM")]
+    pub speed_rpm: Option<f64>,
+    /// Write here [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Shapes of signals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ShapeArg {
+    /// Maximum-length sequence: two levels, a flat spectrum
+    MSequence,
+    /// Sine whose frequency grows by equal factors
+    LogSweep,
+    /// Sine whose frequency grows by equal steps
+    LinearSweep,
+    /// Random phases, flat within a band and nothing outside
+    Random,
+}
+
+/// Columns that an excitation can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ValueName {
+    #[value(name = "excitation_nm")]
+    ExcitationNm,
+    #[value(name = "excitation_n")]
+    ExcitationN,
+    #[value(name = "torque_nm")]
+    TorqueNm,
+    #[value(name = "force_n")]
+    ForceN,
+    #[value(name = "command_mm")]
+    CommandMm,
+    #[value(name = "command_deg")]
+    CommandDeg,
+}

@@ -1,0 +1,68 @@
+//! Results that go into a machine file.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use gwatt::identify::merge::{AxisFigures, into_machine};
+use gwatt::machine::AxisId;
+
+use super::output::{Spool, Target, back_up};
+use super::terminal::Terminal;
+
+/// Largest machine file that is read.
+const BYTES_MAX: u64 = 1 << 20;
+
+/// The axis of a letter.
+pub fn axis_of(letter: char) -> Result<AxisId> {
+    let upper = letter.to_ascii_uppercase();
+    u8::try_from(upper)
+        .ok()
+        .and_then(AxisId::from_letter)
+        .with_context(|| format!("{letter} is no axis; there are X Y Z A B C U V W"))
+}
+
+/// A result on its way into a machine file.
+#[derive(Debug)]
+pub struct Merged {
+    spool: Spool,
+}
+
+impl Merged {
+    /// Prepares the file; nothing is changed yet.
+    pub fn new(
+        path: &Path,
+        axis: AxisId,
+        figures: &AxisFigures,
+        margin: Option<f64>,
+    ) -> Result<Self> {
+        let name = path.display().to_string();
+        let metadata = fs::metadata(path).with_context(|| format!("cannot read {name}"))?;
+        ensure!(metadata.is_file(), "{name} is not a file");
+        if metadata.len() > BYTES_MAX {
+            bail!("{name} is larger than a machine file can be");
+        }
+        let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
+        let merged = into_machine(&name, &text, axis, figures, margin)?;
+        let mut spool = Target::new(path)?.spool()?;
+        spool
+            .write_all(merged.as_bytes())
+            .with_context(|| format!("cannot write {name}"))?;
+        Ok(Self { spool })
+    }
+
+    /// Puts the new file in the place of the old one, which keeps another name.
+    pub fn deliver(self, path: &Path, terminal: Terminal) -> Result<()> {
+        let real =
+            fs::canonicalize(path).with_context(|| format!("cannot write {}", path.display()))?;
+        let backup = back_up(&real)?;
+        self.spool.deliver()?;
+        terminal.note(format_args!(
+            "{} has the new figures; as it was it is {}",
+            path.display(),
+            backup.display()
+        ));
+        Ok(())
+    }
+}

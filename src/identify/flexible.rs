@@ -1,0 +1,363 @@
+//! Flexible axes: from a recording to resonances and anti-resonances.
+
+use super::arx;
+use super::column::{Kind, Quantity};
+use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
+use super::noise::Whiteness;
+use super::output_error::{Data, parameters, residuals};
+use super::quality;
+use super::recording::Recording;
+use super::rigid::Figure;
+use super::search::{Given, LAGS, filtered};
+use super::spectrum::FrequencyResponse;
+use super::state_space::Measured;
+use super::transfer::{Factor, TransferFunction};
+use super::trouble::{Outcome, Trouble};
+
+/// How the transfer function is estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Instrumental variables.
+    Iv,
+    /// Plain least squares.
+    Arx,
+    /// Through the averaged frequency response.
+    Frequency,
+    /// Subspaces (MOESP).
+    Subspace,
+}
+
+/// What may be chosen.
+#[derive(Debug, Clone)]
+pub struct Choice {
+    /// The method.
+    pub method: Method,
+    /// What is given instead of searched for.
+    pub given: Given,
+    /// Factors by which the signals are decimated first, one a stage.
+    pub decimation: Vec<usize>,
+    /// N per N·m, where torque drives a slide.
+    pub ratio: Option<f64>,
+    /// The position command is the input, though a force is recorded.
+    pub from_command: bool,
+}
+
+/// A resonance or anti-resonance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Root {
+    /// rad/s.
+    pub omega_rad_s: Figure,
+    /// Damping ratio.
+    pub damping: Figure,
+}
+
+/// A flexible axis.
+#[derive(Debug, Clone)]
+pub struct Flexible {
+    /// The model, from force to acceleration (from commanded to real
+    /// acceleration where the command is the input).
+    pub transfer: TransferFunction,
+    /// Inertia or mass: 1/gain. Absent from a command.
+    pub inertia: Option<Figure>,
+    /// Anti-resonances: zeros that make a dip.
+    pub zeros: Vec<Root>,
+    /// Resonances.
+    pub poles: Vec<Root>,
+    /// Delay.
+    pub delay_s: Figure,
+    /// Norm of what is left by norm of the output.
+    pub rel_error: f64,
+    /// Whiteness of what is left, behind the filter for coloured noise.
+    pub whiteness: Whiteness,
+    /// Order of that filter; 0 for white noise.
+    pub noise_order: usize,
+    /// The measured response.
+    pub response: FrequencyResponse,
+    /// Input and output, by name.
+    pub signals: (String, String),
+    /// Samples and seconds that were used.
+    pub samples: usize,
+    /// Length of the recording, s.
+    pub seconds: f64,
+    /// True where standard errors are known.
+    pub has_errors: bool,
+}
+
+/// Damping from which on a pair of zeros makes no dip, and a pair of poles no
+/// peak: 1/√2.
+const DIP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Input and output as they are fitted.
+pub(super) struct Prepared {
+    input: Vec<f64>,
+    output: Vec<f64>,
+    pub(super) excitation: Option<Vec<f64>>,
+    measured: Measured,
+    period_s: f64,
+    is_force: bool,
+    names: (String, String),
+}
+
+fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
+    let t = recording.period_s;
+    let help = "excite the axis: gwatt excite makes signals";
+    let force = recording
+        .get(Quantity::Force)
+        .or_else(|| recording.get(Quantity::Excitation))
+        .filter(|_| !choice.from_command);
+    let command = recording.get(Quantity::Command);
+    let (input_signal, is_force) = match (force, command) {
+        (Some(force), _) => (force, true),
+        (None, Some(command)) => (command, false),
+        (None, None) => {
+            return Err(Trouble::new(
+                "there is neither torque nor force nor a position command in the recording",
+                "add a column torque_nm, force_n, or position_command_mm",
+            ));
+        }
+    };
+    quality::moves(input_signal, help)?;
+    quality::not_saturated(input_signal)?;
+    let pick = |quantity| recording.get(quantity);
+    let (output_signal, measured) = pick(Quantity::Acceleration)
+        .map(|s| (s, Measured::Direct))
+        .or_else(|| pick(Quantity::Velocity).map(|s| (s, Measured::Velocity)))
+        .or_else(|| pick(Quantity::Position).map(|s| (s, Measured::Position)))
+        .ok_or_else(|| {
+            Trouble::new(
+                "there is no motion in the recording",
+                "add the load's acceleration, speed or position, such as accel_m_s2",
+            )
+        })?;
+    quality::moves(output_signal, help)?;
+    if measured == Measured::Direct {
+        quality::not_saturated(output_signal)?;
+    }
+    let output = differences(&output_signal.values, measured, t);
+    let factor = match (input_signal.kind, choice.ratio) {
+        (Kind::Rotary, Some(ratio)) => ratio,
+        _ => 1.0,
+    };
+    let input = if is_force {
+        input_signal.values.iter().map(|u| u * factor).collect()
+    } else {
+        differences(&input_signal.values, Measured::Position, t)
+    };
+    let excitation = pick(Quantity::Excitation)
+        .filter(|signal| is_force && signal.name != input_signal.name)
+        .map(|signal| signal.values.iter().map(|r| r * factor).collect());
+    // From a command, differences of both sides are compared as they are.
+    let measured = if is_force { measured } else { Measured::Direct };
+    let mut prepared = Prepared {
+        input,
+        output,
+        excitation,
+        measured,
+        period_s: t,
+        is_force,
+        names: (input_signal.name.clone(), output_signal.name.clone()),
+    };
+    decimate(&mut prepared, &choice.decimation);
+    if prepared.input.len() < 256 {
+        return Err(Trouble::new(
+            format!(
+                "the recording is too short: {} samples",
+                prepared.input.len()
+            ),
+            "record some seconds: 4 s at 1 kHz are usual",
+        ));
+    }
+    Ok(prepared)
+}
+
+fn decimate(prepared: &mut Prepared, stages: &[usize]) {
+    let factor: usize = stages.iter().product();
+    if factor <= 1 {
+        return;
+    }
+    let t = prepared.period_s;
+    prepared.input = arx::decimate(&prepared.input, stages, t);
+    prepared.output = arx::decimate(&prepared.output, stages, t);
+    prepared.excitation = prepared
+        .excitation
+        .as_ref()
+        .map(|r| arx::decimate(r, stages, t));
+    prepared.measured = Measured::Direct;
+    prepared.period_s *= factor as f64;
+}
+
+/// Differences that stand for the acceleration; the first ones, for which there
+/// are no samples before, are 0.
+fn differences(x: &[f64], measured: Measured, period_s: f64) -> Vec<f64> {
+    match measured {
+        Measured::Direct => x.to_vec(),
+        Measured::Velocity => std::iter::once(0.0)
+            .chain(
+                x.iter()
+                    .zip(x.iter().skip(1))
+                    .map(|(a, b)| (b - a) / period_s),
+            )
+            .collect(),
+        Measured::Position => [0.0, 0.0]
+            .into_iter()
+            .chain(x.windows(3).map(|w| {
+                let sum: f64 = w.iter().zip([1.0, -2.0, 1.0]).map(|(x, k)| x * k).sum();
+                sum / (period_s * period_s)
+            }))
+            .collect(),
+    }
+}
+
+/// Identifies a flexible axis.
+///
+/// # Errors
+///
+/// What keeps the recording from being used, or a model from being found.
+pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
+    let prepared = prepare(recording, choice)?;
+    let undisturbed = match &prepared.excitation {
+        Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
+            Trouble::new(
+                "the input does not follow from the excitation",
+                "check that the column of the excitation holds what was added to the torque",
+            )
+        })?),
+        None => None,
+    };
+    let data = Data {
+        input: &prepared.input,
+        output: &prepared.output,
+        undisturbed: undisturbed.as_deref(),
+        period_s: prepared.period_s,
+        measured: prepared.measured,
+    };
+    let found = match choice.method {
+        Method::Iv => by_search(&data, &prepared, choice),
+        Method::Frequency => by_response(&data, &prepared, choice),
+        Method::Arx => by_arx(&data, &prepared, choice),
+        Method::Subspace => by_subspace(&data, &prepared, choice),
+    };
+    let found = found.ok_or_else(|| {
+        Trouble::new(
+            "no stable model fits the recording",
+            "check units and signs of the columns, excite longer, or give --order",
+        )
+    })?;
+    describe(found, &data, &prepared)
+}
+
+fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
+    let estimate = &found.estimate;
+    let transfer = estimate.transfer.clone();
+    let left = residuals(data, estimate).unwrap_or_default();
+    let skip = 2.min(left.len());
+    let power = |x: &[f64]| -> f64 {
+        let n = x.len().max(1) as f64;
+        let mean = x.iter().sum::<f64>() / n;
+        x.iter().map(|x| (x - mean) * (x - mean)).sum()
+    };
+    let rest = power(left.get(skip..).unwrap_or_default());
+    let all = power(prepared.output.get(skip..).unwrap_or_default());
+    let std = |index: usize| {
+        if found.has_errors {
+            estimate.std(index).unwrap_or(f64::NAN)
+        } else {
+            f64::NAN
+        }
+    };
+    let gain = transfer.gain;
+    if gain == 0.0 || !gain.is_finite() {
+        return Err(Trouble::new(
+            "the axis does not answer the input",
+            "check that input and motion are of the same axis and the same time",
+        ));
+    }
+    let mut at = 1;
+    let mut zeros = Vec::new();
+    let mut poles = Vec::new();
+    let band = std::f64::consts::PI / data.period_s;
+    for (index, factor) in transfer.zeros.iter().chain(&transfer.poles).enumerate() {
+        if let Factor::Pair {
+            omega_rad_s,
+            damping,
+        } = *factor
+        {
+            let root = Root {
+                omega_rad_s: Figure {
+                    value: omega_rad_s,
+                    std: omega_rad_s * std(at),
+                },
+                damping: Figure {
+                    value: damping,
+                    std: std(at + 1),
+                },
+            };
+            if damping.abs() < DIP && omega_rad_s < band {
+                if index < transfer.zeros.len() {
+                    zeros.push(root);
+                } else {
+                    poles.push(root);
+                }
+            }
+        }
+        at += factor.degree();
+    }
+    for list in [&mut zeros, &mut poles] {
+        list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
+    }
+    let delay_std = if found.delay_is_free {
+        std(parameters(&transfer, true).len() - 1)
+    } else {
+        0.0
+    };
+    Ok(Flexible {
+        inertia: prepared.is_force.then(|| Figure {
+            value: 1.0 / gain,
+            std: std(0) / (gain * gain),
+        }),
+        zeros,
+        poles,
+        delay_s: Figure {
+            value: transfer.delay_s,
+            std: delay_std,
+        },
+        rel_error: (rest / all).sqrt(),
+        whiteness: Whiteness::of(
+            &filtered(left.get(skip..).unwrap_or_default(), &found.whitening),
+            LAGS,
+        ),
+        noise_order: found.whitening.len(),
+        response: found.response,
+        signals: prepared.names.clone(),
+        samples: data.len(),
+        seconds: data.len() as f64 * data.period_s,
+        has_errors: found.has_errors,
+        transfer,
+    })
+}
+
+/// Relative error with which a model simulates another recording, its offset
+/// and first state fitted.
+///
+/// # Errors
+///
+/// When that recording cannot be used.
+pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Outcome<f64> {
+    let prepared = prepare(other, choice)?;
+    let data = Data {
+        input: &prepared.input,
+        output: &prepared.output,
+        undisturbed: None,
+        period_s: prepared.period_s,
+        measured: prepared.measured,
+    };
+    let simulated = as_it_is(&data, &model.transfer).and_then(|e| residuals(&data, &e));
+    let left = simulated.ok_or_else(|| {
+        Trouble::new(
+            "the model cannot be simulated on the second recording",
+            "record both at the same rate",
+        )
+    })?;
+    let norm = |x: &[f64]| x.iter().skip(2).map(|x| x * x).sum::<f64>().sqrt();
+    Ok(norm(&left) / norm(&prepared.output))
+}

@@ -1,0 +1,267 @@
+//! Identified figures into a machine file: values change, comments and all the
+//! rest stay.
+
+use std::f64::consts::TAU;
+
+use toml_edit::{DocumentMut, TableLike, Value};
+
+use super::trouble::{Outcome, Trouble};
+use crate::machine::{AxisId, Machine};
+use crate::units::M_PER_MM;
+
+/// What is written of an axis; N·m and kg·m² for N and kg where `rotary`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisFigures {
+    /// True for torque and angles.
+    pub rotary: bool,
+    /// Mass or inertia.
+    pub mass: f64,
+    /// Viscous friction.
+    pub viscous: Option<f64>,
+    /// Coulomb friction.
+    pub coulomb: Option<f64>,
+    /// Efficiency.
+    pub efficiency: Option<f64>,
+}
+
+/// Newtons per newton metre of a screw: `2π·gear/lead`.
+#[must_use]
+pub fn force_per_torque(lead_mm: f64, gear_ratio: f64) -> f64 {
+    TAU * gear_ratio / (lead_mm * M_PER_MM)
+}
+
+/// The machine file with these figures for an axis and, where given, at least
+/// this margin. Figures keep the form that the file has: motor side where it has
+/// `inertia_kg_m2`, load side where it has `mass_kg`.
+///
+/// # Errors
+///
+/// When the file has no such axis, is no machine file, or would be none.
+pub fn into_machine(
+    path: &str,
+    text: &str,
+    axis: AxisId,
+    figures: &AxisFigures,
+    margin: Option<f64>,
+) -> Outcome<String> {
+    let refused = |what: String| Trouble::new(format!("{path}: {what}"), "nothing was written");
+    if let Err(findings) = Machine::from_toml(path, text) {
+        let first = findings.first().map(|f| f.message.clone());
+        return Err(refused(format!(
+            "this is no sound machine file: {}",
+            first.unwrap_or_default()
+        )));
+    }
+    let mut document: DocumentMut = text
+        .parse()
+        .map_err(|error: toml_edit::TomlError| refused(error.message().to_owned()))?;
+    let letter = (axis.letter() as char).to_string();
+    let table = document
+        .get_mut("axes")
+        .and_then(|axes| axes.as_table_like_mut())
+        .and_then(|axes| axes.get_mut(&letter))
+        .and_then(|table| table.as_table_like_mut())
+        .ok_or_else(|| refused(format!("the machine has no axis {letter}")))?;
+    write_axis(table, axis, figures).map_err(|what| {
+        Trouble::new(
+            format!("{path}, axis {letter}: {what}"),
+            "state lead_mm (and gear_ratio) of the axis, or record load-side quantities",
+        )
+    })?;
+    if let Some(margin) = margin {
+        raise_margin(&mut document, margin);
+    }
+    let merged = document.to_string();
+    if let Err(findings) = Machine::from_toml(path, &merged) {
+        let first = findings.first().map(|f| f.message.clone());
+        return Err(refused(format!(
+            "with the new figures the file would not be sound: {}",
+            first.unwrap_or_default()
+        )));
+    }
+    Ok(merged)
+}
+
+fn write_axis(
+    table: &mut dyn TableLike,
+    axis: AxisId,
+    figures: &AxisFigures,
+) -> Result<(), &'static str> {
+    let number = |table: &dyn TableLike, key: &str| {
+        let value = table.get(key)?;
+        value
+            .as_float()
+            .or_else(|| value.as_integer().map(|n| n as f64))
+    };
+    let is_rotary = match table.get("kind").and_then(|kind| kind.as_str()) {
+        Some(kind) => kind == "rotary",
+        None => matches!(axis, AxisId::A | AxisId::B | AxisId::C),
+    };
+    let gear = number(table, "gear_ratio").unwrap_or(1.0);
+    let per_torque = number(table, "lead_mm").map(|lead| force_per_torque(lead, gear));
+    if is_rotary {
+        if !figures.rotary {
+            return Err("it turns, and the recording has a force and a slide");
+        }
+        set(table, "inertia_kg_m2", figures.mass);
+        optional(table, "viscous_nm_s_rad", figures.viscous);
+        optional(table, "friction_nm", figures.coulomb);
+    } else {
+        // Load side first.
+        let (square, line) = if figures.rotary {
+            let k = per_torque.ok_or("it slides, and the recording has torque and angles")?;
+            (k * k, k)
+        } else {
+            (1.0, 1.0)
+        };
+        let by = |key: &str, other: &'static str, power: i32| {
+            if table.contains_key(key) {
+                per_torque.map(|k| (other, 1.0 / k.powi(power)))
+            } else {
+                None
+            }
+        };
+        let mass = by("inertia_kg_m2", "inertia_kg_m2", 2).unwrap_or(("mass_kg", 1.0));
+        let viscous =
+            by("viscous_nm_s_rad", "viscous_nm_s_rad", 2).unwrap_or(("viscous_n_s_m", 1.0));
+        let coulomb = by("friction_nm", "friction_nm", 1).unwrap_or(("coulomb_n", 1.0));
+        set(table, mass.0, figures.mass * square * mass.1);
+        optional(
+            table,
+            viscous.0,
+            figures.viscous.map(|b| b * square * viscous.1),
+        );
+        optional(
+            table,
+            coulomb.0,
+            figures.coulomb.map(|f| f * line * coulomb.1),
+        );
+    }
+    if let Some(efficiency) = figures.efficiency {
+        set(table, "efficiency", efficiency);
+    }
+    Ok(())
+}
+
+/// Friction is not negative; where it comes out so, it is none.
+fn optional(table: &mut dyn TableLike, key: &str, value: Option<f64>) {
+    if let Some(value) = value {
+        set(table, key, value.max(0.0));
+    }
+}
+
+/// Writes a value with six digits, where it stands or at the end.
+fn set(table: &mut dyn TableLike, key: &str, value: f64) {
+    let value = six_digits(value);
+    if let Some(old) = table.get_mut(key).and_then(|item| item.as_value_mut()) {
+        let decor = old.decor().clone();
+        *old = Value::from(value);
+        *old.decor_mut() = decor;
+    } else {
+        table.insert(key, toml_edit::value(value));
+    }
+}
+
+/// Six significant digits.
+#[must_use]
+pub fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// Sets the margin, unless the file has a larger one.
+fn raise_margin(document: &mut DocumentMut, margin: f64) {
+    const DEFAULT: f64 = 0.1;
+    let margin = libm::ceil(margin * 1000.0) / 1000.0;
+    let present = document
+        .get("limits")
+        .and_then(|limits| limits.get("margin"))
+        .and_then(toml_edit::Item::as_float)
+        .unwrap_or(DEFAULT);
+    if margin <= present {
+        return;
+    }
+    let limits = document.entry("limits").or_insert_with(toml_edit::table);
+    if let Some(limits) = limits.as_table_like_mut() {
+        set(limits, "margin", margin);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MACHINE: &str = r#"# Our mill.
+schema = 1
+name = "mill"
+controller = "iso"
+
+[converter]
+peak_power_w = 3000 # data sheet
+
+[axes.X]
+rapid_mm_min = 24000
+accel_mm_s2 = 4000
+mass_kg = 300   # guessed
+coulomb_n = 200
+
+[axes.Y] # motor side
+max_speed_rpm = 3000
+accel_time_s = 0.1
+inertia_kg_m2 = 0.01
+friction_nm = 1.5
+lead_mm = 10
+"#;
+
+    fn figures() -> AxisFigures {
+        AxisFigures {
+            rotary: false,
+            mass: 412.345_678,
+            viscous: Some(150.0),
+            coulomb: Some(-0.5),
+            efficiency: None,
+        }
+    }
+
+    #[test]
+    fn comments_stay_and_values_change() {
+        let merged = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.2)).unwrap();
+        let expected = MACHINE
+            .replace("mass_kg = 300   # guessed", "mass_kg = 412.346   # guessed")
+            .replace(
+                "coulomb_n = 200\n",
+                "coulomb_n = 0.0\nviscous_n_s_m = 150.0\n",
+            )
+            + "\n[limits]\nmargin = 0.2\n";
+        assert_eq!(merged, expected);
+        // A smaller margin than the one in force changes nothing.
+        let kept = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.05)).unwrap();
+        assert!(!kept.contains("margin"));
+    }
+
+    #[test]
+    fn motor_side_files_get_motor_side_figures() {
+        // k = 2π/0.01 = 628.318: 412.346 kg are 1.04448e-3 kg·m².
+        let merged = into_machine("m.toml", MACHINE, AxisId::Y, &figures(), None).unwrap();
+        assert!(merged.contains("inertia_kg_m2 = 0.00104448\n"), "{merged}");
+        assert!(merged.contains("friction_nm = 0.0\n"));
+    }
+
+    #[test]
+    fn what_does_not_go_together_is_refused() {
+        let turning = AxisFigures {
+            rotary: true,
+            ..figures()
+        };
+        let refuse = |text, axis, figures: &AxisFigures| {
+            into_machine("m.toml", text, axis, figures, None)
+                .unwrap_err()
+                .message
+        };
+        let message = refuse(MACHINE, AxisId::X, &turning);
+        assert!(message.contains("it slides"), "{message}");
+        let message = refuse(MACHINE, AxisId::Z, &figures());
+        assert!(message.contains("no axis Z"), "{message}");
+        let message = refuse("schema = 1\n", AxisId::X, &figures());
+        assert!(message.contains("no sound machine file"), "{message}");
+    }
+}

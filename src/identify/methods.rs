@@ -1,0 +1,203 @@
+//! The methods that estimate a flexible axis.
+
+use super::arx;
+use super::flexible::{Choice, Prepared};
+use super::output_error::{Data, Effort, Estimate, refine};
+use super::response_fit::{self, ResponseFit};
+use super::search::{LAG_MAX, ORDER_MAX, search};
+use super::spectrum::{FrequencyResponse, measure};
+use super::subspace::{Subspace, with_poles};
+use super::transfer::TransferFunction;
+
+/// A model with what is known of it.
+pub(super) struct Modelled {
+    pub(super) estimate: Estimate,
+    pub(super) delay_is_free: bool,
+    pub(super) whitening: Vec<f64>,
+    pub(super) response: FrequencyResponse,
+    pub(super) has_errors: bool,
+}
+
+pub(super) fn by_search(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
+    let found = search(data, prepared.excitation.as_deref(), choice.given)?;
+    Some(Modelled {
+        estimate: found.estimate,
+        delay_is_free: found.delay_is_free,
+        whitening: found.whitening,
+        response: found.response,
+        has_errors: true,
+    })
+}
+
+fn response_of(data: &Data<'_>, prepared: &Prepared) -> Option<FrequencyResponse> {
+    measure(
+        data.input,
+        data.output,
+        prepared.excitation.as_deref(),
+        data.period_s,
+        None,
+    )
+}
+
+/// The model as it is, with its offset and first state.
+pub(super) fn as_it_is(data: &Data<'_>, transfer: &TransferFunction) -> Option<Estimate> {
+    let effort = Effort {
+        steps: 0,
+        to_beat: f64::MAX,
+    };
+    let open = Data {
+        undisturbed: None,
+        ..*data
+    };
+    refine(&open, transfer, false, &[], effort)
+}
+
+pub(super) fn by_response(
+    data: &Data<'_>,
+    prepared: &Prepared,
+    choice: &Choice,
+) -> Option<Modelled> {
+    let mut response = response_of(data, prepared)?;
+    if !response.periodic {
+        // Windows blur sharp resonances: the longest stretches blur least.
+        response = measure(
+            data.input,
+            data.output,
+            prepared.excitation.as_deref(),
+            data.period_s,
+            Some((data.len() / 4).next_power_of_two()),
+        )?;
+    }
+    let t = data.period_s;
+    let lags = match choice.given.delay_s {
+        Some(delay) => {
+            let lag = libm::round(delay / t) as usize;
+            lag..=lag
+        }
+        None => 0..=LAG_MAX,
+    };
+    // Growing by modes may stop short where there is little noise; subspaces do
+    // not.
+    let grown = lags
+        .filter_map(|lag| response_fit::grow(&response, lag, choice.given.order, ORDER_MAX, t))
+        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))
+        .and_then(|best| response_fit::finish(&response, &best.transfer, t));
+    let best: ResponseFit = from_subspace(data, choice)
+        .iter()
+        .filter_map(|start| response_fit::finish(&response, start, t))
+        .chain(grown)
+        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
+    let mut estimate = as_it_is(data, &best.transfer)?;
+    estimate.covariance = best.covariance;
+    Some(Modelled {
+        estimate,
+        delay_is_free: false,
+        whitening: Vec::new(),
+        response,
+        has_errors: true,
+    })
+}
+
+fn from_subspace(data: &Data<'_>, choice: &Choice) -> Vec<TransferFunction> {
+    let t = data.period_s;
+    let lag = choice
+        .given
+        .delay_s
+        .map_or(0, |d| libm::round(d / t) as usize);
+    let input = late(data.input, lag);
+    let orders = choice
+        .given
+        .order
+        .map_or(vec![2, 4, 6], |order| vec![order]);
+    let Some(subspace) = Subspace::new(&input, data.output) else {
+        return Vec::new();
+    };
+    orders
+        .into_iter()
+        .filter_map(|order| {
+            let model = with_poles(subspace.poles(order)?, &input, data.output)?;
+            let mut start = model.to_continuous(t, FAR / t).ok()?;
+            start.delay_s = lag as f64 * t;
+            Some(start)
+        })
+        .collect()
+}
+
+/// Zeros beyond this many rad per period are artefacts of the conversion.
+const FAR: f64 = 1.5 * std::f64::consts::PI;
+
+pub(super) fn by_arx(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -> Option<Modelled> {
+    let orders = match choice.given.order {
+        Some(order) => order..=order,
+        None => 1..=ORDER_MAX,
+    };
+    let t = data.period_s;
+    let lag = choice
+        .given
+        .delay_s
+        .map_or(0, |d| libm::round(d / t) as usize);
+    let input = late(data.input, lag);
+    let best = orders
+        .filter_map(|order| arx::fit(&input, data.output, order))
+        .min_by(|a, b| a.criterion.total_cmp(&b.criterion))?;
+    let transfer = best.discrete()?.to_continuous(t, FAR / t).ok()?;
+    finish_plain(data, prepared, transfer, lag)
+}
+
+pub(super) fn by_subspace(
+    data: &Data<'_>,
+    prepared: &Prepared,
+    choice: &Choice,
+) -> Option<Modelled> {
+    let t = data.period_s;
+    let lag = choice
+        .given
+        .delay_s
+        .map_or(0, |d| libm::round(d / t) as usize);
+    let input = late(data.input, lag);
+    let subspace = Subspace::new(&input, data.output)?;
+    let orders: Vec<usize> = match choice.given.order {
+        Some(order) => vec![order],
+        None => (1..=ORDER_MAX).collect(),
+    };
+    let mut best: Option<(f64, TransferFunction)> = None;
+    for order in orders {
+        let transfer = subspace
+            .poles(order)
+            .and_then(|poles| with_poles(poles, &input, data.output))
+            .and_then(|model| model.to_continuous(t, FAR / t).ok());
+        if let Some(transfer) = transfer
+            && let Some(estimate) = as_it_is(data, &transfer)
+            && best
+                .as_ref()
+                .is_none_or(|(least, _)| estimate.criterion() < *least)
+        {
+            best = Some((estimate.criterion(), transfer));
+        }
+    }
+    finish_plain(data, prepared, best?.1, lag)
+}
+
+fn late(x: &[f64], lag: usize) -> Vec<f64> {
+    let first = x.first().copied().unwrap_or_default();
+    std::iter::repeat_n(first, lag)
+        .chain(x.iter().copied())
+        .take(x.len())
+        .collect()
+}
+
+fn finish_plain(
+    data: &Data<'_>,
+    prepared: &Prepared,
+    mut transfer: TransferFunction,
+    lag: usize,
+) -> Option<Modelled> {
+    transfer.delay_s = lag as f64 * data.period_s;
+    Some(Modelled {
+        estimate: as_it_is(data, &transfer)?,
+        delay_is_free: false,
+        whitening: Vec::new(),
+        response: response_of(data, prepared)?,
+        has_errors: false,
+    })
+}

@@ -1,0 +1,46 @@
+//! From recordings to machine parameters: rigid axes, flexible axes, the power
+//! model; and signals that excite an axis.
+//!
+//! A [`Recording`] is read, checked and turned to SI. [`rigid`] fits mass and
+//! friction. [`flexible`] finds the [`TransferFunction`] from force to
+//! acceleration, whose zeros are the axis' anti-resonances.
+
+pub mod excitation;
+pub mod flexible;
+pub mod judgement;
+pub mod merge;
+pub mod power_fit;
+pub mod rigid;
+
+mod arx;
+mod column;
+mod discrete;
+mod filter;
+mod methods;
+mod mode;
+mod noise;
+mod normal;
+mod output_error;
+mod polynomial;
+mod quality;
+mod recording;
+mod response_fit;
+mod search;
+mod spectrum;
+mod state_space;
+mod subspace;
+mod transfer;
+mod trouble;
+
+pub use column::{Kind, Quantity};
+pub use discrete::{Discrete, NoTwin, SampledResponse};
+pub use judgement::Judgement;
+pub use noise::Whiteness;
+pub use polynomial::roots;
+pub use recording::{Recording, Signal};
+pub use rigid::Figure;
+pub use search::Given;
+pub use spectrum::{FrequencyResponse, measure};
+pub use state_space::{Measured, Sampled, Simulation, simulate};
+pub use transfer::{Factor, TransferFunction, factors_of};
+pub use trouble::{Outcome, Trouble};

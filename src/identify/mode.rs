@@ -1,0 +1,163 @@
+//! Where a model misses a resonance: one mode is added to it, placed where the
+//! measured frequency response departs most from the model's.
+//!
+//! A lightly damped structure is a sum of modes, so the mode is added, not
+//! multiplied: `G + (a + b·s)/(1 + 2ζ·s/ω + s²/ω²)`. For each ω and ζ of a grid
+//! a and b follow by least squares.
+
+use std::f64::consts::PI;
+
+use nalgebra::Complex;
+
+use super::polynomial::{product, roots};
+use super::spectrum::FrequencyResponse;
+use super::transfer::{Factor, TransferFunction, factors};
+
+type C = Complex<f64>;
+
+/// Dampings that are tried: of modes that ring, and of those that do not.
+const RINGING: &[f64] = &[0.01, 0.04, 0.15];
+const DAMPED: &[f64] = &[0.6];
+/// Up to this share of the sampling frequency.
+const BAND: f64 = 0.45;
+
+/// The model with one mode more, the best of the grid: one that rings, and one
+/// that does not. None when the response says nothing.
+#[must_use]
+pub fn with_mode(
+    transfer: &TransferFunction,
+    response: &FrequencyResponse,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    [RINGING, DAMPED]
+        .into_iter()
+        .filter_map(|dampings| best_of(dampings, transfer, response, period_s))
+        .collect()
+}
+
+fn best_of(
+    dampings: &[f64],
+    transfer: &TransferFunction,
+    response: &FrequencyResponse,
+    period_s: f64,
+) -> Option<TransferFunction> {
+    let mut sorted = response.variance.clone();
+    sorted.sort_by(f64::total_cmp);
+    let strongest = response.response.iter().map(C::norm_sqr);
+    let rounding = 1e-16 * strongest.fold(f64::MIN_POSITIVE, f64::max);
+    let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(rounding);
+    let points: Vec<(C, C, f64)> = response
+        .frequency_hz
+        .iter()
+        .zip(&response.response)
+        .zip(&response.variance)
+        .filter(|((f, _), _)| **f * period_s < BAND)
+        .map(|((f, g), variance)| {
+            let s = C::new(0.0, 2.0 * PI * f * period_s);
+            // The hold delays by half a period and the delay by the rest.
+            let phase = s.im * (transfer.delay_s / period_s + 0.5);
+            let (sin, cos) = libm::sincos(phase);
+            let bare = *g * C::new(cos, sin);
+            let (ms, mc) = libm::sincos(s.im * transfer.delay_s / period_s);
+            let model = transfer.at_hz(*f) * C::new(mc, ms);
+            (s, bare - model, 1.0 / variance.max(floor))
+        })
+        .filter(|(_, gap, weight)| gap.re.is_finite() && weight.is_finite())
+        .collect();
+    let (first, last) = (points.first()?.0.im, points.last()?.0.im);
+    let mut best: Option<(f64, Factor, f64, f64)> = None;
+    let mut omega = first;
+    while omega < last {
+        for &damping in dampings {
+            let pole = Factor::Pair {
+                omega_rad_s: omega,
+                damping,
+            };
+            if let Some((gain, a, b)) = amplitude(&points, omega, damping)
+                && best.as_ref().is_none_or(|(most, ..)| gain > *most)
+            {
+                best = Some((gain, pole, a, b));
+            }
+        }
+        omega *= 1.02;
+    }
+    let (_, pole, a, b) = best?;
+    join(transfer, pole, [a, b], period_s)
+}
+
+/// How much of the gap such a mode explains, and its a and b; ω in rad per
+/// period.
+fn amplitude(points: &[(C, C, f64)], omega: f64, damping: f64) -> Option<(f64, f64, f64)> {
+    let (mut aa, mut ab, mut bb, mut ra, mut rb) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (s, gap, weight) in points {
+        let x = s / omega;
+        let one = C::new(1.0, 0.0) / (x * x + x * (2.0 * damping) + 1.0);
+        let two = x * one;
+        aa += weight * one.norm_sqr();
+        bb += weight * two.norm_sqr();
+        ab += weight * (one * two.conj()).re;
+        ra += weight * (one.conj() * gap).re;
+        rb += weight * (two.conj() * gap).re;
+    }
+    let determinant = aa * bb - ab * ab;
+    if determinant.is_nan() || determinant <= 1e-12 * aa * bb {
+        return None;
+    }
+    let a = (ra * bb - rb * ab) / determinant;
+    let b = (rb * aa - ra * ab) / determinant;
+    Some((a * ra + b * rb, a, b))
+}
+
+/// `G + (a + b·s/ω)/(pole)` as one fraction; the pole in rad per period.
+fn join(
+    transfer: &TransferFunction,
+    pole: Factor,
+    [a, b]: [f64; 2],
+    period_s: f64,
+) -> Option<TransferFunction> {
+    let per_period = |p: Vec<f64>| -> Vec<f64> {
+        let mut unit = 1.0;
+        p.into_iter()
+            .map(|c| {
+                let c = c * unit;
+                unit /= period_s;
+                c
+            })
+            .collect()
+    };
+    let omega = pole.corner_rad_s();
+    let numerator = per_period(transfer.numerator());
+    let denominator = per_period(transfer.denominator());
+    let mut sum: Vec<f64> = product(&numerator, &pole.coefficients())
+        .iter()
+        .map(|c| c * transfer.gain)
+        .collect();
+    let added = product(&denominator, &[a, b / omega]);
+    if sum.len() < added.len() {
+        sum.resize(added.len(), 0.0);
+    }
+    for (slot, c) in sum.iter_mut().zip(&added) {
+        *slot += c;
+    }
+    let gain = *sum.first()?;
+    let zeros: Vec<C> = roots(&sum)?
+        .iter()
+        .filter(|root| root.norm() < 1.5 * PI)
+        .map(|root| root / period_s)
+        .collect();
+    let mut poles = transfer.poles.clone();
+    poles.push(match pole {
+        Factor::Pair { damping, .. } => Factor::Pair {
+            omega_rad_s: omega / period_s,
+            damping,
+        },
+        Factor::Real { .. } => pole,
+    });
+    Some(TransferFunction {
+        gain,
+        zeros: factors(&zeros, false),
+        poles,
+        delay_s: transfer.delay_s,
+    })
+    .filter(|joined| joined.gain.is_finite() && joined.zero_count() <= joined.order())
+}

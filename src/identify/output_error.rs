@@ -1,0 +1,493 @@
+//! The estimate by instrumental variables: the continuous parameters for which
+//! the difference between measured and simulated output has nothing to do with
+//! the instruments.
+//!
+//! The instruments are the sensitivities of the simulated output to the
+//! parameters, simulated from the input, or in a closed loop from that part of
+//! the input which the excitation causes. For white noise on the output this is
+//! the most accurate estimate there is (Young, *Recursive Estimation and
+//! Time-Series Analysis*, 2011, "refined instrumental variables"), and the
+//! inverse of the instruments' products tells its errors. Coloured noise is
+//! made white first, by an autoregressive filter over all signals.
+//!
+//! Besides the parameters an offset and the state at the first sample are
+//! estimated: a recording may begin in the middle of a motion.
+
+use std::collections::VecDeque;
+
+use nalgebra::DMatrix;
+
+use super::normal::{Normal, Solution};
+use super::state_space::{Measured, Sampled, Simulation};
+use super::transfer::{Factor, TransferFunction};
+
+const STEPS_MAX: usize = 40;
+/// An improvement of the sum of squares below this share of one row's ends the
+/// search: far below what noise decides.
+const ENOUGH: f64 = 1e-3;
+
+/// What is fitted.
+#[derive(Debug, Clone, Copy)]
+pub struct Data<'a> {
+    /// Input, held between samples.
+    pub input: &'a [f64],
+    /// Output; differences of it where a speed or position was measured.
+    pub output: &'a [f64],
+    /// What the excitation alone makes of the input, in a closed loop.
+    pub undisturbed: Option<&'a [f64]>,
+    /// Sampling period.
+    pub period_s: f64,
+    /// What was measured.
+    pub measured: Measured,
+}
+
+impl Data<'_> {
+    /// The first samples only.
+    #[must_use]
+    pub fn head(&self, count: usize) -> Self {
+        let cut = |x: &'_ [f64]| -> usize { count.min(x.len()) };
+        Self {
+            input: self.input.get(..cut(self.input)).unwrap_or_default(),
+            output: self.output.get(..cut(self.output)).unwrap_or_default(),
+            undisturbed: self
+                .undisturbed
+                .map(|x| x.get(..cut(x)).unwrap_or_default()),
+            ..*self
+        }
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.input.len().min(self.output.len())
+    }
+}
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// The model.
+    pub transfer: TransferFunction,
+    /// Covariance of the parameters in the order of [`parameters`].
+    pub covariance: DMatrix<f64>,
+    /// Sum of squares of the (whitened) differences.
+    pub rest: f64,
+    /// Rows that it is the sum of.
+    pub rows: usize,
+    /// Sum of squares of the output: the model's differences count as no less
+    /// than rounding leaves of it.
+    pub power: f64,
+    /// Parameters that were fitted, offset and first state left out.
+    pub count: usize,
+    /// Offset of the output.
+    pub offset: f64,
+    /// State at the first sample.
+    pub state: Vec<f64>,
+}
+
+impl Estimate {
+    /// Bayes' information criterion; the smaller, the better.
+    #[must_use]
+    pub fn criterion(&self) -> f64 {
+        criterion(self.rest, self.power, self.rows, self.count)
+    }
+
+    /// Standard error of the parameter at `index`.
+    #[must_use]
+    pub fn std(&self, index: usize) -> Option<f64> {
+        (index < self.covariance.nrows()).then(|| self.covariance[(index, index)].sqrt())
+    }
+}
+
+/// The share of a signal that counts as rounding.
+const ROUNDING: f64 = 1e-14;
+
+fn criterion(rest: f64, power: f64, rows: usize, count: usize) -> f64 {
+    let n = rows as f64;
+    let rest = rest.max(ROUNDING * power).max(f64::MIN_POSITIVE);
+    n * libm::log(rest / n) + count as f64 * libm::log(n)
+}
+
+/// How hard a fit is tried.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Steps at most.
+    pub steps: usize,
+    /// A criterion: after a few steps a model that will not come near it is
+    /// given up.
+    pub to_beat: f64,
+}
+
+impl Effort {
+    /// To the end.
+    pub const FULL: Self = Self {
+        steps: STEPS_MAX,
+        to_beat: f64::MAX,
+    };
+}
+
+/// The parameters of a model: the gain, then of each zero and each pole `ln ω, ζ`
+/// or `τ`, and the delay where it is free.
+#[must_use]
+pub fn parameters(transfer: &TransferFunction, delay_is_free: bool) -> Vec<f64> {
+    let mut theta = vec![transfer.gain];
+    for factor in transfer.zeros.iter().chain(&transfer.poles) {
+        match *factor {
+            Factor::Pair {
+                omega_rad_s,
+                damping,
+            } => theta.extend([libm::log(omega_rad_s), damping]),
+            Factor::Real { time_constant_s } => theta.push(time_constant_s),
+        }
+    }
+    if delay_is_free {
+        theta.push(transfer.delay_s);
+    }
+    theta
+}
+
+/// The model with other parameters.
+pub(super) fn with(template: &TransferFunction, theta: &[f64]) -> TransferFunction {
+    let mut transfer = template.clone();
+    let mut rest = theta.iter().copied();
+    transfer.gain = rest.next().unwrap_or_default();
+    for factor in transfer.zeros.iter_mut().chain(&mut transfer.poles) {
+        match factor {
+            Factor::Pair {
+                omega_rad_s,
+                damping,
+            } => {
+                *omega_rad_s = libm::exp(rest.next().unwrap_or_default());
+                *damping = rest.next().unwrap_or_default();
+            }
+            Factor::Real { time_constant_s } => {
+                *time_constant_s = rest.next().unwrap_or_default();
+            }
+        }
+    }
+    if let Some(delay_s) = rest.next() {
+        transfer.delay_s = delay_s;
+    }
+    transfer
+}
+
+/// How far each parameter is moved to see what it does.
+pub(super) fn probes(transfer: &TransferFunction, delay_is_free: bool, period_s: f64) -> Vec<f64> {
+    const SMALL: f64 = 1e-6;
+    let mut steps = vec![SMALL * transfer.gain.abs().max(f64::MIN_POSITIVE)];
+    for factor in transfer.zeros.iter().chain(&transfer.poles) {
+        match *factor {
+            Factor::Pair { .. } => steps.extend([SMALL, SMALL]),
+            Factor::Real { time_constant_s } => {
+                steps.push(SMALL * time_constant_s.abs().max(0.1 * period_s));
+            }
+        }
+    }
+    if delay_is_free {
+        steps.push(1e-5 * period_s);
+    }
+    steps
+}
+
+/// True for a model that can be simulated and makes sense.
+pub(super) fn is_admissible(transfer: &TransferFunction, period_s: f64) -> bool {
+    let nyquist = std::f64::consts::PI / period_s;
+    let is_in_range = |omega: f64| omega > 1e-6 / period_s && omega < 20.0 / period_s;
+    let sound_pole = |pole: &Factor| match *pole {
+        // What swings faster than half the sampling rate cannot be told from
+        // its image below.
+        Factor::Pair {
+            omega_rad_s: w,
+            damping,
+        } => {
+            let swing = w * (1.0 - damping * damping).max(0.0).sqrt();
+            is_in_range(w) && damping > 1e-7 && damping < 50.0 && swing < nyquist
+        }
+        Factor::Real { time_constant_s } => {
+            time_constant_s > 1e-3 * period_s && time_constant_s < 1e6 * period_s
+        }
+    };
+    let sound_zero = |zero: &Factor| match *zero {
+        Factor::Pair {
+            omega_rad_s: w,
+            damping,
+        } => is_in_range(w) && damping.abs() < 50.0,
+        Factor::Real { time_constant_s } => time_constant_s.abs() < 1e6 * period_s,
+    };
+    transfer.poles.iter().all(sound_pole)
+        && transfer.zeros.iter().all(sound_zero)
+        && transfer.gain.is_finite()
+        && (0.0..1000.0 * period_s).contains(&transfer.delay_s)
+}
+
+/// A finite impulse response over signals as they pass.
+#[derive(Debug, Clone)]
+struct Whitener<'a> {
+    taps: &'a [f64],
+    /// Rows before, the last first.
+    past: VecDeque<Vec<f64>>,
+}
+
+impl<'a> Whitener<'a> {
+    fn new(taps: &'a [f64], width: usize) -> Self {
+        Self {
+            taps,
+            past: taps.iter().map(|_| vec![0.0; width]).collect(),
+        }
+    }
+
+    /// Replaces a row by the filtered one: `row + Σ tapᵢ · row i+1 samples ago`.
+    fn pass(&mut self, row: &mut [f64]) {
+        let Some(oldest) = self.past.back() else {
+            return;
+        };
+        let mut filtered = row.to_vec();
+        debug_assert_eq!(oldest.len(), row.len());
+        for (tap, old) in self.taps.iter().zip(&self.past) {
+            for (slot, x) in filtered.iter_mut().zip(old) {
+                *slot += tap * x;
+            }
+        }
+        if let Some(mut oldest) = self.past.pop_back() {
+            oldest.copy_from_slice(row);
+            self.past.push_front(oldest);
+        }
+        row.copy_from_slice(&filtered);
+    }
+}
+
+/// One pass over the data: normal equations of the step at these parameters.
+fn gather(
+    data: &Data<'_>,
+    transfer: &TransferFunction,
+    delay_is_free: bool,
+    whitening: &[f64],
+) -> Option<Normal> {
+    let sampled =
+        |transfer: &TransferFunction| Sampled::new(transfer, data.measured, data.period_s);
+    let theta = parameters(transfer, delay_is_free);
+    let probes = probes(transfer, delay_is_free, data.period_s);
+    let base = sampled(transfer)?;
+    let order = base.order();
+    let mut moved = Vec::with_capacity(theta.len());
+    for (index, probe) in probes.iter().enumerate() {
+        let mut theta = theta.clone();
+        *theta.get_mut(index)? += probe;
+        moved.push((
+            Simulation::new(sampled(&with(transfer, &theta))?),
+            1.0 / probe,
+        ));
+    }
+    let mut free = base.free_swing();
+    // How the instruments are driven; in an open loop as the output is.
+    let driven = data.undisturbed.unwrap_or(data.input);
+    let mut instrument = data.undisturbed.map(|_| Simulation::new(base.clone()));
+    let mut simulation = Simulation::new(base);
+    let width = theta.len() + order + 1;
+    let mut normal = Normal::new(width);
+    let mut whitener = Whitener::new(whitening, width + 1);
+    let mut row = vec![0.0; width + 1];
+    let skip = match data.measured {
+        Measured::Direct => 0,
+        Measured::Velocity => 1,
+        Measured::Position => 2,
+    };
+    for (k, y) in data.output.iter().enumerate().take(data.len()) {
+        let simulated = simulation.step(data.input, k);
+        let base = match &mut instrument {
+            Some(instrument) => instrument.step(driven, k),
+            None => simulated,
+        };
+        let mut slots = row.iter_mut();
+        for ((simulation, per_step), slot) in moved.iter_mut().zip(&mut slots) {
+            *slot = (simulation.step(driven, k) - base) * *per_step;
+        }
+        for (x, slot) in free.next_row().iter().zip(&mut slots) {
+            *slot = *x;
+        }
+        if let Some(slot) = slots.next() {
+            *slot = 1.0;
+        }
+        if let Some(slot) = slots.next() {
+            *slot = y - simulated;
+        }
+        if k < skip {
+            continue;
+        }
+        whitener.pass(&mut row);
+        if k >= skip + whitening.len()
+            && let Some((right, columns)) = row.split_last()
+        {
+            normal.add(columns, *right);
+        }
+    }
+    normal.total.is_finite().then_some(normal)
+}
+
+/// The sum of squares that is left when offset and first state fit best.
+fn rest(normal: &Normal, count: usize) -> Option<Solution> {
+    (0..4).find_map(|power| {
+        let damping = [0.0, 1e-12, 1e-9, 1e-6].get(power).copied()?;
+        normal.solve_from(count, damping)
+    })
+}
+
+/// Fits the parameters of a model, from a start. `whitening` are the taps of
+/// the filter that makes the noise white, without the leading 1. `None` when
+/// the data do not determine them.
+#[must_use]
+pub fn refine(
+    data: &Data<'_>,
+    start: &TransferFunction,
+    delay_is_free: bool,
+    whitening: &[f64],
+    effort: Effort,
+) -> Option<Estimate> {
+    // The search goes down on squares; instruments come at its end.
+    let open = Data {
+        undisturbed: None,
+        ..*data
+    };
+    let mut transfer = start.clone();
+    let mut normal = gather(&open, &transfer, delay_is_free, whitening)?;
+    let count = parameters(&transfer, delay_is_free).len();
+    let mut least = rest(&normal, count)?.rest;
+    let mut damping = 1e-4;
+    let power: f64 = data.output.iter().map(|y| y * y).sum();
+    for round in 0..effort.steps {
+        let Some(step) = normal.solve_from(0, damping) else {
+            damping *= 10.0;
+            if damping > 1e6 {
+                return None;
+            }
+            continue;
+        };
+        let next = moved(&transfer, delay_is_free, step.x.as_slice());
+        let tried = Some(&next)
+            .filter(|next| is_admissible(next, data.period_s))
+            .and_then(|next| gather(&open, next, delay_is_free, whitening))
+            .and_then(|normal| Some((rest(&normal, count)?.rest, normal)));
+        match tried {
+            Some((sum, found)) if sum <= least => {
+                let gained = least - sum;
+                transfer = next;
+                normal = found;
+                least = sum;
+                damping = (damping * 0.1).max(1e-12);
+                if gained <= ENOUGH * least / normal.rows as f64 || least <= ROUNDING * power {
+                    break;
+                }
+                // What is missing, in units of the criterion, against what the
+                // step brought.
+                let missing = criterion(least, power, normal.rows, count) - effort.to_beat;
+                let brought = normal.rows as f64 * gained / least;
+                if round >= 7 && missing > 20.0 && brought < 0.2 * missing {
+                    break;
+                }
+            }
+            _ => {
+                damping *= 10.0;
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+    }
+    if data.undisturbed.is_some() {
+        (transfer, normal) = instrumental(data, transfer, delay_is_free, whitening)?;
+    }
+    finish(transfer, &normal, count, power)
+}
+
+/// Steps that bring the products of instruments and differences to zero.
+fn instrumental(
+    data: &Data<'_>,
+    mut transfer: TransferFunction,
+    delay_is_free: bool,
+    whitening: &[f64],
+) -> Option<(TransferFunction, Normal)> {
+    for _ in 0..20 {
+        let normal = gather(data, &transfer, delay_is_free, whitening)?;
+        let step = normal.solve()?;
+        let mut size = 1.0;
+        let next = loop {
+            let part: Vec<f64> = step.x.iter().map(|x| x * size).collect();
+            let next = moved(&transfer, delay_is_free, &part);
+            if is_admissible(&next, data.period_s) {
+                break next;
+            }
+            size *= 0.5;
+            if size < 1e-3 {
+                return None;
+            }
+        };
+        // In standard errors: what is smaller than a thousandth is nothing.
+        let noise = step.rest / normal.rows as f64;
+        let far = step
+            .x
+            .iter()
+            .zip(step.inverse.diagonal().iter())
+            .map(|(x, d)| x.abs() / (d * noise).sqrt().max(f64::MIN_POSITIVE))
+            .take(parameters(&transfer, delay_is_free).len())
+            .fold(0.0, f64::max);
+        transfer = next;
+        if far < 1e-3 {
+            break;
+        }
+    }
+    let normal = gather(data, &transfer, delay_is_free, whitening)?;
+    Some((transfer, normal))
+}
+
+fn moved(transfer: &TransferFunction, delay_is_free: bool, step: &[f64]) -> TransferFunction {
+    let mut theta = parameters(transfer, delay_is_free);
+    for (value, step) in theta.iter_mut().zip(step) {
+        *value += step;
+    }
+    with(transfer, &theta)
+}
+
+fn finish(
+    transfer: TransferFunction,
+    normal: &Normal,
+    count: usize,
+    power: f64,
+) -> Option<Estimate> {
+    let nuisance = rest(normal, count)?;
+    let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-12))?;
+    let unknowns = count + nuisance.x.len();
+    let noise = nuisance.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
+    let (state, offset) = match nuisance.x.as_slice().split_last() {
+        Some((offset, state)) => (state.to_vec(), *offset),
+        None => (Vec::new(), 0.0),
+    };
+    Some(Estimate {
+        transfer,
+        covariance: solution.inverse.view((0, 0), (count, count)) * noise,
+        rest: nuisance.rest,
+        rows: normal.rows,
+        power,
+        count,
+        offset,
+        state,
+    })
+}
+
+/// Differences between measured and simulated output, offset and first state
+/// taken off.
+#[must_use]
+pub fn residuals(data: &Data<'_>, estimate: &Estimate) -> Option<Vec<f64>> {
+    let sampled = Sampled::new(&estimate.transfer, data.measured, data.period_s)?;
+    let mut free = sampled.free_swing();
+    let mut simulation = Simulation::new(sampled);
+    let pairs = data.output.iter().enumerate().take(data.len());
+    Some(
+        pairs
+            .map(|(k, y)| {
+                let row = free.next_row();
+                let swing: f64 = row.iter().zip(&estimate.state).map(|(a, b)| a * b).sum();
+                y - simulation.step(data.input, k) - swing - estimate.offset
+            })
+            .collect(),
+    )
+}

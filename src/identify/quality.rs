@@ -1,0 +1,78 @@
+//! Signals that cannot tell anything: they do not move, or they are cut off.
+
+use super::recording::Signal;
+use super::trouble::{Outcome, Trouble};
+
+/// Refuses a signal that stays the same.
+///
+/// # Errors
+///
+/// When it does.
+pub fn moves(signal: &Signal, help: &str) -> Outcome<()> {
+    let (low, high) = range(&signal.values);
+    let size = low.abs().max(high.abs());
+    if high - low > 1e-9 * size.max(f64::MIN_POSITIVE) && high > low {
+        return Ok(());
+    }
+    Err(Trouble::new(
+        format!("{} stays at {low}: there is no excitation", signal.name),
+        help,
+    ))
+}
+
+/// Refuses a signal that is cut off: a fair part of its samples stand, several
+/// in a row, at exactly its largest or smallest value, while the rest varies
+/// from sample to sample. Signals of few levels, such as an M-sequence, are
+/// meant to.
+///
+/// # Errors
+///
+/// When it is.
+pub fn not_saturated(signal: &Signal) -> Outcome<()> {
+    const SHARE: f64 = 0.01;
+    const RUN: usize = 3;
+    let n = signal.values.len();
+    let (low, high) = range(&signal.values);
+    let changes = signal
+        .values
+        .iter()
+        .zip(signal.values.iter().skip(1))
+        .filter(|(a, b)| a != b)
+        .count();
+    let inside = signal
+        .values
+        .iter()
+        .filter(|v| **v != low && **v != high)
+        .count();
+    if changes * 4 < n || inside * 4 < n {
+        return Ok(());
+    }
+    for (level, name) in [(high, "largest"), (low, "smallest")] {
+        let (mut run, mut stuck) = (0, 0);
+        for value in &signal.values {
+            run = if *value == level { run + 1 } else { 0 };
+            if run == RUN {
+                stuck += RUN;
+            } else if run > RUN {
+                stuck += 1;
+            }
+        }
+        if stuck as f64 > SHARE * n as f64 {
+            return Err(Trouble::new(
+                format!(
+                    "{} is saturated: {stuck} samples stand at its {name} value {level}",
+                    signal.name
+                ),
+                "record again with a smaller amplitude, or with a larger range of the sensor",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn range(x: &[f64]) -> (f64, f64) {
+    x.iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(*v), high.max(*v))
+        })
+}

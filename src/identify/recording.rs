@@ -1,0 +1,240 @@
+//! Recordings: CSV with a header that names quantities and units.
+
+use std::io::Read;
+
+use super::column::{Kind, Quantity, Reading, axis_of, read, units_of};
+use super::trouble::{Outcome, Trouble};
+
+/// Intervals may differ from the period by this share of it.
+const JITTER: f64 = 0.01;
+/// Fewer samples than this are never enough.
+const SAMPLES_MIN: usize = 100;
+/// More samples than this are refused: they would not fit into memory.
+const SAMPLES_MAX: usize = 50_000_000;
+
+/// One recorded signal, in SI.
+#[derive(Debug, Clone)]
+pub struct Signal {
+    /// Name in the header.
+    pub name: String,
+    /// What it is.
+    pub quantity: Quantity,
+    /// Sliding or turning.
+    pub kind: Kind,
+    /// Samples.
+    pub values: Vec<f64>,
+}
+
+/// Signals that were sampled evenly.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// Sampling period, s.
+    pub period_s: f64,
+    /// Signals besides the time.
+    pub signals: Vec<Signal>,
+    /// Columns that were passed over.
+    pub ignored: Vec<String>,
+}
+
+impl Recording {
+    /// Reads CSV; of columns with an axis letter in front, those of `axis`.
+    ///
+    /// # Errors
+    ///
+    /// Anything that keeps the data from being used, with what to do.
+    pub fn read(input: impl Read, axis: Option<char>) -> Outcome<Self> {
+        let mut text = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .flexible(false)
+            .from_reader(input);
+        let header = text.headers().map_err(|error| broken(&error))?.clone();
+        if header.len() < 2 {
+            return Err(Trouble::new(
+                "the recording has fewer than two columns",
+                "separate columns with commas; the first line names them, such as time_s,torque_nm,position_mm",
+            ));
+        }
+        let (columns, ignored) = columns(&header, axis)?;
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+        let mut record = csv::StringRecord::new();
+        while text
+            .read_record(&mut record)
+            .map_err(|error| broken(&error))?
+        {
+            let line = record.position().map_or(0, csv::Position::line);
+            for ((index, name, _), list) in columns.iter().zip(&mut values) {
+                let cell = record.get(*index).unwrap_or_default();
+                let value: f64 = cell.parse().unwrap_or(f64::NAN);
+                if !value.is_finite() {
+                    return Err(Trouble::new(
+                        format!("line {line}: {name} is \"{cell}\", not a number"),
+                        "leave out lines without values, or record again: samples must not be missing",
+                    ));
+                }
+                list.push(value);
+            }
+            if values.first().is_some_and(|list| list.len() > SAMPLES_MAX) {
+                return Err(Trouble::new(
+                    format!("the recording has more than {SAMPLES_MAX} samples"),
+                    "cut it, or record at a lower rate",
+                ));
+            }
+        }
+        let mut time = Vec::new();
+        let mut signals = Vec::new();
+        for ((_, name, meaning), mut values) in columns.into_iter().zip(values) {
+            for value in &mut values {
+                *value *= meaning.to_si;
+            }
+            if meaning.quantity == Quantity::Time {
+                time = values;
+            } else {
+                signals.push(Signal {
+                    name,
+                    quantity: meaning.quantity,
+                    kind: meaning.kind,
+                    values,
+                });
+            }
+        }
+        if time.len() < SAMPLES_MIN {
+            return Err(Trouble::new(
+                format!("the recording is too short: {} samples", time.len()),
+                format!("record at least {SAMPLES_MIN} samples, better several seconds"),
+            ));
+        }
+        Ok(Self {
+            period_s: period(&time)?,
+            signals,
+            ignored,
+        })
+    }
+
+    /// The signal of a quantity.
+    #[must_use]
+    pub fn get(&self, quantity: Quantity) -> Option<&Signal> {
+        self.signals
+            .iter()
+            .find(|signal| signal.quantity == quantity)
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.signals.first().map_or(0, |signal| signal.values.len())
+    }
+
+    /// True without samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+fn broken(error: &csv::Error) -> Trouble {
+    Trouble::new(
+        format!("the recording cannot be read: {error}"),
+        "it must be CSV in UTF-8, every line with as many values as the header has names",
+    )
+}
+
+type Column = (usize, String, super::column::Meaning);
+
+fn columns(header: &csv::StringRecord, axis: Option<char>) -> Outcome<(Vec<Column>, Vec<String>)> {
+    let mut columns: Vec<Column> = Vec::new();
+    let mut ignored = Vec::new();
+    for (index, name) in header.iter().enumerate() {
+        let name = name.trim_start_matches('\u{feff}');
+        let is_ours = match (axis_of(name), axis) {
+            (Some(found), Some(wanted)) => found == wanted,
+            _ => true,
+        };
+        match read(name) {
+            Reading::Known(meaning) if is_ours => {
+                if let Some((_, other, _)) = columns
+                    .iter()
+                    .find(|(_, _, known)| known.quantity == meaning.quantity)
+                {
+                    return Err(Trouble::new(
+                        format!("{other} and {name} are the same quantity"),
+                        "leave one of them in the file, or put the axis letter in front, such as x_position_mm",
+                    ));
+                }
+                columns.push((index, name.to_owned(), meaning));
+            }
+            Reading::UnitInDoubt(quantity) if is_ours => {
+                return Err(Trouble::new(
+                    format!("the unit of column {name} is in doubt"),
+                    format!("end its name with the unit, one of: {}", units_of(quantity)),
+                ));
+            }
+            _ => ignored.push(name.to_owned()),
+        }
+    }
+    if columns
+        .iter()
+        .all(|(_, _, meaning)| meaning.quantity != Quantity::Time)
+    {
+        return Err(Trouble::new(
+            "there is no column time_s",
+            "name the column of time time_s (or time_ms); the header must name quantities and units",
+        ));
+    }
+    Ok((columns, ignored))
+}
+
+/// The sampling period, if there is one.
+fn period(time: &[f64]) -> Outcome<f64> {
+    let intervals: Vec<f64> = time
+        .iter()
+        .zip(time.iter().skip(1))
+        .map(|(before, after)| after - before)
+        .collect();
+    let mut sorted = intervals.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
+    if usual.is_nan() || usual <= 0.0 {
+        return Err(Trouble::new(
+            "the time does not go on",
+            "time_s must grow from line to line",
+        ));
+    }
+    for (index, interval) in intervals.iter().enumerate() {
+        let line = index + 3;
+        let deviation = (interval - usual) / usual;
+        if deviation.abs() <= JITTER {
+            continue;
+        }
+        if *interval <= 0.0 {
+            return Err(Trouble::new(
+                format!("sample {}: the time goes back or stands still", line - 1),
+                "sort the samples by time, each once",
+            ));
+        }
+        let many = intervals
+            .iter()
+            .filter(|other| ((*other - usual) / usual).abs() > JITTER)
+            .count();
+        if deviation > 0.5 && many * 50 < intervals.len() {
+            return Err(Trouble::new(
+                format!(
+                    "a gap behind sample {}: {:.6} s instead of {usual:.6} s",
+                    line - 2,
+                    interval
+                ),
+                "cut the recording there, or record again without losses",
+            ));
+        }
+        return Err(Trouble::new(
+            format!(
+                "sampling is uneven: sample {} comes after {interval:.6} s, others after {usual:.6} s ({many} intervals are off by more than {} %)",
+                line - 1,
+                100.0 * JITTER
+            ),
+            "record with a fixed period, and write the time with enough digits",
+        ));
+    }
+    let span = time.last().copied().unwrap_or_default() - time.first().copied().unwrap_or_default();
+    Ok(span / intervals.len() as f64)
+}

@@ -1,0 +1,346 @@
+//! How many poles and zeros, and how much delay: models of growing order, each
+//! started from the measured frequency response, and the one that Bayes'
+//! criterion prefers.
+
+use super::mode::with_mode;
+use super::noise::{Whiteness, whitening};
+use super::output_error::{Data, Effort, Estimate, refine, residuals};
+use super::response_fit::grow;
+use super::spectrum::{FrequencyResponse, measure};
+use super::subspace::{Subspace, with_poles};
+use super::transfer::{Factor, TransferFunction};
+
+/// Poles at most.
+pub const ORDER_MAX: usize = 8;
+/// Periods of delay that are tried.
+pub const LAG_MAX: usize = 12;
+/// Samples on which models are compared; the last fit takes all.
+const COMPARED: usize = 8_000;
+/// A model better by this much is gone on from without looking at others.
+const CLEAR: f64 = 4.0;
+/// Steps of each fit on the way.
+const SEARCH_STEPS: usize = 20;
+/// Steps from model to model at most.
+const ROUNDS_MAX: usize = 8;
+/// Order of the filter that makes noise white, at most.
+const WHITENING_MAX: usize = 40;
+/// Lags over which residuals are tested.
+pub const LAGS: usize = 40;
+
+/// What is given instead of searched for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Given {
+    /// Number of poles.
+    pub order: Option<usize>,
+    /// Number of zeros.
+    pub zeros: Option<usize>,
+    /// Delay, s.
+    pub delay_s: Option<f64>,
+}
+
+/// A model with how it was found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// The model.
+    pub estimate: Estimate,
+    /// Whether the delay was fitted.
+    pub delay_is_free: bool,
+    /// Taps of the filter that made the noise white.
+    pub whitening: Vec<f64>,
+    /// The measured frequency response.
+    pub response: FrequencyResponse,
+}
+
+/// Searches for the model. `None` if none can be fitted.
+#[must_use]
+pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
+    let response = measure(data.input, data.output, instrument, data.period_s, None)?;
+    let short = data.head(COMPARED);
+    let mut taps: Vec<f64> = Vec::new();
+    let mut best: Option<(Estimate, bool)> = None;
+    // Noise that is not white shows only behind a model, and the model only
+    // when the noise is known: three rounds settle both.
+    for _ in 0..3 {
+        let found = ladder(&short, &response, given, &taps)?;
+        let left = residuals(&short, &found.0)?;
+        let exact = found.0.rest <= 1e-12 * found.0.power;
+        let next = if exact || Whiteness::of(filtered(&left, &taps).as_slice(), LAGS).is_white() {
+            None
+        } else {
+            Some(whitening(&left, WHITENING_MAX))
+        };
+        best = Some(found);
+        match next {
+            Some(next) => taps = next,
+            None => break,
+        }
+    }
+    let (short_estimate, delay_is_free) = best?;
+    let estimate = refine(
+        data,
+        &short_estimate.transfer,
+        delay_is_free,
+        &taps,
+        Effort::FULL,
+    )?;
+    Some(Found {
+        estimate,
+        delay_is_free,
+        whitening: taps,
+        response,
+    })
+}
+
+/// A signal behind the whitening filter, its beginning left out.
+#[must_use]
+pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
+    let order = taps.len();
+    x.windows(order + 1)
+        .map(|window| {
+            let past = window.iter().rev().skip(1);
+            let sum: f64 = past.zip(taps).map(|(x, tap)| x * tap).sum();
+            sum + window.last().copied().unwrap_or_default()
+        })
+        .collect()
+}
+
+/// Models of growing order; the best, and whether its delay is free.
+fn ladder(
+    data: &Data<'_>,
+    response: &FrequencyResponse,
+    given: Given,
+    taps: &[f64],
+) -> Option<(Estimate, bool)> {
+    let starts = starts(data, response, given);
+    let mut best: Option<Estimate> = None;
+    for start in starts {
+        let effort = Effort {
+            steps: SEARCH_STEPS,
+            to_beat: f64::MAX,
+        };
+        if let Some(found) = refine(data, &start, false, taps, effort)
+            && is_better(&found, best.as_ref())
+        {
+            best = Some(found);
+        }
+    }
+    let mut best = best?;
+    for _ in 0..ROUNDS_MAX {
+        let mut top: Option<Estimate> = None;
+        for start in neighbours(&best.transfer, response, given, data.period_s) {
+            let effort = Effort {
+                steps: SEARCH_STEPS,
+                to_beat: top.as_ref().unwrap_or(&best).criterion(),
+            };
+            if let Some(found) = refine(data, &start, false, taps, effort)
+                && is_better(&found, top.as_ref())
+            {
+                let is_clear = found.criterion() < best.criterion() - CLEAR;
+                top = Some(found);
+                if is_clear {
+                    break;
+                }
+            }
+        }
+        match top {
+            Some(top) if is_better(&top, Some(&best)) => best = top,
+            _ => break,
+        }
+    }
+    if given.delay_s.is_some() {
+        return Some((best, false));
+    }
+    Some(any_delay(data, best, taps))
+}
+
+/// Models that differ from one by a zero, a pair of zeros, a mode, or a period
+/// of delay.
+fn neighbours(
+    from: &TransferFunction,
+    response: &FrequencyResponse,
+    given: Given,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    // Dampers make a real zero far above the band: seldom seen in the response,
+    // but not nothing.
+    let far_zero = Factor::Real {
+        time_constant_s: 0.1 * period_s,
+    };
+    let lean = lean(from);
+    let mut out = Vec::new();
+    if given.order.is_none() && lean.order() < from.order() {
+        if lean.zero_count() < lean.order() {
+            let mut more = lean.clone();
+            more.zeros.push(far_zero);
+            out.push(more);
+        }
+        out.push(lean);
+    }
+    let mut shapes = vec![from.clone()];
+    if from.zero_count() < from.order() {
+        let mut more = from.clone();
+        more.zeros.push(far_zero);
+        shapes.push(more);
+    }
+    for index in 0..from.zeros.len() {
+        let mut less = from.clone();
+        let gone = less.zeros.remove(index);
+        shapes.push(less.clone());
+        if gone.degree() == 2 {
+            less.zeros.push(far_zero);
+            shapes.push(less);
+        }
+    }
+    out.extend(shapes.iter().skip(1).cloned());
+    if given.delay_s.is_none() {
+        for shape in &shapes {
+            let mut sooner = shape.clone();
+            sooner.delay_s -= period_s;
+            if sooner.delay_s > -0.5 * period_s {
+                sooner.delay_s = sooner.delay_s.max(0.0);
+                out.push(sooner);
+            }
+        }
+        let mut later = from.clone();
+        later.delay_s += period_s;
+        out.push(later);
+    }
+    if given.order.is_none() {
+        if from.order() + 2 <= ORDER_MAX {
+            out.extend(with_mode(from, response, period_s));
+        }
+        out.extend(without_mode(from, far_zero));
+    }
+    if let Some(zeros) = given.zeros {
+        out.retain(|model| model.zero_count() == zeros);
+    }
+    out
+}
+
+/// What swings of a model: the rest often stands for nothing but noise.
+fn lean(from: &TransferFunction) -> TransferFunction {
+    let swings =
+        |factor: &&Factor| matches!(factor, Factor::Pair { damping, .. } if damping.abs() < 0.7);
+    let poles: Vec<Factor> = from.poles.iter().filter(swings).copied().collect();
+    let order = 2 * poles.len();
+    let mut zeros: Vec<Factor> = from.zeros.iter().filter(swings).copied().collect();
+    zeros.truncate(order / 2);
+    TransferFunction {
+        zeros,
+        poles,
+        ..from.clone()
+    }
+}
+
+/// Without the pole whose zeros lie nearest, and without those.
+fn without_mode(from: &TransferFunction, far_zero: Factor) -> Vec<TransferFunction> {
+    let mut out = Vec::new();
+    for (at, pole) in from.poles.iter().enumerate() {
+        let distance = |zero: &Factor| libm::log(zero.corner_rad_s() / pole.corner_rad_s()).abs();
+        let mut less = from.clone();
+        less.poles.remove(at);
+        let nearest = less
+            .zeros
+            .iter()
+            .enumerate()
+            .filter(|(_, zero)| zero.degree() == pole.degree())
+            .min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)))
+            .map(|(index, _)| index);
+        if let Some(index) = nearest {
+            less.zeros.remove(index);
+        }
+        if less.zero_count() < less.order() {
+            let mut more = less.clone();
+            more.zeros.push(far_zero);
+            out.push(more);
+        }
+        if less.zero_count() <= less.order() {
+            out.push(less);
+        }
+    }
+    out
+}
+
+/// Models to start from: those that fit the frequency response best, for the
+/// best delay and the one a period shorter (with a held input, a model without
+/// direct path may as well be one with it, a period later).
+fn starts(data: &Data<'_>, response: &FrequencyResponse, given: Given) -> Vec<TransferFunction> {
+    let t = data.period_s;
+    let lags: Vec<usize> = match given.delay_s {
+        Some(delay) => vec![libm::round(delay / t) as usize],
+        None => (0..=LAG_MAX).collect(),
+    };
+    let mut fits: Vec<(f64, TransferFunction)> = Vec::new();
+    let mut worse_in_a_row = 0;
+    let mut least = f64::MAX;
+    for lag in lags {
+        let Some(fit) = grow(response, lag, given.order, ORDER_MAX, t) else {
+            continue;
+        };
+        let criterion = fit.criterion();
+        worse_in_a_row = if criterion < least {
+            0
+        } else {
+            worse_in_a_row + 1
+        };
+        least = least.min(criterion);
+        fits.push((criterion, fit.transfer));
+        if worse_in_a_row >= 2 {
+            break;
+        }
+    }
+    fits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    fits.into_iter()
+        .take(2)
+        .map(|(_, transfer)| TransferFunction {
+            delay_s: given.delay_s.unwrap_or(transfer.delay_s),
+            ..transfer
+        })
+        .chain(from_subspace(data, given))
+        .collect()
+}
+
+/// Models from subspaces of the data: good where there is little noise.
+fn from_subspace(data: &Data<'_>, given: Given) -> Vec<TransferFunction> {
+    let Some(subspace) = Subspace::new(data.input, data.output) else {
+        return Vec::new();
+    };
+    let far = 1.5 * std::f64::consts::PI / data.period_s;
+    let orders = match given.order {
+        Some(order) => vec![order],
+        None => vec![2, 4, 6],
+    };
+    orders
+        .into_iter()
+        .filter_map(|order| {
+            let model = with_poles(subspace.poles(order)?, data.input, data.output)?;
+            let start = model.to_continuous(data.period_s, far).ok()?;
+            Some(TransferFunction {
+                delay_s: given.delay_s.unwrap_or(0.0),
+                ..start
+            })
+        })
+        .collect()
+}
+
+fn is_better(found: &Estimate, than: Option<&Estimate>) -> bool {
+    than.is_none_or(|than| found.criterion() < than.criterion())
+}
+
+/// The delay set free, if that is worth a parameter.
+fn any_delay(data: &Data<'_>, best: Estimate, taps: &[f64]) -> (Estimate, bool) {
+    let t = data.period_s;
+    for part in [0.3, -0.3] {
+        let mut start = best.transfer.clone();
+        start.delay_s += part * t;
+        if start.delay_s < 0.0 {
+            continue;
+        }
+        if let Some(found) = refine(data, &start, true, taps, Effort::FULL)
+            && is_better(&found, Some(&best))
+        {
+            return (found, true);
+        }
+    }
+    (best, false)
+}
