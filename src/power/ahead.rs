@@ -387,7 +387,9 @@ impl Ahead {
                     accel_mm_s2: &beside[index].mv.accel_mm_s2,
                 };
                 let window = [part(first, 0), part(own, 1), part(last, 2)];
-                let demand = model.robust_over(&open.mv, &window, open.want);
+                let mut demand = model.robust_over(&open.mv, &window, open.want);
+                // Chords of a small arc may ask for more than the axes' limits.
+                demand.include(&open.assessment.demand);
                 open.assessment.demand = Demand {
                     energy_j: open.assessment.demand.energy_j,
                     ..demand
