@@ -169,12 +169,18 @@ fn neighbours(
     let lean = lean(from);
     let mut out = Vec::new();
     if given.order.is_none() && lean.order() < from.order() {
-        if lean.zero_count() < lean.order() {
-            let mut more = lean.clone();
-            more.zeros.push(far_zero);
-            out.push(more);
+        // Fast poles and zeros may have stood for a delay.
+        let later = if given.delay_s.is_none() { 2 } else { 0 };
+        for periods in 0..=later {
+            let mut less = lean.clone();
+            less.delay_s += f64::from(periods) * period_s;
+            if less.zero_count() < less.order() {
+                let mut more = less.clone();
+                more.zeros.push(far_zero);
+                out.push(more);
+            }
+            out.push(less);
         }
-        out.push(lean);
     }
     let mut shapes = vec![from.clone()];
     if from.zero_count() < from.order() {
@@ -184,12 +190,10 @@ fn neighbours(
     }
     for index in 0..from.zeros.len() {
         let mut less = from.clone();
-        let gone = less.zeros.remove(index);
+        less.zeros.remove(index);
         shapes.push(less.clone());
-        if gone.degree() == 2 {
-            less.zeros.push(far_zero);
-            shapes.push(less);
-        }
+        less.zeros.push(far_zero);
+        shapes.push(less);
     }
     out.extend(shapes.iter().skip(1).cloned());
     if given.delay_s.is_none() {
@@ -201,9 +205,11 @@ fn neighbours(
                 out.push(sooner);
             }
         }
-        let mut later = from.clone();
-        later.delay_s += period_s;
-        out.push(later);
+        for shape in &shapes {
+            let mut later = shape.clone();
+            later.delay_s += period_s;
+            out.push(later);
+        }
     }
     if given.order.is_none() {
         if from.order() + 2 <= ORDER_MAX {
