@@ -3,24 +3,40 @@
 use crate::diagnostic::excerpt;
 use crate::interpret::expression::Fault;
 use crate::source::Span;
+use crate::syntax::{Block, Word};
 
 pub(in crate::interpret) type Outcome<T> = Result<T, Fault>;
 
-/// A place in the text of a block. `( … )` and what follows `;` is not there.
+/// Most words of a block.
+const WORDS_MAX: usize = 256;
+
+/// What a language writes in a way of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::interpret) enum Lexis {
+    /// `( … )` is a comment.
+    Comments,
+    /// SINUMERIK: `( … )` belongs to expressions, names also begin with `$` or
+    /// `_`, and `EX` stands before the exponent of a number.
+    Sinumerik,
+}
+
+/// A place in the text of a block. Comments are not there.
 #[derive(Debug, Clone)]
 pub(in crate::interpret) struct Cursor<'t> {
     pub(in crate::interpret) text: &'t [u8],
     pub(in crate::interpret) at: usize,
     /// Brackets and signs inside one another.
-    pub(super) depth: u32,
+    pub(in crate::interpret) depth: u32,
+    lexis: Lexis,
 }
 
 impl<'t> Cursor<'t> {
-    pub(in crate::interpret) fn new(text: &'t [u8]) -> Self {
+    pub(in crate::interpret) fn new(text: &'t [u8], lexis: Lexis) -> Self {
         Self {
             text,
             at: 0,
             depth: 0,
+            lexis,
         }
     }
 
@@ -30,7 +46,7 @@ impl<'t> Cursor<'t> {
             match self.text.get(self.at)? {
                 b' ' | b'\t' => self.at += 1,
                 b';' => return None,
-                b'(' => {
+                b'(' if self.lexis == Lexis::Comments => {
                     let rest = self.text.get(self.at..)?;
                     self.at += memchr::memchr(b')', rest).map_or(rest.len(), |end| end + 1);
                 }
@@ -59,13 +75,15 @@ impl<'t> Cursor<'t> {
 
     /// The name that is next, upper case; empty where none begins. It stays.
     pub(in crate::interpret) fn name(&mut self) -> String {
-        let begins = self.peek().is_some_and(|byte| byte.is_ascii_alphabetic());
+        let marks = self.lexis == Lexis::Sinumerik;
+        let begins = |byte: u8| byte.is_ascii_alphabetic() || marks && matches!(byte, b'_' | b'$');
+        let begins = self.peek().is_some_and(begins);
         if !begins {
             return String::new();
         }
         let rest = self.text.get(self.at..).unwrap_or_default();
         let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
-        let length = rest.iter().take_while(inside).count();
+        let length = 1 + rest.iter().skip(1).take_while(inside).count();
         String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).to_ascii_uppercase()
     }
 
@@ -92,21 +110,64 @@ impl<'t> Cursor<'t> {
             self.at += 1;
             self.digits();
         }
-        let text = self.text.get(start..self.at).unwrap_or_default();
-        let value = std::str::from_utf8(text)
-            .ok()
-            .and_then(|text| text.parse::<f64>().ok());
+        let mut digits = self.since(start);
+        let exponent = self.text.get(self.at..self.at + 2);
+        if self.lexis == Lexis::Sinumerik
+            && exponent.is_some_and(|letters| letters.eq_ignore_ascii_case(b"EX"))
+        {
+            self.at += 2;
+            let from = self.at;
+            if matches!(self.text.get(self.at), Some(b'+' | b'-')) {
+                self.at += 1;
+            }
+            self.digits();
+            digits.push('e');
+            digits.push_str(&self.since(from));
+        }
+        let value = digits.parse::<f64>().ok();
         if let Some(value) = value.filter(|value| value.is_finite()) {
             return Ok(value);
         }
+        let text = self.text.get(start..self.at).unwrap_or_default();
         let message = format!("`{}` is not a number", excerpt(text, 40));
         let help = "write digits with at most one point";
         Err(self.fault("expression", message, help, start))
     }
 
+    /// The text from `start` to the place.
+    fn since(&self, start: usize) -> String {
+        String::from_utf8_lossy(self.text.get(start..self.at).unwrap_or_default()).into_owned()
+    }
+
     /// Passes over the rest of the block.
     pub(in crate::interpret) fn pass_over_rest(&mut self) {
-        self.at = self.text.len();
+        while self.peek().is_some() {
+            self.at += 1;
+        }
+    }
+
+    /// Adds the word that stands from `start` to the place, with its number
+    /// from `number` on.
+    pub(in crate::interpret) fn add_word(
+        &self,
+        letter: u8,
+        value: f64,
+        start: usize,
+        number: usize,
+        block: &mut Block,
+    ) -> Outcome<()> {
+        if block.words.len() >= WORDS_MAX {
+            let message = "more than 256 words in a block";
+            let help = "write two blocks";
+            return Err(self.fault("too-many-words", message, help, start));
+        }
+        block.words.push(Word {
+            letter,
+            value,
+            span: self.span(start),
+            number: Span::new(number, self.end().max(number)),
+        });
+        Ok(())
     }
 
     /// Passes over `[ … ]`, whatever it holds; gives what is inside.
@@ -138,7 +199,7 @@ impl<'t> Cursor<'t> {
         Err(self.missing(char::from(byte).encode_utf8(&mut [0; 4]), at))
     }
 
-    fn missing(&self, what: &str, at: usize) -> Fault {
+    pub(in crate::interpret) fn missing(&self, what: &str, at: usize) -> Fault {
         let help = "close each bracket, and write operators between values";
         self.fault("expression", format!("`{what}` is missing here"), help, at)
     }

@@ -5,7 +5,7 @@ mod cursor;
 mod function;
 mod operator;
 
-pub(super) use cursor::{Cursor, Outcome};
+pub(super) use cursor::{Cursor, Lexis, Outcome};
 
 use self::function::Function;
 use self::operator::operator;

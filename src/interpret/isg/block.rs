@@ -3,14 +3,10 @@
 use super::{Isg, Note};
 use crate::interpret::direct::is_direct;
 use crate::interpret::execute::Control;
-use crate::interpret::formula::{Cursor, Outcome};
+use crate::interpret::formula::{Cursor, Lexis, Outcome};
 use crate::interpret::report::Report;
 use crate::interpret::transfer::{Go, Transfer};
-use crate::source::Span;
 use crate::syntax::{Block, IssueKind, Word};
-
-/// Most words of a block.
-const WORDS_MAX: usize = 256;
 
 /// A block while it is read.
 pub(super) struct Reading<'c, 'm, 't> {
@@ -44,7 +40,7 @@ impl Control<'_> {
         let mut reading = Reading {
             control: self,
             state: &mut state,
-            cursor: Cursor::new(text.unwrap_or(report.text)),
+            cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Comments),
             notes: Vec::new(),
             place: (self.text, report.line),
             read: Vec::new(),
@@ -188,29 +184,6 @@ impl Reading<'_, '_, '_> {
             ));
         }
         Ok(go)
-    }
-
-    /// Adds a word to the block.
-    pub(super) fn push(
-        &mut self,
-        letter: u8,
-        value: f64,
-        start: usize,
-        number: usize,
-        block: &mut Block,
-    ) -> Outcome<()> {
-        if block.words.len() >= WORDS_MAX {
-            let message = "more than 256 words in a block";
-            let help = "write two blocks";
-            return Err(self.cursor.fault("too-many-words", message, help, start));
-        }
-        block.words.push(Word {
-            letter,
-            value,
-            span: self.cursor.span(start),
-            number: Span::new(number, self.cursor.end().max(number)),
-        });
-        Ok(())
     }
 
     pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {

@@ -88,13 +88,13 @@ impl Reading<'_, '_, '_> {
                     let help = "write it in a block of its own";
                     return Err(self.cursor.fault("dwell-time", message, help, start));
                 }
-                self.push(b'G', 4.0, start, start, block)?;
+                self.cursor.add_word(b'G', 4.0, start, start, block)?;
                 let number = self.cursor.at;
                 let value = self.number()?;
-                self.push(b'P', value, start, number, block)?;
+                self.cursor.add_word(b'P', value, start, number, block)?;
             }
             "ROTATION ON" => self.rotation_on(start, block)?,
-            "ROTATION OFF" => self.push(b'G', 69.0, start, start, block)?,
+            "ROTATION OFF" => self.cursor.add_word(b'G', 69.0, start, start, block)?,
             "HSC ON" => self.hsc(start)?,
             "OVERRIDE" => self.factors(start)?,
             _ => self.listed(&name, start)?,

@@ -15,12 +15,14 @@ impl Reading<'_, '_, '_> {
             let help = "write it in a block of its own";
             return Err(self.cursor.fault("rotation", message, help, start));
         }
-        self.push(b'G', 68.0, start, start, block)?;
-        self.push(b'R', angle.unwrap_or_default(), start, start, block)?;
+        self.cursor.add_word(b'G', 68.0, start, start, block)?;
+        self.cursor
+            .add_word(b'R', angle.unwrap_or_default(), start, start, block)?;
         let [one, two, _] = self.control.modal.plane;
         for (axis, value) in [(one, first), (two, second)] {
             if let Some(letter) = ALL_AXES.get(axis).map(|axis| axis.letter()) {
-                self.push(letter, value.unwrap_or_default(), start, start, block)?;
+                self.cursor
+                    .add_word(letter, value.unwrap_or_default(), start, start, block)?;
             }
         }
         Ok(())

@@ -15,7 +15,7 @@ impl Reading<'_, '_, '_> {
             b'#' => return self.command(block),
             b'0'..=b'9' | b'.' if self.dwells => {
                 let value = self.number()?;
-                self.push(b'P', value, start, start, block)?;
+                self.cursor.add_word(b'P', value, start, start, block)?;
             }
             b'"' => {
                 self.cursor.pass_over_rest();
@@ -45,7 +45,7 @@ impl Reading<'_, '_, '_> {
             // `G04 P1`: the parameter's value; as on other controls, where it
             // has none.
             let value = self.dwell_value()?;
-            self.push(b'P', value, start, start, block)?;
+            self.cursor.add_word(b'P', value, start, start, block)?;
             return Ok(None);
         }
         if variable {
@@ -97,14 +97,14 @@ impl Reading<'_, '_, '_> {
             let number = self.cursor.at;
             let value = self.plain_or_expression()?;
             self.dwells |= letter == b'G' && value == 4.0;
-            self.push(letter, value, start, number, block)?;
+            self.cursor.add_word(letter, value, start, number, block)?;
             if self.cursor.assigns() {
                 let start = self.cursor.at;
                 self.cursor.at += 1;
                 self.cursor.peek();
                 let number = self.cursor.at;
                 let value = self.number()?;
-                self.push(b'=', value, start, number, block)?;
+                self.cursor.add_word(b'=', value, start, number, block)?;
             }
             return Ok(());
         }
@@ -122,7 +122,7 @@ impl Reading<'_, '_, '_> {
             let help = "a block number stands at the beginning of its block";
             return Err(self.cursor.fault("syntax", message, help, start));
         }
-        self.push(letter, value, start, number, block)
+        self.cursor.add_word(letter, value, start, number, block)
     }
 
     /// `G1`, not `G1 + X5`: numbers of codes are no expressions.

@@ -3,14 +3,10 @@
 use super::{Note, Osp};
 use crate::interpret::execute::Control;
 use crate::interpret::expression::Fault;
-use crate::interpret::formula::{Cursor, Outcome};
+use crate::interpret::formula::{Cursor, Lexis, Outcome};
 use crate::interpret::report::Report;
 use crate::interpret::transfer::{Go, Transfer};
-use crate::source::Span;
 use crate::syntax::{Block, IssueKind, Word};
-
-/// Most words of a block.
-const WORDS_MAX: usize = 256;
 
 /// A block while it is read.
 pub(super) struct Reading<'c, 't> {
@@ -38,7 +34,7 @@ impl Control<'_> {
         let text = report.text.get(..block.text_end as usize);
         let mut reading = Reading {
             state: &mut state,
-            cursor: Cursor::new(text.unwrap_or(report.text)),
+            cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Comments),
             notes: Vec::new(),
             read: Vec::new(),
             assigned: Vec::new(),
@@ -153,29 +149,6 @@ impl Reading<'_, '_> {
                        programs behind it run where they are called";
         self.note("several-programs", message, start);
         Ok(Some(Go::End))
-    }
-
-    /// Adds a word to the block.
-    pub(super) fn push(
-        &mut self,
-        letter: u8,
-        value: f64,
-        start: usize,
-        number: usize,
-        block: &mut Block,
-    ) -> Outcome<()> {
-        if block.words.len() >= WORDS_MAX {
-            let message = "more than 256 words in a block";
-            let help = "write two blocks";
-            return Err(self.cursor.fault("too-many-words", message, help, start));
-        }
-        block.words.push(Word {
-            letter,
-            value,
-            span: self.cursor.span(start),
-            number: Span::new(number, self.cursor.end().max(number)),
-        });
-        Ok(())
     }
 
     pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {

@@ -241,7 +241,7 @@ impl Reading<'_, '_> {
             let help = "a sequence name stands at the beginning of its block";
             return Err(self.cursor.fault("syntax", message, help, start));
         }
-        self.push(letter, value, start, number, block)
+        self.cursor.add_word(letter, value, start, number, block)
     }
 }
 

@@ -13,8 +13,8 @@ use crate::machine::{AxisKind, Family, PathMode};
 use crate::syntax::{Block, IssueKind};
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 
-use super::cursor::Cursor;
 use super::reading::Reading;
+use crate::interpret::formula::{Cursor, Lexis};
 
 impl Control<'_> {
     /// Reads a block that is more than plain words. True when the program does
@@ -32,7 +32,7 @@ impl Control<'_> {
         let mut reading = Reading {
             control: self,
             state: &mut state,
-            cursor: Cursor::new(text.unwrap_or(report.text)),
+            cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Sinumerik),
             notes: Vec::new(),
         };
         let not_finite = block

@@ -5,9 +5,9 @@
 //! (PROC)".
 
 use super::Saved;
-use super::cursor::Outcome;
 use super::reading::Reading;
 use super::value::{COUNT_MAX, Kind, Scope, Val, Variable};
+use crate::interpret::formula::Outcome;
 
 /// Dimensions of something that is no array.
 const SINGLE: [usize; 3] = [1; 3];

@@ -4,10 +4,10 @@
 //! loosest, looser than AND and OR. "Precision correction on comparison errors":
 //! values are equal when they differ by less than 1e-12 of themselves.
 
-use super::cursor::Outcome;
 use super::function::Function;
 use super::reading::Reading;
 use super::value::{Val, truth};
+use crate::interpret::formula::Outcome;
 
 /// Brackets and signs inside one another.
 const DEPTH_MAX: u32 = 64;

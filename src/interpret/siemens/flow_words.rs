@@ -4,10 +4,10 @@
 //! "Repeat program section (REPEAT, REPEATB, ENDLABEL)", "Check structures",
 //! "Subprogram technique".
 
-use super::cursor::Outcome;
 use super::reading::Reading;
 use super::value::{Argument, Val};
 use super::{Called, ModalCall, cycle};
+use crate::interpret::formula::Outcome;
 use crate::interpret::transfer::{Direction, Siemens as Go};
 
 /// Repetitions that one word may ask for.

@@ -6,10 +6,10 @@
 //! that. Several angles of one block are turned about Z, the new Y, the new X
 //! (RPY, the default).
 
-use super::cursor::Outcome;
 use super::frame::{Frame, SPACE};
 use super::reading::Reading;
 use super::{Siemens, frame};
+use crate::interpret::formula::Outcome;
 use crate::machine::{AXES, AxisId, AxisSet, AxisValues};
 
 /// What is said where tool lengths would matter.

@@ -4,13 +4,13 @@
 
 use std::collections::HashMap;
 
-use super::cursor::Outcome;
 use super::reading::Reading;
 use super::value::{Kind, Val};
 use super::{Siemens, frame_words};
 use crate::interpret::code::GCode;
 use crate::interpret::compensation::{Choice, ContourFeed};
 use crate::interpret::execute::{Control, Run};
+use crate::interpret::formula::Outcome;
 
 use super::codes::Code;
 

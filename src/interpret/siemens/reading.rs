@@ -1,9 +1,9 @@
 //! What is needed to read a block, and variables by name.
 
-use super::cursor::{Cursor, Outcome};
 use super::value::{COUNT_MAX, Kind, Val};
 use super::{Extra, Siemens};
 use crate::interpret::execute::Control;
+use crate::interpret::formula::{Cursor, Outcome};
 use crate::source::Span;
 
 /// Highest R parameter that a control can have.

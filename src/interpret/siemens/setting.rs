@@ -1,8 +1,8 @@
 //! Names that set something, and addresses of several letters.
 
-use super::cursor::Outcome;
 use super::reading::Reading;
 use crate::interpret::compensation::Insert;
+use crate::interpret::formula::Outcome;
 use crate::syntax::Block;
 
 impl Reading<'_, '_, '_> {

@@ -3,18 +3,14 @@
 //! "Fundamental Principles", "NC blocks", "Identifiers", "Value assignments":
 //! one letter with a number needs no `=`, everything else does.
 
-use super::cursor::Outcome;
 use super::names::Name;
 use super::reading::Reading;
 use super::value::{Kind, Val};
 use super::{Measure, frame_words};
+use crate::interpret::formula::Outcome;
 use crate::interpret::transfer::Siemens as Go;
 use crate::machine::AxisId;
-use crate::source::Span;
 use crate::syntax::{Block, Word};
-
-/// Most words of a block.
-const WORDS_MAX: usize = 256;
 
 impl Reading<'_, '_, '_> {
     /// Reads the block: its words get their values. Gives where the program
@@ -391,11 +387,6 @@ impl Reading<'_, '_, '_> {
         number: usize,
         block: &mut Block,
     ) -> Outcome<()> {
-        if block.words.len() >= WORDS_MAX {
-            let message = "more than 256 words in a block";
-            let help = "write two blocks";
-            return Err(self.cursor.fault("too-many-words", message, help, start));
-        }
         let refused = match letter {
             b'N' | b'O' => Some("a block number stands at the beginning of its block"),
             b'R' => Some("an R parameter needs `=` and its value"),
@@ -406,13 +397,7 @@ impl Reading<'_, '_, '_> {
             let help = "write it in its place";
             return Err(self.cursor.fault("syntax", message, help, start));
         }
-        block.words.push(Word {
-            letter,
-            value,
-            span: self.cursor.span(start),
-            number: Span::new(number, self.cursor.end().max(number)),
-        });
-        Ok(())
+        self.cursor.add_word(letter, value, start, number, block)
     }
 
     /// Adds a word that the program writes by a name.

@@ -3,9 +3,9 @@
 //! "System variables": `$AA_IW` and `$AA_IM` are the positions of an axis in
 //! work and machine coordinates, `$P_EP` the end of the last block.
 
-use super::cursor::Outcome;
 use super::reading::Reading;
 use super::value::Val;
+use crate::interpret::formula::Outcome;
 use crate::machine::AxisId;
 
 impl Reading<'_, '_, '_> {
