@@ -20,6 +20,7 @@ mod phases;
 mod power;
 mod rig;
 mod identify;
+mod tune;
 mod limit;
 mod lookahead;
 mod machine;

@@ -11,6 +11,7 @@ mod power_fit;
 mod program;
 mod report;
 mod spindle;
+mod tune;
 
 use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
@@ -26,6 +27,7 @@ pub use power_fit::PowerFitArgs;
 pub use program::{MachineArgs, ProgramArgs, StartArg};
 pub use report::ReportArgs;
 pub use spindle::SpindleArgs;
+pub use tune::{DiscretizeArg, TuneArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -80,6 +82,8 @@ pub enum Command {
     Excite(ExciteArgs),
     /// Find mass, friction and resonances of an axis in a recording
     Identify(IdentifyArgs),
+    /// Make filters that let several axes answer alike
+    Tune(TuneArgs),
     /// Fit the power model of an axis to a log of the drive's power
     PowerFit(PowerFitArgs),
     /// Print a completion script for a shell

@@ -10,6 +10,7 @@ pub mod moves;
 pub mod power_fit;
 pub mod report;
 pub mod spindle;
+pub mod tune;
 
 mod clash;
 mod input;

@@ -17,6 +17,8 @@ mod record;
 mod sarif;
 mod spindle;
 mod text;
+mod tune_page;
+mod tuned;
 
 pub use chart::SpindleChart;
 pub use checked::{Checked, Verdict, chain};
@@ -36,3 +38,5 @@ pub use record::COLUMNS;
 pub use sarif::sarif;
 pub use spindle::{SpindleRows, spindle_text};
 pub use text::{axis_table, check_text, limit_text};
+pub use tune_page::tune_page;
+pub use tuned::{sections_csv, tuned_json, tuned_text};
