@@ -21,6 +21,7 @@ mod power;
 mod rig;
 mod identify;
 mod tune;
+mod contour;
 mod limit;
 mod lookahead;
 mod machine;

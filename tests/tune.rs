@@ -1,6 +1,7 @@
 //! Response correction: filters, delays, files, and the page.
 
 use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -37,7 +38,10 @@ fn axis(letter: char, zeros: &[(f64, f64)]) -> AxisResponse {
     let mut text =
         format!("schema = 1\n[axes.{letter}]\ninput = \"force\"\nmass_kg = 100\nzeros = [\n");
     for (hz, damping) in zeros {
-        text += &format!("{{ frequency_hz = {hz:?}, damping = {damping:?} }},\n");
+        let _ = write!(
+            text,
+            "{{ frequency_hz = {hz:?}, damping = {damping:?} }},\n"
+        );
     }
     text += "]\n";
     Parameters::read(&text).unwrap().axes.remove(0)

@@ -1,6 +1,7 @@
 //! The command line: types only.
 
 mod check;
+mod contour;
 mod diff;
 mod excite;
 mod identify;
@@ -17,6 +18,7 @@ use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
 
 pub use check::{CheckArgs, Format};
+pub use contour::ContourArgs;
 pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
@@ -84,6 +86,8 @@ pub enum Command {
     Identify(IdentifyArgs),
     /// Make filters that let several axes answer alike
     Tune(TuneArgs),
+    /// Say how far the load is from the programmed path
+    Contour(ContourArgs),
     /// Fit the power model of an axis to a log of the drive's power
     PowerFit(PowerFitArgs),
     /// Print a completion script for a shell

@@ -10,7 +10,7 @@ use gwatt::identify::merge::{self, AxisFigures, force_per_torque, six_digits};
 use gwatt::identify::response_table::{self, ResponseFigures};
 use gwatt::identify::rigid::{self, Friction, Rigid};
 use gwatt::identify::tune::Zero;
-use gwatt::identify::{Given, Kind, Quantity, Recording};
+use gwatt::identify::{Given, Kind, Quantity, Recording, TransferFunction};
 use gwatt::report::{Heading, Verdict, flexible_json, flexible_text, rigid_json, rigid_text};
 
 use super::clash::refuse_clashes;
@@ -347,13 +347,17 @@ fn response(axis: &Flexible, out: &mut dyn Write) -> io::Result<()> {
         "frequency_hz,gain,phase_deg,coherence,model_gain,model_phase_deg"
     )?;
     let measured = &axis.response;
+    let fitted = TransferFunction {
+        delay_s: axis.fitted_delay_s,
+        ..axis.transfer.clone()
+    };
     for ((f, g), coherence) in measured
         .frequency_hz
         .iter()
         .zip(&measured.response)
         .zip(&measured.coherence)
     {
-        let model = axis.transfer.at_hz(*f);
+        let model = fitted.at_hz(*f);
         writeln!(
             out,
             "{f},{},{},{coherence},{},{}",

@@ -1,6 +1,7 @@
 //! What each command does.
 
 pub mod check;
+pub mod contour;
 pub mod diff;
 pub mod excite;
 pub mod identify;

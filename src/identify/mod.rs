@@ -6,6 +6,7 @@
 //! acceleration, whose zeros are the axis' anti-resonances. [`tune`] makes the
 //! filters that let several axes answer alike.
 
+pub mod contour;
 pub mod excitation;
 pub mod flexible;
 pub mod judgement;

@@ -59,7 +59,9 @@ fn write_axis(axis: &mut Item, figures: &ResponseFigures) -> Option<()> {
         ("force_poles", &figures.force_poles),
     ];
     for (key, factors) in lists {
-        if let Some(factors) = factors {
+        if factors.as_ref().is_some_and(Vec::is_empty) {
+            response.remove(key);
+        } else if let Some(factors) = factors {
             set_list(response, key, list(factors));
         }
     }

@@ -3,6 +3,8 @@
 mod chart;
 mod checked;
 mod comparison;
+mod contour_chart;
+mod contoured;
 mod csv;
 mod figure;
 mod finding;
@@ -23,6 +25,10 @@ mod tuned;
 pub use chart::SpindleChart;
 pub use checked::{Checked, Verdict, chain};
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
+pub use contour_chart::{ContourChart, circle_chart};
+pub use contoured::{
+    ArcList, CONTOUR_COLUMNS, contour_csv_row, contour_json, contour_json_row, contour_text,
+};
 pub use csv::CsvRows;
 pub use github::github;
 pub use identified::{

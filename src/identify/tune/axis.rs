@@ -186,6 +186,7 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
             ));
         }
     }
+    let early_s = found.fitted_delay_s - found.transfer.delay_s;
     let further_zeros = found
         .transfer
         .zeros
@@ -206,7 +207,7 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
         delay_s: found.transfer.delay_s,
         position_gain_1_s: None,
         measured: Some(found.response),
-        hold_s: hold_periods(recording, from_command) * recording.period_s,
+        hold_s: hold_periods(recording, from_command) * recording.period_s + early_s,
         dips: found_dips,
         notes,
     })
