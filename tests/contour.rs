@@ -163,7 +163,7 @@ fn correction(x: (f64, f64), y: (f64, f64)) -> String {
             "[axes.{letter}.correction]\nperiod_ms = 1\nsections = [\n"
         );
         for section in &filter.sections {
-            let _ = write!(text, "{:?},\n", section.coefficients());
+            let _ = writeln!(text, "{:?},", section.coefficients());
         }
         text += "]\n";
     }
