@@ -6,26 +6,11 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, Options, Reading};
 use insta::assert_snapshot;
 
+use crate::listing::machine_of;
+
 /// A machine with linear axes X Y Z U and rotary axes A C.
 pub(crate) fn machine(controller: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
-    );
-    for axis in ["X", "Y", "Z", "U"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
-        );
-    }
-    for axis in ["A", "C"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
-        );
-    }
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
+    machine_of(controller, "", "XYZU", "AC")
 }
 
 /// The moves of a program, a line each: line, kind, the axes that differ from

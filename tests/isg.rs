@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use insta::assert_snapshot;
 use proptest::prelude::*;
 
-use crate::listing::{listing, machine, refusals, without_lines};
+use crate::listing::{listing, machine, refusals, without_lines, wrong_values};
 
 fn moves(program: &str) -> String {
     listing(program, &machine("isg"), None)
@@ -59,15 +59,7 @@ fn expressions_have_the_values_of_the_manual() {
             4.0,
         ),
     ];
-    let mut wrong = String::new();
-    for (program, expected) in cases {
-        let found = moves(&format!("G0\n{program}\n"));
-        let ends = format!(" X{}", (expected * 1e4).round() / 1e4);
-        if !(found.trim_end().ends_with(&ends) && found.lines().count() == 1) {
-            let _ = writeln!(wrong, "{program}: {found}");
-        }
-    }
-    assert_eq!(wrong, "");
+    assert_eq!(wrong_values(&cases, moves), "");
 }
 
 /// "The IF - ELSE branch", "Switch branching", "Counting loop", loops with a

@@ -31,3 +31,5 @@ mod isg;
 mod okuma;
 mod fanuc;
 mod turning;
+mod borrowed;
+mod lathe_cycles;

@@ -76,7 +76,7 @@ pub(super) struct Control<'m> {
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,
     pub(super) turning: Turning,
-    block_delete: bool,
+    pub(super) block_delete: bool,
     pub(super) begun: bool,
     pub(super) ended: bool,
     pub(super) has_program_number: bool,

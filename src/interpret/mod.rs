@@ -23,6 +23,7 @@ mod frame;
 mod isg;
 mod knob;
 mod knob_words;
+mod lathe_cycle;
 mod m_words;
 mod modal;
 mod motion;
@@ -55,6 +56,7 @@ mod tools;
 mod transfer;
 mod turned_arc;
 mod turning;
+mod vector;
 mod words;
 
 pub(crate) use transfer::Transfer;

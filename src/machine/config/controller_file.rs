@@ -41,6 +41,11 @@ pub(crate) struct LanguageTable {
     /// The words that G4 takes; if a block has several, the last one here wins.
     #[schemars(required)]
     pub(crate) dwell: Option<Vec<At<DwellTable>>>,
+    /// The motion word in force at power-on is G0; default false: none is.
+    pub(crate) rapid_at_power_on: Option<bool>,
+    /// O words as FluidNC has them: a label may serve several branches and loops,
+    /// and a break leaves nothing behind; default false.
+    pub(crate) loose_o_words: Option<bool>,
     /// Unit at power-on; default mm.
     pub(crate) units: Option<UnitsName>,
     /// Distance mode at power-on; default absolute.

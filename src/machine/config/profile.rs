@@ -58,6 +58,8 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             FamilyName::Siemens => Family::Siemens,
         },
         dwell,
+        rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
+        loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
         absolute: table.distance != Some(DistanceName::Incremental),
         arc_absolute: table.arc_centre == Some(DistanceName::Absolute),
