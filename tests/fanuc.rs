@@ -226,7 +226,7 @@ fn what_is_refused_by_name() {
         ("G12.1", "G12.1 is polar interpolation"),
         ("G107 C10.", "G107 is cylindrical interpolation"),
         ("G150", "G150 is a pocket"),
-        ("G13 F1.", "G13 is a circular pocket"),
+        ("G13 F1.", "G12 and G13: without I"),
         ("G47", "G47 is engraving of text"),
         ("G51.2", "G51.2 is turning of polygons"),
         (

@@ -33,6 +33,7 @@ mod offsets;
 mod osp;
 mod parameter_file;
 mod parameters;
+mod pocket;
 mod position;
 mod programmed;
 mod printer;

@@ -101,6 +101,8 @@ pub struct Dialect {
     pub other_m: bool,
     /// F is a feed per revolution at power-on.
     pub per_revolution: bool,
+    /// G12 and G13 mill circular pockets.
+    pub circular_pocket: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
 }

@@ -228,7 +228,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         *stuck |= diagnostics.errors > 0 && run > 1;
         let mut transfer = interpreter.transfer();
         let mut done = Ok(());
-        let cycle = match &transfer {
+        let cycle = match &mut transfer {
             Some(Transfer::Contour(contour)) => {
                 Some(flow.turn(contour, interpreter, block, steps, diagnostics))
             }

@@ -93,6 +93,8 @@ pub(crate) struct LanguageTable {
     pub(crate) other_m: Option<bool>,
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
+    /// G12 and G13 mill circular pockets, as on a Haas; default false.
+    pub(crate) circular_pocket: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
 }

@@ -113,6 +113,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
+        circular_pocket: table.circular_pocket.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
     };
     dialect.active = dialect != Dialect::default();
