@@ -71,6 +71,6 @@ pub use knob::KnobState;
 pub use modal::{Feed, Modal, NumberText};
 pub use moves::*;
 pub use parameter_file::ParameterFile;
-pub use position::{Reading, Start};
+pub use position::{BlockDelete, Reading, Start};
 pub use report::Diagnostics;
 pub use tool_table::{Tool, ToolTable};

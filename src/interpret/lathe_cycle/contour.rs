@@ -52,7 +52,7 @@ impl Interpreter<'_> {
             line,
             text,
         };
-        if block.delete_level != 0 && control.block_delete || block.tape {
+        if control.block_delete.passes(block.delete_level) || block.tape {
             return None;
         }
         let errors = report.diagnostics.errors;
