@@ -108,6 +108,9 @@ impl Control<'_> {
             uses_motion: true,
             uses_feed,
             executed: true,
+            plain: straight.motion == self.modal.motion
+                && self.special.active == 0
+                && feed.is_none_or(|feed| self.modal.feed == Some(feed)),
             feed_mm_per_unit: self.modal.mm_per_unit,
             ..Facts::default()
         };
@@ -181,7 +184,7 @@ impl Control<'_> {
 
     /// Whether the state lets a straight move be just that.
     #[inline]
-    fn may_go_direct(&self) -> bool {
+    pub(super) fn may_go_direct(&self) -> bool {
         self.direct
             && !self.ended
             && !self.bent
@@ -368,18 +371,21 @@ mod tests {
         })
     }
 
+    fn all_axes(controller: &str) -> Machine {
+        let axis = "rapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n";
+        let text = format!(
+            "schema = 1\nname = \"all\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 500\n\
+             [axes.X]\n{axis}[axes.Y]\n{axis}[axes.Z]\n{axis}[axes.E]\n{axis}\
+             [axes.A]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 90\ninertia_kg_m2 = 1\n"
+        );
+        Machine::from_toml("all.toml", &text).unwrap().0
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
         #[test]
         fn both_ways_come_to_the_same((controller, lines, unknown) in lines()) {
-            let axis = "rapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n";
-            let text = format!(
-                "schema = 1\nname = \"all\"\ncontroller = \"{}\"\n[converter]\npeak_power_w = 500\n\
-                 [axes.X]\n{axis}[axes.Y]\n{axis}[axes.Z]\n{axis}[axes.E]\n{axis}\
-                 [axes.A]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 90\ninertia_kg_m2 = 1\n",
-                STATES[controller].0
-            );
-            let (machine, _) = Machine::from_toml("all.toml", &text).unwrap();
+            let machine = all_axes(STATES[controller].0);
             let mut reading = Reading::default();
             if unknown {
                 reading.start = Start::Unknown;
@@ -401,10 +407,56 @@ mod tests {
                         "{:?} {:?} {:?} {:?} {}",
                         control.modal, control.position, control.special, control.knobs, control.begun
                     );
+                    facts.plain = false;
                     (steps, *facts, state, format!("{:?}", diagnostics.list))
                 });
                 prop_assert_eq!(short, long, "{}: {:?}", line, lines);
             }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+        #[test]
+        fn plain_blocks_may_be_followed((controller, lines, unknown) in lines()) {
+            let machine = all_axes(STATES[controller].0);
+            let mut reading = Reading::default();
+            if unknown {
+                reading.start = Start::Unknown;
+            }
+            let [mut one, mut other] = [(); 2].map(|()| Interpreter::new(&machine, &reading));
+            let mut diagnostics = [(); 2].map(|()| Diagnostics::default());
+            let (mut stance, mut behind) = (one.stance(), false);
+            for (number, line) in (1..).zip(&lines) {
+                let mut facts = [Facts::default(); 2];
+                let mut steps = [(); 2].map(|()| Vec::new());
+                let mut run = |interpreter: &mut Interpreter<'_>, which: usize| {
+                    let mut block = Block::default();
+                    scan_line(line.as_bytes(), number == 1, &mut block);
+                    interpreter.execute(
+                        number, line.as_bytes(), &mut block, &mut steps[which],
+                        &mut facts[which], &mut diagnostics[which],
+                    );
+                    facts[which].plain
+                };
+                if run(&mut one, 0) {
+                    let Some(Step::Move(mv)) = steps[0].first() else { unreachable!() };
+                    stance.move_to(&mv.end);
+                    behind = true;
+                    prop_assert_eq!(steps[0].len(), 1);
+                } else {
+                    if std::mem::take(&mut behind) {
+                        other.follow(&stance);
+                    }
+                    run(&mut other, 1);
+                    stance = one.stance();
+                    prop_assert_eq!(&steps[0], &steps[1], "{}: {:?}", line, lines);
+                    prop_assert!(other.stands_as(&stance));
+                }
+                prop_assert_eq!(&stance, &one.stance());
+            }
+            let [one, other] = diagnostics;
+            prop_assert_eq!(format!("{:?}", one.list), format!("{:?}", other.list));
         }
     }
 

@@ -1,14 +1,19 @@
 //! The certificate: what was written is read, interpreted, planned and
-//! evaluated again, and held against the original.
+//! evaluated again, and held against the original. A plain block that stands in
+//! both programs byte for byte is not read again while both are in the same
+//! state: it could only give the same move.
 //!
 //! It holds only if (a) every move fits, (b) end points, arcs, dwells and
 //! actions are the original's, (c) no effective path speed or acceleration
 //! went up, (d) the effective feed of each untouched move is what it was.
 
+use super::batch::Batch;
 use super::tally::Tally;
 use super::{Failure, Options, Row, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Action, Arc, Diagnostics, Facts, Interpreter, Move, MoveKind, Step};
+use crate::interpret::{
+    Action, Arc, Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step,
+};
 use crate::limit::{Depths, Place};
 use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
@@ -55,14 +60,6 @@ pub(super) struct ExpectedMove {
     pub(super) row: Option<Box<Row>>,
 }
 
-/// A piece of the written program with what it must do.
-#[derive(Debug, Default)]
-pub(super) struct Batch {
-    /// Whole lines.
-    pub(super) bytes: Vec<u8>,
-    pub(super) expected: Vec<Expected>,
-}
-
 /// Reads the written program.
 pub(super) struct Certifier<'m, 'r> {
     interpreter: Interpreter<'m>,
@@ -72,6 +69,12 @@ pub(super) struct Certifier<'m, 'r> {
     steps: Vec<Step>,
     facts: Facts,
     line: u64,
+    /// The original's state behind the last block.
+    original: Stance,
+    /// The written program is in the same one.
+    in_step: bool,
+    /// Its interpreter has yet to be told where plain blocks have moved to.
+    behind: bool,
     verdict: Verdict<'m, 'r>,
 }
 
@@ -135,8 +138,12 @@ impl<'m, 'r> Certifier<'m, 'r> {
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
+        let interpreter = Interpreter::new(machine, &options.reading);
         Self {
-            interpreter: Interpreter::new(machine, &options.reading),
+            original: interpreter.stance(),
+            in_step: true,
+            behind: false,
+            interpreter,
             diagnostics: Diagnostics::default(),
             assessor: Assessor::new(machine, options.certificate, Want::ALL),
             block: Block::default(),
@@ -150,7 +157,44 @@ impl<'m, 'r> Certifier<'m, 'r> {
     /// Takes the next piece and leaves its buffers empty.
     pub(super) fn take(&mut self, batch: &mut Batch) -> Result<(), Failure> {
         self.verdict.refill(&mut batch.expected);
-        for text in lines(&batch.bytes) {
+        let mut rest = batch.bytes.as_slice();
+        let mut moves = batch.moves.iter_mut();
+        let mut stances = batch.stances.drain(..);
+        for block in &batch.blocks {
+            let Some((text, behind)) = rest.split_at_checked(block.length) else {
+                break;
+            };
+            rest = behind;
+            let mv = if block.plain { moves.next() } else { None };
+            if let Some(mv) = mv {
+                if self.in_step && block.unchanged {
+                    self.original.move_to(&mv.end);
+                    self.repeat(mv, text);
+                    continue;
+                }
+                self.execute(text);
+                self.original.move_to(&mv.end);
+            } else {
+                self.execute(text);
+                if let Some(stance) = stances.next() {
+                    self.original = stance;
+                }
+            }
+            self.in_step = self.interpreter.stands_as(&self.original);
+        }
+        self.execute(rest);
+        drop(stances);
+        batch.clear();
+        self.verdict.expect_nothing();
+        self.verdict.tally.check()
+    }
+
+    /// Executes lines of the written program, and judges what they do.
+    fn execute(&mut self, text: &[u8]) {
+        if std::mem::take(&mut self.behind) {
+            self.interpreter.follow(&self.original);
+        }
+        for text in lines(text) {
             self.line += 1;
             scan_line(text, self.line == 1, &mut self.block);
             self.steps.clear();
@@ -163,6 +207,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 facts,
                 verdict,
                 line,
+                ..
             } = self;
             interpreter.execute(*line, text, block, steps, facts, diagnostics);
             for step in &*steps {
@@ -183,9 +228,22 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 }
             }
         }
-        batch.bytes.clear();
-        self.verdict.expect_nothing();
-        self.verdict.tally.check()
+    }
+
+    /// Judges the move of a plain block that stands in both programs, in the
+    /// same state: read again, it would be the same move.
+    fn repeat(&mut self, mv: &mut Move, text: &[u8]) {
+        let Self {
+            assessor, verdict, ..
+        } = self;
+        self.line += 1;
+        mv.line = self.line;
+        self.behind = true;
+        verdict.done += 1;
+        assessor.want = verdict.tally.want();
+        assessor.push(mv, text, &mut |mv, after, text| {
+            verdict.judge(mv, after, text);
+        });
     }
 
     /// Judges what is left and gives the figures.

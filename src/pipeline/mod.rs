@@ -2,6 +2,7 @@
 
 mod advice;
 mod analyze;
+mod batch;
 mod by_line;
 mod certify;
 mod conditions;

@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
 
 use super::analyze::refuse_planned;
-use super::certify::{Batch, Expected, ExpectedMove, Reasons};
+use super::batch::Batch;
+use super::certify::{Expected, ExpectedMove, Reasons};
 use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
 use super::front::Front;
@@ -137,8 +138,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.finish_moves();
         self.write_decided();
         if !self.front.interpreter().ended() {
+            let batch = &mut self.batch;
+            let last = batch.bytes.len();
             self.rewriter
-                .finish(&self.mark, self.knobs.as_ref(), &mut self.batch.bytes);
+                .finish(&self.mark, self.knobs.as_ref(), &mut batch.bytes);
+            if batch.bytes.len() > last {
+                // The first byte may be the line end that the last block lacks.
+                batch.blocks.pop();
+            }
         }
         self.deliver(deliver)?;
         self.output.flush().map_err(Failure::Output)?;
@@ -376,12 +383,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             change: change.as_ref().unwrap_or(&Change::NONE),
             stops: entry.needs_stops(self.machine, change.as_ref()),
         };
+        let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
             self.reasons
                 .push(0, "edit", message, "change the block by hand", &entry.text);
             self.batch.bytes.extend_from_slice(&entry.text);
         }
+        self.batch.end_block(start, &mut entry);
         self.expect(&mut entry, change.as_ref());
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
