@@ -20,6 +20,8 @@ mod phases;
 mod power;
 mod rig;
 mod identify;
+mod tune;
+mod contour;
 mod limit;
 mod lookahead;
 mod machine;
