@@ -16,6 +16,7 @@ mod input;
 mod into;
 mod output;
 mod rows;
+mod series;
 mod setup;
 mod terminal;
 
