@@ -45,8 +45,8 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-8 * b.abs().max(1e-3), "{a} is not {b}");
 }
 
-fn continuous(power_w: f64, window_s: f64) -> Option<Continuous> {
-    Some(Continuous { power_w, window_s })
+fn continuous(power_w: f64, window_s: f64) -> Continuous {
+    Continuous { power_w, window_s }
 }
 
 #[test]
@@ -60,12 +60,12 @@ fn continuous_power_is_the_root_of_the_mean_square() {
     // ∫P² over the ramp is 250²·0.1/3; the program lasts 1.1 s.
     let mut machine = one_axis();
     let exact = (250.0 * 250.0 * 0.1 / 3.0 / 1.1_f64).sqrt();
-    machine.converters[0].ratings.continuous = continuous(exact, 180.0);
+    machine.converters[0].ratings.continuous = Some(continuous(exact, 180.0));
     let found = rating(&machine, &[rapid(&machine)]);
     assert_eq!(found.measure, Measure::Continuous { window_s: 180.0 });
     close(found.value, exact);
     assert!(found.fits());
-    machine.converters[0].ratings.continuous = continuous(exact * 0.9999, 180.0);
+    machine.converters[0].ratings.continuous = Some(continuous(exact * 0.9999, 180.0));
     assert!(!rating(&machine, &[rapid(&machine)]).fits());
 }
 
@@ -75,7 +75,7 @@ fn continuous_power_takes_the_worst_window() {
     // ∫((P + 60)² − 60²) of a ramp to 250 W in 0.1 s.
     let mut machine = one_axis();
     machine.converters[0].base_load_w = 60.0;
-    machine.converters[0].ratings.continuous = continuous(200.0, 1.0);
+    machine.converters[0].ratings.continuous = Some(continuous(200.0, 1.0));
     let dwell = dwell(&machine, 20.0);
     let found = rating(&machine, &[dwell.clone(), rapid(&machine), dwell]);
     let exact = 60.0 * 60.0 + 250.0 * 250.0 * 0.1 / 3.0 + 60.0 * 250.0 * 0.1;
@@ -96,7 +96,7 @@ fn an_overload_may_last_as_long_as_permitted() {
     let mut machine = one_axis();
     let overload = |machine: &mut Machine, seconds| {
         machine.converters[0].ratings.overload = vec![entry(seconds)];
-        machine.converters[0].ratings.continuous = continuous(125.0, 10.0);
+        machine.converters[0].ratings.continuous = Some(continuous(125.0, 10.0));
     };
     for (seconds, fits) in [(0.05, true), (0.04999, false), (0.1, true)] {
         overload(&mut machine, seconds);
@@ -124,7 +124,7 @@ fn each_entry_of_the_curve_counts_from_the_one_below() {
     let mut machine = one_axis();
     machine.limits.margin = 0.2;
     machine.converters[0].ratings.overload = vec![entry(300.0, 0.02), entry(250.0, 0.06)];
-    machine.converters[0].ratings.continuous = continuous(125.0, 10.0);
+    machine.converters[0].ratings.continuous = Some(continuous(125.0, 10.0));
     let (ratings, _) = judged(&machine, &[rapid(&machine)], None);
     // Above 0.8·250 W and above 0.8·125 W, of 250 W.
     close(ratings[0].value, 0.02);
@@ -133,13 +133,13 @@ fn each_entry_of_the_curve_counts_from_the_one_below() {
     close(ratings[2].limit, 100.0);
 }
 
-fn capacitor(capacitance_f: f64) -> Option<Capacitor> {
-    Some(Capacitor {
+fn capacitor(capacitance_f: f64) -> Capacitor {
+    Capacitor {
         capacitance_f,
         nominal_v: 100.0,
         min_v: Some(80.0),
         max_v: None,
-    })
+    }
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn the_capacitor_carries_a_short_peak() {
     machine.converters[0].peak_power_w = 150.0;
     let enough = 2.0 / 1800.0;
     for (capacitance_f, fits) in [(enough, true), (0.999 * enough, false)] {
-        machine.converters[0].ratings.capacitor = capacitor(capacitance_f);
+        machine.converters[0].ratings.capacitor = Some(capacitor(capacitance_f));
         let found = rating(&machine, &[rapid(&machine)]);
         assert_eq!(found.measure, Measure::LowestVoltage);
         assert_eq!(found.fits(), fits);
@@ -174,7 +174,7 @@ fn a_capacitor_that_is_counted_on_keeps_its_margin() {
     let mut machine = one_axis();
     machine.limits.margin = 0.1;
     machine.converters[0].peak_power_w = 150.0;
-    machine.converters[0].ratings.capacitor = capacitor(1e-2);
+    machine.converters[0].ratings.capacitor = Some(capacitor(1e-2));
     let found = rating(&machine, &[rapid(&machine)]);
     let lacks = 0.5 * 115.0 * 0.046;
     close(0.9 * 0.5 * 1e-2 * (1e4 - found.value * found.value), lacks);
@@ -187,9 +187,9 @@ fn while_the_capacitor_charges_the_converter_is_loaded() {
     let mut machine = one_axis();
     machine.converters[0].peak_power_w = 100.0;
     let ratings = &mut machine.converters[0].ratings;
-    ratings.capacitor = capacitor(1.0);
+    ratings.capacitor = Some(capacitor(1.0));
     ratings.credit_capacitance = true;
-    ratings.continuous = continuous(99.0, 10.0);
+    ratings.continuous = Some(continuous(99.0, 10.0));
     ratings.overload = vec![Overload {
         power_w: 100.0,
         seconds: 1.0,
@@ -251,14 +251,14 @@ fn heat_adds_up_and_goes() {
 #[test]
 fn motion_that_is_not_known_in_time_may_last() {
     let mut machine = one_axis();
-    machine.converters[0].ratings.continuous = continuous(240.0, 180.0);
+    machine.converters[0].ratings.continuous = Some(continuous(240.0, 180.0));
     let mut mv = rapid(&machine);
     mv.path_mode = PathMode::LookAhead;
     let (found, judged_moves) = judged(&machine, &[mv.clone()], Some(Certificate::Robust));
     assert_eq!(judged_moves[0].certificate, Certificate::Robust);
     assert!(found[0].lasting && !found[0].fits());
     close(found[0].value, 250.0);
-    machine.converters[0].ratings.continuous = continuous(250.0, 180.0);
+    machine.converters[0].ratings.continuous = Some(continuous(250.0, 180.0));
     let (found, _) = judged(&machine, &[mv.clone()], Some(Certificate::Robust));
     assert!(found[0].fits());
     // It lasts 1.1 s at most, and 1 s at least.
@@ -272,7 +272,7 @@ fn motion_that_is_not_known_in_time_may_last() {
         seconds: 1.0,
         every_s: 10.0,
     }];
-    ratings.continuous = continuous(125.0, 180.0);
+    ratings.continuous = Some(continuous(125.0, 180.0));
     let (found, _) = judged(&machine, &[mv.clone()], Some(Certificate::Robust));
     close(found[0].value, 1.1);
     close(found[1].value, 250.0);
@@ -280,8 +280,6 @@ fn motion_that_is_not_known_in_time_may_last() {
     assert!(found.iter().all(|found| found.lasting && !found.fits()));
     // Long after it and before it, its square over 1.1 s counts in 1 s.
     let rest = dwell(&machine, 9.0);
-    let mut mv = mv;
-    mv.path_mode = PathMode::LookAhead;
     mv.kind = gwatt::interpret::MoveKind::Feed;
     mv.feed_mm_s = 500.0;
     let (found, judged_moves) = judged(&machine, &[mv, rest], None);
@@ -292,7 +290,7 @@ fn motion_that_is_not_known_in_time_may_last() {
 #[test]
 fn a_start_that_is_not_known_may_last_too() {
     let mut machine = one_axis();
-    machine.converters[0].ratings.continuous = continuous(100.0, 180.0);
+    machine.converters[0].ratings.continuous = Some(continuous(100.0, 180.0));
     let mut mv = rapid(&machine);
     mv.unknown_start.insert(0);
     let found = rating(&machine, &[mv]);
@@ -303,7 +301,7 @@ fn a_start_that_is_not_known_may_last_too() {
 fn each_converter_has_its_own_limits() {
     let mut machine = machine(&[axis(), axis()]);
     machine.converters[0].axes.0 = 0b01;
-    machine.converters[0].ratings.continuous = continuous(100.0, 180.0);
+    machine.converters[0].ratings.continuous = Some(continuous(100.0, 180.0));
     let second = Converter {
         name: "second".into(),
         axes: gwatt::machine::AxisSet(0b10),

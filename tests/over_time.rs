@@ -1,5 +1,6 @@
 //! Limits over time and series from outside: what the commands say and write.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::process::Command;
 
@@ -18,10 +19,11 @@ impl Shop {
              base_load_w = 100\n{ratings}\n[limits]\nmargin = 0\n{rest}\n"
         );
         for axis in ["X", "Y", "Z"] {
-            text.push_str(&format!(
+            let _ = write!(
+                text,
                 "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\n\
                  mass_kg = 200\ncoulomb_n = 100\nefficiency = 0.8\n"
-            ));
+            );
         }
         shop.put("mill.toml", &text);
         shop

@@ -12,7 +12,7 @@ use gwatt::power::{Demand, Flow, PowerModel, Slice, Want};
 use proptest::prelude::*;
 
 /// Share of the peak power by which a chord of an arc may be too high.
-const TOLERANCE: f64 = 1e-4;
+const TOLERANCE: f64 = 1e-3;
 
 fn traced(machine: &Machine, mv: &Move, plan: &Plan, flow: Flow) -> Vec<Slice> {
     PowerModel::new(machine).trace(mv, plan, 0, flow)

@@ -221,6 +221,8 @@ impl<'m> Interpreter<'m> {
         }
         *facts = Facts::default();
         self.execute_any(line, text, block, steps, facts, diagnostics);
+        // It may have gone the short way with values that were worked out.
+        facts.plain = false;
     }
 
     /// The same for any block; `facts` are those of nothing.

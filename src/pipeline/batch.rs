@@ -1,8 +1,9 @@
 //! A piece of the written program on its way to the certifier.
 
-use super::certify::Expected;
 use super::entry::Entry;
+use super::expected::{Expected, ExpectedMove};
 use crate::interpret::{Move, Stance, Step};
+use crate::power::Assessment;
 
 /// A piece of the written program with what it must do.
 #[derive(Debug, Default)]
@@ -44,6 +45,18 @@ impl Batch {
         } else if let Some(Step::Move(mv)) = entry.steps.first() {
             self.moves.push(mv.clone());
         }
+    }
+
+    /// Notes that a plain block was copied, which makes `mv`.
+    pub(super) fn pass(&mut self, length: usize, mv: &Move, assessment: &Assessment) {
+        self.blocks.push(WrittenBlock {
+            length,
+            plain: true,
+            unchanged: true,
+        });
+        self.moves.push(mv.clone());
+        let expected = ExpectedMove::of(mv, assessment);
+        self.expected.push(Expected::Move(expected));
     }
 
     /// Empties the piece and keeps its buffers.

@@ -8,57 +8,19 @@
 //! went up, (d) the effective feed of each untouched move is what it was.
 
 use super::batch::Batch;
+use super::expected::{Expected, ExpectedMove, Originals, added_stop, different};
 use super::tally::Tally;
-use super::{Failure, Options, Row, RowSink, Summary};
+use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{
-    Action, Arc, Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step,
-};
-use crate::limit::{Depths, Place};
-use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
+use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Stance, Step};
+use crate::limit::{Depths, Obstacle, Place};
+use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
 use crate::source::{Span, lines};
 use crate::syntax::{Block, scan_line};
 
 /// Rounding that speeds and accelerations may differ by, as a share.
 const ROUNDING: f64 = 1e-9;
-
-/// What the original does, in order.
-#[derive(Debug)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "moves are the common case and live in reused buffers"
-)]
-pub(super) enum Expected {
-    Move(ExpectedMove),
-    Action(Action),
-}
-
-/// A move of the original, as far as the written one must equal it. It starts
-/// where the one before ends.
-#[derive(Debug)]
-pub(super) struct ExpectedMove {
-    pub(super) line: u64,
-    pub(super) text: u16,
-    pub(super) kind: MoveKind,
-    pub(super) end: AxisValues,
-    pub(super) arc: Option<Arc>,
-    pub(super) unknown_start: AxisSet,
-    pub(super) path_mode: PathMode,
-    pub(super) loads: u32,
-    pub(super) dwell_s: f64,
-    pub(super) axis_accel_mm_s2: AxisValues,
-    /// Effective path speed and acceleration.
-    pub(super) speed_mm_s: f64,
-    pub(super) accel_mm_s2: f64,
-    /// Its block has been changed; a rapid was written as a feed.
-    pub(super) changed: bool,
-    pub(super) as_feed: bool,
-    /// It does not fit and could not be helped; the reason has been given.
-    pub(super) hopeless: bool,
-    /// Its row, where rows are wanted.
-    pub(super) row: Option<Box<Row>>,
-}
 
 /// Reads the written program.
 pub(super) struct Certifier<'m, 'r> {
@@ -104,6 +66,16 @@ pub(super) struct Reasons {
 }
 
 impl Reasons {
+    /// A move that does not fit and cannot be helped.
+    pub(super) fn refuse(&mut self, mv: &Move, obstacle: &Obstacle, text: &[u8]) {
+        let Obstacle {
+            rule,
+            message,
+            help,
+        } = obstacle;
+        self.push(mv.line, rule, message.clone(), help, text);
+    }
+
     pub(super) fn push(
         &mut self,
         line: u64,
@@ -257,34 +229,6 @@ impl<'m, 'r> Certifier<'m, 'r> {
     }
 }
 
-/// What the original does: what is left of earlier pieces, and the last piece.
-#[derive(Debug, Default)]
-struct Originals {
-    left: Vec<Expected>,
-    piece: Vec<Expected>,
-}
-
-impl Originals {
-    /// Drops the first `judged`, takes the next piece, and tells how much of
-    /// earlier ones is left.
-    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
-        let old = judged.min(self.left.len());
-        let new = (judged - old).min(self.piece.len());
-        self.left.drain(..old);
-        self.left.extend(self.piece.drain(new..));
-        self.piece.clear();
-        std::mem::swap(&mut self.piece, next);
-        self.left.len()
-    }
-
-    fn get(&mut self, place: usize) -> Option<&mut Expected> {
-        match place.checked_sub(self.left.len()) {
-            Some(place) => self.piece.get_mut(place),
-            None => self.left.get_mut(place),
-        }
-    }
-}
-
 impl<'m, 'r> Verdict<'m, 'r> {
     pub(super) fn new(
         machine: &'m Machine,
@@ -421,39 +365,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 }
 
-/// Whether a move is a dwell of no time that the original does not have: it
-/// only makes the axes stop.
-fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
-    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
-    is_stop(mv.kind, mv.dwell_s)
-        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
-}
-
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
-
-/// What differs in two moves, if anything.
-fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
-    let same_kind = original.kind == mv.kind
-        || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
-    let message = if !same_kind {
-        "another kind of move"
-    } else if original.end != mv.end {
-        "another end point"
-    } else if original.unknown_start != mv.unknown_start {
-        "another start point"
-    } else if original.arc != mv.arc {
-        "another arc"
-    } else if original.dwell_s != mv.dwell_s {
-        "another dwell"
-    } else if original.path_mode != mv.path_mode {
-        "another path mode"
-    } else if original.loads != mv.loads {
-        "other switched loads"
-    } else {
-        return None;
-    };
-    Some(message)
-}
 
 /// (a), (c) and (d) for one move.
 fn compare(

@@ -117,6 +117,17 @@ impl Entry {
                 .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
     }
 
+    /// One change for all its moves: the lower value of each word.
+    #[inline]
+    pub(super) fn change(&self) -> Option<Change> {
+        let mut changes = self
+            .decided
+            .iter()
+            .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
+        let first = changes.next()?;
+        Some(changes.fold(first, |merged, change| merged.lower(&change)))
+    }
+
     /// One of its moves, with what may be changed.
     pub(super) fn waiting<'a>(&self, machine: &Machine, mv: &'a Move, step: usize) -> Waiting<'a> {
         let permit = self.permit(machine, mv, step);

@@ -8,6 +8,7 @@ mod certify;
 mod conditions;
 mod describe;
 mod entry;
+mod expected;
 mod front;
 mod judge;
 mod limiting;

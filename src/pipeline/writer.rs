@@ -6,16 +6,17 @@ use std::io::{Read, Seek, Write};
 
 use super::analyze::refuse_planned;
 use super::batch::Batch;
-use super::certify::{Expected, ExpectedMove, Reasons};
+use super::certify::Reasons;
 use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
+use super::expected::{Expected, ExpectedMove};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Obstacle, Outcome};
+use crate::limit::{Change, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
@@ -73,8 +74,7 @@ pub(super) struct Writer<'m, R, W> {
 }
 
 impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
-    /// `machine` is the one whose limits are aimed at; `model` has those that the
-    /// rows show.
+    /// `machine` has the limits that are aimed at, `model` those that rows show.
     #[allow(clippy::too_many_arguments, reason = "a part of `limit`")]
     pub(super) fn new(
         input: R,
@@ -132,12 +132,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             if self.batch.bytes.len() >= BATCH_BYTES {
                 self.deliver(deliver)?;
             }
-            if let Some(entry) = self.ready.take() {
-                self.write(entry);
-            } else {
-                self.decide();
-                self.write_decided();
-            }
+            self.write_ready();
         }
         self.finish_moves();
         self.write_decided();
@@ -162,12 +157,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.tally.keep_lines();
         }
         while self.read_block()? {
-            if let Some(entry) = self.ready.take() {
-                self.write(entry);
-            } else {
-                self.decide();
-                self.write_decided();
-            }
+            self.write_ready();
         }
         self.finish_moves();
         self.write_decided();
@@ -204,10 +194,39 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Reads a block, lets it wait, and judges its moves.
     fn read_block(&mut self) -> Result<bool, Failure> {
-        let spare = self.spare.pop();
         let Some(mut line) = self.front.next_line()? else {
             return Ok(false);
         };
+        let mut judged = None;
+        if line.facts.plain
+            && self.entries.is_empty()
+            && !self.exact
+            && self.table.is_none()
+            && let [Step::Move(mv)] = line.steps.as_slice()
+            && !self.assessor.waits(mv)
+        {
+            let Self {
+                assessor, tally, ..
+            } = self;
+            assessor.want = tally.want();
+            assessor.push(mv, line.text, &mut |_, assessment, text| {
+                tally.add(mv, assessment, text);
+                judged = Some(*assessment);
+            });
+            // Nearly every block of a long program: nothing is to be done.
+            if let Some(assessment) = &judged
+                && self.limiter.passes(assessment)
+                && self
+                    .rewriter
+                    .pass(line.text, &self.mark, &mut self.batch.bytes)
+            {
+                self.batch.pass(line.text.len(), mv, assessment);
+                self.start_s += assessment.duration_s;
+                self.mode = mv.path_mode;
+                return Ok(true);
+            }
+        }
+        let spare = self.spare.pop();
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         self.mm_per_unit = entry.mark.mm_per_unit;
@@ -219,7 +238,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
-            self.decide_at_once(&mut entry);
+            self.decide_at_once(&mut entry, judged);
             self.ready = Some(entry);
             return Ok(true);
         }
@@ -273,8 +292,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         Ok(true)
     }
 
-    /// Judges and decides the moves of a block none of which has to wait.
-    fn decide_at_once(&mut self, entry: &mut Entry) {
+    /// Judges and decides the moves of a block none of which has to wait; of a
+    /// plain one, `judged` may be known.
+    fn decide_at_once(&mut self, entry: &mut Entry, judged: Option<Assessment>) {
         for (step, mv) in entry.steps.iter().enumerate() {
             let mv = match mv {
                 Step::Move(mv) => mv,
@@ -293,13 +313,20 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 decided,
                 ..
             } = self;
-            assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, entry.text_of(mv), &mut |_, assessment, text| {
-                tally.add(mv, assessment, text);
+            let mut decide = |assessment: &Assessment| {
                 let find = |_| Some(entry.waiting(machine, mv, step));
                 limiter.push(mv, assessment, &find, &mut |outcome| {
                     decided.push((*assessment, outcome));
                 });
+            };
+            if let Some(assessment) = &judged {
+                decide(assessment);
+                continue;
+            }
+            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            assessor.push(mv, entry.text_of(mv), &mut |_, assessment, text| {
+                tally.add(mv, assessment, text);
+                decide(assessment);
             });
         }
         std::mem::swap(&mut entry.decided, &mut self.decided);
@@ -353,6 +380,16 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
     }
 
+    /// Writes what can be written after a block was read.
+    fn write_ready(&mut self) {
+        if let Some(entry) = self.ready.take() {
+            self.write(entry);
+        } else if !self.entries.is_empty() {
+            self.decide();
+            self.write_decided();
+        }
+    }
+
     /// Writes the blocks whose moves are all decided.
     fn write_decided(&mut self) {
         while self
@@ -370,7 +407,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Writes a block whose moves are decided, and keeps its buffers.
     fn write(&mut self, mut entry: Box<Entry>) {
-        let change = merge(&entry.decided);
+        let change = entry.change();
         if self.table.is_some() {
             self.note(&entry, change);
             self.spare.push(entry);
@@ -414,10 +451,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         });
         for (mv, (_, outcome)) in moves.zip(&entry.decided) {
             if let Some(obstacle) = outcome.obstacle.as_deref() {
-                let message = obstacle.message.clone();
-                let text = entry.text_of(mv);
-                self.reasons
-                    .push(mv.line, obstacle.rule, message, &obstacle.help, text);
+                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
             }
         }
     }
@@ -440,13 +474,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             };
             let hopeless = outcome.obstacle.is_some();
             if let Some(obstacle) = outcome.obstacle.take() {
-                let Obstacle {
-                    rule,
-                    message,
-                    help,
-                } = *obstacle;
-                let text = entry.text_of(mv);
-                self.reasons.push(mv.line, rule, message, &help, text);
+                self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
             }
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);
@@ -460,34 +488,13 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             });
             self.start_s += assessment.duration_s;
             self.batch.expected.push(Expected::Move(ExpectedMove {
-                line: mv.line,
-                text: mv.text,
-                kind: mv.kind,
-                end: mv.end,
-                arc: mv.arc,
-                unknown_start: mv.unknown_start,
-                path_mode: mv.path_mode,
-                loads: mv.loads,
-                dwell_s: mv.dwell_s,
-                axis_accel_mm_s2: mv.accel_mm_s2,
-                speed_mm_s: assessment.speed_mm_s,
-                accel_mm_s2: assessment.accel_mm_s2,
                 changed: change.is_some(),
                 as_feed: change.is_some_and(|change| change.as_feed),
                 hopeless,
                 row,
+                ..ExpectedMove::of(mv, assessment)
             }));
         }
         entry.decided = list;
     }
-}
-
-/// One change for a block of several moves: the lower value of each word.
-#[inline]
-fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
-    let mut changes = decided
-        .iter()
-        .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
-    let first = changes.next()?;
-    Some(changes.fold(first, |merged, change| merged.lower(&change)))
 }

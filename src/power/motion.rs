@@ -282,7 +282,8 @@ fn along(mv: &Move, profile: &Profile) -> Vec<Phase> {
     let mut cut = Vec::new();
     for phase in &profile.phases {
         let steps = phase.length_mm() / (FRAC_PI_2 * mm_per_rad);
-        if phase.kind != PhaseKind::ConstantAcceleration || !(steps < QUADRANTS) {
+        let few = steps < QUADRANTS;
+        if phase.kind != PhaseKind::ConstantAcceleration || !few {
             cut.push(*phase);
             continue;
         }
@@ -292,7 +293,8 @@ fn along(mv: &Move, profile: &Profile) -> Vec<Phase> {
         let mut step = skipped.max(0.0);
         loop {
             let at_mm = (first_rad + step * FRAC_PI_2) * mm_per_rad;
-            if !(at_mm - phase.position_mm < phase.length_mm()) {
+            let inside = at_mm - phase.position_mm < phase.length_mm();
+            if !inside {
                 break;
             }
             let pieces = pieces(&rest, &[at_mm]);

@@ -42,35 +42,24 @@ fn scan_words(line: &[u8], block: &mut Block) -> Option<()> {
     if text.get(at) == Some(&b'/') {
         at = skip_blanks(text, block_delete(text, at, block));
     }
-    let mut words_end = block.words_end;
     while let Some(&byte) = text.get(at) {
-        if byte == b' ' || byte == b'\t' {
-            at += 1;
-            continue;
-        }
-        if !token::is_letter(byte) {
-            match byte {
-                b'(' => at += memchr(b')', text.get(at..)?)? + 1,
-                b';' => break,
-                _ => return None,
+        match byte {
+            b' ' | b'\t' => at += 1,
+            b'(' => at += memchr(b')', text.get(at..)?)? + 1,
+            b';' => break,
+            _ if token::is_letter(byte) => {
+                let word = scan_word(line, text, at, byte)?;
+                at = word.span.end as usize;
+                if word.letter == b'N' {
+                    at = block_number(text, word, block)?;
+                } else {
+                    block.words_end = word.span.end;
+                    block.words.push(word);
+                }
             }
-            continue;
-        }
-        let word = match short_word(line, at, byte) {
-            Some(word) => word,
-            None => scan_word(text, at, byte)?,
-        };
-        at = word.span.end as usize;
-        words_end = word.span.end;
-        if word.letter == b'N' {
-            block.words_end = words_end;
-            at = block_number(text, word, block)?;
-            words_end = block.words_end;
-        } else {
-            block.words.push(word);
+            _ => return None,
         }
     }
-    block.words_end = words_end;
     Some(())
 }
 
@@ -109,9 +98,9 @@ fn block_number(text: &[u8], word: Word, block: &mut Block) -> Option<usize> {
 }
 
 /// The word whose letter stands at `start`; `None` without a number, and for
-/// one that is not finite.
-#[inline(never)]
-fn scan_word(text: &[u8], start: usize, letter: u8) -> Option<Word> {
+/// one that is not finite. `line` is `text` with the line end.
+#[inline]
+fn scan_word(line: &[u8], text: &[u8], start: usize, letter: u8) -> Option<Word> {
     let number = skip_blanks(text, start + 1);
     let sign = *text.get(number)?;
     let first = if matches!(sign, b'+' | b'-') {
@@ -119,7 +108,10 @@ fn scan_word(text: &[u8], start: usize, letter: u8) -> Option<Word> {
     } else {
         number
     };
-    let Scanned { value, end } = long_number(text, first)?;
+    let Scanned { value, end } = match short_number(line, first) {
+        Some(scanned) => scanned,
+        None => long_number(text, first)?,
+    };
     if !value.is_finite() {
         return None;
     }
@@ -169,39 +161,34 @@ fn long_number(text: &[u8], start: usize) -> Option<Scanned> {
     Some(Scanned { value, end })
 }
 
-/// The word whose letter stands at `start` where its number follows at once and
-/// has eight bytes at most, point included: they are read together. `None` for
-/// others, and too near to the end of a short line. `line` has its line end.
-#[allow(
-    clippy::inline_always,
-    reason = "a word that goes through memory costs a quarter of its reading"
-)]
-#[inline(always)]
-fn short_word(line: &[u8], start: usize, letter: u8) -> Option<Word> {
-    let minus = *line.get(start + 1)? == b'-';
-    let first = start + 1 + usize::from(minus);
+/// The same for a number of at most eight bytes, point included, all at once.
+/// `None` for others, and too near to the end of a short line.
+#[inline]
+fn short_number(line: &[u8], start: usize) -> Option<Scanned> {
     // The last eight bytes of the line serve for a number that is nearer to its
     // end: zeros come behind it.
-    let from = first.min(line.len().checked_sub(8)?);
-    let bytes = line.get(from..)?.first_chunk()?;
-    let word = u64::from_le_bytes(*bytes).checked_shr(8 * (first - from) as u32)?;
+    let from = start.min(line.len().checked_sub(8)?);
+    let bytes = line.get(from..from + 8)?.try_into().ok()?;
+    let word = u64::from_le_bytes(bytes).checked_shr(8 * (start - from) as u32)?;
     // A digit's byte becomes its value; the first byte is the lowest one.
     let values = word ^ 0x3030_3030_3030_3030;
     // The highest bit of each byte that is 10 or more. A carry reaches only
     // bytes behind one of 0x8A and more, which ends the number.
     let others = (values.wrapping_add(0x7676_7676_7676_7676) | values) & 0x8080_8080_8080_8080;
-    let (mut digits, mut bits) = (values, others.trailing_zeros() & !7);
-    let (mut count, mut scale) = (bits, 1.0);
-    if (word >> (bits & 63)) as u8 == b'.' && bits < 64 {
-        let before = (1_u64 << bits) - 1;
+    let mut bytes = others.trailing_zeros() / 8;
+    let (mut digits, mut decimals) = (values, 0);
+    let mut count = bytes;
+    if bytes < 8 && (word >> (8 * bytes)) as u8 == b'.' {
+        let point = bytes;
+        let before = (1_u64 << (8 * point)) - 1;
         digits = values & before | values >> 8 & !before;
-        bits = (others & (others - 1)).trailing_zeros() & !7;
-        scale = *POWERS_OF_TEN.get(((bits - count) / 8 - 1) as usize)?;
-        count = bits - 8;
+        bytes = (others & (others - 1)).trailing_zeros() / 8;
+        count = bytes - 1;
+        decimals = (count - point) as usize;
     }
-    let end = first + (bits / 8) as usize;
+    let end = start + bytes as usize;
     if count == 0
-        || bits == 64
+        || bytes == 8
             && line
                 .get(end)
                 .is_none_or(|next| matches!(next, b'0'..=b'9' | b'.'))
@@ -209,16 +196,11 @@ fn short_word(line: &[u8], start: usize, letter: u8) -> Option<Word> {
         return None;
     }
     // With zeros in front they are eight; pairs, fours and all are joined.
-    let eight = digits << (64 - count & 63);
+    let eight = digits << (64 - 8 * count);
     let pairs = eight.wrapping_mul(10).wrapping_add(eight >> 8);
     let low = (pairs & 0x0000_00FF_0000_00FF).wrapping_mul(0x000F_4240_0000_0064);
     let high = (pairs >> 16 & 0x0000_00FF_0000_00FF).wrapping_mul(0x0000_2710_0000_0001);
-    let mantissa = (low.wrapping_add(high) >> 32) as u32;
-    let value = f64::from(mantissa) / scale;
-    Some(Word {
-        letter: letter.to_ascii_uppercase(),
-        value: if minus { -value } else { value },
-        span: Span::new(start, end),
-        number: Span::new(start + 1, end),
-    })
+    let mantissa = low.wrapping_add(high) >> 32;
+    let value = mantissa as f64 / POWERS_OF_TEN.get(decimals)?;
+    Some(Scanned { value, end })
 }

@@ -25,7 +25,7 @@ use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{Plan, Profile, Trajectory};
 
 /// Share of a converter's peak power by which a slice of an arc may be too high.
-const TOLERANCE: f64 = 1e-4;
+const TOLERANCE: f64 = 1e-3;
 
 /// Which way power flows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

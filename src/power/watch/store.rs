@@ -5,10 +5,10 @@ use super::super::trace::Slice;
 use super::Span;
 use super::rating::{Place, Worst};
 
-/// `E' = P − P_t`, `E ≥ 0`.
+/// `E' = P − L`, `E ≥ 0`, L the power that leaves it.
 #[derive(Debug, Clone)]
 pub(super) struct Store {
-    /// The power P_t that leaves it, W.
+    /// The power that leaves it, W.
     taken_w: f64,
     /// What it holds, J.
     held_j: f64,
@@ -35,8 +35,8 @@ impl Store {
     }
 
     /// Takes a slice that begins at `time_s`. `passed` is given the power that
-    /// another one must deliver: that of the slice, or P_t while the store fills
-    /// or is not empty.
+    /// another one must deliver: that of the slice, or L while the store fills or
+    /// is not empty.
     pub fn take(
         &mut self,
         slice: &Slice,
