@@ -98,6 +98,7 @@ impl Rating {
     pub fn load_ratio(&self) -> f64 {
         match self.measure {
             Measure::LowestVoltage => self.limit / self.value,
+            _ if self.value <= 0.0 => 0.0,
             _ => self.value / self.limit,
         }
     }

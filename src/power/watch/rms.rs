@@ -15,6 +15,8 @@ const CELLS: f64 = 4096.0;
 /// With windows so short that cells would be shorter than this, fewer.
 const CELL_MIN_S: f64 = 1e-4;
 const CELLS_MIN: f64 = 16.0;
+/// Of shorter windows than this the largest power counts, which no mean exceeds.
+const WINDOW_MIN_S: f64 = 1e-3;
 
 /// The mean over windows, bounded in two ways where the timing of moves is not
 /// known: such a move counts as if it lasted for ever, or with the square of its
@@ -119,6 +121,13 @@ impl Rms {
     }
 
     fn add(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        if self.window_s < WINDOW_MIN_S {
+            let peak_w = slice.peak_w();
+            let square = peak_w * peak_w;
+            self.elapsed_s += slice.duration_s.max(self.window_s);
+            self.worst.raise(square * self.window_s, time_s, place);
+            return;
+        }
         let squares = slice.squares();
         let mut done_s = 0.0;
         let mut from = slice.from;
@@ -190,6 +199,11 @@ impl Rms {
             shortest_s,
             longest_s,
         } = span;
+        if self.window_s < WINDOW_MIN_S {
+            self.elapsed_s += shortest_s;
+            let square = power_w * power_w * self.window_s;
+            return self.worst.raise(square, time_s, place);
+        }
         let square = power_w * power_w * longest_s;
         if square.is_finite() && shortest_s > 0.0 {
             let dense = (square / shortest_s).sqrt();
@@ -225,7 +239,7 @@ impl Rms {
     pub fn result(&self) -> Worst {
         let (time_s, place) = self.last;
         let mut worst = self.worst;
-        if self.elapsed_s <= self.window_s {
+        if self.elapsed_s <= self.window_s && self.window_s >= WINDOW_MIN_S {
             worst = Worst::default();
             if self.elapsed_s > 0.0 || self.total > 0.0 {
                 worst.raise(self.total / self.elapsed_s, time_s, place);
@@ -329,6 +343,12 @@ mod tests {
         let exact = (4e6 + 9.0 * 1e4) / 10.0;
         let found = rms_w(10.0, &slices);
         assert!((found * found - exact).abs() < 4e6 / 4096.0);
+    }
+
+    #[test]
+    fn of_a_moment_the_largest_power_counts() {
+        let slices = [Slice::constant(1e5, 10.0), Slice::linear(0.1, 0.0, 700.0)];
+        assert!((rms_w(1e-9, &slices) - 700.0).abs() < 1e-9);
     }
 
     #[test]
