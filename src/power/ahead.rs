@@ -80,7 +80,7 @@ struct Open {
 
 /// How a move takes part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// It has a path that the rules speak of.
     Path,
     /// It has none, and is passed.
@@ -447,7 +447,7 @@ fn is_whole(mv: &Move, planned: &Planned<u64>) -> bool {
 }
 
 /// How a move takes part in look-ahead.
-fn role(machine: &Machine, mv: &Move) -> Role {
+pub(crate) fn role(machine: &Machine, mv: &Move) -> Role {
     let synchronous = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap | MoveKind::Probe);
     if mv.moving.is_empty() && mv.unknown_start.is_empty() {
         Role::Nothing
@@ -459,7 +459,7 @@ fn role(machine: &Machine, mv: &Move) -> Role {
 }
 
 /// What the planner may do at the end of a move.
-fn joint(mv: &Move) -> Joint {
+pub(crate) fn joint(mv: &Move) -> Joint {
     match (mv.path_mode, mv.corner) {
         (PathMode::ExactStop, _) => Joint::Stop,
         (PathMode::LookAhead, Corner::Exact) => Joint::Exact,

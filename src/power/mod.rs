@@ -37,8 +37,11 @@ mod stretch;
 mod trace;
 mod watch;
 
+pub(crate) use ahead::{Role, joint, role};
 pub use assess::Assessor;
+pub(crate) use assess::{Effect, effect};
 pub use assessment::{Assessment, Certificate};
+pub use axis::electrical_w;
 pub use demand::{Demand, Want};
 pub use model::PowerModel;
 pub use motion::{AxisInstant, Instant, Motion};

@@ -22,6 +22,7 @@ mod printer;
 mod profile;
 mod quantity;
 mod ratings;
+mod response;
 mod schema;
 mod spindle;
 mod structure;
