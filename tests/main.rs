@@ -2,6 +2,7 @@
 
 mod layers;
 mod conformance;
+mod converter;
 mod corners;
 mod expressions;
 mod flow;
@@ -17,7 +18,9 @@ mod plan;
 mod jerk;
 mod curve;
 mod phases;
+mod over_time;
 mod power;
+mod trace;
 mod rig;
 mod identify;
 mod tune;

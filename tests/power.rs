@@ -5,7 +5,7 @@ use crate::rig::{
     Sampled, any_arc, any_delta, any_feed, any_machine, arc, axis, dwell, machine, sample, straight,
 };
 use gwatt::interpret::Move;
-use gwatt::machine::{Axis, AxisKind, AxisSet, Converter, Load, Machine, RapidPath};
+use gwatt::machine::{Axis, AxisKind, AxisSet, Converter, Load, Machine, RapidPath, Ratings};
 use gwatt::plan::{Caps, Overrides, plan, speed_bound};
 use gwatt::power::{Assessment, Assessor, Certificate, Demand, PowerModel, Want};
 use proptest::prelude::*;
@@ -182,6 +182,7 @@ fn the_converter_closest_to_its_limit_is_reported() {
         regen_power_w: Some(100.0),
         base_load_w: 5.0,
         credit_regen: false,
+        ratings: Ratings::default(),
     });
     machine.limits.margin = 0.1;
     machine.loads.push(Load {

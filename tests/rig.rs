@@ -4,7 +4,7 @@
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
 use gwatt::machine::{
     AXES, ArcRule, Axis, AxisKind, AxisSet, Controller, Converter, Family, Language, Limits,
-    Machine, Path, PathMode, Planner, RapidKnob, RapidPath, Responses,
+    Machine, Path, PathMode, Planner, RapidKnob, RapidPath, Ratings, Responses,
 };
 use gwatt::plan::{Phase, Plan, Trajectory};
 use proptest::prelude::*;
@@ -51,6 +51,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             regen_power_w: Some(500.0),
             base_load_w: 0.0,
             credit_regen: false,
+            ratings: Ratings::default(),
         }],
         path: Path {
             mode: None,
@@ -264,6 +265,28 @@ fn power_on_path(
             powers.iter().map(|p| (-p).max(0.0)).sum::<f64>(),
         )
     }
+}
+
+/// Power of the first converter at one instant of a planned path: what counts as
+/// drawn and as fed back.
+pub(crate) fn path_power(
+    machine: &Machine,
+    mv: &Move,
+    plan: &Plan,
+    t: f64,
+    reading: Reading,
+) -> (f64, f64) {
+    let Trajectory::Path(profile) = &plan.trajectory else {
+        panic!("the reference samples paths only");
+    };
+    let mut rest = t;
+    for phase in &profile.phases {
+        if rest <= phase.duration_s {
+            return power_on_path(machine, mv, phase, rest, rest, reading);
+        }
+        rest -= phase.duration_s;
+    }
+    panic!("{t} s is behind the end");
 }
 
 /// Peaks and energy of a path by dense sampling and local refinement: a lower

@@ -4,12 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{MachineArgs, ProgramArgs};
+use super::{Allow, MachineArgs, ProgramArgs};
 
 const EXAMPLES: &str = "\
 Examples:
   gwatt report part.ngc -m vmc > moves.csv
-  gwatt report part.ngc -m vmc --csv moves.csv --json moves.json --fail";
+  gwatt report part.ngc -m vmc --csv moves.csv --json moves.json --fail
+  gwatt report part.ngc -m vmc --series series.csv --step-ms 2
+
+A series has a row every --step-ms and at every instant at which an acceleration
+changes; where something jumps, two rows with the same time. First the program
+as it is, then as `gwatt limit` writes it: `before` and `after` in the column
+`program`. It shows the motion as planned at 100 % override, without servo
+factors; regen_w is what is fed back. With --limited the program in that file is
+shown as `after`.";
 
 /// Arguments of `report`.
 #[derive(Debug, Args)]
@@ -26,10 +34,29 @@ pub struct ReportArgs {
     /// Write JSON here
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write speed, acceleration, force and power over time here, as CSV
+    #[arg(long, value_name = "CSV")]
+    pub series: Option<PathBuf>,
+    /// Step of the series in ms
+    #[arg(long, value_name = "MS", default_value_t = 1.0, value_parser = step_ms, requires = "series")]
+    pub step_ms: f64,
+    /// The program after limiting, for the series [default: it is limited now]
+    #[arg(long, value_name = "FILE", requires = "series")]
+    pub limited: Option<PathBuf>,
+    /// Allow cutting feeds to be lowered, for the series
+    #[arg(long, value_enum, value_name = "WHAT", requires = "series")]
+    pub allow: Option<Allow>,
     /// Exit with 1 if a move does not fit
     #[arg(long)]
     pub fail: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: ProgramArgs,
+}
+
+fn step_ms(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(ms) if (1e-3..=1e6).contains(&ms) => Ok(ms),
+        _ => Err("a number from 0.001 to 1000000 is needed".into()),
+    }
 }

@@ -18,6 +18,7 @@ mod input;
 mod into;
 mod output;
 mod rows;
+mod series;
 mod setup;
 mod terminal;
 

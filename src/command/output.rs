@@ -1,7 +1,7 @@
 //! Results to write: each appears whole or not at all.
 
 use std::fs::{self, File, Permissions};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -126,7 +126,7 @@ impl Restart for Spool {
 
 impl Spool {
     /// Opens what was written so far for reading from the beginning.
-    pub fn read(&mut self) -> io::Result<impl Read> {
+    pub fn read(&mut self) -> io::Result<File> {
         let mut file = match &self.body {
             Body::Apart(file) => file.try_clone()?,
             Body::Beside(file) => file.as_file().try_clone()?,

@@ -10,30 +10,44 @@ use super::clash::refuse_clashes;
 use super::input::Program;
 use super::output::Target;
 use super::rows::Rows;
+use super::series::{self, Refused};
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
 use crate::cli::ReportArgs;
 
 /// Says what each move of a program draws.
 pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
-    let program = Program::new(&args.program);
+    let mut program = Program::new(&args.program);
     let machine = machine_file(args.machine.machine.as_deref());
-    let inputs: Vec<&Path> = program.path().into_iter().chain(machine).collect();
+    let inputs: Vec<&Path> = program
+        .path()
+        .into_iter()
+        .chain(machine)
+        .chain(args.limited.as_deref())
+        .collect();
     let outputs: Vec<&Path> = args
         .csv
         .iter()
         .chain(&args.json)
+        .chain(&args.series)
         .map(AsRef::as_ref)
         .collect();
     refuse_clashes(&inputs, &outputs)?;
     let setup = Setup::new(&args.machine, &args.reading, terminal)?;
-    let csv = match (&args.csv, &args.json) {
-        (Some(path), _) => Some(Target::new(path)?),
-        (None, None) => Some(Target::Stdout),
-        (None, Some(_)) => None,
+    let csv = match &args.csv {
+        Some(path) => Some(Target::new(path)?),
+        None if args.json.is_none() && args.series.is_none() => Some(Target::Stdout),
+        None => None,
     };
     let mut rows = Rows::new(csv, args.json.as_deref())?;
 
+    if args.series.is_some() {
+        // It is read more than once.
+        if let Err(failure) = program.keep() {
+            terminal.failure(&program.name, &failure);
+            return Ok(Verdict::Refused);
+        }
+    }
     let outcome = program.open().and_then(|input| {
         let sink = rows.sink().map(|rows| rows as &mut dyn RowSink);
         pipeline::analyze(input, &setup.machine, &setup.options_for(&program), sink)
@@ -45,9 +59,17 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
             return Ok(Verdict::Refused);
         }
     };
+    let series = match series::write(args, &program, &setup, terminal) {
+        Ok(series) => series,
+        Err(Refused::Told) => return Ok(Verdict::Refused),
+        Err(Refused::Error(error)) => return Err(error),
+    };
     rows.deliver(|blocks, out| {
         report_json(&program.name, &setup.machine.name, &summary, blocks, out)
     })?;
+    if let Some(series) = series {
+        series.deliver()?;
+    }
     terminal.diagnostics(&program.name, &summary.notes);
     let checked = Checked {
         program: program.name,

@@ -50,6 +50,90 @@ pub struct Converter {
     pub base_load_w: f64,
     /// Whether fed-back power feeds the other axes.
     pub credit_regen: bool,
+    /// What it bears over time.
+    pub ratings: Ratings,
+}
+
+/// What a converter bears over time, margins not taken off. What is not given is
+/// not checked.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ratings {
+    /// Power that it may deliver for ever, as RMS over a window.
+    pub continuous: Option<Continuous>,
+    /// Powers that are permitted for a time, from the largest on.
+    pub overload: Vec<Overload>,
+    /// The DC bus, where capacitance and nominal voltage are given.
+    pub capacitor: Option<Capacitor>,
+    /// Whether a peak beyond the converter's own may come from the capacitor, or
+    /// go into it: then peaks are judged by the voltage.
+    pub credit_capacitance: bool,
+    /// The braking resistor.
+    pub brake: Option<Brake>,
+}
+
+impl Ratings {
+    /// Whether peaks that are drawn may come from the capacitor.
+    #[must_use]
+    pub fn credits_low(&self) -> bool {
+        self.credit_capacitance && self.capacitor.is_some_and(|bus| bus.min_v.is_some())
+    }
+
+    /// Whether peaks that are fed back may go into the capacitor.
+    #[must_use]
+    pub fn credits_high(&self) -> bool {
+        self.credit_capacitance && self.capacitor.is_some_and(|bus| bus.max_v.is_some())
+    }
+}
+
+/// Power that may be delivered for ever.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Continuous {
+    /// Root of the mean square in W.
+    pub power_w: f64,
+    /// Over how long, in s.
+    pub window_s: f64,
+}
+
+/// A power that is permitted for a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overload {
+    /// In W.
+    pub power_w: f64,
+    /// For how long, in s.
+    pub seconds: f64,
+    /// Within what time, in s.
+    pub every_s: f64,
+}
+
+/// The capacitor of a DC bus.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capacitor {
+    /// In F.
+    pub capacitance_f: f64,
+    /// The voltage that the converter keeps, in V.
+    pub nominal_v: f64,
+    /// Lowest permitted voltage in V.
+    pub min_v: Option<f64>,
+    /// Highest permitted voltage in V.
+    pub max_v: Option<f64>,
+}
+
+impl Capacitor {
+    /// Energy between the nominal and another voltage in J, not signed.
+    #[must_use]
+    pub fn energy_j(&self, volts: f64) -> f64 {
+        let squares = (self.nominal_v - volts) * (self.nominal_v + volts);
+        (0.5 * self.capacitance_f * squares).abs()
+    }
+}
+
+/// A braking resistor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brake {
+    /// Power that it gives off for ever, in W.
+    pub power_w: f64,
+    /// Energy that it takes in one go beyond that, in J.
+    pub energy_j: f64,
 }
 
 /// How the machine follows a path.

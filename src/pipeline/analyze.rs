@@ -23,7 +23,7 @@ pub fn analyze<R: Read + Seek + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
-    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL);
+    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL).watching();
     let energy = rows.is_some();
     let mut tally = Tally::new(machine, options, rows);
     let adviser = Adviser::new(machine);
@@ -53,6 +53,7 @@ pub fn analyze<R: Read + Seek + Send>(
     let lines = front.lines;
     let notes = front.finish()?;
     refuse_planned(&assessor, machine)?;
+    tally.rate(assessor.ratings());
     let mut summary = tally.finish(energy);
     summary.lines = lines;
     summary.notes = notes;

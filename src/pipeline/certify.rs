@@ -15,7 +15,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Stance, Step};
 use crate::limit::{Depths, Obstacle, Place};
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
+use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
 use crate::source::{Span, lines};
 use crate::syntax::{Block, scan_line};
 
@@ -117,7 +117,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             behind: false,
             interpreter,
             diagnostics: Diagnostics::default(),
-            assessor: Assessor::new(machine, options.certificate, Want::ALL),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL).watching(),
             block: Block::default(),
             steps: Vec::new(),
             facts: Facts::default(),
@@ -224,6 +224,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor, verdict, ..
         } = &mut self;
         assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+        verdict.rate(assessor.ratings());
         self.verdict.finish(&self.diagnostics.list, self.line)
     }
 }
@@ -268,6 +269,11 @@ impl<'m, 'r> Verdict<'m, 'r> {
             let message = "the written program leaves something out".to_owned();
             self.reasons.push(0, "changed-sequence", message, BUG, b"");
         }
+    }
+
+    /// Takes what was found about limits over time.
+    pub(super) fn rate(&mut self, ratings: Vec<Rating>) {
+        self.tally.rate(ratings);
     }
 
     /// The figures of the written program, and why the certificate does not

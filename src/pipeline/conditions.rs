@@ -59,6 +59,20 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
     conditions.push(
         "cutting forces are not counted; emergency stop and feed hold are outside".to_owned(),
     );
+    if !summary.over_time.is_empty() {
+        conditions.push(
+            "limits over time are less the margin and at the largest overrides; what is shorter \
+             than a window may run again at once"
+                .to_owned(),
+        );
+        if summary.certificate == Some(Certificate::Robust) {
+            conditions.push(
+                "blended moves last no longer than with a stop at both ends, and no shorter than \
+                 their path at full speed"
+                    .to_owned(),
+            );
+        }
+    }
     if !machine.unchecked.is_empty() {
         conditions.push(format!("not checked yet: {}", machine.unchecked.join(", ")));
     }

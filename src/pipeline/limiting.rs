@@ -5,8 +5,10 @@ use std::io::{Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::batch::Batch;
-use super::certify::{Certified, Certifier};
+use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
+use super::lower::lower_further;
+use super::over_time::OverTime;
 use super::whole::limit_whole;
 use super::writer::{Writer, Written};
 use super::{
@@ -14,6 +16,7 @@ use super::{
 };
 use crate::limit::{Depths, Law, Limiter};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
+use crate::power::PowerModel;
 
 /// Pieces that may wait for the certifier.
 const BATCHES: usize = 2;
@@ -35,27 +38,42 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
-    let mut depths = Depths::default();
-    loop {
-        let job = Job {
-            machine,
-            options,
-            how,
-            depths: depths.clone(),
-        };
-        let (written, certified) = job.run(&mut input, &mut output, &mut rows)?;
-        if certified.deeper.is_empty() || !depths.deepen(&certified.deeper) {
-            return Ok(conclude(machine, options, written, certified));
+    let mut attempt = |target: &Machine, again: bool| {
+        if again {
+            input.rewind().map_err(Failure::Input)?;
+            restart(&mut output, &mut rows)?;
         }
-        // The changes made neighbours exceed the limit: planned anew with more.
-        input.rewind().map_err(Failure::Input)?;
-        restart(&mut output, &mut rows)?;
+        let mut depths = Depths::default();
+        loop {
+            let job = Job {
+                machine,
+                target,
+                options,
+                how,
+                depths: depths.clone(),
+            };
+            let (written, certified) = job.run(&mut input, &mut output, &mut rows)?;
+            if certified.deeper.is_empty() || !depths.deepen(&certified.deeper) {
+                return Ok(conclude(machine, target, options, written, certified));
+            }
+            // The changes made neighbours exceed the limit: planned anew with more.
+            input.rewind().map_err(Failure::Input)?;
+            restart(&mut output, &mut rows)?;
+        }
+    };
+    let first = attempt(machine, false)?;
+    let in_time = first.after.over_time.iter().all(|it| it.rating.fits());
+    if first.certified || in_time || first.after.unfit_count > 0 {
+        return Ok(first);
     }
+    lower_further(machine, first, &mut |target| attempt(target, true))
 }
 
 /// One round of limiting.
 struct Job<'a> {
     machine: &'a Machine,
+    /// The same with the limits that are aimed at.
+    target: &'a Machine,
     options: &'a Options,
     how: LimitOptions,
     depths: Depths,
@@ -71,6 +89,7 @@ impl Job<'_> {
     ) -> Result<(Written, Certified), Failure> {
         let Self {
             machine,
+            target,
             options,
             how,
             depths,
@@ -78,15 +97,16 @@ impl Job<'_> {
         let exact = rows.is_some();
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
         let mut certifier = Certifier::new(machine, options, sink);
-        let limiter = Limiter::new(machine, how, depths.clone());
+        let limiter = Limiter::new(target, how, depths.clone());
         let writer = Writer::new(
             &mut input,
-            machine,
+            target,
             options,
             limiter,
             exact,
             &mut output,
             None,
+            PowerModel::new(machine),
         );
         let streamed = if options.threads > 1 {
             side_by_side(writer, certifier)?
@@ -102,8 +122,8 @@ impl Job<'_> {
         }
         restart(&mut output, rows)?;
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
-        let limiter = Limiter::new(machine, how, depths);
-        limit_whole(input, machine, options, limiter, output, sink)
+        let limiter = Limiter::new(target, how, depths);
+        limit_whole(input, [machine, target], options, limiter, output, sink)
     }
 }
 
@@ -178,6 +198,7 @@ fn send(
 
 fn conclude(
     machine: &Machine,
+    target: &Machine,
     options: &Options,
     written: Written,
     certified: Certified,
@@ -192,8 +213,18 @@ fn conclude(
         reasons: found,
         deeper: _,
     } = certified;
+    if target != machine {
+        // What cannot reach the lower limit keeps the machine's own, or else the
+        // figures show it.
+        reasons = Reasons::default();
+    }
     reasons.count += found.count;
     reasons.list.extend(found.list);
+    let missed = after.over_time.iter().filter(|it| !it.rating.fits());
+    for reason in missed.map(OverTime::reason) {
+        reasons.count += 1;
+        reasons.list.push(reason);
+    }
     reasons.list.sort_by_key(|reason| reason.line);
     reasons.list.truncate(Summary::KEPT);
     before.conditions = conditions(machine, options, &before);

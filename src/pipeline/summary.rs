@@ -5,6 +5,7 @@ use crate::interpret::MoveKind;
 use crate::machine::AxisSet;
 
 use super::by_line::LineSummary;
+use super::over_time::OverTime;
 use super::row::Certificate;
 
 /// A move that does not fit.
@@ -65,6 +66,8 @@ pub struct Summary {
     pub by_line: Vec<LineSummary>,
     /// The worst ten, worst first.
     pub worst: Vec<Unfit>,
+    /// What the converters bear over time, where the machine limits it.
+    pub over_time: Vec<OverTime>,
     /// Which certificate the figures belong to: robust when any move needs it.
     pub certificate: Option<Certificate>,
     /// Some moves are planned together, with the controller's look-ahead.
@@ -79,10 +82,10 @@ impl Summary {
     /// How many moves that do not fit are kept.
     pub const KEPT: usize = 1000;
 
-    /// True when every move fits.
+    /// True when every move fits, and all limits over time are kept.
     #[must_use]
     pub fn fits(&self) -> bool {
-        self.unfit_count == 0
+        self.unfit_count == 0 && self.over_time.iter().all(|found| found.rating.fits())
     }
 }
 

@@ -4,10 +4,11 @@ use std::io;
 
 use super::by_line::ByLine;
 use super::describe::row;
+use super::over_time::OverTime;
 use super::{Certificate, Failure, Options, Row, RowSink, Summary, Unfit};
 use crate::interpret::Move;
 use crate::machine::{AxisSet, Machine};
-use crate::power::{Assessment, PowerModel, Want};
+use crate::power::{Assessment, PowerModel, Rating, Want};
 use crate::source::split_line_end;
 
 /// The worst moves that a summary keeps.
@@ -229,6 +230,11 @@ impl<'m, 'r> Tally<'m, 'r> {
         self.failed
             .take()
             .map_or(Ok(()), |error| Err(Failure::Output(error)))
+    }
+
+    /// Takes what was found about limits over time.
+    pub(super) fn rate(&mut self, ratings: Vec<Rating>) {
+        self.summary.over_time = OverTime::list(ratings, self.machine, |text| self.file(text));
     }
 
     /// The figures, with the energy where it was wanted of all moves; lines,

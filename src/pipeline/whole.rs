@@ -23,10 +23,11 @@ use crate::source::lines;
 /// Steps of the original that are held at a time while they are compared.
 const STEPS: usize = 4096;
 
-/// Limits a program that is held whole, and certifies what was written.
+/// Limits a program that is held whole, and certifies what was written; `target`
+/// is the machine with the limits that are aimed at.
 pub(super) fn limit_whole<R: Read + Seek>(
     mut input: R,
-    machine: &Machine,
+    [machine, target]: [&Machine; 2],
     options: &Options,
     limiter: Limiter<'_>,
     mut output: impl Write,
@@ -42,12 +43,13 @@ pub(super) fn limit_whole<R: Read + Seek>(
     let source = Cursor::new(&program);
     let writer = Writer::new(
         source,
-        machine,
+        target,
         options,
         limiter,
         exact,
         std::io::sink(),
         Some(table),
+        PowerModel::new(machine),
     );
     let (mut written, table) = writer.decide_all()?;
     let (text, edited_lines) = write(&program, machine, &table);
@@ -297,7 +299,7 @@ fn certify(
 ) -> Result<Certified, Failure> {
     let mut verdict = Verdict::new(machine, options, rows);
     let mut written = Front::new(Cursor::new(text), machine, options);
-    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL);
+    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL).watching();
     let mut expected = Vec::new();
     let mut more = true;
     while more {
@@ -322,6 +324,7 @@ fn certify(
         verdict.check()?;
     }
     assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+    verdict.rate(assessor.ratings());
     verdict.expect_nothing();
     let lines = written.lines;
     verdict.finish(&written.diagnostics.list, lines)

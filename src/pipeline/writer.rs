@@ -74,6 +74,8 @@ pub(super) struct Writer<'m, R, W> {
 }
 
 impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
+    /// `machine` has the limits that are aimed at, `model` those that rows show.
+    #[allow(clippy::too_many_arguments, reason = "a part of `limit`")]
     pub(super) fn new(
         input: R,
         machine: &'m Machine,
@@ -82,6 +84,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         exact: bool,
         output: W,
         table: Option<Table>,
+        model: PowerModel,
     ) -> Self {
         let front = Front::new(input, machine, options);
         Self {
@@ -92,7 +95,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
-            assessor: Assessor::new(machine, options.certificate, Want::ALL),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL).watching(),
             limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
@@ -107,7 +110,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             batch: Batch::default(),
             reasons: Reasons::default(),
             exact,
-            model: PowerModel::new(machine),
+            model,
             start_s: 0.0,
             table,
         }
@@ -162,10 +165,11 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     }
 
     /// The figures of the original, and what was decided.
-    fn conclude(self) -> Result<(Written, Table), Failure> {
+    fn conclude(mut self) -> Result<(Written, Table), Failure> {
         let lines = self.front.lines;
         let notes = self.front.finish()?;
         refuse_planned(&self.assessor, self.machine)?;
+        self.tally.rate(self.assessor.ratings());
         let mut before = self.tally.finish(self.exact);
         before.lines = lines;
         before.notes = notes;

@@ -14,11 +14,13 @@
 
 use std::collections::VecDeque;
 
-use super::assess::{Assessment, Certificate};
+use super::assessment::{Assessment, Certificate};
 use super::demand::{Demand, Want};
+use super::eye::Eye;
 use super::model::PowerModel;
 use super::piece::piece_demand;
 use super::robust::Part;
+use super::watch::Kept;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::lookahead::{Element, Joint, PathPlanner, Piece, Planned};
@@ -72,6 +74,8 @@ struct Open {
     moves: bool,
     /// It neither begins nor ends in motion.
     alone: bool,
+    /// Its pieces over time, where they are looked at.
+    kept: Kept,
 }
 
 /// How a move takes part.
@@ -114,10 +118,12 @@ impl Ahead {
     }
 
     /// Adds a move with what is known of it by itself.
+    #[allow(clippy::too_many_arguments, reason = "what is known of a move")]
     pub fn push(
         &mut self,
         machine: &Machine,
         model: &PowerModel,
+        eye: &mut Eye,
         mv: &Move,
         text: &[u8],
         assessment: impl FnOnce() -> Assessment,
@@ -138,7 +144,7 @@ impl Ahead {
             }
         }
         if role == Role::Unknown || role == Role::Path && self.in_doubt {
-            self.brake_in_doubt(model);
+            self.brake_in_doubt(model, eye);
         }
         let mut open = self.room(mv, text, want);
         match role {
@@ -177,15 +183,19 @@ impl Ahead {
                 side.planner.push(element);
             }
         }
-        self.pump(model);
+        self.pump(model, eye);
+        if role == Role::Unknown {
+            let side = self.nominal.as_ref().unwrap_or(&self.largest);
+            eye.show(machine, mv, side.overrides);
+        }
     }
 
     /// The motion stops behind the last move.
-    pub fn stop(&mut self, model: &PowerModel) {
+    pub fn stop(&mut self, model: &PowerModel, eye: &mut Eye) {
         self.stop_planners();
         self.at_rest = true;
         self.in_doubt = false;
-        self.pump(model);
+        self.pump(model, eye);
     }
 
     /// Something stands here that may or may not stop the motion.
@@ -195,9 +205,9 @@ impl Ahead {
     }
 
     /// The moves that a stop here would change are in doubt.
-    fn brake_in_doubt(&mut self, model: &PowerModel) {
+    fn brake_in_doubt(&mut self, model: &PowerModel, eye: &mut Eye) {
         self.largest.planner.settle();
-        self.pump(model);
+        self.pump(model, eye);
         let finished = self.largest.next.saturating_sub(self.first) as usize;
         for open in self.open.iter_mut().skip(finished) {
             open.certain = false;
@@ -220,6 +230,7 @@ impl Ahead {
             open.want = want;
             (open.certain, open.alone) = (true, true);
             (open.in_doubt, open.rests, open.moves) = (false, false, false);
+            open.kept.clear();
             return open;
         }
         Box::new(Open {
@@ -232,22 +243,23 @@ impl Ahead {
             rests: false,
             moves: false,
             alone: true,
+            kept: Kept::default(),
         })
     }
 
     /// Takes what the planners have finished.
-    fn pump(&mut self, model: &PowerModel) {
+    fn pump(&mut self, model: &PowerModel, eye: &mut Eye) {
         let end = self.first + self.open.len() as u64;
         let times = self.nominal.is_none();
         while let Some(planned) = self.largest.planner.pop() {
             self.largest.next = planned.first;
-            self.take(model, &planned, true, times);
+            self.take(model, eye, &planned, true, times);
         }
         while let Some(nominal) = &mut self.nominal
             && let Some(planned) = nominal.planner.pop()
         {
             nominal.next = planned.first;
-            self.take(model, &planned, false, true);
+            self.take(model, eye, &planned, false, true);
         }
         if self.at_rest {
             self.largest.next = end;
@@ -258,7 +270,14 @@ impl Ahead {
     }
 
     /// Counts a piece of path for the moves that it belongs to.
-    fn take(&mut self, model: &PowerModel, planned: &Planned<u64>, peaks: bool, times: bool) {
+    fn take(
+        &mut self,
+        model: &PowerModel,
+        eye: &mut Eye,
+        planned: &Planned<u64>,
+        peaks: bool,
+        times: bool,
+    ) {
         let last = planned.next.unwrap_or(planned.tag);
         let index = |number: u64| number.checked_sub(self.first).map(|index| index as usize);
         let (Some(from), Some(own), Some(to)) =
@@ -266,9 +285,15 @@ impl Ahead {
         else {
             return;
         };
-        let Some(open) = self.open.get(own) else {
+        let Some(open) = self.open.get_mut(own) else {
             return;
         };
+        if peaks {
+            eye.keep(model, &open.mv, planned, &mut open.kept);
+        }
+        if times {
+            eye.show_piece(&open.mv, planned);
+        }
         let mut demand = piece_demand(model, &open.mv, planned, open.want);
         let joined = matches!(planned.piece, Piece::Joined { .. });
         let certain = !peaks || self.is_certain(planned, from, to);
@@ -339,6 +364,7 @@ impl Ahead {
         &mut self,
         machine: &Machine,
         model: &PowerModel,
+        eye: &mut Eye,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let nominal = self
@@ -377,7 +403,13 @@ impl Ahead {
             let planned = !open.assessment.ahead || open.assessment.top_speed_mm_s > 0.0;
             if planned && open.certain && certain(before) && certain(next) {
                 open.assessment.blended = !open.alone;
+                if open.assessment.ahead {
+                    eye.kept(&open.mv, &mut open.kept);
+                } else {
+                    eye.alone(machine, model, &open.mv, self.largest.overrides);
+                }
             } else {
+                let mut kept = std::mem::take(&mut open.kept);
                 let beside = [before.unwrap_or(&open), &open, next.unwrap_or(&open)];
                 let overrides = self.largest.overrides;
                 let bounds = beside.map(|open| blended_bound(machine, &open.mv, overrides));
@@ -388,6 +420,8 @@ impl Ahead {
                 };
                 let window = [part(first, 0), part(own, 1), part(last, 2)];
                 let mut demand = model.robust_over(&open.mv, &window, open.want);
+                let largest = self.largest.overrides;
+                eye.blended(machine, model, &open.mv, &window, &mut kept, largest);
                 // Chords of a small arc may ask for more than the axes' limits.
                 demand.include(&open.assessment.demand);
                 open.assessment.demand = Demand {

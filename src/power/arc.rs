@@ -103,7 +103,7 @@ pub(super) struct Circle<'a> {
 }
 
 impl<'a> Circle<'a> {
-    fn new(
+    pub fn new(
         model: &'a PowerModel,
         converter: &ConverterPower,
         mv: &Move,
@@ -152,7 +152,7 @@ impl<'a> Circle<'a> {
     }
 
     /// The same circle for a path that is counted the other way.
-    fn reversed(&self) -> Self {
+    pub fn reversed(&self) -> Self {
         let mut reversed = self.clone();
         reversed.sense = -self.sense;
         for axis in &mut reversed.axes {
@@ -208,7 +208,7 @@ impl<'a> Circle<'a> {
     /// What a piece of a phase reaches; a phase whose acceleration changes is a
     /// part on which neither speed nor acceleration changes its sign, so that
     /// the extremes of both are at the ends.
-    fn reach(&self, phase: &Phase, from: f64, to: f64) -> Reach {
+    pub fn reach(&self, phase: &Phase, from: f64, to: f64) -> Reach {
         if phase.kind == PhaseKind::ConstantAcceleration {
             let fast = if phase.accel_mm_s2 > 0.0 { to } else { from };
             let fastest = self.motion(phase, fast);
@@ -245,7 +245,7 @@ impl<'a> Circle<'a> {
     }
 
     /// Upper bound of the power on one side within a reach.
-    fn envelope(&self, reach: &Reach, side: Side) -> f64 {
+    pub fn envelope(&self, reach: &Reach, side: Side) -> f64 {
         let sum = |which: usize| -> f64 {
             let factors = |axis: &AxisPower| {
                 [

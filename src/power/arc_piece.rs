@@ -165,10 +165,20 @@ impl Bounded for Piece<'_> {
         (sample.t, sample.value)
     }
 
+    fn bound(&self, from: &Sample, to: &Sample) -> f64 {
+        let (start, end, bend) = self.chord(from, to);
+        start.max(end) + bend
+    }
+}
+
+impl Piece<'_> {
+    /// A chord above which the power does not rise by more than the third value:
+    /// its power at both samples, and that.
+    ///
     /// Each axis' power is smooth, or the larger of smooth functions, between
     /// the samples. Where it is the smaller of two, either is a bound. Where
     /// the factor of acceleration may change, the worse factor is.
-    fn bound(&self, from: &Sample, to: &Sample) -> f64 {
+    pub fn chord(&self, from: &Sample, to: &Sample) -> (f64, f64, f64) {
         let h = to.t - from.t;
         let (mut start, mut end, mut bend) = (self.base_w, self.base_w, 0.0);
         for ((axis, a), b) in self.axes.iter().zip(&from.axes).zip(&to.axes) {
@@ -199,6 +209,6 @@ impl Bounded for Piece<'_> {
                 bend += axis_bend;
             }
         }
-        start.max(end) + bend
+        (start, end, bend)
     }
 }

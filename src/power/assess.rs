@@ -5,75 +5,18 @@
 //! others are judged at once.
 
 use super::ahead::Ahead;
+use super::assessment::{Assessment, Certificate};
 use super::demand::{Demand, Want};
+use super::eye::Eye;
 use super::model::PowerModel;
+use super::motion::Motion;
 use super::robust::Part;
+use super::watch::{Kept, Rating, Watch};
 use crate::interpret::{Action, ActionKind, Move, MoveKind};
 use crate::machine::{Family, Machine, PathMode, RapidJoint};
 use crate::plan::{
     Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
 };
-
-/// Which bound a figure rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Certificate {
-    /// The planner that the controller profile models.
-    Planned,
-    /// Any look-ahead, blending and filtering that keeps each axis inside its
-    /// own limits.
-    Robust,
-}
-
-impl Certificate {
-    /// The name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Planned => "planned",
-            Self::Robust => "robust",
-        }
-    }
-}
-
-/// What is known of a move once it is judged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Assessment {
-    /// Duration from rest to rest in s; 0 where the start is not known.
-    pub duration_s: f64,
-    /// Path speed that feed and axes permit at 100 % override, mm/s.
-    pub speed_mm_s: f64,
-    /// Path acceleration, mm/s².
-    pub accel_mm_s2: f64,
-    /// Path speed reached at the largest override, mm/s.
-    pub top_speed_mm_s: f64,
-    /// Peaks at the largest overrides, and the energy at 100 %.
-    pub demand: Demand,
-    /// Which certificate the peaks belong to.
-    pub certificate: Certificate,
-    /// The move may run into or out of a neighbour without a stop: its peaks
-    /// depend on both.
-    pub blended: bool,
-    /// The controller may run into it from its predecessor without a stop; a
-    /// move of no length is passed on the way to the next.
-    pub joined: bool,
-    /// It is planned together with its neighbours.
-    pub ahead: bool,
-}
-
-impl Assessment {
-    /// Nothing known yet of a move that is planned with others.
-    pub(super) const AHEAD: Self = Self {
-        duration_s: 0.0,
-        speed_mm_s: 0.0,
-        accel_mm_s2: 0.0,
-        top_speed_mm_s: 0.0,
-        demand: Demand::NONE,
-        certificate: Certificate::Planned,
-        blended: true,
-        joined: false,
-        ahead: true,
-    };
-}
 
 /// Judges the moves of one program.
 #[derive(Debug)]
@@ -100,6 +43,7 @@ pub struct Assessor<'m> {
     dwelt: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     ahead: Option<Box<Ahead>>,
+    eye: Eye,
 }
 
 /// A move that waits for its successor.
@@ -170,7 +114,39 @@ impl<'m> Assessor<'m> {
             needs_robust: false,
             dwelt: false,
             ahead,
+            eye: Eye::default(),
         }
+    }
+
+    /// Holds the motion against the converters' limits over time too, if they
+    /// have any.
+    #[must_use]
+    pub fn watching(mut self) -> Self {
+        self.eye.watch = Watch::new(self.machine, &self.model);
+        self
+    }
+
+    /// Keeps the motion at 100 % until it is taken with [`Self::motions`].
+    #[must_use]
+    pub fn showing(mut self) -> Self {
+        self.eye.motions = Some(Vec::new());
+        self
+    }
+
+    /// Takes the motion that is planned since, in the order of time. Of moves
+    /// whose timing depends on others that are not modelled it is the one with
+    /// stops; moves from an unknown start are left out.
+    pub fn motions(&mut self) -> std::vec::Drain<'_, Motion> {
+        self.eye.motions.get_or_insert_default().drain(..)
+    }
+
+    /// What was found about limits over time, of the moves handed on so far.
+    #[must_use]
+    pub fn ratings(&self) -> Vec<Rating> {
+        self.eye
+            .watch
+            .as_ref()
+            .map_or_else(Vec::new, |watch| watch.ratings())
     }
 
     /// The certificate that was asked for.
@@ -193,8 +169,8 @@ impl<'m> Assessor<'m> {
         match effect(action, self.machine.controller.language.family) {
             Effect::None => {}
             Effect::Stop => {
-                ahead.stop(&self.model);
-                ahead.hand_on(self.machine, &self.model, sink);
+                ahead.stop(&self.model, &mut self.eye);
+                ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
             }
             Effect::Unknown => ahead.doubt(),
         }
@@ -211,18 +187,30 @@ impl<'m> Assessor<'m> {
         let Some(mut ahead) = self.ahead.take() else {
             return;
         };
+        let mut eye = std::mem::take(&mut self.eye);
         let alone = || Assessment {
             blended: false,
             ..self.alone(mv, path_figures(self.machine, mv, self.largest).as_ref())
         };
         if mv.kind == MoveKind::Dwell {
-            ahead.stop(&self.model);
-            ahead.hand_on(self.machine, &self.model, sink);
+            ahead.stop(&self.model, &mut eye);
+            ahead.hand_on(self.machine, &self.model, &mut eye, sink);
+            eye.alone(self.machine, &self.model, mv, self.largest);
+            eye.show(self.machine, mv, self.nominal);
             sink(mv, &alone(), text);
         } else {
-            ahead.push(self.machine, &self.model, mv, text, alone, self.want);
-            ahead.hand_on(self.machine, &self.model, sink);
+            ahead.push(
+                self.machine,
+                &self.model,
+                &mut eye,
+                mv,
+                text,
+                alone,
+                self.want,
+            );
+            ahead.hand_on(self.machine, &self.model, &mut eye, sink);
         }
+        self.eye = eye;
         self.ahead = Some(ahead);
     }
 
@@ -238,6 +226,7 @@ impl<'m> Assessor<'m> {
         if open == Some(true) || open.is_some() && self.may_blend(mv) {
             return self.push_ahead(mv, text, sink);
         }
+        self.eye.show(self.machine, mv, self.nominal);
         let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
@@ -263,6 +252,7 @@ impl<'m> Assessor<'m> {
             if self.held.is_some() {
                 self.release(None, mv.kind == MoveKind::Dwell, sink);
             }
+            self.eye.alone(self.machine, &self.model, mv, self.largest);
             sink(mv, &assessment, text);
             return;
         }
@@ -312,8 +302,8 @@ impl<'m> Assessor<'m> {
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.release(None, false, sink);
         if let Some(ahead) = &mut self.ahead {
-            ahead.stop(&self.model);
-            ahead.hand_on(self.machine, &self.model, sink);
+            ahead.stop(&self.model, &mut self.eye);
+            ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
         }
     }
 
@@ -335,14 +325,26 @@ impl<'m> Assessor<'m> {
         let alone = !joined && next.is_none() && self.requested != Some(Certificate::Robust);
         if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
+            self.eye
+                .alone(self.machine, &self.model, &held.mv, self.largest);
         } else if alone && dwells && held.dwelt && held.mv.arc.is_none() {
             let figures = path_figures(self.machine, &held.mv, self.largest);
             held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
+            self.eye
+                .alone(self.machine, &self.model, &held.mv, self.largest);
         } else {
             let demand = {
                 let own = held.part();
                 let before = self.before.as_deref().filter(|_| joined);
                 let window = [before.map_or(own, Held::part), own, next.unwrap_or(own)];
+                self.eye.blended(
+                    self.machine,
+                    &self.model,
+                    &held.mv,
+                    &window,
+                    &mut Kept::default(),
+                    self.largest,
+                );
                 self.model.robust_over(&held.mv, &window, self.want)
             };
             held.assessment.demand = Demand {

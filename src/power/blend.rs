@@ -31,12 +31,7 @@ pub(super) fn totals(
     profile: &Profile,
     want: Want,
 ) -> Totals {
-    let mut active = AxisSet::default();
-    for (axis, (tangent, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
-        if converter.axes.contains(axis) && (tangent, normal) != (0.0, 0.0) {
-            active.insert(axis);
-        }
-    }
+    let active = active(converter, blend);
     let idle_w = converter.idle_w(mv, &model.axes, active);
     let circle = circle(model, converter, blend, idle_w);
     let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
@@ -68,8 +63,19 @@ pub(super) fn totals(
     totals
 }
 
+/// The converter's axes that move on the blend.
+pub(super) fn active(converter: &ConverterPower, blend: &Blend) -> AxisSet {
+    let mut active = AxisSet::default();
+    for (axis, (tangent, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
+        if converter.axes.contains(axis) && (tangent, normal) != (0.0, 0.0) {
+            active.insert(axis);
+        }
+    }
+    active
+}
+
 /// The axes of a converter on the circle; θ is 0 where the circle begins.
-fn circle<'a>(
+pub(super) fn circle<'a>(
     model: &'a PowerModel,
     converter: &ConverterPower,
     blend: &Blend,
@@ -102,7 +108,7 @@ fn circle<'a>(
 }
 
 /// Path positions, in order, at which the circle begins or an axis turns back.
-fn cuts(blend: &Blend) -> ArrayVec<f64, 4> {
+pub(super) fn cuts(blend: &Blend) -> ArrayVec<f64, 4> {
     let mut cuts = ArrayVec::new();
     cuts.push(blend.lead_mm);
     for (tangent, normal) in blend.tangent.into_iter().zip(blend.normal) {
@@ -119,7 +125,7 @@ fn cuts(blend: &Blend) -> ArrayVec<f64, 4> {
 }
 
 /// The phase between the cuts.
-fn pieces(phase: &Phase, cuts: &[f64]) -> ArrayVec<Phase, 5> {
+pub(super) fn pieces(phase: &Phase, cuts: &[f64]) -> ArrayVec<Phase, 5> {
     let mut pieces = ArrayVec::new();
     let mut rest = *phase;
     for cut in cuts {

@@ -27,21 +27,7 @@ pub(super) fn interval(
     want: Want,
     totals: &mut Totals,
 ) {
-    let axes: ArrayVec<(Phase, Follower<'_>), AXES> = profiles
-        .iter()
-        .filter(|(axis, _)| converter.axes.contains(*axis))
-        .take(AXES)
-        .map(|(axis, profile)| {
-            let power = &model.axes[*axis];
-            let part = part(profile, start, end);
-            let follower = Follower {
-                axis: power,
-                course: Course::new(&part),
-                direction: power.si_per_unit.copysign(mv.end[*axis] - mv.start[*axis]),
-            };
-            (part, follower)
-        })
-        .collect();
+    let axes = parts(model, converter, mv, profiles, (start, end));
     let over_time = axes.iter().all(|(part, _)| {
         matches!(
             part.kind,
@@ -75,6 +61,31 @@ pub(super) fn interval(
     let credit_w = if credit_regen { totals.idle_w } else { 0.0 };
     totals.raise_peak(peak_w);
     totals.raise_regen(regen_w - credit_w);
+}
+
+/// What each axis of the converter does in an interval.
+pub(super) fn parts<'a>(
+    model: &'a PowerModel,
+    converter: &ConverterPower,
+    mv: &Move,
+    profiles: &[(usize, Profile)],
+    (start, end): (f64, f64),
+) -> ArrayVec<(Phase, Follower<'a>), AXES> {
+    profiles
+        .iter()
+        .filter(|(axis, _)| converter.axes.contains(*axis))
+        .take(AXES)
+        .map(|(axis, profile)| {
+            let power = &model.axes[*axis];
+            let part = part(profile, start, end);
+            let follower = Follower {
+                axis: power,
+                course: Course::new(&part),
+                direction: power.si_per_unit.copysign(mv.end[*axis] - mv.start[*axis]),
+            };
+            (part, follower)
+        })
+        .collect()
 }
 
 /// What a profile does in an interval; it rests once the axis has arrived.

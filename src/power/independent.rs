@@ -26,27 +26,7 @@ pub(super) fn totals(
     idle_w: f64,
     want: Want,
 ) -> Totals {
-    let mut instants = ArrayVec::<f64, INSTANTS>::new();
-    let mut duration_s = 0.0_f64;
-    for (axis, profile) in profiles {
-        duration_s = duration_s.max(profile.duration_s());
-        if converter.axes.contains(*axis) {
-            let mut start = 0.0;
-            for phase in &profile.phases {
-                let mut end = start;
-                if !is_steady(phase) {
-                    for part in phase.parts() {
-                        end += part.duration_s;
-                        instants.try_push(end).ok();
-                    }
-                }
-                start += phase.duration_s;
-                // More axes than exist cannot come from `plan`.
-                instants.try_push(start).ok();
-            }
-        }
-    }
-    instants.sort_unstable_by(f64::total_cmp);
+    let (instants, duration_s) = instants(converter, profiles);
     let mut totals = Totals::at_rest(idle_w, duration_s, want);
     let mut phases = profiles.iter().flat_map(|(_, profile)| &profile.phases);
     let steady = phases.all(is_steady);
@@ -85,6 +65,36 @@ pub(super) fn totals(
         }
     }
     totals
+}
+
+/// The instants at which an axis of the converter switches, in order, and how
+/// long the move lasts, s.
+pub(super) fn instants(
+    converter: &ConverterPower,
+    profiles: &[(usize, Profile)],
+) -> (ArrayVec<f64, INSTANTS>, f64) {
+    let mut instants = ArrayVec::new();
+    let mut duration_s = 0.0_f64;
+    for (axis, profile) in profiles {
+        duration_s = duration_s.max(profile.duration_s());
+        if converter.axes.contains(*axis) {
+            let mut start = 0.0;
+            for phase in &profile.phases {
+                let mut end = start;
+                if !is_steady(phase) {
+                    for part in phase.parts() {
+                        end += part.duration_s;
+                        instants.try_push(end).ok();
+                    }
+                }
+                start += phase.duration_s;
+                // More axes than exist cannot come from `plan`.
+                instants.try_push(start).ok();
+            }
+        }
+    }
+    instants.sort_unstable_by(f64::total_cmp);
+    (instants, duration_s)
 }
 
 /// Whether a phase has one acceleration.

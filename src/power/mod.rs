@@ -9,6 +9,7 @@
 //! energy, and only regenerating ones towards the regenerative peak.
 
 mod assess;
+mod assessment;
 mod ahead;
 mod arc;
 mod arc_energy;
@@ -19,9 +20,11 @@ mod ceiling;
 mod changing;
 mod circle;
 mod demand;
+mod eye;
 mod independent;
 mod interval;
 mod model;
+mod motion;
 mod piece;
 mod polynomial;
 mod quadrants;
@@ -31,11 +34,17 @@ mod search;
 mod spindle;
 mod straight;
 mod stretch;
+mod trace;
+mod watch;
 
 pub(crate) use ahead::{Role, joint, role};
-pub use assess::{Assessment, Assessor, Certificate};
+pub use assess::Assessor;
 pub(crate) use assess::{Effect, effect};
+pub use assessment::{Assessment, Certificate};
 pub use axis::electrical_w;
 pub use demand::{Demand, Want};
 pub use model::PowerModel;
+pub use motion::{AxisInstant, Instant, Motion};
 pub use spindle::{RunPhase, SpindlePower, SpindleRun, spindle_run};
+pub use trace::{Flow, Slice};
+pub use watch::{Measure, Rating};

@@ -45,6 +45,16 @@ pub(super) struct ConverterPower {
     limit_w: f64,
     /// Largest power that may be fed back in W, margin taken off.
     regen_limit_w: Option<f64>,
+    /// Which of these limits a move must keep by itself: not where the capacitor
+    /// takes peaks, which is judged over time.
+    by_move: ByMove,
+}
+
+/// Which limits of power each move must keep by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct ByMove {
+    peak: bool,
+    regen: bool,
 }
 
 impl PowerModel {
@@ -146,6 +156,7 @@ impl ConverterPower {
     fn new(machine: &Machine, index: usize, axes: &[AxisPower; AXES]) -> Self {
         let converter = &machine.converters[index];
         let share = 1.0 - machine.limits.margin;
+        let ratings = &converter.ratings;
         let fed = AxisSet(converter.axes.0 & machine.axis_set.0);
         let select = |test: fn(&AxisPower) -> bool| {
             let mut set = AxisSet::default();
@@ -170,9 +181,18 @@ impl ConverterPower {
                 .filter(|(_, load)| load.converter == index)
                 .map(|(bit, load)| (1 << bit, load.power_w))
                 .collect(),
+            by_move: ByMove {
+                peak: !ratings.credits_low(),
+                regen: !ratings.credits_high(),
+            },
             limit_w: share * converter.peak_power_w,
             regen_limit_w: converter.regen_power_w.map(|power| share * power),
         }
+    }
+
+    /// Largest power in W, margin taken off.
+    pub fn limit_w(&self) -> f64 {
+        self.limit_w
     }
 
     /// What is drawn besides the axes in `active`: base load, switched loads
@@ -200,10 +220,16 @@ impl Demand {
     #[inline]
     pub(super) fn add(&mut self, index: usize, converter: &ConverterPower, totals: Totals) {
         let regen_ratio = match converter.regen_limit_w {
-            Some(limit) if totals.regen_w > 0.0 => totals.regen_w / limit,
+            Some(limit) if totals.regen_w > 0.0 && converter.by_move.regen => {
+                totals.regen_w / limit
+            }
             _ => 0.0,
         };
-        let ratio = (totals.peak_w / converter.limit_w).max(regen_ratio);
+        let ratio = if converter.by_move.peak {
+            (totals.peak_w / converter.limit_w).max(regen_ratio)
+        } else {
+            regen_ratio
+        };
         if ratio > self.load_ratio {
             self.load_ratio = ratio;
             self.converter = index;

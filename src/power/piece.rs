@@ -97,7 +97,7 @@ impl PowerModel {
 }
 
 /// A line in X, Y and Z, otherwise like the move.
-fn straight_line(mv: &Move, direction: &[f64; 3], length_mm: f64) -> Move {
+pub(super) fn straight_line(mv: &Move, direction: &[f64; 3], length_mm: f64) -> Move {
     let mut line = mv.clone();
     line.length_mm = length_mm;
     line.arc = None;

@@ -100,6 +100,37 @@ impl PowerModel {
         Demand::below_floor(drawn_w, fed_back_w, want)
     }
 
+    /// The robust bound of one converter over a move and its neighbours: drawn
+    /// and fed back, W.
+    pub(super) fn robust_powers(
+        &self,
+        converter: usize,
+        mv: &Move,
+        parts: &[Part<'_>],
+    ) -> [f64; 2] {
+        let Some(converter) = self.converters.get(converter) else {
+            return [f64::INFINITY; 2];
+        };
+        let (mut bound, mut accel_mm_s2) = (SpeedBound::default(), [0.0_f64; AXES]);
+        for part in parts {
+            bound.include(part.bound);
+            for (largest, own) in accel_mm_s2.iter_mut().zip(part.accel_mm_s2) {
+                *largest = largest.max(*own);
+            }
+        }
+        let totals = self.robust_totals(converter, mv, &bound, &accel_mm_s2);
+        [totals.peak_w, totals.regen_w]
+    }
+
+    /// What one converter draws and takes back with all axes at rest, W.
+    pub(super) fn resting_w(&self, converter: usize, mv: &Move) -> [f64; 2] {
+        let converter = self.converters.get(converter);
+        let idle_w = converter.map_or(f64::INFINITY, |converter| {
+            converter.idle_w(mv, &self.axes, AxisSet::default())
+        });
+        [idle_w, 0.0]
+    }
+
     /// The robust bound for one converter.
     pub(super) fn robust_totals(
         &self,

@@ -183,15 +183,15 @@ impl Stretch<'_> {
         let Some(course) = self.axes.first().map(|follower| follower.course) else {
             return;
         };
-        self.pieces(&course, Side::Motor, 1.0, |power, from, to| {
+        self.pieces(Side::Motor, 1.0, |power, from, to| {
             totals.raise_peak(self.idle_w + largest(&course, power, from, to));
         });
         let credit_w = if self.credit_regen { self.idle_w } else { 0.0 };
-        self.pieces(&course, Side::Regen, -1.0, |power, from, to| {
+        self.pieces(Side::Regen, -1.0, |power, from, to| {
             totals.raise_regen(largest(&course, power, from, to) - credit_w);
         });
         if want.energy {
-            self.pieces(&course, Side::Nominal, 1.0, |power, from, to| {
+            self.pieces(Side::Nominal, 1.0, |power, from, to| {
                 totals.energy_j += energy_j(&course, power, from, to);
             });
         }
@@ -199,13 +199,10 @@ impl Stretch<'_> {
 
     /// Visits the pieces on which the power is one polynomial: that which is
     /// drawn, or, with the direction −1, fed back.
-    fn pieces(
-        &self,
-        course: &Course,
-        side: Side,
-        direction: f64,
-        mut visit: impl FnMut(&Polynomial, f64, f64),
-    ) {
+    pub fn pieces(&self, side: Side, direction: f64, mut visit: impl FnMut(&Polynomial, f64, f64)) {
+        let Some(course) = self.axes.first().map(|follower| &follower.course) else {
+            return;
+        };
         let works: ArrayVec<(&AxisPower, Work), AXES> = self
             .axes
             .iter()

@@ -5,9 +5,10 @@ use std::io::{self, Write};
 
 use super::checked::{Checked, Verdict, chain};
 use super::finding::is_regenerative;
+use super::over_time::message;
 use super::quantity::{percent, power};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::pipeline::{Failure, Unfit};
+use crate::pipeline::{Failure, Summary, Unfit};
 
 /// Annotations that GitHub shows of one step.
 const ANNOTATIONS_MAX: usize = 10;
@@ -46,6 +47,7 @@ fn annotations(checked: &Checked) -> Vec<(f64, String)> {
             .worst
             .iter()
             .map(|unfit| (unfit.overload, unfit_command(program, unfit)))
+            .chain(missed(program, summary))
             .collect(),
         Err(Failure::Refused { diagnostics, .. }) => diagnostics
             .iter()
@@ -54,6 +56,24 @@ fn annotations(checked: &Checked) -> Vec<(f64, String)> {
             .collect(),
         Err(failure) => vec![(f64::INFINITY, command(program, 0, "gwatt", &chain(failure)))],
     }
+}
+
+/// Limits over time that are not kept.
+fn missed<'a>(program: &'a str, summary: &'a Summary) -> impl Iterator<Item = (f64, String)> + 'a {
+    let missed = summary.over_time.iter().filter(|it| !it.rating.fits());
+    missed.map(move |found| {
+        let program = if found.file.is_empty() {
+            program
+        } else {
+            &found.file
+        };
+        let rating = &found.rating;
+        let title = rating.measure.name();
+        (
+            rating.load_ratio(),
+            command(program, rating.line, title, &message(found)),
+        )
+    })
 }
 
 fn unfit_command(program: &str, unfit: &Unfit) -> String {

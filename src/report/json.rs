@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::checked::{Checked, chain};
 use super::figure::Figure;
 use super::finding::{Finding, UnfitMove};
+use super::over_time::OverTimeRecord;
 use super::record::Record;
 use crate::pipeline::{Certificate, Failure, LimitSummary, Row, RowSink, Summary};
 
@@ -77,6 +78,8 @@ impl<'a> Head<'a> {
 #[derive(Serialize)]
 struct ReportTail<'a> {
     unfit_count: u64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    over_time: Vec<OverTimeRecord<'a>>,
     lines: Vec<LineFigures<'a>>,
 }
 
@@ -120,6 +123,10 @@ struct LimitTail<'a> {
     edited_lines: u64,
     certified: bool,
     reasons: Vec<Finding<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    over_time: Vec<OverTimeRecord<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    over_time_after: Vec<OverTimeRecord<'a>>,
 }
 
 /// Writes what `report` found; `blocks` are the rows that [`JsonRows`] wrote.
@@ -135,6 +142,7 @@ pub fn report_json(
 ) -> io::Result<()> {
     let tail = ReportTail {
         unfit_count: summary.unfit_count,
+        over_time: OverTimeRecord::list(summary),
         lines: LineFigures::list(summary),
     };
     write_object(&Head::new(program, machine, summary), blocks, &tail, out)
@@ -168,6 +176,8 @@ pub fn limit_json(
         edited_lines: summary.edited_lines,
         certified: summary.certified,
         reasons: summary.reasons.iter().map(Finding::from).collect(),
+        over_time: OverTimeRecord::list(&summary.before),
+        over_time_after: OverTimeRecord::list(&summary.after),
     };
     write_object(&head, blocks, &tail, out)
 }
@@ -200,6 +210,8 @@ struct CheckedProgram<'a> {
     fits: bool,
     unfit_count: Option<u64>,
     unfit: Vec<UnfitMove<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    over_time: Vec<OverTimeRecord<'a>>,
     certificate: Option<&'static str>,
     error: Option<String>,
     diagnostics: Vec<Finding<'a>>,
@@ -224,6 +236,7 @@ impl<'a> CheckedProgram<'a> {
             fits: summary.is_some_and(Summary::fits),
             unfit_count: summary.map(|summary| summary.unfit_count),
             unfit: unfit.iter().map(UnfitMove::from).collect(),
+            over_time: summary.map_or_else(Vec::new, OverTimeRecord::list),
             certificate: summary
                 .and_then(|summary| summary.certificate)
                 .map(Certificate::name),

@@ -12,9 +12,10 @@ use serde_sarif::sarif::{
 
 use super::checked::{Checked, chain};
 use super::finding::is_regenerative;
+use super::over_time::message;
 use super::quantity::power;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::pipeline::{Failure, Unfit};
+use crate::pipeline::{Failure, OverTime, Unfit};
 
 const PEAK_POWER: &str = "peak-power";
 const REGEN_POWER: &str = "regen-power";
@@ -53,6 +54,11 @@ fn rules(results: &[Finding]) -> Vec<ReportingDescriptor> {
         let text = match rule.as_str() {
             PEAK_POWER => "A move draws more power than the converter gives.",
             REGEN_POWER => "A move feeds back more power than the converter takes.",
+            "overload" => "More power is drawn, for longer, than the converter bears.",
+            "continuous-power" => "More power is drawn on average than the converter delivers.",
+            "bus-voltage-low" => "The voltage of the DC bus falls too low.",
+            "bus-voltage-high" => "The voltage of the DC bus rises too high.",
+            "brake-energy" => "More energy is fed back than the braking resistor takes.",
             UNREADABLE => "A program cannot be read.",
             _ => "gwatt cannot judge what the program asks for, or doubts it.",
         };
@@ -74,9 +80,15 @@ fn findings(checked: &Checked) -> Vec<Finding> {
         Ok(summary) => {
             let notes = summary.notes.iter();
             let unfit = summary.unfit.iter();
+            let over_time = summary.over_time.iter();
             notes
                 .map(|note| diagnostic_finding(program, note))
                 .chain(unfit.map(|unfit| unfit_finding(program, unfit)))
+                .chain(
+                    over_time
+                        .filter(|found| !found.rating.fits())
+                        .map(|found| over_time_finding(program, found)),
+                )
                 .collect()
         }
         Err(Failure::Refused { diagnostics, .. }) => diagnostics
@@ -116,6 +128,19 @@ fn unfit_finding(program: &str, unfit: &Unfit) -> Finding {
         .build();
     let place = location(program, Some(region));
     finding(rule, ResultLevel::Error, message, place)
+}
+
+fn over_time_finding(program: &str, found: &OverTime) -> Finding {
+    let program = if found.file.is_empty() {
+        program
+    } else {
+        &found.file
+    };
+    let line = found.rating.line;
+    let region = (line > 0).then(|| Region::builder().start_line(line.cast_signed()).build());
+    let rule = found.rating.measure.name();
+    let place = location(program, region);
+    finding(rule, ResultLevel::Error, message(found), place)
 }
 
 fn diagnostic_finding(program: &str, diagnostic: &Diagnostic) -> Finding {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::checked::{Checked, chain};
 use super::figure::round_to_digits;
 use super::finding::{LINE_CHARS, is_regenerative};
+use super::over_time::over_time_text;
 use super::quantity::{duration, percent, power, three_digits};
 use crate::diagnostic::{Severity, excerpt};
 use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
@@ -17,7 +18,12 @@ pub fn check_text(checked: &Checked, machine: &Machine) -> String {
     let program = &checked.program;
     match &checked.outcome {
         Ok(summary) if summary.fits() => {
-            format!("{program}: fits: {}\n", figures(summary, machine))
+            let text = format!("{program}: fits: {}\n", figures(summary, machine));
+            text + &over_time_text(summary)
+        }
+        Ok(summary) if summary.unfit_count == 0 => {
+            let text = format!("{program}: does not fit: {}\n", figures(summary, machine));
+            text + &over_time_text(summary)
         }
         Ok(summary) => {
             let count = moves(summary.unfit_count);
@@ -27,6 +33,7 @@ pub fn check_text(checked: &Checked, machine: &Machine) -> String {
                 figures(summary, machine)
             );
             text.push_str(&worst(summary));
+            text.push_str(&over_time_text(summary));
             text
         }
         Err(failure) => format!("{program}: refused: {}\n", refusal(failure)),
@@ -139,9 +146,10 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
         let count = summary.reasons.len();
         let noun = if count == 1 { "reason" } else { "reasons" };
         return format!(
-            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}",
+            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}{}",
             figures(before, machine),
-            worst(after)
+            worst(after),
+            over_time_text(after)
         );
     }
     let mut text = if summary.edited_lines == 0 {
@@ -155,6 +163,7 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
             lines(summary.edited_lines)
         )
     };
+    text.push_str(&over_time_text(after));
     if let Some(certificate) = after.certificate {
         let _ = writeln!(text, "certificate: {}", certificate.name());
     }

@@ -368,3 +368,12 @@ fn correction_sections() {
     ");
     assert_eq!(with_sections("[1, 0, 0, 0, 0]"), "");
 }
+
+#[test]
+fn a_capacitor_that_is_counted_on_must_be_known() {
+    assert_snapshot!(findings(&edited("peak_power_w = 3500", "peak_power_w = 3500\ncredit_capacitance = true\ncapacitance_f = 0.004\nbus_nominal_v = 560")), @r"
+    line 5, error machine-converter: `credit_capacitance` without the capacitance and its voltages / give `capacitance_f`, `bus_nominal_v` and `bus_min_v`
+      | [converter]
+      | ^^^^^^^^^^^
+    ");
+}

@@ -188,11 +188,11 @@ fn preset_above_the_limit() {
 fn overload_above_the_peak() {
     let text = edited(
         "peak_power_w = 3500",
-        "peak_power_w = 3500\noverload = [{ power_w = 5000, seconds = 0.2, every_s = 10 }]",
+        "peak_power_w = 3500\ncontinuous_power_w = 2000\noverload = [{ power_w = 5000, seconds = 0.2, every_s = 10 }]",
     );
     machine(&text);
     assert_snapshot!(findings(&text), @r"
-    line 7, warning machine-converter: an overload above `peak_power_w` is never used
+    line 8, warning machine-converter: an overload above `peak_power_w` is never used
       | overload = [{ power_w = 5000, seconds = 0.2, every_s = 10 }]
       |                         ^^^^
     ");
@@ -201,4 +201,43 @@ fn overload_above_the_peak() {
 #[test]
 fn the_base_is_without_a_warning() {
     assert_eq!(findings(BASE), "");
+}
+
+#[test]
+fn overload_with_nothing_below_it() {
+    let text = edited(
+        "peak_power_w = 3500",
+        "peak_power_w = 3500\noverload = [{ power_w = 3000, seconds = 0.2, every_s = 10 }]",
+    );
+    let machine = machine(&text);
+    assert_eq!(machine.converters[0].ratings.overload.len(), 1);
+    assert_snapshot!(findings(&text), @r"
+    line 7, warning machine-converter: `overload` without `continuous_power_w`: all power counts as overload / give the power that the converter delivers for ever
+      | overload = [{ power_w = 3000, seconds = 0.2, every_s = 10 }]
+      |             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+}
+
+#[test]
+fn voltages_that_cannot_be_checked() {
+    let text = edited(
+        "peak_power_w = 3500",
+        "peak_power_w = 3500\nbus_min_v = 480",
+    );
+    machine(&text);
+    assert_snapshot!(findings(&text), @r"
+    line 7, warning machine-converter: `bus_min_v` is not checked: it takes the capacitance of the bus / give `capacitance_f` and `bus_nominal_v`
+      | bus_min_v = 480
+      |             ^^^
+    ");
+    let text = edited(
+        "peak_power_w = 3500",
+        "peak_power_w = 3500\ncapacitance_f = 0.004\nbus_nominal_v = 560\nbus_max_v = 760",
+    );
+    machine(&text);
+    assert_snapshot!(findings(&text), @r"
+    line 9, warning machine-converter: `bus_max_v` is not checked: without `regen_power_w` any power can be fed back / give the largest power that converter or braking resistor take
+      | bus_max_v = 760
+      |             ^^^
+    ");
 }

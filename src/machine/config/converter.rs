@@ -2,8 +2,8 @@
 
 use super::findings::Findings;
 use super::machine_file::ConverterTable;
-use super::plausible;
-use super::value::{At, Num, OneOrMany};
+use super::value::{At, OneOrMany};
+use super::{plausible, ratings};
 use crate::machine::axis::{ALL_AXES, AxisSet};
 use crate::machine::model::Converter;
 
@@ -20,7 +20,6 @@ pub(crate) fn converters(
     let mut list: Vec<Converter> = Vec::new();
     for table in &tables.0 {
         power(findings, &table.value, margin);
-        bus(findings, &table.value);
         plausible::converter(findings, &table.value);
         let name = name(findings, table, several, &list);
         let axes = axes(findings, table, several, machine_axes, &mut fed);
@@ -39,6 +38,7 @@ pub(crate) fn converters(
                 .as_ref()
                 .map_or(0.0, |load| load.value),
             credit_regen: table.value.credit_regen.unwrap_or(false),
+            ratings: ratings::of(findings, table),
         });
     }
     let forgotten: Vec<String> = machine_axes
@@ -162,30 +162,5 @@ fn power(findings: &mut Findings<'_>, table: &ConverterTable, margin: f64) {
             let message = "an overload above `peak_power_w` is never used";
             findings.warning("machine-converter", &power.span, message, None);
         }
-    }
-}
-
-/// Voltages of the DC bus out of order.
-fn bus(findings: &mut Findings<'_>, table: &ConverterTable) {
-    fn above<A, B>(
-        findings: &mut Findings<'_>,
-        low: (&str, Option<&Num<A>>),
-        high: (&str, Option<&Num<B>>),
-    ) -> bool {
-        if let (Some(a), Some(b)) = (low.1, high.1)
-            && a.value >= b.value
-        {
-            let message = format!("`{}` is not below `{}`", low.0, high.0);
-            findings.error("machine-converter", &a.span, message, None);
-            return true;
-        }
-        false
-    }
-    let min = ("bus_min_v", table.bus_min_v.as_ref());
-    let nominal = ("bus_nominal_v", table.bus_nominal_v.as_ref());
-    let max = ("bus_max_v", table.bus_max_v.as_ref());
-    let found = above(findings, min, nominal) | above(findings, nominal, max);
-    if !found {
-        above(findings, min, max);
     }
 }

@@ -66,10 +66,13 @@ pub(crate) struct ConverterTable {
     pub(crate) credit_regen: Option<bool>,
     /// Continuous power (RMS) in W.
     pub(crate) continuous_power_w: Option<Positive>,
-    /// Window of the continuous power in s.
+    /// Window of the continuous power in s; default 180.
     pub(crate) window_s: Option<Positive>,
     /// Powers that are permitted for a time.
     pub(crate) overload: Option<Vec<At<OverloadTable>>>,
+    /// Whether peaks beyond the converter's power may come from the capacitance
+    /// and go into it, within the voltages; default false.
+    pub(crate) credit_capacitance: Option<bool>,
     /// Capacitance of the DC bus in F.
     pub(crate) capacitance_f: Option<Positive>,
     /// Nominal voltage of the DC bus in V.
@@ -78,9 +81,9 @@ pub(crate) struct ConverterTable {
     pub(crate) bus_min_v: Option<Positive>,
     /// Highest permitted voltage in V.
     pub(crate) bus_max_v: Option<Positive>,
-    /// Power of the braking resistor in W.
+    /// Power that the braking resistor gives off for ever, in W.
     pub(crate) brake_power_w: Option<NotNegative>,
-    /// Energy that the braking resistor takes in one go, in J.
+    /// Energy that the braking resistor takes in one go beyond that, in J.
     pub(crate) brake_energy_j: Option<NotNegative>,
 }
 

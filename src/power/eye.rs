@@ -1,0 +1,119 @@
+//! What looks at the motion while moves are judged: the limits over time, and
+//! who wants to see the motion itself.
+//!
+//! Input: plans and pieces of plans in the order of the program. Without anything
+//! to look for it costs a branch a move.
+
+use super::model::PowerModel;
+use super::motion::Motion;
+use super::robust::Part;
+use super::watch::{Kept, Span, Watch};
+use crate::interpret::Move;
+use crate::machine::Machine;
+use crate::plan::lookahead::Planned;
+use crate::plan::{Overrides, SpeedBound, blended_bound, blended_speed, is_independent, plan};
+
+/// See the module.
+#[derive(Debug, Default)]
+pub(super) struct Eye {
+    pub watch: Option<Box<Watch>>,
+    /// The motion at 100 % that nobody has taken yet, where it is wanted.
+    pub motions: Option<Vec<Motion>>,
+}
+
+impl Eye {
+    /// A move that runs from rest to rest, or rests.
+    #[inline]
+    pub fn alone(&mut self, machine: &Machine, model: &PowerModel, mv: &Move, largest: Overrides) {
+        if self.watch.is_some() {
+            self.watch_alone(machine, model, mv, largest);
+        }
+    }
+
+    /// The motion of a move that runs from rest to rest, or of which no more is
+    /// known.
+    #[inline]
+    pub fn show(&mut self, machine: &Machine, mv: &Move, nominal: Overrides) {
+        if let Some(motions) = &mut self.motions {
+            let plan = plan(machine, mv, nominal);
+            if plan.duration_s > 0.0 {
+                motions.extend(Motion::of_plan(mv, &plan));
+            }
+        }
+    }
+
+    /// The motion of a piece of a plan at 100 %, which belongs to the move `mv`.
+    #[inline]
+    pub fn show_piece(&mut self, mv: &Move, planned: &Planned<u64>) {
+        if let Some(motions) = &mut self.motions {
+            motions.push(Motion::of_piece(mv, planned));
+        }
+    }
+
+    #[cold]
+    fn watch_alone(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        mv: &Move,
+        largest: Overrides,
+    ) {
+        let Some(watch) = &mut self.watch else { return };
+        let plan = plan(machine, mv, largest);
+        if mv.unknown_start.is_empty() {
+            watch.plan(model, mv, &plan);
+        } else {
+            let bound = blended_bound(machine, mv, largest);
+            let part = part(mv, &bound);
+            watch.unknown(model, mv, &[part], &mut Kept::default(), Span::ANY);
+        }
+    }
+
+    /// A piece of a plan, which belongs to the move `mv`.
+    #[inline]
+    pub fn keep(&self, model: &PowerModel, mv: &Move, planned: &Planned<u64>, kept: &mut Kept) {
+        if let Some(watch) = &self.watch {
+            watch.keep(model, mv, planned, kept);
+        }
+    }
+
+    /// A move that runs as planned: its pieces.
+    #[inline]
+    pub fn kept(&mut self, mv: &Move, kept: &mut Kept) {
+        if let Some(watch) = &mut self.watch {
+            watch.kept(mv, kept);
+        }
+    }
+
+    /// A move that may be blended in a way that is not known: it lasts no longer
+    /// than with a stop at both ends, and no shorter than at full speed.
+    #[inline]
+    pub fn blended(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        mv: &Move,
+        parts: &[Part<'_>],
+        kept: &mut Kept,
+        largest: Overrides,
+    ) {
+        let Some(watch) = &mut self.watch else { return };
+        let mut span = Span::ANY;
+        if mv.unknown_start.is_empty() {
+            span.longest_s = plan(machine, mv, largest).duration_s;
+            let shortest_s = mv.length_mm / blended_speed(machine, mv, largest);
+            if shortest_s < span.longest_s && !is_independent(machine, mv) {
+                span.shortest_s = shortest_s;
+            }
+        }
+        watch.unknown(model, mv, parts, kept, span);
+    }
+}
+
+/// The largest speeds and accelerations of a move.
+fn part<'a>(mv: &'a Move, bound: &'a SpeedBound) -> Part<'a> {
+    Part {
+        bound,
+        accel_mm_s2: &mv.accel_mm_s2,
+    }
+}

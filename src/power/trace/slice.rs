@@ -1,0 +1,201 @@
+//! A slice of time with the power as a polynomial.
+
+use super::super::polynomial::Polynomial;
+use arrayvec::ArrayVec;
+
+/// Halvings that locate an instant.
+const HALVINGS: u32 = 60;
+
+/// Power over a stretch of time: exact, or an upper bound of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slice {
+    /// How long it lasts in s.
+    pub duration_s: f64,
+    /// The polynomial's variable at both ends; it runs evenly in between.
+    pub(in crate::power) from: f64,
+    pub(in crate::power) to: f64,
+    /// Power in W.
+    pub(in crate::power) power: Polynomial,
+}
+
+impl Slice {
+    /// The same power all the time.
+    #[must_use]
+    pub fn constant(duration_s: f64, power_w: f64) -> Self {
+        Self::linear(duration_s, power_w, power_w)
+    }
+
+    /// Power that changes evenly.
+    #[must_use]
+    pub fn linear(duration_s: f64, from_w: f64, to_w: f64) -> Self {
+        Self {
+            duration_s,
+            from: 0.0,
+            to: 1.0,
+            power: Polynomial([from_w, to_w - from_w, 0.0, 0.0, 0.0]),
+        }
+    }
+
+    /// Power in W, `t` seconds after the beginning.
+    #[must_use]
+    pub fn power_w(&self, t: f64) -> f64 {
+        self.power.value(self.at(t))
+    }
+
+    /// The largest power in W.
+    #[must_use]
+    pub fn peak_w(&self) -> f64 {
+        let inside = self.power.derivative().roots(self.from, self.to);
+        let ends = [self.from, self.to];
+        let values = inside.into_iter().chain(ends).map(|z| self.power.value(z));
+        values.fold(f64::NEG_INFINITY, super::super::demand::larger)
+    }
+
+    /// Its energy in J.
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        self.seconds_by_variable() * self.power.integral(self.from, self.to)
+    }
+
+    /// The variable after `t` seconds.
+    pub(in crate::power) fn at(&self, t: f64) -> f64 {
+        self.from + (self.to - self.from) * (t / self.duration_s)
+    }
+
+    /// Whether the power does not change.
+    pub(in crate::power) fn is_constant(&self) -> bool {
+        let [_, rest @ ..] = self.power.0;
+        rest == [0.0; 4]
+    }
+
+    /// What lies between two values of the variable.
+    pub(in crate::power) fn part(&self, from: f64, to: f64) -> Self {
+        Self {
+            duration_s: (to - from) * self.seconds_by_variable(),
+            from,
+            to,
+            power: self.power,
+        }
+    }
+
+    fn seconds_by_variable(&self) -> f64 {
+        if self.to > self.from {
+            self.duration_s / (self.to - self.from)
+        } else {
+            0.0
+        }
+    }
+
+    /// The parts on which the power keeps to one side of a level, each with
+    /// whether it lies above.
+    pub(in crate::power) fn sides(&self, level_w: f64) -> ArrayVec<(Self, bool), 5> {
+        let mut sides = ArrayVec::new();
+        let mut above = self.power;
+        above.0[0] -= level_w;
+        let mut from = self.from;
+        let roots = above.roots(self.from, self.to);
+        for to in roots.into_iter().chain([self.to]) {
+            if to > from {
+                let middle = 0.5 * (from + to);
+                // What is no number lies above everything.
+                let below = above.value(middle) <= 0.0;
+                sides.push((self.part(from, to), !below));
+                from = to;
+            }
+        }
+        sides
+    }
+
+    /// The integral of the squared power up to values of the variable, from that
+    /// of another one: primitive function, in W²·s.
+    pub(in crate::power) fn squares(&self) -> Squares {
+        let c = &self.power.0;
+        let mut square = [0.0; 9];
+        for (i, a) in c.iter().enumerate() {
+            for (j, b) in c.iter().enumerate() {
+                square[i + j] += a * b;
+            }
+        }
+        Squares {
+            square,
+            seconds: self.seconds_by_variable(),
+        }
+    }
+
+    /// The instant at which `start_j` more than the energy beyond a level has
+    /// been used up: of a slice that lies below the level all along. None where
+    /// it lasts longer.
+    pub(in crate::power) fn emptied(&self, start_j: f64, level_w: f64) -> Option<f64> {
+        let left = |z: f64| {
+            let part = self.part(self.from, z);
+            start_j + part.energy_j() - level_w * part.duration_s
+        };
+        if left(self.to) > 0.0 {
+            return None;
+        }
+        let (mut low, mut high) = (self.from, self.to);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if left(middle) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(high)
+    }
+}
+
+/// The integral of a squared power.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::power) struct Squares {
+    square: [f64; 9],
+    seconds: f64,
+}
+
+impl Squares {
+    /// Between two values of the variable, W²·s.
+    pub fn between(&self, from: f64, to: f64) -> f64 {
+        (self.primitive(to) - self.primitive(from)).max(0.0) * self.seconds
+    }
+
+    fn primitive(&self, z: f64) -> f64 {
+        let terms = self.square.iter().enumerate().rev();
+        let sum = terms.fold(0.0, |sum, (degree, c)| sum * z + c / (degree + 1) as f64);
+        sum * z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ramp_by_hand() {
+        // 0 to 600 W in 3 s: 900 J, ∫P² = 600²·3/3.
+        let slice = Slice::linear(3.0, 0.0, 600.0);
+        assert_eq!(slice.energy_j(), 900.0);
+        assert!((slice.squares().between(0.0, 1.0) - 360_000.0).abs() < 1e-6);
+        assert_eq!(slice.peak_w(), 600.0);
+        assert_eq!(slice.power_w(1.0), 200.0);
+        let sides = slice.sides(200.0);
+        assert_eq!(sides.len(), 2);
+        assert!((sides[0].0.duration_s - 1.0).abs() < 1e-12 && !sides[0].1);
+        assert!((sides[1].0.energy_j() - 800.0).abs() < 1e-9 && sides[1].1);
+    }
+
+    #[test]
+    fn a_store_runs_empty() {
+        // 100 J left, and 100 W more than is drawn: empty after 1 s of 4.
+        let slice = Slice::constant(4.0, 200.0);
+        assert!((slice.emptied(100.0, 300.0).unwrap_or(9.0) - 0.25).abs() < 1e-12);
+        assert_eq!(slice.emptied(401.0, 300.0), None);
+    }
+
+    #[test]
+    fn what_is_no_number_lies_above() {
+        let slice = Slice::constant(1.0, f64::NAN);
+        assert!(slice.sides(5.0).iter().all(|(_, above)| *above));
+        assert_eq!(slice.peak_w(), f64::INFINITY);
+    }
+}

@@ -1,0 +1,197 @@
+//! The limits over time of one converter, for one direction of its power.
+
+use super::super::trace::Slice;
+use super::Span;
+use super::overload::Overload;
+use super::rating::{Measure, Place, Rating};
+use super::rms::Continuous;
+use super::store::Store;
+use crate::machine::{Capacitor, Converter};
+
+/// What one direction of a converter's power is held against.
+#[derive(Debug, Default)]
+pub(super) struct Limits {
+    /// What the capacitor lacks, or holds in excess.
+    bus: Option<Bus>,
+    /// Whether the capacitor takes peaks off the converter.
+    buffered: bool,
+    overload: Vec<(Overload, Measure, f64)>,
+    continuous: Option<(Continuous, Measure, f64)>,
+    brake: Option<(Store, Measure, f64)>,
+}
+
+/// The capacitor as a store.
+#[derive(Debug)]
+struct Bus {
+    store: Store,
+    capacitor: Capacitor,
+    /// Share of its energy that is counted on.
+    share: f64,
+    measure: Measure,
+    limit_v: f64,
+}
+
+impl Limits {
+    /// The limits of the power drawn.
+    pub fn drawn(converter: &Converter, margin: f64, supply_w: f64) -> Self {
+        let ratings = &converter.ratings;
+        let share = 1.0 - margin;
+        let continuous = ratings.continuous;
+        let lasting_w = continuous.map_or(0.0, |continuous| continuous.power_w);
+        let overload = ratings.overload.iter().map(|entry| {
+            let lower = ratings.overload.iter().map(|other| other.power_w);
+            let lower = lower.filter(|power| *power < entry.power_w);
+            let above_w = share * lower.fold(lasting_w, f64::max);
+            let measure = Measure::Overload {
+                above_w,
+                power_w: share * entry.power_w,
+                every_s: entry.every_s,
+            };
+            let overload = Overload::new(above_w, entry.every_s);
+            (overload, measure, entry.seconds)
+        });
+        let bus = ratings.capacitor.and_then(|capacitor| {
+            Some(Bus {
+                store: Store::new(supply_w),
+                capacitor,
+                share,
+                measure: Measure::LowestVoltage,
+                limit_v: capacitor.min_v?,
+            })
+        });
+        Self {
+            buffered: ratings.credits_low(),
+            bus,
+            overload: overload.collect(),
+            continuous: continuous.map(|continuous| {
+                let window_s = continuous.window_s;
+                let measure = Measure::Continuous { window_s };
+                (
+                    Continuous::new(window_s),
+                    measure,
+                    share * continuous.power_w,
+                )
+            }),
+            brake: None,
+        }
+    }
+
+    /// The limits of the power fed back.
+    pub fn fed_back(converter: &Converter, margin: f64, regen_w: Option<f64>) -> Self {
+        let ratings = &converter.ratings;
+        let share = 1.0 - margin;
+        let bus = ratings.capacitor.and_then(|capacitor| {
+            Some(Bus {
+                store: Store::new(regen_w?),
+                capacitor,
+                share,
+                measure: Measure::HighestVoltage,
+                limit_v: capacitor.max_v?,
+            })
+        });
+        let brake = ratings.brake.map(|brake| {
+            let power_w = share * brake.power_w;
+            let measure = Measure::Brake { power_w };
+            (Store::new(power_w), measure, share * brake.energy_j)
+        });
+        Self {
+            bus,
+            brake,
+            ..Self::default()
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.bus.is_none()
+            && self.overload.is_empty()
+            && self.continuous.is_none()
+            && self.brake.is_none()
+    }
+
+    /// Takes a slice that begins at `time_s`.
+    pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        let Self {
+            bus,
+            buffered,
+            overload,
+            continuous,
+            brake,
+        } = self;
+        let mut supplied = |slice: &Slice, time_s: f64| {
+            for (overload, ..) in overload.iter_mut() {
+                overload.take(slice, time_s, place);
+            }
+            if let Some((rms, ..)) = continuous {
+                rms.take(slice, time_s, place);
+            }
+        };
+        match bus {
+            Some(bus) if *buffered => bus.store.take(slice, time_s, place, &mut supplied),
+            Some(bus) => {
+                bus.store.take(slice, time_s, place, &mut |_, _| {});
+                supplied(slice, time_s);
+            }
+            None => supplied(slice, time_s),
+        }
+        if let Some((store, ..)) = brake {
+            store.take(slice, time_s, place, &mut |_, _| {});
+        }
+    }
+
+    /// A power that lasts for a time that is not known.
+    pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
+        let mut supplied_w = power_w;
+        if let Some(bus) = &mut self.bus {
+            // While it charges again the converter gives all that it can.
+            if self.buffered && !bus.store.is_empty() {
+                supplied_w = super::super::demand::larger(power_w, bus.store.taken_w());
+            }
+            bus.store.span(power_w, span, time_s, place);
+        }
+        for (overload, ..) in &mut self.overload {
+            overload.span(supplied_w, span, time_s, place);
+        }
+        if let Some((continuous, ..)) = &mut self.continuous {
+            continuous.span(supplied_w, span, time_s, place);
+        }
+        if let Some((store, ..)) = &mut self.brake {
+            store.span(power_w, span, time_s, place);
+        }
+    }
+
+    /// What was found.
+    pub fn ratings(&self, converter: usize) -> Vec<Rating> {
+        let mut list = Vec::new();
+        for (overload, measure, limit) in &self.overload {
+            list.push(overload.worst.rating(*measure, converter, *limit));
+        }
+        if let Some((rms, measure, limit)) = &self.continuous {
+            list.push(rms.result().rating(*measure, converter, *limit));
+        }
+        if let Some(bus) = &self.bus {
+            let mut worst = bus.store.worst;
+            worst.value = bus.volts(worst.value);
+            list.push(worst.rating(bus.measure, converter, bus.limit_v));
+        }
+        if let Some((store, measure, limit)) = &self.brake {
+            list.push(store.worst.rating(*measure, converter, *limit));
+        }
+        list
+    }
+}
+
+impl Bus {
+    /// The voltage at an energy off the nominal: `½·C·|V² − V_n²|`, V.
+    fn volts(&self, energy_j: f64) -> f64 {
+        let Capacitor {
+            capacitance_f,
+            nominal_v,
+            ..
+        } = self.capacitor;
+        let squares = 2.0 * energy_j / (capacitance_f * self.share);
+        match self.measure {
+            Measure::LowestVoltage => (nominal_v * nominal_v - squares).max(0.0).sqrt(),
+            _ => (nominal_v * nominal_v + squares).sqrt(),
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Converters over time: overload, continuous power, bus voltage and braking
+//! resistor.
+//!
+//! Input: the power of each move as [`Slice`]s, in the order of the program.
+//! Output: a [`Rating`] for each limit, with the worst value.
+//!
+//! ```text
+//! power drawn P ─→ capacitor: D' = P − Pₛ, D ≥ 0 ─→ supplied S ─→ overload, RMS
+//! power fed back R ─→ capacitor: U' = R − Rₛ, U ≥ 0
+//!                  └→ braking resistor: H' = R − P_b, H ≥ 0
+//! ```
+//!
+//! The converter supplies Pₛ, its peak power, at most. What is drawn beyond comes
+//! from the capacitor, which is charged again with what is free: D is the energy
+//! that it lacks. S is P, and Pₛ while D > 0; where peaks may not come from the
+//! capacitor S is P. U is what the capacitor holds beyond its nominal voltage
+//! because more was fed back than is taken, H the heat that the resistor has
+//! taken and not given off yet. All limits are less the margin.
+//!
+//! Of a move that may be blended in a way that is not modelled only the largest
+//! power is known. It is taken to last no longer than with a stop at both ends, and
+//! no shorter than its path at full speed: whichever is worse counts for each
+//! limit. A move from an unknown start may last for ever.
+
+mod limits;
+mod overload;
+mod rating;
+mod rms;
+mod span;
+mod store;
+
+pub use rating::{Measure, Rating};
+pub(super) use span::Span;
+
+use super::model::PowerModel;
+use super::robust::Part;
+use super::trace::{Flow, Slice};
+use crate::interpret::Move;
+use crate::machine::Machine;
+use crate::plan::Plan;
+use crate::plan::lookahead::Planned;
+use limits::Limits;
+use rating::Place;
+
+/// Watches the converters that have limits over time.
+#[derive(Debug)]
+pub(super) struct Watch {
+    tracks: Vec<Track>,
+}
+
+/// One converter and one direction of its power.
+#[derive(Debug)]
+struct Track {
+    converter: usize,
+    flow: Flow,
+    limits: Limits,
+    /// Time so far in s.
+    time_s: f64,
+}
+
+/// Slices of one move that waits for its neighbours, by track.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Kept(Vec<(usize, Slice)>);
+
+impl Kept {
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+impl Watch {
+    /// What the machine file limits over time; `None` where it limits nothing.
+    pub fn new(machine: &Machine, model: &PowerModel) -> Option<Box<Self>> {
+        let tracks: Vec<Track> = machine
+            .converters
+            .iter()
+            .enumerate()
+            .flat_map(|(index, converter)| {
+                let margin = machine.limits.margin;
+                let supply_w = model.limit_w(index);
+                let regen_w = model.regen_limit_w(index);
+                [
+                    (Flow::Drawn, Limits::drawn(converter, margin, supply_w)),
+                    (Flow::FedBack, Limits::fed_back(converter, margin, regen_w)),
+                ]
+                .map(|(flow, limits)| Track {
+                    converter: index,
+                    flow,
+                    limits,
+                    time_s: 0.0,
+                })
+            })
+            .filter(|track| !track.limits.is_empty())
+            .collect();
+        (!tracks.is_empty()).then(|| Box::new(Self { tracks }))
+    }
+
+    /// Takes a move that runs as planned.
+    pub fn plan(&mut self, model: &PowerModel, mv: &Move, plan: &Plan) {
+        let place = Place::of(mv);
+        for track in &mut self.tracks {
+            if plan.duration_s.is_finite() {
+                if let Some(tracer) = model.tracer(track.converter, track.flow) {
+                    tracer.plan(mv, plan, &mut |slice| track.take(&slice, place));
+                }
+            } else {
+                // At rest for ever.
+                let powers = model.resting_w(track.converter, mv);
+                track.span(powers, Span::ANY, place);
+            }
+        }
+    }
+
+    /// Keeps a piece of a plan for the move that it belongs to.
+    pub fn keep(&self, model: &PowerModel, mv: &Move, planned: &Planned<u64>, kept: &mut Kept) {
+        for (index, track) in self.tracks.iter().enumerate() {
+            if let Some(tracer) = model.tracer(track.converter, track.flow) {
+                tracer.piece(mv, planned, &mut |slice| kept.0.push((index, slice)));
+            }
+        }
+    }
+
+    /// Takes what was kept of a move that runs as planned.
+    pub fn kept(&mut self, mv: &Move, kept: &mut Kept) {
+        let place = Place::of(mv);
+        for (index, slice) in kept.0.drain(..) {
+            if let Some(track) = self.tracks.get_mut(index) {
+                track.take(&slice, place);
+            }
+        }
+    }
+
+    /// Takes a move whose timing is not known: its largest speeds and those of
+    /// its neighbours, pieces of its plan that may ask for more, and for how long
+    /// it may last.
+    pub fn unknown(
+        &mut self,
+        model: &PowerModel,
+        mv: &Move,
+        parts: &[Part<'_>],
+        kept: &mut Kept,
+        span: Span,
+    ) {
+        let place = Place::of(mv);
+        for (index, track) in self.tracks.iter_mut().enumerate() {
+            let mut powers = model.robust_powers(track.converter, mv, parts);
+            let of_flow = match track.flow {
+                Flow::Drawn => &mut powers[0],
+                Flow::FedBack => &mut powers[1],
+            };
+            let own = kept.0.iter().filter(|(track, _)| *track == index);
+            *of_flow = own.fold(*of_flow, |most, (_, slice)| {
+                super::demand::larger(most, slice.peak_w())
+            });
+            track.span(powers, span, place);
+        }
+        kept.clear();
+    }
+
+    /// What was found, converter by converter.
+    pub fn ratings(&self) -> Vec<Rating> {
+        let tracks = self.tracks.iter();
+        tracks
+            .flat_map(|track| track.limits.ratings(track.converter))
+            .collect()
+    }
+}
+
+impl Track {
+    /// All power passes here, slice by slice: what another load draws at the
+    /// same time, such as a spindle that runs up, is to be added before.
+    fn take(&mut self, slice: &Slice, place: Place) {
+        self.limits.take(slice, self.time_s, place);
+        self.time_s += slice.duration_s;
+    }
+
+    /// A power that lasts for a time that is not known.
+    fn span(&mut self, powers: [f64; 2], span: Span, place: Place) {
+        let power_w = match self.flow {
+            Flow::Drawn => powers[0],
+            Flow::FedBack => powers[1],
+        };
+        self.limits.span(power_w, span, self.time_s, place);
+        if span.longest_s.is_finite() {
+            self.time_s += span.longest_s;
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! Root of the mean square of the power over a sliding window.
+//!
+//! Time is divided into cells, `N` to a window. A window lies within `N + 1`
+//! cells in a row, so the largest sum of these is an upper bound: too high by one
+//! cell of `N` at most, 1/4096 of the square of the largest power for windows of
+//! 0.41 s and more. A program that is shorter than the window may run again at
+//! once: its own mean counts, which is exact.
+
+use super::super::trace::Slice;
+use super::Span;
+use super::rating::{Place, Worst};
+
+/// Cells of a window.
+const CELLS: f64 = 4096.0;
+/// With windows so short that cells would be shorter than this, fewer.
+const CELL_MIN_S: f64 = 1e-4;
+const CELLS_MIN: f64 = 16.0;
+/// Of shorter windows than this the largest power counts, which no mean exceeds.
+const WINDOW_MIN_S: f64 = 1e-3;
+
+/// The mean over windows, bounded in two ways where the timing of moves is not
+/// known: such a move counts as if it lasted for ever, or with the square of its
+/// power over its longest time in the place of its shortest. The lower bound holds.
+#[derive(Debug, Clone)]
+pub(super) struct Continuous {
+    lasting: Rms,
+    /// From the first such move on.
+    dense: Option<Rms>,
+}
+
+impl Continuous {
+    pub fn new(window_s: f64) -> Self {
+        Self {
+            lasting: Rms::new(window_s),
+            dense: None,
+        }
+    }
+
+    pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        self.lasting.take(slice, time_s, place);
+        if let Some(dense) = &mut self.dense {
+            dense.take(slice, time_s, place);
+        }
+    }
+
+    /// A power that lasts for a time that is not known.
+    pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
+        let dense = self.dense.get_or_insert_with(|| self.lasting.clone());
+        dense.burst(power_w, span, time_s, place);
+        self.lasting.last(power_w, time_s, place);
+    }
+
+    /// The worst mean as its root, in W.
+    pub fn result(&self) -> Worst {
+        let lasting = self.lasting.result();
+        let dense = self.dense.as_ref().map(Rms::result);
+        dense
+            .filter(|dense| dense.value < lasting.value)
+            .unwrap_or(lasting)
+    }
+}
+
+/// Means over windows.
+#[derive(Debug, Clone)]
+struct Rms {
+    window_s: f64,
+    cell_s: f64,
+    /// The integrals of P² over the last full cells, N at most, W²·s.
+    ring: Vec<f64>,
+    cells: usize,
+    next: usize,
+    sum: f64,
+    /// The cell that is being filled, and how far it is.
+    cell: f64,
+    filled_s: f64,
+    /// All of the program so far.
+    total: f64,
+    elapsed_s: f64,
+    /// What all slices count at least, W: a move that may last for ever.
+    floor_w: f64,
+    /// Whether there was a move whose timing is not known.
+    bursts: bool,
+    /// The largest integral over a window.
+    worst: Worst,
+    last: (f64, Place),
+}
+
+impl Rms {
+    pub fn new(window_s: f64) -> Self {
+        let cells = (window_s / CELL_MIN_S).clamp(CELLS_MIN, CELLS);
+        let cells = libm::floor(cells);
+        Self {
+            window_s,
+            cell_s: window_s / cells,
+            ring: Vec::new(),
+            cells: cells as usize,
+            next: 0,
+            sum: 0.0,
+            cell: 0.0,
+            filled_s: 0.0,
+            total: 0.0,
+            elapsed_s: 0.0,
+            floor_w: 0.0,
+            bursts: false,
+            worst: Worst::default(),
+            last: (0.0, Place::default()),
+        }
+    }
+
+    pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        let mut now_s = time_s;
+        for (part, above) in slice.sides(self.floor_w) {
+            if above {
+                self.add(&part, now_s, place);
+            } else {
+                let floor = Slice::constant(part.duration_s, self.floor_w);
+                self.add(&floor, now_s, place);
+            }
+            now_s += part.duration_s;
+        }
+    }
+
+    fn add(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        if self.window_s < WINDOW_MIN_S {
+            let peak_w = slice.peak_w();
+            let square = peak_w * peak_w;
+            self.elapsed_s += slice.duration_s.max(self.window_s);
+            self.worst.raise(square * self.window_s, time_s, place);
+            return;
+        }
+        let squares = slice.squares();
+        let mut done_s = 0.0;
+        let mut from = slice.from;
+        if slice.is_constant() && slice.duration_s > 3.0 * self.window_s {
+            // Once the window is full of it nothing changes any more.
+            let lead = slice.part(from, slice.at(2.0 * self.window_s));
+            self.add(&lead, time_s, place);
+            let left_s = slice.duration_s - lead.duration_s;
+            let whole_s = libm::floor(left_s / self.cell_s - 1.0).max(0.0) * self.cell_s;
+            self.total += slice.power.0[0] * slice.power.0[0] * whole_s;
+            self.elapsed_s += whole_s;
+            done_s = lead.duration_s + whole_s;
+            from = slice.at(done_s);
+        }
+        while done_s < slice.duration_s {
+            let room_s = self.cell_s - self.filled_s;
+            let left_s = slice.duration_s - done_s;
+            let fills = left_s >= room_s;
+            let step_s = if fills { room_s } else { left_s };
+            let to = if fills {
+                slice.at(done_s + step_s).min(slice.to)
+            } else {
+                slice.to
+            };
+            let square = squares.between(from, to);
+            self.cell += square;
+            self.total += square;
+            self.elapsed_s += step_s;
+            self.filled_s += step_s;
+            done_s += step_s;
+            from = to;
+            self.last = (time_s + done_s, place);
+            if fills {
+                self.close();
+            } else {
+                break;
+            }
+        }
+    }
+
+    /// The cell is full.
+    fn close(&mut self) {
+        let full = std::mem::take(&mut self.cell);
+        self.filled_s = 0.0;
+        let (time_s, place) = self.last;
+        self.worst.raise(self.sum + full, time_s, place);
+        if self.ring.len() < self.cells {
+            self.ring.push(full);
+            self.sum += full;
+            return;
+        }
+        if let Some(oldest) = self.ring.get_mut(self.next) {
+            self.sum += full - *oldest;
+            *oldest = full;
+        }
+        self.next += 1;
+        if self.next >= self.cells {
+            self.next = 0;
+            // Rounding must not grow with the program.
+            self.sum = self.ring.iter().sum();
+        }
+    }
+
+    /// A power that lasts for a time that is not known: all of its longest time in
+    /// its shortest.
+    fn burst(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
+        self.bursts = true;
+        let Span {
+            shortest_s,
+            longest_s,
+        } = span;
+        if self.window_s < WINDOW_MIN_S {
+            self.elapsed_s += shortest_s;
+            let square = power_w * power_w * self.window_s;
+            return self.worst.raise(square, time_s, place);
+        }
+        let square = power_w * power_w * longest_s;
+        if square.is_finite() && shortest_s > 0.0 {
+            let dense = (square / shortest_s).sqrt();
+            self.add(&Slice::constant(shortest_s, dense), time_s, place);
+        } else {
+            self.cell += square;
+            self.total += square;
+            self.last = (time_s, place);
+        }
+    }
+
+    /// A power that may last. However long it does, a window that holds it has
+    /// no larger mean than one in which it takes the place of all that is less.
+    pub fn last(&mut self, power_w: f64, time_s: f64, place: Place) {
+        let covered = power_w <= self.floor_w;
+        if covered {
+            return;
+        }
+        // max(P², F'²) ≤ max(P², F²) + F'² − F² for what has been counted.
+        let more = power_w * power_w - self.floor_w * self.floor_w;
+        for cell in &mut self.ring {
+            *cell += more * self.cell_s;
+        }
+        self.sum += more * self.cell_s * self.ring.len() as f64;
+        self.cell += more * self.filled_s;
+        self.total += more * self.elapsed_s;
+        self.floor_w = power_w;
+        self.worst
+            .raise_lasting(power_w * power_w * self.window_s, time_s, place);
+    }
+
+    /// The worst mean as its root, in W.
+    pub fn result(&self) -> Worst {
+        let (time_s, place) = self.last;
+        let mut worst = self.worst;
+        if self.elapsed_s <= self.window_s && self.window_s >= WINDOW_MIN_S {
+            worst = Worst::default();
+            if self.elapsed_s > 0.0 || self.total > 0.0 {
+                worst.raise(self.total / self.elapsed_s, time_s, place);
+            }
+            let floor = self.floor_w * self.floor_w;
+            let lasting = self.worst;
+            if lasting.lasting && floor >= worst.value {
+                worst = Worst {
+                    value: floor,
+                    ..lasting
+                };
+            }
+        } else {
+            worst.raise(self.sum + self.cell, time_s, place);
+            worst.value /= self.window_s;
+        }
+        worst.value = worst.value.sqrt();
+        worst.lasting |= self.bursts;
+        worst
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rms_w(window_s: f64, slices: &[Slice]) -> f64 {
+        let mut rms = Rms::new(window_s);
+        let mut time_s = 0.0;
+        for slice in slices {
+            rms.take(slice, time_s, Place::default());
+            time_s += slice.duration_s;
+        }
+        rms.result().value
+    }
+
+    #[test]
+    fn a_trapezoid_shorter_than_the_window() {
+        // 0 → 600 W in 1 s, 300 W for 2 s, then nothing for 1 s: P²·t is
+        // 120 000 + 180 000 W²·s over 4 s.
+        let slices = [
+            Slice::linear(1.0, 0.0, 600.0),
+            Slice::constant(2.0, 300.0),
+            Slice::linear(1.0, -200.0, 0.0),
+        ];
+        assert!((rms_w(180.0, &slices) - 75_000.0_f64.sqrt()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_burst_in_a_long_program() {
+        // 3 kW for 2 s in a window of 10 s, else 1 kW: (18e6 + 8e6)/10.
+        let slices = [
+            Slice::constant(100.0, 1000.0),
+            Slice::constant(2.0, 3000.0),
+            Slice::constant(100.0, 1000.0),
+        ];
+        let (found, exact) = (rms_w(10.0, &slices), 2.6e6_f64.sqrt());
+        assert!(found >= exact - 1e-9);
+        assert!(found * found <= exact * exact + 9e6 / 4096.0);
+    }
+
+    #[test]
+    fn never_below_any_window() {
+        // Ramps of many lengths, against windows that end anywhere.
+        let mut slices = Vec::new();
+        let mut seed = 1_u32;
+        for _ in 0..400 {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let a = f64::from(seed >> 20);
+            slices.push(Slice::linear(1e-3 + a * 1e-4, a, 4096.0 - a));
+        }
+        let found = rms_w(2.0, &slices);
+        let dt = 1e-3;
+        let mut squares = Vec::new();
+        let (mut index, mut into) = (0, 0.0);
+        while index < slices.len() {
+            squares.push(slices[index].power_w(into) * slices[index].power_w(into) * dt);
+            into += dt;
+            while index < slices.len() && into >= slices[index].duration_s {
+                into -= slices[index].duration_s;
+                index += 1;
+            }
+        }
+        let mut worst = 0.0_f64;
+        for start in 0..squares.len() - 2000 {
+            worst = worst.max(squares[start..start + 2000].iter().sum());
+        }
+        let sampled = (worst / 2.0).sqrt();
+        assert!(found >= sampled * 0.999, "{found} {sampled}");
+        assert!(found <= sampled * 1.01, "{found} {sampled}");
+    }
+
+    #[test]
+    fn a_long_rest_costs_nothing() {
+        let slices = [
+            Slice::constant(1.0, 2000.0),
+            Slice::constant(1e9, 100.0),
+            Slice::constant(1.0, 2000.0),
+        ];
+        // 4e6 W²·s in the first window.
+        let exact = (4e6 + 9.0 * 1e4) / 10.0;
+        let found = rms_w(10.0, &slices);
+        assert!((found * found - exact).abs() < 4e6 / 4096.0);
+    }
+
+    #[test]
+    fn of_a_moment_the_largest_power_counts() {
+        let slices = [Slice::constant(1e5, 10.0), Slice::linear(0.1, 0.0, 700.0)];
+        assert!((rms_w(1e-9, &slices) - 700.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_power_that_may_last_counts_for_the_whole_window() {
+        let mut rms = Rms::new(10.0);
+        rms.take(&Slice::constant(100.0, 500.0), 0.0, Place::default());
+        rms.last(800.0, 100.0, Place::default());
+        rms.take(&Slice::constant(2.0, 3000.0), 100.0, Place::default());
+        let exact = (2.0 * 9e6 + 8.0 * 6.4e5) / 10.0;
+        let found = rms.result().value;
+        assert!(found * found >= exact - 1e-6);
+        // What came before may be counted besides: 500 W for 8 s of 10.
+        assert!(found * found <= exact + 2e5 + 9e6 / 4096.0);
+        let mut short = Rms::new(10.0);
+        short.last(800.0, 0.0, Place::default());
+        assert_eq!(short.result().value, 800.0);
+        assert!(short.result().lasting);
+    }
+}

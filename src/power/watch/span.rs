@@ -1,0 +1,28 @@
+//! For how long a move lasts whose timing is not known.
+
+/// The shortest and the longest time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::power) struct Span {
+    /// In s.
+    pub shortest_s: f64,
+    /// In s; infinite where nothing is known.
+    pub longest_s: f64,
+}
+
+impl Span {
+    /// Nothing is known.
+    pub const ANY: Self = Self {
+        shortest_s: 0.0,
+        longest_s: f64::INFINITY,
+    };
+
+    /// The time that is worse for something that grows above a limit and shrinks
+    /// below it.
+    pub fn worse_s(self, above: bool) -> f64 {
+        if above {
+            self.longest_s
+        } else {
+            self.shortest_s
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! Limits over time and series from outside: what the commands say and write.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// A folder with a machine, and gwatt run in it.
+struct Shop(TempDir);
+
+impl Shop {
+    /// A mill without a margin that draws 100 W at rest; `ratings` are further
+    /// lines of its converter, `rest` comes first.
+    fn new(controller: &str, rest: &str, ratings: &str) -> Self {
+        let shop = Self(tempfile::tempdir().unwrap());
+        let mut text = format!(
+            "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\n\
+             base_load_w = 100\n{ratings}\n[limits]\nmargin = 0\n{rest}\n"
+        );
+        for axis in ["X", "Y", "Z"] {
+            let _ = write!(
+                text,
+                "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\n\
+                 mass_kg = 200\ncoulomb_n = 100\nefficiency = 0.8\n"
+            );
+        }
+        shop.put("mill.toml", &text);
+        shop
+    }
+
+    fn put(&self, name: &str, text: &str) {
+        fs::write(self.0.path().join(name), text).unwrap();
+    }
+
+    fn get(&self, name: &str) -> String {
+        fs::read_to_string(self.0.path().join(name)).unwrap()
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.0.path().join(name).exists()
+    }
+
+    /// Exit code, standard output and standard error.
+    fn run(&self, arguments: &str) -> (i32, String, String) {
+        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+            .args(arguments.split(' '))
+            .args(["-m", "mill.toml"])
+            .current_dir(self.0.path())
+            .output()
+            .unwrap();
+        (
+            output.status.code().unwrap(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    }
+}
+
+/// X alone to 0.5 m/s at 3 m/s²: 0.167 s, F = 700 N, 437.5 W and the base load.
+const THERE_AND_BACK: &str = "G21 G90 G94\nG0 X400\nG0 X0\nG0 X400\nG0 X0\nM30\n";
+
+#[test]
+fn an_overload_is_told_and_lowered_away() {
+    // Above 300 W, of 537.5 W: 0.0905 s of each ramp, four of them in 5 s.
+    let ratings = "peak_power_w = 1000\ncontinuous_power_w = 300\n\
+                   overload = [{ power_w = 1000, seconds = 0.2, every_s = 10 }]";
+    let shop = Shop::new("iso", "", ratings);
+    shop.put("a.ngc", THERE_AND_BACK);
+    let (code, told, _) = shop.run("check a.ngc");
+    assert_eq!(code, 1);
+    assert!(
+        told.starts_with("a.ngc: does not fit: peak 538 W of 1.00 kW (line 2)"),
+        "{told}"
+    );
+    let overload = told.lines().nth(1).unwrap();
+    assert!(
+        overload.contains("overload above 300 W within 10 s"),
+        "{told}"
+    );
+    assert!(overload.contains("0.36 s of 0.20 s"), "{told}");
+    assert!(overload.contains("line 5 at "), "{told}");
+    assert!(overload.contains("does not fit → lower speeds"), "{told}");
+    assert!(
+        told.lines()
+            .nth(2)
+            .unwrap()
+            .contains("continuous power over 3 min"),
+        "{told}"
+    );
+
+    let (code, _, told) = shop.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 0, "{told}");
+    let (code, told, _) = shop.run("check b.ngc");
+    assert_eq!(code, 0, "{told}");
+    // A lower peak than needed would take longer.
+    let used: f64 = told
+        .lines()
+        .find(|line| line.contains("overload"))
+        .and_then(|line| {
+            line.split("10 s")
+                .nth(1)?
+                .trim()
+                .split(' ')
+                .next()?
+                .parse()
+                .ok()
+        })
+        .unwrap();
+    assert!(used > 0.1, "{told}");
+
+    for format in ["json", "sarif", "junit", "github"] {
+        let (code, told, _) = shop.run(&format!("check a.ngc --format {format}"));
+        assert_eq!(code, 1);
+        assert!(told.contains("overload"), "{format}: {told}");
+    }
+    let (_, told, _) = shop.run("check a.ngc --format json");
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let found = &told[0]["over_time"][0];
+    assert_eq!(found["check"], "overload");
+    assert_eq!(found["unit"], "s");
+    assert_eq!(found["fits"], false);
+    assert_eq!(found["line"], 5);
+    assert_eq!(told[0]["fits"], false);
+}
+
+#[test]
+fn what_cannot_be_lowered_is_refused_with_the_reason() {
+    let shop = Shop::new("iso", "", "peak_power_w = 1000\ncontinuous_power_w = 90");
+    shop.put("a.ngc", THERE_AND_BACK);
+    let (code, _, told) = shop.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 1);
+    assert!(!shop.has("b.ngc"));
+    assert!(told.contains("continuous-power"), "{told}");
+    assert!(told.contains("continuous power over 3 min: "), "{told}");
+    assert!(told.contains(" W of 90"), "{told}");
+}
+
+#[test]
+fn a_capacitor_carries_peaks_only_where_it_may() {
+    // 237.5 W beyond 300 W at the end of 90.5 ms: 10.7 J. From 600 to 580 V
+    // 1 mF gives 11.8 J.
+    let bus = "peak_power_w = 300\nregen_power_w = 1000\ncapacitance_f = 1e-3\n\
+               bus_nominal_v = 600\nbus_min_v = 580";
+    let strict = Shop::new("iso", "", bus);
+    strict.put("a.ngc", THERE_AND_BACK);
+    let (code, told, _) = strict.run("check a.ngc");
+    assert_eq!(code, 1);
+    assert!(
+        told.contains("lowest bus voltage  582 V, at least 580 V"),
+        "{told}"
+    );
+    let credited = Shop::new("iso", "", &format!("{bus}\ncredit_capacitance = true"));
+    credited.put("a.ngc", THERE_AND_BACK);
+    let (code, told, _) = credited.run("check a.ngc");
+    assert_eq!(code, 0, "{told}");
+    let (code, _, told) = credited.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 0, "{told}");
+    assert_eq!(credited.get("b.ngc"), THERE_AND_BACK);
+    // Half the capacitance is not enough: lowered, but not to 300 W.
+    let half = bus.replace("1e-3", "5e-4");
+    let half = Shop::new("iso", "", &format!("{half}\ncredit_capacitance = true"));
+    half.put("a.ngc", THERE_AND_BACK);
+    assert_eq!(half.run("check a.ngc").0, 1);
+    let (code, _, told) = half.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 0, "{told}");
+    let (code, told, _) = half.run("check b.ngc");
+    assert_eq!(code, 0, "{told}");
+    let peak: f64 = told
+        .split("peak ")
+        .nth(1)
+        .unwrap()
+        .split(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!(peak > 310.0 && peak < 500.0, "{told}");
+}
+
+/// Lines, corners that are rounded, arcs, a dwell and a rapid.
+const ROUND: &str = "G21 G90 G94 G17 G64 P0.05\nG0 X20 Y10 Z5\nG1 X60 F6000\nG1 Y40\nG3 X40 Y60 I-20\n\
+                     G2 X20 Y40 J-20 F3000\nG4 P0.25\nG1 Z0 F600\nG0 X0 Y0\nM30\n";
+
+/// The rows of a series with a value in the first column, as numbers behind it.
+fn rows(text: &str, program: &str) -> Vec<Vec<f64>> {
+    text.lines()
+        .filter_map(|line| line.strip_prefix(program)?.strip_prefix(','))
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect()
+}
+
+#[test]
+fn a_series_adds_up_to_the_report() {
+    for (controller, program) in [("linuxcnc", ROUND), ("iso", THERE_AND_BACK)] {
+        let ratings = "peak_power_w = 2000\ncontinuous_power_w = 2000";
+        let shop = Shop::new(controller, "", ratings);
+        shop.put("a.ngc", program);
+        let (code, _, told) =
+            shop.run("report a.ngc --json a.json --series a.csv --step-ms 0.2 --limited a.ngc");
+        assert_eq!(code, 0, "{told}");
+        let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
+        let series = shop.get("a.csv");
+        let header: Vec<&str> = series.lines().next().unwrap().split(',').collect();
+        assert_eq!(
+            header[..4],
+            ["program", "time_s", "line", "x_velocity_mm_s"]
+        );
+        assert_eq!(header[header.len() - 2..], ["bus_w", "regen_w"]);
+        let before = rows(&series, "before");
+        assert_eq!(before, rows(&series, "after"));
+        let close = |found: f64, key: &str, share: f64| {
+            let told = report[key].as_f64().unwrap();
+            assert!(
+                (found - told).abs() <= share * told,
+                "{key}: {found} is not {told}"
+            );
+        };
+        let bus = header.len() - 3;
+        close(before.last().unwrap()[0], "duration_s", 1e-9);
+        let peak = before.iter().map(|row| row[bus]).fold(0.0, f64::max);
+        close(peak, "peak_w", 1e-4);
+        let mut energy = 0.0;
+        for pair in before.windows(2) {
+            let dt = pair[1][0] - pair[0][0];
+            assert!((0.0..=0.2e-3 + 1e-12).contains(&dt));
+            energy += 0.5 * dt * (pair[0][bus] + pair[1][bus]);
+            for axis in 0..3 {
+                let (v, a) = (2 + 4 * axis, 3 + 4 * axis);
+                let change = 0.5 * dt * (pair[0][a] + pair[1][a]);
+                let off = (pair[1][v] - pair[0][v] - change).abs();
+                assert!(off < 1e-3, "speed jumps by {off} mm/s at {} s", pair[0][0]);
+            }
+        }
+        close(energy, "energy_j", 1e-4);
+        // The mean square of what is shown is that of the slices, which are no
+        // lower, and on arcs and blends higher by 2 W at most.
+        let squares = before.windows(2).map(|pair| {
+            let (a, b) = (pair[0][bus], pair[1][bus]);
+            (pair[1][0] - pair[0][0]) * (a * a + a * b + b * b) / 3.0
+        });
+        let shown = (squares.sum::<f64>() / before.last().unwrap()[0]).sqrt();
+        let rated = report["over_time"][0]["value"].as_f64().unwrap();
+        assert_eq!(report["over_time"][0]["check"], "continuous-power");
+        assert!(
+            rated >= shown - 1e-3 && rated <= shown + 2.0,
+            "{rated} {shown}"
+        );
+        // Jumps have both their sides.
+        let jumps = before.windows(2).filter(|pair| pair[0][0] == pair[1][0]);
+        assert!(jumps.count() > 4);
+    }
+}
+
+#[test]
+fn a_series_shows_the_limited_program_too() {
+    let shop = Shop::new("iso", "", "peak_power_w = 350\nregen_power_w = 1000");
+    shop.put("a.ngc", THERE_AND_BACK);
+    let (code, out, _) = shop.run("report a.ngc --series a.csv --step-ms 5");
+    assert_eq!((code, out.as_str()), (0, ""));
+    let series = shop.get("a.csv");
+    let peak = |program| {
+        let rows = rows(&series, program);
+        rows.iter()
+            .map(|row| row[row.len() - 2])
+            .fold(0.0, f64::max)
+    };
+    assert!((peak("before") - 537.5).abs() < 1e-6);
+    assert!(peak("after") <= 350.0 + 1e-6 && peak("after") > 300.0);
+    shop.run("report a.ngc --series b.csv --step-ms 5");
+    assert_eq!(series, shop.get("b.csv"));
+    // What cannot be limited is shown as it is.
+    let shop = Shop::new("iso", "", "peak_power_w = 350");
+    shop.put("a.ngc", "G21 G90 G94\nG1 X100 F20000\nM30\n");
+    let (code, _, told) = shop.run("report a.ngc --series a.csv");
+    assert_eq!(code, 0);
+    assert!(told.contains("the series shows it only as it is"), "{told}");
+    assert!(rows(&shop.get("a.csv"), "after").is_empty());
+    let (code, _, told) = shop.run("report a.ngc --series a.csv --allow feed");
+    assert_eq!(code, 0, "{told}");
+    assert!(!rows(&shop.get("a.csv"), "after").is_empty());
+}
+
+#[test]
+fn a_series_is_whole_or_not_there() {
+    let shop = Shop::new("iso", "", "peak_power_w = 1000");
+    shop.put("a.ngc", "G21\nG0 X1\nG0 Q7\n");
+    let (code, ..) = shop.run("report a.ngc --series a.csv");
+    assert_eq!(code, 2);
+    shop.put("b.ngc", "G21\nG4 P1000000000\n");
+    let (code, _, told) = shop.run("report b.ngc --series a.csv --step-ms 0.001");
+    assert_eq!(code, 2);
+    assert!(told.contains("a longer --step-ms is needed"), "{told}");
+    assert!(!shop.has("a.csv"));
+    for (arguments, message) in [
+        (
+            "report a.ngc --series a.csv --step-ms 0",
+            "a number from 0.001 to 1000000",
+        ),
+        ("report a.ngc --step-ms 1", "--series"),
+        ("report a.ngc --series a.ngc", "a.ngc"),
+    ] {
+        let (code, _, told) = shop.run(arguments);
+        assert_eq!(code, 2);
+        assert!(told.contains(message), "{told}");
+    }
+}
