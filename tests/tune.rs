@@ -11,12 +11,10 @@ use gwatt::identify::tune::{
     AxisResponse, Biquad, Correction, Discretization, Gain, LowPass, Parameters, Tuned, Wish, Zero,
     delays_agree, design, excited, of_recording,
 };
-use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
+use gwatt::identify::{Factor, TransferFunction};
 use gwatt::report::{tune_page, tuned_json, tuned_text};
 
-use crate::identify::{
-    PERIOD_S, branched, choice, csv, m_sequence, one_side, recording, spring, table,
-};
+use crate::identify::{PERIOD_S, branched, choice, csv, one_side, recording, spring, table};
 
 fn pair(hz: f64, damping: f64) -> Factor {
     Factor::Pair {
@@ -304,53 +302,6 @@ fn a_pole_besides_a_zero_does_not_hide_the_judgement() {
     let found = found.unwrap();
     assert_eq!(found.zeros.len(), 1);
     assert!((found.zeros[0].omega_rad_s.value / TAU - 40.0).abs() < 0.1);
-}
-
-/// A command that is held between samples, and one that the drive joins by
-/// straight lines a period later: both give the zero of the load.
-#[test]
-fn commands_may_be_held_or_run_on() {
-    let truth = TransferFunction {
-        gain: 1.0,
-        zeros: vec![pair(40.0, 0.03)],
-        poles: vec![pair(45.0, 0.4), pair(90.0, 0.5)],
-        delay_s: 0.0,
-    };
-    let mut position = Vec::new();
-    let (mut speed, mut place) = (0.0, 0.0);
-    for accel in m_sequence(4000) {
-        speed += accel * PERIOD_S;
-        place += speed * PERIOD_S;
-        position.push(place);
-    }
-    let held = simulate(&truth, Measured::Direct, PERIOD_S, &position).unwrap();
-    let slopes: Vec<f64> = std::iter::once(0.0)
-        .chain(
-            position
-                .windows(2)
-                .map(|pair| (pair[1] - pair[0]) / PERIOD_S),
-        )
-        .collect();
-    let speeds = simulate(&truth, Measured::Velocity, PERIOD_S, &slopes).unwrap();
-    let joined: Vec<f64> = speeds
-        .iter()
-        .scan(position[0], |at, v| {
-            *at += v * PERIOD_S;
-            Some(*at)
-        })
-        .collect();
-    for load in [held, joined] {
-        let recording = table(&["position_command_m", "position_m"], &[&position, &load]);
-        let found = of_recording(&recording, 'X', &choice(Method::Iv)).unwrap();
-        assert_eq!(found.zeros.len(), 1);
-        let zero = found.zeros[0];
-        assert!(
-            (zero.omega_rad_s.value / TAU - 40.0).abs() < 0.2,
-            "{zero:?}"
-        );
-        assert!((zero.damping.value - 0.03).abs() < 0.003, "{zero:?}");
-        assert!(found.delay_s < PERIOD_S, "{}", found.delay_s);
-    }
 }
 
 fn refusal<T: std::fmt::Debug>(outcome: gwatt::identify::Outcome<T>) -> (String, String) {
