@@ -64,6 +64,8 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Machine { command } => command::machine::run(command, terminal),
         Command::Excite(args) => command::excite::run(args, terminal),
         Command::Identify(args) => command::identify::run(args, terminal),
+        Command::Tune(args) => command::tune::run(args, terminal),
+        Command::Contour(args) => command::contour::run(args, terminal),
         Command::PowerFit(args) => command::power_fit::run(args, terminal),
         Command::Completions { shell } => completions(*shell),
         Command::Man => manual(),

@@ -14,10 +14,10 @@ use gwatt::identify::{
     Factor, Given, Judgement, Measured, Recording, TransferFunction, factors_of, simulate,
 };
 
-const PERIOD_S: f64 = 1e-3;
+pub(crate) const PERIOD_S: f64 = 1e-3;
 
 /// `SplitMix64`, and normal deviates of it (Box & Muller).
-struct Noise(u64);
+pub(crate) struct Noise(u64);
 
 impl Noise {
     fn uniform(&mut self) -> f64 {
@@ -28,7 +28,7 @@ impl Noise {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
         radius * libm::cos(TAU * self.uniform())
     }
@@ -54,7 +54,12 @@ fn sum(p: &[f64], factor: f64, q: &[f64]) -> Vec<f64> {
 /// Motor, table and side masses, one behind the other on springs: the motor
 /// drives the table through (`k`, `c`), each side mass hangs on the table. From
 /// torque to the table's acceleration.
-fn branched(motor: f64, table: f64, drive: [f64; 2], sides: &[[f64; 3]]) -> TransferFunction {
+pub(crate) fn branched(
+    motor: f64,
+    table: f64,
+    drive: [f64; 2],
+    sides: &[[f64; 3]],
+) -> TransferFunction {
     // Side mass: pulls the table with m·(k + c·s)/(m·s² + c·s + k) of its a.
     let mut zeros = vec![1.0];
     for [m, k, c] in sides {
@@ -87,12 +92,12 @@ fn branched(motor: f64, table: f64, drive: [f64; 2], sides: &[[f64; 3]]) -> Tran
 }
 
 /// Spring and damper of a mode of its own at `hz` with `damping`.
-fn spring(mass: f64, hz: f64, damping: f64) -> [f64; 2] {
+pub(crate) fn spring(mass: f64, hz: f64, damping: f64) -> [f64; 2] {
     let w = TAU * hz;
     [mass * w * w, 2.0 * damping * mass * w]
 }
 
-fn one_side() -> TransferFunction {
+pub(crate) fn one_side() -> TransferFunction {
     let [k, c] = spring(0.008, 40.0, 0.03);
     branched(0.006, 0.01, spring(0.0045, 150.0, 0.05), &[[0.008, k, c]])
 }
@@ -109,7 +114,7 @@ fn two_sides() -> TransferFunction {
     branched(0.006, 0.01, spring(0.0045, 180.0, 0.05), &sides)
 }
 
-fn m_sequence(samples: usize) -> Vec<f64> {
+pub(crate) fn m_sequence(samples: usize) -> Vec<f64> {
     held_m_sequence(samples, 1)
 }
 
@@ -128,7 +133,7 @@ fn held_m_sequence(samples: usize, hold: usize) -> Vec<f64> {
 }
 
 /// A recording of torque and the load's acceleration with white noise.
-fn recording(axis: &TransferFunction, seconds: f64, noise: f64, seed: u64) -> Recording {
+pub(crate) fn recording(axis: &TransferFunction, seconds: f64, noise: f64, seed: u64) -> Recording {
     let torque = m_sequence((seconds / PERIOD_S) as usize);
     noisy_recording(axis, &torque, noise, seed)
 }
@@ -144,7 +149,7 @@ fn noisy_recording(axis: &TransferFunction, torque: &[f64], noise: f64, seed: u6
     table(&["torque_nm", "accel_rad_s2"], &[torque, &noisy])
 }
 
-fn csv(names: &[&str], columns: &[&[f64]]) -> String {
+pub(crate) fn csv(names: &[&str], columns: &[&[f64]]) -> String {
     let mut text = format!("time_s,{}\n", names.join(","));
     for k in 0..columns[0].len() {
         write!(text, "{:.6}", k as f64 * PERIOD_S).unwrap();
@@ -156,11 +161,11 @@ fn csv(names: &[&str], columns: &[&[f64]]) -> String {
     text
 }
 
-fn table(names: &[&str], columns: &[&[f64]]) -> Recording {
+pub(crate) fn table(names: &[&str], columns: &[&[f64]]) -> Recording {
     Recording::read(csv(names, columns).as_bytes(), None).unwrap()
 }
 
-fn choice(method: Method) -> Choice {
+pub(crate) fn choice(method: Method) -> Choice {
     Choice {
         method,
         given: Given::default(),

@@ -4,7 +4,7 @@
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
 use gwatt::machine::{
     AXES, ArcRule, Axis, AxisKind, AxisSet, Controller, Converter, Family, Language, Limits,
-    Machine, Path, PathMode, Planner, RapidKnob, RapidPath,
+    Machine, Path, PathMode, Planner, RapidKnob, RapidPath, Responses,
 };
 use gwatt::plan::{Phase, Plan, Trajectory};
 use proptest::prelude::*;
@@ -57,6 +57,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             rapid: RapidPath::Linear,
         },
         force_curves: Vec::new(),
+        responses: Responses::default(),
         spindle: None,
         loads: Vec::new(),
         presets: Vec::new(),
@@ -80,6 +81,8 @@ fn controller() -> Controller {
             name: "rig".into(),
             family: Family::Iso,
             dwell: Vec::new(),
+            rapid_at_power_on: false,
+            loose_o_words: false,
             metric: true,
             absolute: true,
             arc_absolute: false,

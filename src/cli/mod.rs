@@ -1,6 +1,7 @@
 //! The command line: types only.
 
 mod check;
+mod contour;
 mod diff;
 mod excite;
 mod identify;
@@ -11,11 +12,13 @@ mod power_fit;
 mod program;
 mod report;
 mod spindle;
+mod tune;
 
 use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
 
 pub use check::{CheckArgs, Format};
+pub use contour::ContourArgs;
 pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
@@ -26,6 +29,7 @@ pub use power_fit::PowerFitArgs;
 pub use program::{MachineArgs, ProgramArgs, StartArg};
 pub use report::ReportArgs;
 pub use spindle::SpindleArgs;
+pub use tune::{DiscretizeArg, TuneArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -80,6 +84,10 @@ pub enum Command {
     Excite(ExciteArgs),
     /// Find mass, friction and resonances of an axis in a recording
     Identify(IdentifyArgs),
+    /// Make filters that let several axes answer alike
+    Tune(TuneArgs),
+    /// Say how far the load is from the programmed path
+    Contour(ContourArgs),
     /// Fit the power model of an axis to a log of the drive's power
     PowerFit(PowerFitArgs),
     /// Print a completion script for a shell

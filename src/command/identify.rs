@@ -6,9 +6,11 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use gwatt::identify::flexible::{self, Choice, Flexible, Method};
-use gwatt::identify::merge::{AxisFigures, force_per_torque, six_digits};
+use gwatt::identify::merge::{self, AxisFigures, force_per_torque, six_digits};
+use gwatt::identify::response_table::{self, ResponseFigures};
 use gwatt::identify::rigid::{self, Friction, Rigid};
-use gwatt::identify::{Given, Kind, Quantity, Recording};
+use gwatt::identify::tune::Zero;
+use gwatt::identify::{Given, Kind, Quantity, Recording, TransferFunction};
 use gwatt::report::{Heading, Verdict, flexible_json, flexible_text, rigid_json, rigid_text};
 
 use super::clash::refuse_clashes;
@@ -183,6 +185,10 @@ fn motion_slides(recording: &Recording) -> bool {
 }
 
 fn figures(heading: &Heading, found: &Found) -> AxisFigures {
+    let gravity = match found {
+        Found::Rigid(rigid) => Some(rigid.offset),
+        Found::Flexible(_) => None,
+    };
     let (mass, viscous, coulomb) = match found {
         Found::Rigid(rigid) => (
             rigid.mass.value,
@@ -196,6 +202,7 @@ fn figures(heading: &Heading, found: &Found) -> AxisFigures {
         mass,
         viscous,
         coulomb,
+        gravity,
         efficiency: None,
     }
 }
@@ -232,20 +239,35 @@ fn deliver(
     if let (Some(path), Found::Flexible(axis)) = (&args.response, found) {
         spools.push(spooled(path, |out| response(axis, out))?);
     }
+    let response = match found {
+        Found::Flexible(axis) => Some(response_figures(axis)),
+        Found::Rigid(_) => None,
+    };
     let merged = match &args.into {
         Some(path) => {
             ensure!(
-                usable,
+                usable || response.is_some(),
                 "no mass was identified: there is nothing for --into"
             );
             ensure!(
                 !heading.lever_is_missing,
                 "torque with a motion in metres: give --lead-mm, so that the machine file gets mass and force"
             );
-            Some((
-                path,
-                Merged::new(path, axis_of(heading.axis)?, &figures, None)?,
-            ))
+            let axis = axis_of(heading.axis)?;
+            let merged = Merged::made(path, |name, text| {
+                let text = if usable {
+                    merge::into_machine(name, text, axis, &figures, None)?
+                } else {
+                    text.to_owned()
+                };
+                match response {
+                    Some(response) => {
+                        response_table::into_machine(name, &text, &[(axis, response)])
+                    }
+                    None => Ok(text),
+                }
+            })?;
+            Some((path, merged))
         }
         None => None,
     };
@@ -258,6 +280,9 @@ fn deliver(
     }
     if let Some((path, merged)) = merged {
         merged.deliver(path, terminal)?;
+        if figures.has_weight() {
+            terminal.note("the offset went into the file as weight: take it out there if it is a bias of the sensor");
+        }
     }
     for note in &heading.notes {
         terminal.note(note);
@@ -272,6 +297,26 @@ fn deliver(
         print(|out| out.write_all(text.as_bytes()))?;
     }
     Ok(Verdict::Fits)
+}
+
+/// What goes into the machine file of a flexible axis: from the command all, from
+/// force what the loop keeps of it.
+fn response_figures(axis: &Flexible) -> ResponseFigures {
+    let transfer = axis.transfer.clone();
+    if axis.inertia.is_none() {
+        return ResponseFigures {
+            zeros: Some(transfer.zeros),
+            poles: Some(transfer.poles),
+            delay_s: Some(transfer.delay_s),
+            ..ResponseFigures::default()
+        };
+    }
+    let zeros = axis.zeros.iter().map(|zero| Zero::from(*zero).factor());
+    ResponseFigures {
+        zeros: Some(zeros.collect()),
+        force_poles: Some(transfer.poles),
+        ..ResponseFigures::default()
+    }
 }
 
 fn spooled(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Spool> {
@@ -302,13 +347,17 @@ fn response(axis: &Flexible, out: &mut dyn Write) -> io::Result<()> {
         "frequency_hz,gain,phase_deg,coherence,model_gain,model_phase_deg"
     )?;
     let measured = &axis.response;
+    let fitted = TransferFunction {
+        delay_s: axis.fitted_delay_s,
+        ..axis.transfer.clone()
+    };
     for ((f, g), coherence) in measured
         .frequency_hz
         .iter()
         .zip(&measured.response)
         .zip(&measured.coherence)
     {
-        let model = axis.transfer.at_hz(*f);
+        let model = fitted.at_hz(*f);
         writeln!(
             out,
             "{f},{},{},{coherence},{},{}",

@@ -5,7 +5,9 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
+use gwatt::identify::Outcome;
 use gwatt::identify::merge::{AxisFigures, into_machine};
+use gwatt::identify::response_table::{self, ResponseFigures};
 use gwatt::machine::AxisId;
 
 use super::output::{Spool, Target, back_up};
@@ -37,6 +39,20 @@ impl Merged {
         figures: &AxisFigures,
         margin: Option<f64>,
     ) -> Result<Self> {
+        Self::made(path, |name, text| {
+            into_machine(name, text, axis, figures, margin)
+        })
+    }
+
+    /// Prepares the file with responses and filters.
+    pub fn responses(path: &Path, list: &[(AxisId, ResponseFigures)]) -> Result<Self> {
+        Self::made(path, |name, text| {
+            response_table::into_machine(name, text, list)
+        })
+    }
+
+    /// Prepares the file that `change` makes of the present one.
+    pub fn made(path: &Path, change: impl FnOnce(&str, &str) -> Outcome<String>) -> Result<Self> {
         let name = path.display().to_string();
         let metadata = fs::metadata(path).with_context(|| format!("cannot read {name}"))?;
         ensure!(metadata.is_file(), "{name} is not a file");
@@ -44,7 +60,7 @@ impl Merged {
             bail!("{name} is larger than a machine file can be");
         }
         let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
-        let merged = into_machine(&name, &text, axis, figures, margin)?;
+        let merged = change(&name, &text)?;
         let mut spool = Target::new(path)?.spool()?;
         spool
             .write_all(merged.as_bytes())

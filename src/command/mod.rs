@@ -1,6 +1,7 @@
 //! What each command does.
 
 pub mod check;
+pub mod contour;
 pub mod diff;
 pub mod excite;
 pub mod identify;
@@ -10,6 +11,7 @@ pub mod moves;
 pub mod power_fit;
 pub mod report;
 pub mod spindle;
+pub mod tune;
 
 mod clash;
 mod input;

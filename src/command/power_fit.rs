@@ -88,6 +88,7 @@ fn figures(log: &PowerLog, model: &PowerModel) -> AxisFigures {
         mass: model.mass.value,
         viscous: Some(model.viscous.value),
         coulomb: Some(model.coulomb.value),
+        gravity: None,
         efficiency: (model.efficiency < 1.0).then_some(model.efficiency),
     }
 }

@@ -45,6 +45,19 @@ impl Discrete {
         (zeros.len() <= poles.len() && gain.is_finite()).then_some(Self { gain, zeros, poles })
     }
 
+    /// The samples of a continuous system whose input is held, its delay left
+    /// out. `None` if it has more zeros than poles or is not finite.
+    #[must_use]
+    pub fn held(transfer: &TransferFunction, period_s: f64) -> Option<Self> {
+        let sampled = SampledResponse::new(transfer, period_s)?;
+        let gain = sampled.numerator.iter().rev().find(|c| **c != 0.0)?;
+        Some(Self {
+            gain: *gain,
+            zeros: roots(&sampled.numerator)?,
+            poles: sampled.poles,
+        })
+    }
+
     /// The value at z.
     #[must_use]
     pub fn at(&self, z: C) -> C {

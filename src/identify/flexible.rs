@@ -65,6 +65,9 @@ pub struct Flexible {
     pub poles: Vec<Root>,
     /// Delay.
     pub delay_s: Figure,
+    /// The delay that was fitted, s: from a command it is longer by the period by
+    /// which the input was taken early.
+    pub fitted_delay_s: f64,
     /// Norm of what is left by norm of the output.
     pub rel_error: f64,
     /// Whiteness of what is left, behind the filter for coloured noise.
@@ -95,6 +98,8 @@ pub(super) struct Prepared {
     measured: Measured,
     period_s: f64,
     is_force: bool,
+    /// By which the input is taken early, s.
+    lead_s: f64,
     names: (String, String),
 }
 
@@ -155,9 +160,19 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
         measured,
         period_s: t,
         is_force,
+        lead_s: 0.0,
         names: (input_signal.name.clone(), output_signal.name.clone()),
     };
     decimate(&mut prepared, &choice.decimation);
+    if !is_force && !prepared.input.is_empty() {
+        // A command that runs on between samples is half a period ahead of one
+        // that is held: taken a period early, it comes late in either case.
+        prepared.input.copy_within(1.., 0);
+        if let [.., before, end] = prepared.input.as_mut_slice() {
+            *end = *before;
+        }
+        prepared.lead_s = prepared.period_s;
+    }
     if prepared.input.len() < 256 {
         return Err(Trouble::new(
             format!(
@@ -215,6 +230,11 @@ fn differences(x: &[f64], measured: Measured, period_s: f64) -> Vec<f64> {
 /// What keeps the recording from being used, or a model from being found.
 pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     let prepared = prepare(recording, choice)?;
+    let mut choice = choice.clone();
+    let searches = matches!(choice.method, Method::Iv | Method::Frequency);
+    let given = choice.given.delay_s.map(|delay| delay + prepared.lead_s);
+    choice.given.delay_s = given.or((!searches).then_some(prepared.lead_s));
+    let choice = &choice;
     let undisturbed = match &prepared.excitation {
         Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
             Trouble::new(
@@ -248,7 +268,8 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
 
 fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
     let estimate = &found.estimate;
-    let transfer = estimate.transfer.clone();
+    let mut transfer = estimate.transfer.clone();
+    let fitted_delay_s = transfer.delay_s;
     let left = residuals(data, estimate).unwrap_or_default();
     let skip = 2.min(left.len());
     let power = |x: &[f64]| -> f64 {
@@ -310,7 +331,9 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     } else {
         0.0
     };
+    transfer.delay_s = (fitted_delay_s - prepared.lead_s).max(0.0);
     Ok(Flexible {
+        fitted_delay_s,
         inertia: prepared.is_force.then(|| Figure {
             value: 1.0 / gain,
             std: std(0) / (gain * gain),
@@ -351,7 +374,11 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         period_s: prepared.period_s,
         measured: prepared.measured,
     };
-    let simulated = as_it_is(&data, &model.transfer).and_then(|e| residuals(&data, &e));
+    let fitted = TransferFunction {
+        delay_s: model.fitted_delay_s,
+        ..model.transfer.clone()
+    };
+    let simulated = as_it_is(&data, &fitted).and_then(|e| residuals(&data, &e));
     let left = simulated.ok_or_else(|| {
         Trouble::new(
             "the model cannot be simulated on the second recording",

@@ -3,8 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use toml_edit::{DocumentMut, TableLike, Value};
+use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::rigid::Figure;
 use super::trouble::{Outcome, Trouble};
 use crate::machine::{AxisId, Machine};
 use crate::units::M_PER_MM;
@@ -20,6 +21,9 @@ pub struct AxisFigures {
     pub viscous: Option<f64>,
     /// Coulomb friction.
     pub coulomb: Option<f64>,
+    /// Force besides friction: weight. Written where the file has one already, or
+    /// where it stands clear of its error.
+    pub gravity: Option<Figure>,
     /// Efficiency.
     pub efficiency: Option<f64>,
 }
@@ -44,24 +48,11 @@ pub fn into_machine(
     figures: &AxisFigures,
     margin: Option<f64>,
 ) -> Outcome<String> {
-    let refused = |what: String| Trouble::new(format!("{path}: {what}"), "nothing was written");
-    if let Err(findings) = Machine::from_toml(path, text) {
-        let first = findings.first().map(|f| f.message.clone());
-        return Err(refused(format!(
-            "this is no sound machine file: {}",
-            first.unwrap_or_default()
-        )));
-    }
-    let mut document: DocumentMut = text
-        .parse()
-        .map_err(|error: toml_edit::TomlError| refused(error.message().to_owned()))?;
-    let letter = (axis.letter() as char).to_string();
-    let table = document
-        .get_mut("axes")
-        .and_then(|axes| axes.as_table_like_mut())
-        .and_then(|axes| axes.get_mut(&letter))
-        .and_then(|table| table.as_table_like_mut())
-        .ok_or_else(|| refused(format!("the machine has no axis {letter}")))?;
+    let letter = axis.letter() as char;
+    let mut document = sound(path, text)?;
+    let table = axis_item(&mut document, axis)
+        .and_then(Item::as_table_like_mut)
+        .ok_or_else(|| no_axis(path, axis))?;
     write_axis(table, axis, figures).map_err(|what| {
         Trouble::new(
             format!("{path}, axis {letter}: {what}"),
@@ -71,13 +62,48 @@ pub fn into_machine(
     if let Some(margin) = margin {
         raise_margin(&mut document, margin);
     }
+    finished(path, &document)
+}
+
+fn refused(path: &str, what: &str) -> Trouble {
+    Trouble::new(format!("{path}: {what}"), "nothing was written")
+}
+
+pub(super) fn no_axis(path: &str, axis: AxisId) -> Trouble {
+    refused(
+        path,
+        &format!("the machine has no axis {}", axis.letter() as char),
+    )
+}
+
+/// A machine file that is to change.
+pub(super) fn sound(path: &str, text: &str) -> Outcome<DocumentMut> {
+    if let Err(findings) = Machine::from_toml(path, text) {
+        let first = findings.first().map(|f| f.message.as_str());
+        let what = format!("this is no sound machine file: {}", first.unwrap_or(""));
+        return Err(refused(path, &what));
+    }
+    let parsed = text.parse();
+    parsed.map_err(|error: toml_edit::TomlError| refused(path, error.message()))
+}
+
+/// The table of an axis.
+pub(super) fn axis_item(document: &mut DocumentMut, axis: AxisId) -> Option<&mut Item> {
+    let letter = (axis.letter() as char).to_string();
+    let axes = document.get_mut("axes")?.as_table_like_mut()?;
+    axes.get_mut(&letter)
+}
+
+/// The text of a changed machine file, if that is sound.
+pub(super) fn finished(path: &str, document: &DocumentMut) -> Outcome<String> {
     let merged = document.to_string();
     if let Err(findings) = Machine::from_toml(path, &merged) {
-        let first = findings.first().map(|f| f.message.clone());
-        return Err(refused(format!(
+        let first = findings.first().map(|f| f.message.as_str());
+        let what = format!(
             "with the new figures the file would not be sound: {}",
-            first.unwrap_or_default()
-        )));
+            first.unwrap_or("")
+        );
+        return Err(refused(path, &what));
     }
     Ok(merged)
 }
@@ -106,6 +132,7 @@ fn write_axis(
         set(table, "inertia_kg_m2", figures.mass);
         optional(table, "viscous_nm_s_rad", figures.viscous);
         optional(table, "friction_nm", figures.coulomb);
+        gravity(table, "gravity_nm", figures.gravity, 1.0);
     } else {
         // Load side first.
         let (square, line) = if figures.rotary {
@@ -125,6 +152,8 @@ fn write_axis(
         let viscous =
             by("viscous_nm_s_rad", "viscous_nm_s_rad", 2).unwrap_or(("viscous_n_s_m", 1.0));
         let coulomb = by("friction_nm", "friction_nm", 1).unwrap_or(("coulomb_n", 1.0));
+        let weight = by("gravity_nm", "gravity_nm", 1).unwrap_or(("gravity_n", 1.0));
+        gravity(table, weight.0, figures.gravity, line * weight.1);
         set(table, mass.0, figures.mass * square * mass.1);
         optional(
             table,
@@ -143,6 +172,26 @@ fn write_axis(
     Ok(())
 }
 
+/// Standard errors from which on an offset is a weight.
+const CLEAR: f64 = 3.0;
+
+impl AxisFigures {
+    /// Whether the weight stands clear of its error.
+    #[must_use]
+    pub fn has_weight(&self) -> bool {
+        self.gravity
+            .is_some_and(|weight| weight.value.abs() > CLEAR * weight.std)
+    }
+}
+
+fn gravity(table: &mut dyn TableLike, key: &str, weight: Option<Figure>, factor: f64) {
+    if let Some(weight) = weight
+        && (table.contains_key(key) || weight.value.abs() > CLEAR * weight.std)
+    {
+        set(table, key, weight.value * factor);
+    }
+}
+
 /// Friction is not negative; where it comes out so, it is none.
 fn optional(table: &mut dyn TableLike, key: &str, value: Option<f64>) {
     if let Some(value) = value {
@@ -151,7 +200,7 @@ fn optional(table: &mut dyn TableLike, key: &str, value: Option<f64>) {
 }
 
 /// Writes a value with six digits, where it stands or at the end.
-fn set(table: &mut dyn TableLike, key: &str, value: f64) {
+pub(super) fn set(table: &mut dyn TableLike, key: &str, value: f64) {
     let value = six_digits(value);
     if let Some(old) = table.get_mut(key).and_then(|item| item.as_value_mut()) {
         let decor = old.decor().clone();
@@ -218,6 +267,7 @@ lead_mm = 10
             mass: 412.345_678,
             viscous: Some(150.0),
             coulomb: Some(-0.5),
+            gravity: None,
             efficiency: None,
         }
     }
@@ -236,6 +286,26 @@ lead_mm = 10
         // A smaller margin than the one in force changes nothing.
         let kept = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.05)).unwrap();
         assert!(!kept.contains("margin"));
+    }
+
+    #[test]
+    fn a_weight_is_written_where_it_is_clear_or_was_there() {
+        let weighing = |value, std| AxisFigures {
+            gravity: Some(Figure { value, std }),
+            ..figures()
+        };
+        let merge = |text: &str, axis, figures: AxisFigures| {
+            into_machine("m.toml", text, axis, &figures, None).unwrap()
+        };
+        assert!(!merge(MACHINE, AxisId::X, weighing(2.0, 1.0)).contains("gravity"));
+        let clear = merge(MACHINE, AxisId::X, weighing(-40.0, 1.0));
+        assert!(clear.contains("gravity_n = -40.0\n"));
+        let again = merge(&clear, AxisId::X, weighing(2.0, 1.0));
+        assert!(again.contains("gravity_n = 2.0\n"));
+        // 40 N through k = 628.318 /m, where the file has it at the motor.
+        let motor = MACHINE.replace("lead_mm = 10", "lead_mm = 10\ngravity_nm = 1");
+        let found = merge(&motor, AxisId::Y, weighing(40.0, 1.0));
+        assert!(found.contains("gravity_nm = 0.063662\n"), "{found}");
     }
 
     #[test]

@@ -3,14 +3,18 @@
 //!
 //! A [`Recording`] is read, checked and turned to SI. [`rigid`] fits mass and
 //! friction. [`flexible`] finds the [`TransferFunction`] from force to
-//! acceleration, whose zeros are the axis' anti-resonances.
+//! acceleration, whose zeros are the axis' anti-resonances. [`tune`] makes the
+//! filters that let several axes answer alike.
 
+pub mod contour;
 pub mod excitation;
 pub mod flexible;
 pub mod judgement;
 pub mod merge;
 pub mod power_fit;
+pub mod response_table;
 pub mod rigid;
+pub mod tune;
 
 mod arx;
 mod column;

@@ -58,6 +58,18 @@ impl Factor {
         }
     }
 
+    /// By how much a pole makes slow signals late, s; a zero makes them early.
+    #[must_use]
+    pub fn lag_s(self) -> f64 {
+        match self {
+            Self::Pair {
+                omega_rad_s,
+                damping,
+            } => 2.0 * damping / omega_rad_s,
+            Self::Real { time_constant_s } => time_constant_s,
+        }
+    }
+
     /// True for complex roots.
     #[must_use]
     pub fn oscillates(self) -> bool {

@@ -13,7 +13,7 @@ use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::osp::Osp;
 use super::parameters::Parameters;
-use super::position::{Position, Reading};
+use super::position::{BlockDelete, Position, Reading};
 use super::printer;
 use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
@@ -76,7 +76,7 @@ pub(super) struct Control<'m> {
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,
     pub(super) turning: Turning,
-    block_delete: bool,
+    pub(super) block_delete: BlockDelete,
     pub(super) begun: bool,
     pub(super) ended: bool,
     pub(super) has_program_number: bool,
@@ -367,7 +367,7 @@ impl Control<'_> {
             );
             return false;
         }
-        self.block_delete
+        self.block_delete.passes(block.delete_level)
     }
 
     /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").

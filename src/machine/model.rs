@@ -2,6 +2,7 @@
 
 use super::axis::{AXES, Axis, AxisId, AxisSet, AxisValues};
 use super::controller::{Controller, PathMode, RapidPath};
+use super::response::Responses;
 
 /// A machine: its axes, converters and limits, all values checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Machine {
     pub path: Path,
     /// Force or torque over speed of the axes for which it is given.
     pub force_curves: Vec<(AxisId, Vec<ForcePoint>)>,
+    /// How loads follow commands, of the axes for which it is given.
+    pub responses: Responses,
     /// The spindle, if described.
     pub spindle: Option<Spindle>,
     /// What program words switch on and off.

@@ -81,7 +81,8 @@ impl Entry {
             .filter(|step| matches!(step, Step::Move(_)))
             .count();
         self.mark = Mark::of(modal);
-        self.stance = (!self.facts.plain).then(|| line.interpreter.stance());
+        let plain = self.facts.plain && matches!(self.steps.as_slice(), [Step::Move(_)]);
+        self.stance = (!plain).then(|| line.interpreter.stance());
         self.knobs = knobs(machine, line.interpreter.knobs());
         self.feed_mode = modal.feed_mode;
         self.mode_before = mode_before;

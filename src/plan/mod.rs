@@ -14,12 +14,14 @@ mod power_law;
 mod profile;
 mod slope;
 mod spindle;
+mod track;
 mod trajectory;
 
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
 pub use spindle::{SpindleCaps, SpindleDrive};
+pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{
     Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, is_independent, path_figures,
     plan, plan_with,

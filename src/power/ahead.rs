@@ -76,7 +76,7 @@ struct Open {
 
 /// How a move takes part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// It has a path that the rules speak of.
     Path,
     /// It has none, and is passed.
@@ -277,7 +277,7 @@ impl Ahead {
             .map(|open| open.mv.length_mm)
             .sum();
         let energy_j = std::mem::take(&mut demand.energy_j);
-        let duration_s = planned.profile().duration_s();
+        let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         for index in from..=to {
             let Some(open) = self.open.get_mut(index) else {
@@ -413,7 +413,7 @@ fn is_whole(mv: &Move, planned: &Planned<u64>) -> bool {
 }
 
 /// How a move takes part in look-ahead.
-fn role(machine: &Machine, mv: &Move) -> Role {
+pub(crate) fn role(machine: &Machine, mv: &Move) -> Role {
     let synchronous = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap | MoveKind::Probe);
     if mv.moving.is_empty() && mv.unknown_start.is_empty() {
         Role::Nothing
@@ -425,7 +425,7 @@ fn role(machine: &Machine, mv: &Move) -> Role {
 }
 
 /// What the planner may do at the end of a move.
-fn joint(mv: &Move) -> Joint {
+pub(crate) fn joint(mv: &Move) -> Joint {
     match (mv.path_mode, mv.corner) {
         (PathMode::ExactStop, _) => Joint::Stop,
         (PathMode::LookAhead, Corner::Exact) => Joint::Exact,

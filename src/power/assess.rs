@@ -469,7 +469,8 @@ fn moves(mv: &Move) -> bool {
 }
 
 /// What an action does to the motion.
-enum Effect {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Effect {
     None,
     Stop,
     Unknown,
@@ -477,7 +478,7 @@ enum Effect {
 
 /// Spindle, tool change, stop and end wait for the axes; those of printers that
 /// set a temperature or a limit go with the moves. What others do is not known.
-fn effect(action: &Action, family: Family) -> Effect {
+pub(crate) fn effect(action: &Action, family: Family) -> Effect {
     match action.kind {
         ActionKind::PathMode | ActionKind::ToolSelect => Effect::None,
         ActionKind::Spindle | ActionKind::ToolChange | ActionKind::Stop | ActionKind::End => {

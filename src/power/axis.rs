@@ -51,6 +51,13 @@ pub(super) struct AxisPower {
     friction: [f64; 3],
 }
 
+/// Electrical power of an axis in W at a speed (m/s or rad/s) and a force of its
+/// drive (N or N·m), by the nominal model; negative where it feeds back.
+#[must_use]
+pub fn electrical_w(axis: &Axis, speed_m_s: f64, force_n: f64) -> f64 {
+    AxisPower::new(axis).electrical(speed_m_s, force_n)
+}
+
 impl AxisPower {
     /// An axis that does not exist.
     pub const ABSENT: Self = Self {

@@ -32,7 +32,10 @@ mod spindle;
 mod straight;
 mod stretch;
 
+pub(crate) use ahead::{Role, joint, role};
 pub use assess::{Assessment, Assessor, Certificate};
+pub(crate) use assess::{Effect, effect};
+pub use axis::electrical_w;
 pub use demand::{Demand, Want};
 pub use model::PowerModel;
 pub use spindle::{RunPhase, SpindlePower, SpindleRun, spindle_run};

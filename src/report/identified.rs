@@ -60,7 +60,7 @@ impl Heading {
 }
 
 /// Null for what is not known or not finite.
-fn number(value: Option<f64>) -> Value {
+pub(super) fn number(value: Option<f64>) -> Value {
     value
         .filter(|v| v.is_finite())
         .map_or(Value::Null, |v| json!(v))
@@ -222,7 +222,7 @@ pub fn margin(model: &PowerModel) -> f64 {
 }
 
 /// A figure with four digits, and its error with two.
-fn shown(figure: Figure) -> String {
+pub(super) fn shown(figure: Figure) -> String {
     let digits = |value: f64, digits: i32| -> String {
         if value == 0.0 || !value.is_finite() {
             return format!("{value}");

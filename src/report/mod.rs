@@ -3,6 +3,8 @@
 mod chart;
 mod checked;
 mod comparison;
+mod contour_chart;
+mod contoured;
 mod csv;
 mod figure;
 mod finding;
@@ -17,10 +19,16 @@ mod record;
 mod sarif;
 mod spindle;
 mod text;
+mod tune_page;
+mod tuned;
 
 pub use chart::SpindleChart;
 pub use checked::{Checked, Verdict, chain};
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
+pub use contour_chart::{ContourChart, circle_chart};
+pub use contoured::{
+    ArcList, CONTOUR_COLUMNS, contour_csv_row, contour_json, contour_json_row, contour_text,
+};
 pub use csv::CsvRows;
 pub use github::github;
 pub use identified::{
@@ -36,3 +44,5 @@ pub use record::COLUMNS;
 pub use sarif::sarif;
 pub use spindle::{SpindleRows, spindle_text};
 pub use text::{axis_table, check_text, limit_text};
+pub use tune_page::tune_page;
+pub use tuned::{sections_csv, tuned_json, tuned_text};

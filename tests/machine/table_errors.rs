@@ -307,3 +307,64 @@ fn many_at_once() {
       |          ^
     "#);
 }
+
+#[test]
+fn response_roots() {
+    let with_root = |line: &str| findings(&with(&format!("[axes.X.response]\n{line}")));
+    assert_snapshot!(with_root("zeros = [{ frequency_hz = 40 }]"), @r"
+    line 20, error machine-response: a root is a pair or a single one / give frequency_hz and damping, or time_constant_s
+      | zeros = [{ frequency_hz = 40 }]
+      |          ^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(with_root("zeros = [{ time_constant_s = 0 }]"), @r"
+    line 20, error machine-response: a root is a pair or a single one / give frequency_hz and damping, or time_constant_s
+      | zeros = [{ time_constant_s = 0 }]
+      |          ^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(with_root("poles = [{ frequency_hz = 40, damping = 0 }]"), @r"
+    line 20, error machine-response: `poles`: this would swing up for ever / poles have a damping, or a time constant, above 0
+      | poles = [{ frequency_hz = 40, damping = 0 }]
+      |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(with_root("force_poles = [{ time_constant_s = -0.1 }]"), @r"
+    line 20, error machine-response: `force_poles`: this would swing up for ever / poles have a damping, or a time constant, above 0
+      | force_poles = [{ time_constant_s = -0.1 }]
+      |                ^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(with_root("delay_ms = -1"), @r"
+    line 20, error machine-range: `delay_ms` must be 0 or greater, but is -1
+      | delay_ms = -1
+      |            ^^
+    ");
+    let many = "{ time_constant_s = 1 }, ".repeat(33);
+    assert!(with_root(&format!("zeros = [{many}]")).contains("more than 32 roots"));
+    assert_eq!(
+        with_root("zeros = [{ frequency_hz = 40, damping = -0.1 }]\nposition_gain_1_s = 40"),
+        ""
+    );
+}
+
+#[test]
+fn correction_sections() {
+    let with_sections = |list: &str| {
+        findings(&with(&format!(
+            "[axes.X.correction]\nperiod_ms = 1\nsections = [{list}]"
+        )))
+    };
+    assert_snapshot!(with_sections("[1, 0, 0, 0]"), @r"
+    line 21, error machine-response: a section has 4 numbers / write [b0, b1, b2, a1, a2], at most 32 of them
+      | sections = [[1, 0, 0, 0]]
+      |             ^^^^^^^^^^^^
+    ");
+    assert_snapshot!(with_sections("[1, 0, 0, 0, 1]"), @r"
+    line 21, error machine-response: this section is not stable / |a2| < 1 and |a1| < 1 + a2 must hold
+      | sections = [[1, 0, 0, 0, 1]]
+      |             ^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(with_sections("[2, 0, 0, 0, 0]"), @r"
+    line 21, error machine-response: this section changes the size of the path / b0 + b1 + b2 must be 1 + a1 + a2: its gain at rest is 1
+      | sections = [[2, 0, 0, 0, 0]]
+      |             ^^^^^^^^^^^^^^^
+    ");
+    assert_eq!(with_sections("[1, 0, 0, 0, 0]"), "");
+}

@@ -6,10 +6,13 @@ use super::machine_file::{
     LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName,
 };
 use super::value::{At, Num};
-use super::{axis, converter, drive_curve, plausible, preset, profile, spindle, unchecked, word};
+use super::{
+    axis, converter, drive_curve, plausible, preset, profile, response, spindle, unchecked, word,
+};
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
 use crate::machine::model::{Converter, Limits, Load, Machine, Path};
+use crate::machine::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Share of the peak power that is kept free if the file does not say.
@@ -47,11 +50,13 @@ pub(crate) fn machine(
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();
     let mut force_curves = Vec::new();
+    let mut responses = Responses::default();
     let mut complete = true;
     for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
         axes[id as usize] = axis::axis(findings, id, table);
         axis_set.insert(id as usize);
         force_curves.extend(drive_curve::force(findings, id, &table.value).map(|c| (id, c)));
+        response::take(findings, id, &table.value, &mut responses);
         complete &= axes[id as usize].is_some();
     }
     if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
@@ -82,6 +87,7 @@ pub(crate) fn machine(
         axis_set,
         converters,
         force_curves,
+        responses,
         spindle: file
             .spindle
             .as_ref()

@@ -215,6 +215,53 @@ pub(crate) struct AxisTable {
     pub(crate) servo_factor_regen: Option<AtLeastOne>,
     /// Friction of the warm machine by that of the cold one; default 1.
     pub(crate) friction_min_ratio: Option<Share>,
+    /// How the load follows the position command.
+    pub(crate) response: Option<At<ResponseTable>>,
+    /// Filter of the position command that makes the axes answer alike.
+    pub(crate) correction: Option<At<CorrectionTable>>,
+}
+
+/// How the load of an axis follows its position command: gain 1, times zeros,
+/// by poles, behind a delay. An empty table: at once.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ResponseTable {
+    /// Gain of the position loop in 1/s: a pole.
+    pub(crate) position_gain_1_s: Option<Positive>,
+    /// Bandwidth of the velocity loop in Hz: a pair of poles, damping 0.7071.
+    pub(crate) velocity_bandwidth_hz: Option<Positive>,
+    /// Zeros: anti-resonances.
+    pub(crate) zeros: Option<Vec<At<RootTable>>>,
+    /// Poles, besides those of the loops given by gain or bandwidth.
+    pub(crate) poles: Option<Vec<At<RootTable>>>,
+    /// Poles from force or torque to the load's acceleration: resonances.
+    pub(crate) force_poles: Option<Vec<At<RootTable>>>,
+    /// Dead time in ms; default 0.
+    pub(crate) delay_ms: Option<NotNegative>,
+}
+
+/// A pair of zeros or poles, or a single real one.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RootTable {
+    /// Of a pair: its frequency in Hz.
+    pub(crate) frequency_hz: Option<Positive>,
+    /// Of a pair: its damping ratio.
+    pub(crate) damping: Option<Number>,
+    /// Of a single one: its time constant in s.
+    pub(crate) time_constant_s: Option<Number>,
+}
+
+/// A digital filter of the position command.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CorrectionTable {
+    /// Its sampling period in ms.
+    #[schemars(required)]
+    pub(crate) period_ms: Option<Positive>,
+    /// Second-order sections, each `[b0, b1, b2, a1, a2]`.
+    #[schemars(required)]
+    pub(crate) sections: Option<Vec<At<Vec<Number>>>>,
 }
 
 /// A point of a force curve.

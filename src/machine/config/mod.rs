@@ -21,6 +21,7 @@ mod preset;
 mod printer;
 mod profile;
 mod quantity;
+mod response;
 mod schema;
 mod spindle;
 mod structure;
