@@ -102,6 +102,18 @@ pub(crate) fn one_side() -> TransferFunction {
     branched(0.006, 0.01, spring(0.0045, 150.0, 0.05), &[[0.008, k, c]])
 }
 
+/// Samples that each step of the M-sequence is held: one and a half periods of
+/// an anti-resonance at 40 Hz. The first side lobe of the spectrum then lies on
+/// it, and nine tenths of the power lie below, where the inertia shows.
+const HOLD: usize = 37;
+
+fn two_sides() -> TransferFunction {
+    let [k1, c1] = spring(0.008, 40.0, 0.03);
+    let [k2, c2] = spring(0.004, 75.0, 0.03);
+    let sides = [[0.008, k1, c1], [0.004, k2, c2]];
+    branched(0.006, 0.01, spring(0.0045, 180.0, 0.05), &sides)
+}
+
 pub(crate) fn m_sequence(samples: usize) -> Vec<f64> {
     held_m_sequence(samples, 1)
 }
@@ -258,10 +270,7 @@ fn a_chain_of_two_masses_has_no_anti_resonance() {
 
 #[test]
 fn two_anti_resonances_are_told_apart() {
-    let [k1, c1] = spring(0.008, 40.0, 0.03);
-    let [k2, c2] = spring(0.004, 75.0, 0.03);
-    let sides = [[0.008, k1, c1], [0.004, k2, c2]];
-    let axis = branched(0.006, 0.01, spring(0.0045, 180.0, 0.05), &sides);
+    let axis = two_sides();
     let found = found(&axis, 4.0, 0.05, 1);
     for (error, std) in errors(&axis, &found) {
         assert!(error.abs() < 4.0 * std, "{error} ± {std}");
@@ -352,21 +361,55 @@ fn in_a_closed_loop_the_excitation_is_the_instrument() {
     assert!(inertia.std < 2e-4);
 }
 
-/// Accuracy and honesty over 200 seeds; minutes. The errors are as small as the
-/// noise allows, and that depends on axis and excitation: steps of 8 ms put most
-/// of the power where the anti-resonance is.
+/// What tests/identify/reference.py works out with SciPy: the bound of Cramér and
+/// Rao on the relative errors of ω and ζ of each anti-resonance and of J at last.
+const ONE_LIGHT: [f64; 3] = [4.502e-4, 1.7688e-2, 9.768e-4];
+const ONE_HEAVY: [f64; 3] = [9.099e-4, 3.5887e-2, 1.9463e-3];
+const TWO_LIGHT: [f64; 5] = [5.215e-4, 1.9189e-2, 6.182e-4, 2.2935e-2, 1.0599e-3];
+const TWO_HEAVY: [f64; 5] = [1.0353e-3, 3.7942e-2, 1.2353e-3, 4.5780e-2, 2.1117e-3];
+
+/// Standard errors are as small as any estimate's can be, and say what the
+/// errors are.
+#[test]
+fn errors_are_as_small_as_the_noise_allows() {
+    for (axis, least, seeds) in [
+        (one_side(), &ONE_LIGHT[..], 5),
+        (two_sides(), &TWO_LIGHT[..], 2),
+    ] {
+        let torque = held_m_sequence(4000, HOLD);
+        let mut sum = 0.0;
+        for seed in 0..seeds {
+            let recording = noisy_recording(&axis, &torque, 0.05, seed);
+            let found = flexible::identify(&recording, &choice(Method::Iv)).unwrap();
+            for ((error, std), least) in errors(&axis, &found).into_iter().zip(least) {
+                // Worked out where the estimate is, with the damping it found.
+                assert!((std / least - 1.0).abs() < 0.12, "{std} {least}");
+                sum += (error / std) * (error / std);
+            }
+        }
+        // χ² by its degrees of freedom; figures of one seed hang together a little.
+        let mean = sum / (seeds as f64 * least.len() as f64);
+        assert!((0.3..2.2).contains(&mean), "{mean}");
+    }
+}
+
+/// Accuracy and honesty over 200 seeds; minutes. What is promised for one
+/// anti-resonance is 0.05, 2.5 and 0.1 % at light noise, 0.1, 4 and 0.3 % at
+/// heavy noise, and twice that for two at once: the bounds lie inside, and the
+/// errors are theirs.
 #[test]
 #[ignore = "takes minutes: cargo test --release -- --ignored seeds"]
-fn two_hundred_seeds_are_as_accurate_as_promised() {
-    let axis = one_side();
-    for (seconds, noise, limits) in [
-        (4.0, 0.05, [0.0006, 0.02, 0.002]),
-        (16.0, 0.2, [0.0012, 0.04, 0.004]),
+fn two_hundred_seeds_are_as_accurate_as_can_be() {
+    for (axis, seconds, noise, least) in [
+        (one_side(), 4.0, 0.05, &ONE_LIGHT[..]),
+        (one_side(), 16.0, 0.2, &ONE_HEAVY[..]),
+        (two_sides(), 4.0, 0.05, &TWO_LIGHT[..]),
+        (two_sides(), 16.0, 0.2, &TWO_HEAVY[..]),
     ] {
-        let mut squares = [0.0; 3];
-        let mut inside = [0; 3];
+        let torque = held_m_sequence((seconds / PERIOD_S) as usize, HOLD);
+        let mut squares = vec![0.0; least.len()];
+        let mut inside = vec![0; least.len()];
         for seed in 0..200 {
-            let torque = held_m_sequence((seconds / PERIOD_S) as usize, 8);
             let recording = noisy_recording(&axis, &torque, noise, seed);
             let found = flexible::identify(&recording, &choice(Method::Iv)).unwrap();
             for (index, (error, std)) in errors(&axis, &found).into_iter().enumerate() {
@@ -374,10 +417,11 @@ fn two_hundred_seeds_are_as_accurate_as_promised() {
                 inside[index] += usize::from(error.abs() <= 2.0 * std);
             }
         }
-        let rms = squares.map(f64::sqrt);
-        println!("noise {noise}: rms {rms:?}, inside {inside:?} of 200");
-        for (rms, limit) in rms.iter().zip(limits) {
-            assert!(*rms <= limit, "noise {noise}: {rms} > {limit}");
+        let rms: Vec<f64> = squares.into_iter().map(f64::sqrt).collect();
+        println!("noise {noise}: rms {rms:?}, least {least:?}, inside {inside:?} of 200");
+        // The rms of 200 seeds scatters by 5 %.
+        for (rms, least) in rms.iter().zip(least) {
+            assert!(*rms <= 1.15 * least, "noise {noise}: {rms} > {least}");
         }
         // 93 to 97 %, and what 200 seeds scatter about that.
         for count in inside {

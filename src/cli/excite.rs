@@ -32,6 +32,9 @@ pub struct ExciteArgs {
     #[arg(long)]
     pub order: Option<u32>,
     /// M-sequence: samples that each step is held
+    ///
+    /// One and a half periods of an anti-resonance that is roughly known tell it
+    /// and the inertia most precisely: 37 at 1 kHz for 40 Hz.
     #[arg(long, default_value_t = 1)]
     pub hold: usize,
     /// M-sequence: how often it is repeated

@@ -381,11 +381,19 @@ pub fn power_model_text(heading: &Heading, model: &PowerModel) -> String {
         "1, none other seen in the log".to_owned()
     };
     let _ = writeln!(text, "  efficiency        {efficiency}");
+    // A model without a constant explains the square of the power, not its
+    // deviation from a mean that it cannot set.
+    let about = if model.standby_w.value == 0.0 {
+        "zero, as there is no standby"
+    } else {
+        "the mean"
+    };
     let _ = writeln!(
         text,
-        "  R²                {:.4} (about the mean {:.4}); rms of what is left {:.3} W",
-        model.r2, model.r2_centered, model.rms_w
+        "  R²                {:.4} about {about}; {:.4} about the mean",
+        model.r2, model.r2_centered
     );
+    let _ = writeln!(text, "  left over         {:.3} W rms", model.rms_w);
     let _ = writeln!(
         text,
         "  peaks             {:.1} W measured, {:.1} W by the model; up to {:.2} times the model: margin {:.3}",
