@@ -361,7 +361,7 @@ fn in_a_closed_loop_the_excitation_is_the_instrument() {
     assert!(inertia.std < 2e-4);
 }
 
-/// What tests/identify/reference.py works out with SciPy: the bound of Cramér and
+/// What tests/identify/reference.py works out with `SciPy`: the bound of Cramér and
 /// Rao on the relative errors of ω and ζ of each anti-resonance and of J at last.
 const ONE_LIGHT: [f64; 3] = [4.502e-4, 1.7688e-2, 9.768e-4];
 const ONE_HEAVY: [f64; 3] = [9.099e-4, 3.5887e-2, 1.9463e-3];
