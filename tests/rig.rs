@@ -97,6 +97,7 @@ fn controller() -> Controller {
             peck_clearance_mm: 1.0,
             dialect: gwatt::machine::Dialect::default(),
         },
+        queue: gwatt::machine::Queue::default(),
         planner: Planner {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,

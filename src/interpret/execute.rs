@@ -76,7 +76,7 @@ pub(super) struct Control<'m> {
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,
     pub(super) turning: Turning,
-    block_delete: bool,
+    pub(super) block_delete: bool,
     pub(super) begun: bool,
     pub(super) ended: bool,
     pub(super) has_program_number: bool,
@@ -211,6 +211,9 @@ impl<'m> Interpreter<'m> {
         diagnostics: &mut Diagnostics,
     ) {
         let plain = block.issues.is_empty();
+        if block.words_end < block.text_end {
+            self.control.note_message(line, text, block, steps);
+        }
         if plain
             && self
                 .control
@@ -444,6 +447,7 @@ impl Control<'_> {
             self.dwell(run, dwell_s);
         }
         self.settings(run);
+        self.note_offsets(run);
         self.turn_knobs(run);
         self.motion(run);
         if run.report.diagnostics.errors == errors {

@@ -36,6 +36,7 @@ mod position;
 mod programmed;
 mod printer;
 mod probe;
+mod queue_words;
 mod reference;
 mod report;
 mod settings;

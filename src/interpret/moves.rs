@@ -186,4 +186,10 @@ pub enum ActionKind {
     Other,
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,
+    /// Offsets or lengths change: G54, G92, G43 … (the G number); only where
+    /// the look-ahead is modelled, which may end at it.
+    Offset,
+    /// A comment that acts: its place in [`crate::machine::MESSAGES`]; under the
+    /// same condition.
+    Message,
 }

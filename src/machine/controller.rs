@@ -4,6 +4,7 @@
 use super::axis::{Axis, AxisKind};
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
+use super::queue::Queue;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Controller {
     pub language: Language,
     /// How it plans.
     pub planner: Planner,
+    /// What words that move no axis do to the moves before them.
+    pub queue: Queue,
     /// Words that limit speed or acceleration, best first.
     pub knobs: Vec<Knob>,
     /// How the speed of a rapid can be lowered without such a word.

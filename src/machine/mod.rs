@@ -7,6 +7,7 @@ mod controller;
 mod look_ahead;
 mod model;
 mod printer;
+mod queue;
 
 pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
 pub use builtin::builtin_controller;
@@ -15,3 +16,4 @@ pub use controller::*;
 pub use look_ahead::*;
 pub use model::*;
 pub use printer::*;
+pub use queue::*;

@@ -6,10 +6,11 @@
 
 use super::ahead::Ahead;
 use super::demand::{Demand, Want};
+use super::effect::{Effect, Switched};
 use super::model::PowerModel;
 use super::robust::Part;
-use crate::interpret::{Action, ActionKind, Move, MoveKind};
-use crate::machine::{Family, Machine, PathMode, RapidJoint};
+use crate::interpret::{Action, Move, MoveKind};
+use crate::machine::{Machine, PathMode, RapidJoint};
 use crate::plan::{
     Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
 };
@@ -100,6 +101,8 @@ pub struct Assessor<'m> {
     dwelt: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     ahead: Option<Box<Ahead>>,
+    /// What is switched on.
+    switched: Switched,
 }
 
 /// A move that waits for its successor.
@@ -170,6 +173,7 @@ impl<'m> Assessor<'m> {
             needs_robust: false,
             dwelt: false,
             ahead,
+            switched: Switched::default(),
         }
     }
 
@@ -190,7 +194,7 @@ impl<'m> Assessor<'m> {
     /// can be judged then.
     pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         let Some(ahead) = &mut self.ahead else { return };
-        match effect(action, self.machine.controller.language.family) {
+        match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
             Effect::Stop => {
                 ahead.stop(&self.model);
@@ -466,24 +470,4 @@ impl<'m> Assessor<'m> {
 /// Whether any axis moves.
 fn moves(mv: &Move) -> bool {
     mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
-}
-
-/// What an action does to the motion.
-enum Effect {
-    None,
-    Stop,
-    Unknown,
-}
-
-/// Spindle, tool change, stop and end wait for the axes; those of printers that
-/// set a temperature or a limit go with the moves. What others do is not known.
-fn effect(action: &Action, family: Family) -> Effect {
-    match action.kind {
-        ActionKind::PathMode | ActionKind::ToolSelect => Effect::None,
-        ActionKind::Spindle | ActionKind::ToolChange | ActionKind::Stop | ActionKind::End => {
-            Effect::Stop
-        }
-        ActionKind::Other if family == Family::Marlin => Effect::None,
-        ActionKind::SpindleSpeed | ActionKind::Coolant | ActionKind::Other => Effect::Unknown,
-    }
 }

@@ -19,6 +19,7 @@ mod ceiling;
 mod changing;
 mod circle;
 mod demand;
+mod effect;
 mod independent;
 mod interval;
 mod model;

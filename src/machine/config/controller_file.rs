@@ -211,6 +211,14 @@ pub(crate) struct PlannerTable {
     /// With "g1-where-linear" only on a machine whose file says that its rapids
     /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
+    /// Words before which the motion has stopped, such as `M8`, `S` for all
+    /// words of a letter, or `MSG` for an active comment; words of no list may
+    /// stop it or not.
+    pub(crate) stops: Option<Vec<At<String>>>,
+    /// The same for words that do nothing where what they say is in force.
+    pub(crate) stops_on_change: Option<Vec<At<String>>>,
+    /// Words that act while the axes move on.
+    pub(crate) passes: Option<Vec<At<String>>>,
     /// How corners are run through; default: not modelled.
     pub(crate) look_ahead: Option<At<LookAheadTable>>,
 }
