@@ -18,7 +18,7 @@ pub(super) enum Effect {
 }
 
 /// What is switched on, for words that do nothing when they change nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Switched {
     /// M3, M4 or M5; S.
     spindle: u16,
@@ -26,6 +26,20 @@ pub(super) struct Switched {
     /// Bits of M7 and M8.
     coolant: u8,
     tool: f64,
+    /// The work offsets, G54 to G59.3.
+    system: u16,
+}
+
+impl Default for Switched {
+    fn default() -> Self {
+        Self {
+            spindle: 50,
+            speed: 0.0,
+            coolant: 0,
+            tool: 0.0,
+            system: 540,
+        }
+    }
 }
 
 impl Switched {
@@ -84,6 +98,10 @@ impl Switched {
             (ActionKind::ToolSelect, _) => {
                 self.tool = action.value;
                 return before.tool != action.value;
+            }
+            (ActionKind::Offset, 540..=593) => {
+                self.system = number;
+                return before.system != number;
             }
             _ => return true,
         }

@@ -124,7 +124,7 @@ fn words_stop_the_motion_as_the_profile_says() {
     for word in ["M8", "S100", "G55", "G92.1", "(MSG, a)", "M68 E0 Q1", "G4 P0 (b)"] {
         same(LINUXCNC, &format!("{word}\n"), "G4 P0\n");
     }
-    for word in ["T2", "M67 E0 Q1", "(PRINT, a)", "(MSG, a) (b)", "M48"] {
+    for word in ["T2", "M67 E0 Q1", "(PRINT, a)", "(MSG, a) (b)", "M48", "G54"] {
         same(LINUXCNC, &format!("{word}\n"), "(c)\n");
     }
     same(GRBL, "M8\n", "G4 P0\n");
