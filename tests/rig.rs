@@ -58,6 +58,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         },
         force_curves: Vec::new(),
         spindle: None,
+        tools: Vec::new(),
         loads: Vec::new(),
         presets: Vec::new(),
         limits: Limits {
@@ -102,6 +103,7 @@ fn controller() -> Controller {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
+            spindle_wait: gwatt::machine::SpindleWait::Unknown,
             dwell_stops: false,
             look_ahead: None,
         },

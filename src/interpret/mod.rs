@@ -49,6 +49,7 @@ mod system_parameters;
 mod thread;
 mod thread_cycle;
 mod spindle_speed;
+mod spindle_told;
 mod state_words;
 mod targets;
 mod tool_table;

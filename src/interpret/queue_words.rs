@@ -14,8 +14,14 @@ impl Control<'_> {
         self.machine.controller.planner.look_ahead.is_some()
     }
 
+    /// What a block sets that is no action of a word: before it moves.
+    pub(super) fn note_queue_and_spindle(&mut self, run: &mut Run<'_, '_>) {
+        self.note_offsets(run);
+        self.tell_spindle(run);
+    }
+
     /// Tells of words that change offsets or lengths, or the meaning of S.
-    pub(super) fn note_offsets(&self, run: &mut Run<'_, '_>) {
+    fn note_offsets(&self, run: &mut Run<'_, '_>) {
         if !self.plans_ahead() {
             return;
         }
@@ -42,6 +48,7 @@ impl Control<'_> {
 
     /// Tells of a comment that acts, such as `(MSG, …)`: the last one of a line
     /// counts (`LinuxCNC`, "Messages").
+    #[inline]
     pub(super) fn note_message(
         &self,
         line: u64,
@@ -49,6 +56,9 @@ impl Control<'_> {
         block: &Block,
         steps: &mut Vec<Step>,
     ) {
+        if block.words_end == block.text_end {
+            return;
+        }
         let text = text.get(..block.text_end as usize).unwrap_or(text);
         if text.trim_ascii_end().ends_with(b")")
             && self.plans_ahead()

@@ -214,8 +214,23 @@ pub struct Planner {
     /// Whether a dwell of no time ends the move before it at rest, so that a
     /// rapid may be written as a feed between two of them.
     pub dwell_stops: bool,
+    /// What waits for the spindle's speed, if the machine does not say.
+    pub spindle_wait: SpindleWait,
     /// How corners are run through; `None`: not modelled.
     pub look_ahead: Option<LookAhead>,
+}
+
+/// What waits until the spindle has its speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpindleWait {
+    /// It is not known whether anything does.
+    Unknown,
+    /// Nothing.
+    Nothing,
+    /// Moves that cut; rapids do not.
+    Feeds,
+    /// Whatever comes next.
+    Blocks,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

@@ -5,6 +5,10 @@
 //! actions are the original's, (c) no effective path speed or acceleration
 //! went up, (d) the effective feed of each untouched move is what it was.
 
+mod spindle;
+
+use std::collections::VecDeque;
+
 use super::tally::Tally;
 use super::{Failure, Options, Row, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -27,6 +31,9 @@ const ROUNDING: f64 = 1e-9;
 pub(super) enum Expected {
     Move(ExpectedMove),
     Action(Action),
+    /// A row of the spindle alone, for which the program has no step; with the
+    /// number of the command that it belongs to.
+    Spindle(Box<Row>, u32),
 }
 
 /// A move of the original, as far as the written one must equal it. It starts
@@ -91,6 +98,9 @@ pub(super) struct Verdict<'m, 'r> {
     /// lowered with it.
     before: Option<Place>,
     deepen_next: bool,
+    /// Rows of the spindle in the written program that no row of the original
+    /// has met yet.
+    spindle: VecDeque<Assessment>,
 }
 
 /// Why the certificate does not hold: the first reasons in full.
@@ -138,7 +148,8 @@ impl<'m, 'r> Certifier<'m, 'r> {
         Self {
             interpreter: Interpreter::new(machine, &options.reading),
             diagnostics: Diagnostics::default(),
-            assessor: Assessor::new(machine, options.certificate, Want::ALL),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL)
+                .starting(options.reading.start),
             block: Block::default(),
             steps: Vec::new(),
             facts: Facts::default(),
@@ -242,6 +253,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             deeper: Vec::new(),
             before: None,
             deepen_next: false,
+            spindle: VecDeque::new(),
         }
     }
 
@@ -257,6 +269,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// Whether the written program must still do something.
     pub(super) fn expects(&mut self) -> bool {
+        self.pass_spindle();
         self.originals.get(self.done).is_some()
     }
 
@@ -271,6 +284,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     /// The figures of the written program, and why the certificate does not
     /// hold.
     pub(super) fn finish(mut self, found: &[Diagnostic], lines: u64) -> Result<Certified, Failure> {
+        self.pass_to_move();
         self.tally.check()?;
         let mut reasons = self.reasons;
         for found in found {
@@ -296,6 +310,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// (b): the step must be the original's next one.
     pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
+        self.pass_spindle();
         let original = self.originals.get(self.done).map(|original| &*original);
         if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
             return;
@@ -314,7 +329,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         let line = match original {
             Some(Expected::Move(original)) => original.line,
             Some(Expected::Action(original)) => original.line,
-            None => 0,
+            Some(Expected::Spindle(..)) | None => 0,
         };
         let message = format!("the written program has {message} here");
         self.reasons
@@ -323,9 +338,10 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// (a), (c) and (d): the written move is judged.
     pub(super) fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
-        while matches!(self.originals.get(self.judged), Some(Expected::Action(_))) {
-            self.judged += 1;
+        if mv.kind == MoveKind::Spindle {
+            return self.judge_spindle(mv, after, text);
         }
+        self.pass_to_move();
         let original = self.originals.get(self.judged).map(|original| &*original);
         if added_stop(mv, original) {
             return;

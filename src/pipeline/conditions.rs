@@ -1,7 +1,22 @@
 //! What the figures of a run rest on.
 
 use super::{Certificate, Options, Start, Summary};
-use crate::machine::{Machine, PathMode};
+use crate::machine::{Machine, PathMode, Spindle, SpindleWait};
+
+/// How the spindle counts.
+fn spindle_condition(spindle: &Spindle) -> &'static str {
+    match spindle.wait {
+        SpindleWait::Nothing => "the spindle runs while the axes move: nothing waits for its speed",
+        SpindleWait::Feeds => {
+            "the spindle runs while rapids move; moves that cut wait for its speed"
+        }
+        SpindleWait::Blocks => "whatever comes next waits for the spindle's speed",
+        SpindleWait::Unknown => {
+            "whether moves wait for the spindle is not known: they count with it, \
+             their times without"
+        }
+    }
+}
 
 /// What the figures rest on, in plain sentences.
 pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
@@ -55,8 +70,21 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         }
         .to_owned(),
     );
+    if let Some(spindle) = &machine.spindle {
+        conditions.push(spindle_condition(spindle).to_owned());
+    }
+    let cuts = machine
+        .spindle
+        .as_ref()
+        .is_some_and(|it| it.cutting_power_w > 0.0)
+        || !machine.tools.is_empty();
     conditions.push(
-        "cutting forces are not counted; emergency stop and feed hold are outside".to_owned(),
+        if cuts {
+            "cutting counts as the machine file has it; emergency stop and feed hold are outside"
+        } else {
+            "cutting forces are not counted; emergency stop and feed hold are outside"
+        }
+        .to_owned(),
     );
     if !machine.unchecked.is_empty() {
         conditions.push(format!("not checked yet: {}", machine.unchecked.join(", ")));

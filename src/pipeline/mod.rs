@@ -15,6 +15,7 @@ mod restart;
 mod row;
 mod schedule;
 mod spindle;
+mod spindle_rows;
 mod summary;
 mod table;
 mod tally;

@@ -10,6 +10,7 @@ use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
+use super::spindle_rows::SpindleRows;
 use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, Options, Summary};
@@ -66,6 +67,7 @@ pub(super) struct Writer<'m, R, W> {
     model: PowerModel,
     /// Time of the original so far, s.
     start_s: f64,
+    spindle: SpindleRows,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -90,7 +92,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
-            assessor: Assessor::new(machine, options.certificate, Want::ALL),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL)
+                .starting(options.reading.start),
             limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
@@ -107,6 +110,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             exact,
             model: PowerModel::new(machine),
             start_s: 0.0,
+            spindle: SpindleRows::default(),
             table,
         }
     }
@@ -136,6 +140,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         self.finish_moves();
         self.write_decided();
+        self.expect_spindle();
         if !self.front.interpreter().ended() {
             self.rewriter
                 .finish(&self.mark, self.knobs.as_ref(), &mut self.batch.bytes);
@@ -222,6 +227,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             flights,
             judged,
             outcomes,
+            spindle,
             ..
         } = self;
         let entries = &*entries;
@@ -251,7 +257,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             };
             let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
                 tally.add(mv, assessment, text);
-                judge.take(mv, assessment);
+                if spindle.judge(mv, assessment) {
+                    judge.take(mv, assessment);
+                }
             };
             match step {
                 Step::Move(mv) => assessor.push(mv, entry.text_of(mv), &mut sink),
@@ -279,11 +287,15 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 tally,
                 machine,
                 decided,
+                spindle,
                 ..
             } = self;
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, entry.text_of(mv), &mut |_, assessment, text| {
-                tally.add(mv, assessment, text);
+            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
+                tally.add(judged, assessment, text);
+                if !spindle.judge(judged, assessment) {
+                    return;
+                }
                 let find = |_| Some(entry.waiting(machine, mv, step));
                 limiter.push(mv, assessment, &find, &mut |outcome| {
                     decided.push((*assessment, outcome));
@@ -304,6 +316,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             flights,
             judged,
             outcomes,
+            spindle,
             ..
         } = self;
         let mut judge = Judge {
@@ -319,7 +332,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         };
         assessor.finish(&mut |mv, assessment, text| {
             tally.add(mv, assessment, text);
-            judge.take(mv, assessment);
+            if spindle.judge(mv, assessment) {
+                judge.take(mv, assessment);
+            }
         });
         judge.finish();
         self.decide();
@@ -361,8 +376,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let change = merge(&entry.decided);
         if self.table.is_some() {
             self.note(&entry, change);
-            self.spare.push(entry);
-            return;
+            return self.spare.push(entry);
         }
         let view = BlockView {
             text: &entry.text,
@@ -390,15 +404,12 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Keeps what was decided for a run of a line.
     fn note(&mut self, entry: &Entry, change: Option<Change>) {
+        self.spindle.clear();
         let Some(table) = &mut self.table else { return };
         if !table.decide(self.machine, entry.key, entry, change) {
             return;
         }
-        let moves = entry.steps.iter().filter_map(|step| match step {
-            Step::Move(mv) => Some(mv),
-            Step::Action(_) => None,
-        });
-        for (mv, (_, outcome)) in moves.zip(&entry.decided) {
+        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
             if let Some(obstacle) = outcome.obstacle.as_deref() {
                 let message = obstacle.message.clone();
                 let text = entry.text_of(mv);
@@ -406,6 +417,13 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                     .push(mv.line, obstacle.rule, message, &obstacle.help, text);
             }
         }
+    }
+
+    /// Tells the certifier of the rows of the spindle before the next move.
+    fn expect_spindle(&mut self) {
+        let of = (self.machine, &self.model, self.exact);
+        let expected = &mut self.batch.expected;
+        self.spindle.hand_over(of, &mut self.start_s, expected);
     }
 
     /// Tells the certifier what the block must do.
@@ -424,6 +442,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             let Some((assessment, outcome)) = decided.next() else {
                 continue;
             };
+            self.expect_spindle();
+            self.spindle.write();
             let hopeless = outcome.obstacle.is_some();
             if let Some(obstacle) = outcome.obstacle.take() {
                 let Obstacle {

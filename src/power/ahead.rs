@@ -14,7 +14,7 @@
 
 use std::collections::VecDeque;
 
-use super::assess::{Assessment, Certificate};
+use super::assessment::{Assessment, Certificate};
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
 use super::piece::piece_demand;
@@ -299,6 +299,7 @@ impl Ahead {
                 assessment.demand.energy_j += share * energy_j;
             }
             if peaks {
+                assessment.fastest_s += share * duration_s;
                 let top_speed_mm_s = planned.top_speed_mm_s();
                 assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top_speed_mm_s);
                 assessment.demand.include(&demand);

@@ -5,6 +5,8 @@
 //! others are judged at once.
 
 use super::ahead::Ahead;
+use super::assessment::{Assessment, Certificate};
+use super::bus::{SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::model::PowerModel;
@@ -14,67 +16,6 @@ use crate::machine::{Machine, PathMode, RapidJoint};
 use crate::plan::{
     Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
 };
-
-/// Which bound a figure rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Certificate {
-    /// The planner that the controller profile models.
-    Planned,
-    /// Any look-ahead, blending and filtering that keeps each axis inside its
-    /// own limits.
-    Robust,
-}
-
-impl Certificate {
-    /// The name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Planned => "planned",
-            Self::Robust => "robust",
-        }
-    }
-}
-
-/// What is known of a move once it is judged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Assessment {
-    /// Duration from rest to rest in s; 0 where the start is not known.
-    pub duration_s: f64,
-    /// Path speed that feed and axes permit at 100 % override, mm/s.
-    pub speed_mm_s: f64,
-    /// Path acceleration, mm/s².
-    pub accel_mm_s2: f64,
-    /// Path speed reached at the largest override, mm/s.
-    pub top_speed_mm_s: f64,
-    /// Peaks at the largest overrides, and the energy at 100 %.
-    pub demand: Demand,
-    /// Which certificate the peaks belong to.
-    pub certificate: Certificate,
-    /// The move may run into or out of a neighbour without a stop: its peaks
-    /// depend on both.
-    pub blended: bool,
-    /// The controller may run into it from its predecessor without a stop; a
-    /// move of no length is passed on the way to the next.
-    pub joined: bool,
-    /// It is planned together with its neighbours.
-    pub ahead: bool,
-}
-
-impl Assessment {
-    /// Nothing known yet of a move that is planned with others.
-    pub(super) const AHEAD: Self = Self {
-        duration_s: 0.0,
-        speed_mm_s: 0.0,
-        accel_mm_s2: 0.0,
-        top_speed_mm_s: 0.0,
-        demand: Demand::NONE,
-        certificate: Certificate::Planned,
-        blended: true,
-        joined: false,
-        ahead: true,
-    };
-}
 
 /// Judges the moves of one program.
 #[derive(Debug)]
@@ -103,6 +44,8 @@ pub struct Assessor<'m> {
     ahead: Option<Box<Ahead>>,
     /// What is switched on.
     switched: Switched,
+    /// The spindle beside the axes, where the machine has one.
+    pub(super) bus: Option<Box<SpindleBus<'m>>>,
 }
 
 /// A move that waits for its successor.
@@ -174,6 +117,7 @@ impl<'m> Assessor<'m> {
             dwelt: false,
             ahead,
             switched: Switched::default(),
+            bus: SpindleBus::new(machine, [largest, nominal], false).map(Box::new),
         }
     }
 
@@ -193,6 +137,18 @@ impl<'m> Assessor<'m> {
     /// Takes something that moves no axis: it may stop the motion. Hands on what
     /// can be judged then.
     pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        let Some(mut bus) = self.bus.take() else {
+            return self.act_on_axes(action, sink);
+        };
+        let want = self.want;
+        self.act_on_axes(action, &mut |mv, judged, text| {
+            bus.take(mv, judged, text, want, sink);
+        });
+        bus.act(action);
+        self.bus = Some(bus);
+    }
+
+    fn act_on_axes(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         let Some(ahead) = &mut self.ahead else { return };
         match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
@@ -231,8 +187,23 @@ impl<'m> Assessor<'m> {
     }
 
     /// Takes the next move with the text of its line, and hands on what can be
-    /// judged now.
+    /// judged now. Where the machine has a spindle, its waits come among them as
+    /// moves of kind [`MoveKind::Spindle`].
+    #[inline]
     pub fn push(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        if self.bus.is_none() {
+            self.push_axes(mv, text, sink);
+        } else {
+            self.push_beside_spindle(mv, text, sink);
+        }
+    }
+
+    pub(super) fn push_axes(
         &mut self,
         mv: &Move,
         text: &[u8],
@@ -314,6 +285,15 @@ impl<'m> Assessor<'m> {
 
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        let Some(mut bus) = self.bus.take() else {
+            return self.finish_axes(sink);
+        };
+        let want = self.want;
+        self.finish_axes(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
+        bus.finish(sink);
+    }
+
+    fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.release(None, false, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(&self.model);
@@ -377,11 +357,13 @@ impl<'m> Assessor<'m> {
                 speed_mm_s: path.speed_limit_mm_s,
                 accel_mm_s2: path.accel_mm_s2,
                 top_speed_mm_s: path.top_speed_mm_s,
+                fastest_s: path.duration_s,
                 demand,
                 certificate: Certificate::Planned,
                 blended,
                 joined: false,
                 ahead: false,
+                spindle: SpindleShare::NONE,
             };
             if self.largest != self.nominal {
                 let nominal = plan(self.machine, mv, self.nominal);
@@ -425,6 +407,7 @@ impl<'m> Assessor<'m> {
             speed_mm_s,
             accel_mm_s2: peak_plan.accel_mm_s2,
             top_speed_mm_s: peak_plan.top_speed_mm_s,
+            fastest_s: peak_plan.duration_s,
             demand,
             certificate: if unknown {
                 Certificate::Robust
@@ -434,6 +417,7 @@ impl<'m> Assessor<'m> {
             blended,
             joined: false,
             ahead: false,
+            spindle: SpindleShare::NONE,
         }
     }
 

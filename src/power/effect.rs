@@ -53,7 +53,12 @@ impl Switched {
             ActionKind::ToolSelect => b'T',
             ActionKind::Offset => b'G',
             ActionKind::Message => MESSAGE,
-            ActionKind::PathMode => return Effect::None,
+            ActionKind::PathMode
+            | ActionKind::SpindleRpm
+            | ActionKind::SurfaceSpeed
+            | ActionKind::SpindleClamp
+            | ActionKind::SpindleCenter
+            | ActionKind::ToolLoaded => return Effect::None,
             ActionKind::Stop | ActionKind::End => return Effect::Stop,
             ActionKind::Spindle
             | ActionKind::ToolChange
@@ -67,10 +72,9 @@ impl Switched {
         let printer = controller.language.family == Family::Marlin;
         let changes = self.switch(action, number);
         match controller.queue.effect(letter, number) {
-            Some(QueueEffect::Pass) => Effect::None,
             Some(QueueEffect::Stop) => Effect::Stop,
             Some(QueueEffect::StopOnChange) if changes => Effect::Stop,
-            Some(QueueEffect::StopOnChange) => Effect::None,
+            Some(QueueEffect::Pass | QueueEffect::StopOnChange) => Effect::None,
             None => match action.kind {
                 ActionKind::Spindle | ActionKind::ToolChange => Effect::Stop,
                 // A printer's T changes the tool.

@@ -9,15 +9,18 @@
 //! energy, and only regenerating ones towards the regenerative peak.
 
 mod assess;
+mod assessment;
 mod ahead;
 mod arc;
 mod arc_energy;
 mod arc_piece;
 mod axis;
+mod bus;
 mod blend;
 mod ceiling;
 mod changing;
 mod circle;
+mod cutting;
 mod demand;
 mod effect;
 mod independent;
@@ -29,11 +32,18 @@ mod quadrants;
 mod quadrature;
 mod robust;
 mod search;
+mod overlap;
 mod spindle;
+mod spindle_state;
+mod spindle_trace;
+mod surface_speed;
 mod straight;
 mod stretch;
 
-pub use assess::{Assessment, Assessor, Certificate};
+pub use assess::Assessor;
+pub use assessment::{Assessment, Certificate};
+pub use bus::{SpindleEvent, SpindleShare};
 pub use demand::{Demand, Want};
 pub use model::PowerModel;
 pub use spindle::{RunPhase, SpindlePower, SpindleRun, spindle_run};
+pub use spindle_trace::{SpindleSpan, SpindleTrace};

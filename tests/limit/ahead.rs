@@ -121,10 +121,25 @@ fn words_stop_the_motion_as_the_profile_says() {
         let [rows, expected] = [word, like].map(|word| report(rig, &short_lines(word)));
         assert_eq!(rows, expected, "{word}");
     };
-    for word in ["M8", "S100", "G55", "G92.1", "(MSG, a)", "M68 E0 Q1", "G4 P0 (b)"] {
+    for word in [
+        "M8",
+        "S100",
+        "G55",
+        "G92.1",
+        "(MSG, a)",
+        "M68 E0 Q1",
+        "G4 P0 (b)",
+    ] {
         same(LINUXCNC, &format!("{word}\n"), "G4 P0\n");
     }
-    for word in ["T2", "M67 E0 Q1", "(PRINT, a)", "(MSG, a) (b)", "M48", "G54"] {
+    for word in [
+        "T2",
+        "M67 E0 Q1",
+        "(PRINT, a)",
+        "(MSG, a) (b)",
+        "M48",
+        "G54",
+    ] {
         same(LINUXCNC, &format!("{word}\n"), "(c)\n");
     }
     same(GRBL, "M8\n", "G4 P0\n");

@@ -156,7 +156,9 @@ fn own() -> Vec<(String, String)> {
         );
         programs.push((format!("contour, {mode}"), text.clone()));
         let text = text.replace("G1 Y40", "M8\nG1 Y40\nM3 S500\nS600");
-        let text = text.replace("G3 X0", "M62 P0\nG3 X0").replace("G1 X10 Y0", "M9\nG1 X10 Y0");
+        let text = text
+            .replace("G3 X0", "M62 P0\nG3 X0")
+            .replace("G1 X10 Y0", "M9\nG1 X10 Y0");
         programs.push((format!("words, {mode}"), text));
     }
     programs

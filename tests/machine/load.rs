@@ -181,7 +181,6 @@ fn what_is_not_checked_yet_is_named() {
     converter.bus_max_v
     converter.brake_power_w
     converter.brake_energy_j
-    spindle
     ");
     let jerk = machine(&edited(
         "mass_kg = 900",

@@ -24,6 +24,7 @@ mod quantity;
 mod schema;
 mod spindle;
 mod structure;
+mod tool;
 mod unchecked;
 mod value;
 mod word;

@@ -4,7 +4,7 @@ use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
     ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
     DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
-    PointName, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
+    PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
@@ -14,7 +14,7 @@ use crate::machine::axis::AxisId;
 use crate::machine::controller::{
     ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
     Knob, KnobArgument, KnobTarget, KnobUnit, Language, Lathe, Planner, Point, RapidJoint,
-    RapidKnob, RapidPath,
+    RapidKnob, RapidPath, SpindleWait,
 };
 use crate::machine::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
 
@@ -184,6 +184,12 @@ fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner>
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
         dwell_stops: table.dwell_stops.unwrap_or(false),
+        spindle_wait: match table.spindle_wait {
+            None => SpindleWait::Unknown,
+            Some(SpindleWaitName::Nothing) => SpindleWait::Nothing,
+            Some(SpindleWaitName::Feeds) => SpindleWait::Feeds,
+            Some(SpindleWaitName::Blocks) => SpindleWait::Blocks,
+        },
         look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
     })
 }

@@ -1,0 +1,71 @@
+//! What is known of a move once it is judged.
+
+use super::bus::SpindleShare;
+use super::demand::Demand;
+
+/// Which bound a figure rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Certificate {
+    /// The planner that the controller profile models.
+    Planned,
+    /// Any look-ahead, blending and filtering that keeps each axis inside its
+    /// own limits.
+    Robust,
+}
+
+impl Certificate {
+    /// The name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Planned => "planned",
+            Self::Robust => "robust",
+        }
+    }
+}
+
+/// What is known of a move once it is judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assessment {
+    /// Duration from rest to rest in s; 0 where the start is not known.
+    pub duration_s: f64,
+    /// Path speed that feed and axes permit at 100 % override, mm/s.
+    pub speed_mm_s: f64,
+    /// Path acceleration, mm/s².
+    pub accel_mm_s2: f64,
+    /// Path speed reached at the largest override, mm/s.
+    pub top_speed_mm_s: f64,
+    /// Duration at the largest overrides in s.
+    pub fastest_s: f64,
+    /// Peaks at the largest overrides, and the energy at 100 %.
+    pub demand: Demand,
+    /// Which certificate the peaks belong to.
+    pub certificate: Certificate,
+    /// The move may run into or out of a neighbour without a stop: its peaks
+    /// depend on both.
+    pub blended: bool,
+    /// The controller may run into it from its predecessor without a stop; a
+    /// move of no length is passed on the way to the next.
+    pub joined: bool,
+    /// It is planned together with its neighbours.
+    pub ahead: bool,
+    /// What the spindle takes meanwhile.
+    pub spindle: SpindleShare,
+}
+
+impl Assessment {
+    /// Nothing known yet of a move that is planned with others.
+    pub(super) const AHEAD: Self = Self {
+        duration_s: 0.0,
+        speed_mm_s: 0.0,
+        accel_mm_s2: 0.0,
+        top_speed_mm_s: 0.0,
+        fastest_s: 0.0,
+        demand: Demand::NONE,
+        certificate: Certificate::Planned,
+        blended: true,
+        joined: false,
+        ahead: true,
+        spindle: SpindleShare::NONE,
+    };
+}
