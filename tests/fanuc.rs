@@ -10,27 +10,12 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, Options};
 use insta::assert_snapshot;
 
+use crate::listing::{machine_of, without_lines};
+
 /// A machine with linear axes X Y Z and rotary axes B C; `more` goes into its
 /// file.
 fn machine(controller: &str, more: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n{more}[converter]\npeak_power_w = 1e5\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
-        );
-    }
-    for axis in ["B", "C"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
-        );
-    }
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
+    machine_of(controller, more, "XYZ", "BC")
 }
 
 /// The moves of a program, a line each, or the messages of a refusal.
@@ -175,14 +160,12 @@ fn a_macro_and_its_twin() {
         );
     }
     expanded.push_str("G0 Z50. M5\nM30\n");
-    let without_line = |program: &str| {
-        let text = moves("fanuc", program);
-        let behind = |line: &str| line.split_once(' ').unwrap_or_default().1.to_owned();
-        text.lines().map(behind).collect::<Vec<_>>()
-    };
-    let twin = without_line(&expanded);
-    assert_eq!(twin.len(), 26);
-    assert_eq!(without_line(by_macro), twin);
+    for controller in ["fanuc", "haas", "mazak", "mitsubishi", "syntec"] {
+        let [twin, by_macro] = [&expanded, by_macro].map(|program| moves(controller, program));
+        let twin = without_lines(&twin);
+        assert_eq!(twin.len(), 26);
+        assert_eq!(without_lines(&by_macro), twin, "{controller}");
+    }
 }
 
 #[test]
@@ -243,7 +226,7 @@ fn what_is_refused_by_name() {
         ("G12.1", "G12.1 is polar interpolation"),
         ("G107 C10.", "G107 is cylindrical interpolation"),
         ("G150", "G150 is a pocket"),
-        ("G13 F1.", "G13 is a circular pocket"),
+        ("G13 F1.", "G12 and G13: without I"),
         ("G47", "G47 is engraving of text"),
         ("G51.2", "G51.2 is turning of polygons"),
         (

@@ -84,6 +84,24 @@ fn loops_and_jumps_of_macros() {
     assert_eq!(ends("iso", program), [1.0, 2.0, 4.0, 0.0]);
 }
 
+/// grbl's `$G` shows G0 at power-on; `FluidNC` ("Flow control") finds an O word
+/// by its next partner, so that a label may serve again.
+#[test]
+fn grbl_begins_with_g0_and_labels_may_repeat() {
+    let program = "X5\no1 if [1]\nX6\no1 endif\no1 repeat [2]\nG91 X1\no1 endrepeat\no1 if [0]\nX99\no1 else\nX2\no1 endif\n";
+    let moves = "X5 X6 X7 X8 X10";
+    let found = crate::listing::listing(program, &crate::listing::machine("grbl"), None);
+    let ends: Vec<&str> = found
+        .lines()
+        .filter_map(|line| line.rsplit(' ').next())
+        .collect();
+    assert_eq!(ends.join(" "), moves, "{found}");
+    assert!(
+        found.lines().all(|line| line.contains(" rapid ")),
+        "{found}"
+    );
+}
+
 #[test]
 fn calls_of_programs_and_macros() {
     let program = "O1\nG0 X1\nM98 P2 L2\nX5\nM30\nO2\nG91 X10\nG90\nM99\n";

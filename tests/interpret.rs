@@ -2,30 +2,16 @@
 
 use std::fmt::Write as _;
 
+use gwatt::interpret::BlockDelete;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, Options, Reading};
 use insta::assert_snapshot;
 
+use crate::listing::machine_of;
+
 /// A machine with linear axes X Y Z U and rotary axes A C.
 pub(crate) fn machine(controller: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
-    );
-    for axis in ["X", "Y", "Z", "U"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
-        );
-    }
-    for axis in ["A", "C"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
-        );
-    }
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
+    machine_of(controller, "", "XYZU", "AC")
 }
 
 /// The moves of a program, a line each: line, kind, the axes that differ from
@@ -166,29 +152,36 @@ fn reference_points_and_the_end() {
 "#);
 }
 
+/// B-63944EN, "Optional Block Skip": `/` is `/1`, and each level has its switch.
 #[test]
 fn block_delete_and_tape_marks() {
     let machine = machine("iso");
-    let options = Options {
-        reading: Reading {
-            block_delete: true,
-            ..Reading::default()
-        },
-        ..Options::default()
+    let lines = |block_delete: BlockDelete| {
+        let options = Options {
+            reading: Reading {
+                block_delete,
+                ..Reading::default()
+            },
+            ..Options::default()
+        };
+        let mut lines = Vec::new();
+        let program = b"%\nG0 X1\n/X2\n/2 X3\nX4\n/1 X5\n%\nX6\n";
+        pipeline::moves(
+            std::io::Cursor::new(program),
+            &machine,
+            &options,
+            &mut |mv, _| {
+                lines.push(mv.line);
+                Ok(())
+            },
+        )
+        .expect("accepted");
+        lines
     };
-    let mut lines = Vec::new();
-    let program = b"%\nG0 X1\n/X2\n/2 X3\nX4\n%\nX5\n";
-    pipeline::moves(
-        std::io::Cursor::new(program),
-        &machine,
-        &options,
-        &mut |mv, _| {
-            lines.push(mv.line);
-            Ok(())
-        },
-    )
-    .expect("accepted");
-    assert_eq!(lines, [2, 5]);
+    assert_eq!(lines(BlockDelete::ALL), [2, 5]);
+    assert_eq!(lines(BlockDelete::NONE), [2, 3, 4, 5, 6]);
+    assert_eq!(lines(BlockDelete::NONE.with(1)), [2, 4, 5]);
+    assert_eq!(lines(BlockDelete::NONE.with(2).with(9)), [2, 3, 5, 6]);
 }
 
 #[test]

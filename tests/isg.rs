@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use insta::assert_snapshot;
 use proptest::prelude::*;
 
-use crate::listing::{listing, machine, refusals, without_lines};
+use crate::listing::{listing, machine, refusals, without_lines, wrong_values};
 
 fn moves(program: &str) -> String {
     listing(program, &machine("isg"), None)
@@ -59,15 +59,7 @@ fn expressions_have_the_values_of_the_manual() {
             4.0,
         ),
     ];
-    let mut wrong = String::new();
-    for (program, expected) in cases {
-        let found = moves(&format!("G0\n{program}\n"));
-        let ends = format!(" X{}", (expected * 1e4).round() / 1e4);
-        if !(found.trim_end().ends_with(&ends) && found.lines().count() == 1) {
-            let _ = writeln!(wrong, "{program}: {found}");
-        }
-    }
-    assert_eq!(wrong, "");
+    assert_eq!(wrong_values(&cases, moves), "");
 }
 
 /// "The IF - ELSE branch", "Switch branching", "Counting loop", loops with a
@@ -231,6 +223,38 @@ M30
 ");
 }
 
+/// "Defining a machining coordinate system (#CS DEF, #CS ON/OFF)": turned by 90°
+/// about Z and set off to X10, X points to +Y; in it another, 5 along that X;
+/// about X by 90° the new Y is up; `P-CHAN-00394`: ZYX.
+#[test]
+fn coordinate_systems_stand_in_one_another() {
+    assert_snapshot!(moves("\
+G0 X0 Y0 Z0
+#CS DEF [1] [10,0,0,0,0,90]
+#CS ON [1]
+X1 Y0 Z0
+#CS ON [5,,,]
+X1 Y0 Z0
+#CS OFF
+X2 Y0 Z0
+#CS OFF ALL
+X0 Y0 Z0
+#CS ON [0,0,0,90]
+X0 Y3 Z0
+#CS OFF
+#CS ON [0,0,0,90,0,90]
+X0 Y0 Z2
+"), @r"
+1 rapid
+4 rapid X10 Y1
+6 rapid Y6
+8 rapid Y2
+10 rapid X0 Y0
+12 rapid Z3
+15 rapid X2 Z0
+");
+}
+
 /// A jump behind other words is the last action of its block ("The $GOTO
 /// statement"); lines of a comment or a declaration do not move.
 #[test]
@@ -252,7 +276,10 @@ fn what_is_not_followed_is_named() {
         "X=V.E.POS",
         "XP7",
         "V.G.NP[1].V.X=10",
-        "#CS ON [0,0,10,0,0,45]",
+        "#CS ON [2]",
+        "#CS DEF",
+        "#CS MODE ON [ROTATION_SEQUENCE=XYZ]",
+        "#CS ON [1,2,3,4,5,6,7]",
         "#TRAFO ON",
         "#CYL [EDGES=0]",
         "#HSC ON [OPMODE=2]",
@@ -283,7 +310,10 @@ fn what_is_not_followed_is_named() {
 X=V.E.POS: 1 unknown-value: V.E.POS comes from the PLC: what it holds, only the machine knows
 XP7: 1 unknown-value: P7 has no value in this program: what it holds, only the machine knows
 V.G.NP[1].V.X=10: 1 unsupported-word: V.G.NP[1] belongs to the control or the PLC, and may change offsets
-#CS ON [0,0,10,0,0,45]: 1 unsupported-word: #CS ON is another coordinate system, which gwatt does not follow
+#CS ON [2]: 1 coordinate-system: a coordinate system that is not stored
+#CS DEF: 1 coordinate-system: #CS DEF without shifts and angles
+#CS MODE ON [ROTATION_SEQUENCE=XYZ]: 1 unsupported-word: #CS MODE ON is a coordinate system of another mode, which gwatt does not follow
+#CS ON [1,2,3,4,5,6,7]: 1 coordinate-system: more than three shifts and three angles
 #TRAFO ON: 1 unsupported-word: #TRAFO ON is a kinematic transformation, which gwatt does not follow
 #CYL [EDGES=0]: 1 unsupported-word: #CYL is machining on a cylinder, which gwatt does not follow
 #HSC ON [OPMODE=2]: 1 unsupported-word: #HSC ON [OPMODE=2] is a spline, which gwatt does not follow

@@ -10,16 +10,22 @@ use gwatt::pipeline::{self, Failure, Options, Reading};
 
 /// A machine with linear axes X Y Z and rotary axes A C under a controller.
 pub(crate) fn machine(controller: &str) -> Machine {
+    machine_of(controller, "", "XYZ", "AC")
+}
+
+/// A machine with these linear and rotary axes: 100 mm/s, 1000 mm/s², 10 kg, and
+/// 60 °/s, 500 °/s², 1 kg·m²; `more` stands before its tables.
+pub(crate) fn machine_of(controller: &str, more: &str, linear: &str, rotary: &str) -> Machine {
     let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n",
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n{more}[converter]\npeak_power_w = 1e5\n",
     );
-    for axis in ["X", "Y", "Z"] {
+    for axis in linear.chars() {
         let _ = writeln!(
             text,
             "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
         );
     }
-    for axis in ["A", "C"] {
+    for axis in rotary.chars() {
         let _ = writeln!(
             text,
             "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
@@ -92,4 +98,18 @@ pub(crate) fn refusals(program: &str, machine: &Machine) -> String {
 pub(crate) fn without_lines(listing: &str) -> Vec<&str> {
     let behind = |line| str::split_once(line, ' ').map_or(line, |(_, rest)| rest);
     listing.lines().map(behind).collect()
+}
+
+/// The programs whose last move does not end at the X that is expected of their
+/// values.
+pub(crate) fn wrong_values(cases: &[(&str, f64)], moves: fn(&str) -> String) -> String {
+    let mut wrong = String::new();
+    for (program, expected) in cases {
+        let found = moves(&format!("G0\n{program}\n"));
+        let ends = format!(" X{}", (expected * 1e4).round() / 1e4);
+        if !(found.trim_end().ends_with(&ends) && found.lines().count() == 1) {
+            let _ = writeln!(wrong, "{program}: {found}");
+        }
+    }
+    wrong
 }

@@ -32,3 +32,6 @@ mod isg;
 mod okuma;
 mod fanuc;
 mod turning;
+mod pocket;
+mod borrowed;
+mod lathe_cycles;

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use insta::assert_snapshot;
 use proptest::prelude::*;
 
-use crate::listing::{listing, machine, refusals, without_lines};
+use crate::listing::{listing, machine, refusals, without_lines, wrong_values};
 
 fn moves(program: &str) -> String {
     listing(program, &machine("okuma"), None)
@@ -37,15 +37,7 @@ fn expressions_have_the_values_of_the_manual() {
         ("N10 LEN1=4 LEN2=5\nX=LEN1*LEN2", 20.0),
         ("/V1=2\nX=V1", 2.0),
     ];
-    let mut wrong = String::new();
-    for (program, expected) in cases {
-        let found = moves(&format!("G0\n{program}\n"));
-        let ends = format!(" X{}", (expected * 1e4).round() / 1e4);
-        if !(found.trim_end().ends_with(&ends) && found.lines().count() == 1) {
-            let _ = writeln!(wrong, "{program}: {found}");
-        }
-    }
-    assert_eq!(wrong, "");
+    assert_eq!(wrong_values(&cases, moves), "");
 }
 
 /// "Branch Function (GOTO, IF)", "Subprogram Functions (CALL, RTS, MODIN,

@@ -232,7 +232,6 @@ proptest! {
     }
 
     #[test]
-    #[ignore = "rare cases take minutes, and may miss a peak between two samples"]
     fn arcs_agree_with_sampling(machine in any_machine(), shape in any_arc(), run in any_run()) {
         let (plane, radius, angles, lift, feed) = shape;
         let mv = arc(&machine, plane, radius, angles, lift, feed);

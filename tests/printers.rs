@@ -1,6 +1,9 @@
 //! The language of 3D printers: each construct by a program worked by hand,
 //! with the source of its meaning.
 
+mod limits;
+mod lines;
+
 use std::fmt::Write as _;
 use std::io::Cursor;
 
@@ -115,44 +118,6 @@ fn reprap(program: &str) -> String {
 
 fn klipper(program: &str) -> String {
     run(&machine("klipper"), program)
-}
-
-/// `RepRap` wiki, "G-code", "Checking": XOR of the bytes before the star, 96 for
-/// `N10 G1 X10`; ` F600` turns it into 96 ^ 0x20 ^ 0x46 ^ 0x36 ^ 0x30 ^ 0x30 = 48.
-#[test]
-fn checksums_are_verified() {
-    assert_snapshot!(marlin("N10 G1 X10*96\n"), @r"
-    1 feed X0.000>10.000
-    note no-feed-yet
-    ");
-    assert_snapshot!(marlin("N10 G1 X10*97 ; wrong\n"), @"checksum: the checksum is wrong: the line's own is 96");
-    assert_snapshot!(marlin("N10 G1 X10 F600*12345\n"), @"checksum: the checksum is wrong: the line's own is 48");
-    let text = "N3 M117 Hi";
-    let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
-    assert_eq!(
-        marlin(&format!("{text}*{sum}\nG0 X1 F60\n")),
-        "2 feed X0.000>1.000 v1.000\n"
-    );
-    assert_snapshot!(marlin("N3 M117 Hi*1\n"), @"checksum: the checksum is wrong: the line's own is 38");
-    assert_snapshot!(marlin("N4 M110 N0\nG0 X1 F60\n"), @"2 feed X0.000>1.000 v1.000");
-}
-
-/// Marlin M117, M118, M23, M862.3, M486: text and flags, read to the comment.
-#[test]
-fn free_text_is_no_fault() {
-    assert_snapshot!(marlin(
-        "M117 Layer 5/10 (25%) \"up\" X9 G1\nM118 E1 hello, world #3\nM23 a~1.gco\n\
-         M862.3 P \"MK3S\"\nM486 A\"Körper\"\nM84 X Y E\nM73 P5 R10 ; five\nM115 U3.9.0\n\
-         M155 S1\nM900 K0.05\nM420 S1 Z10\nM0 Click to go on\nG0 X1 F60\n"
-    ), @r"
-    13 feed X0.000>1.000 v1.000
-    note pressure-advance
-    note bed-levelling
-    ");
-    assert_snapshot!(marlin("M106 S{x}\n"), @"expression: expressions in `{ }` are not supported");
-    assert_snapshot!(marlin("M999.3 ?\nM106 hello\n"), @"unknown-text: this is no parameter of the command");
-    assert_snapshot!(marlin("M1234\n"), @"unknown-code: M1234 is not known to this controller profile");
-    assert_snapshot!(marlin("G1 X10 Y\n"), @"missing-number: `Y` has no number behind it");
 }
 
 /// Marlin G90, M82, M83: G90 makes the extruder absolute too; RepRapFirmware:
@@ -298,99 +263,6 @@ fn flow_scales_the_extruder() {
     ");
 }
 
-/// Marlin M203 in mm/s, RepRapFirmware M203 in mm/min: lower caps the move,
-/// higher lifts the machine's limit.
-#[test]
-fn speed_limits_of_axes() {
-    assert_snapshot!(marlin("M203 X20 Y150\nG1 X30 Y40 F60000\nG1 Y50\nG1 X0\n"), @r"
-    2 feed X0.000>30.000 Y0.000>40.000 v33.333 raised 1.50
-    3 feed Y40.000>50.000 v150.000 raised 1.50
-    4 feed X30.000>0.000 v20.000
-    ");
-    assert_snapshot!(reprap("M203 X1200\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
-    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000");
-    // Marlin M205 S: no move that extrudes is slower.
-    assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"
-    2 feed X0.000>1.000 E0.000>1.000 v20.000
-    3 feed X1.000>2.000 v10.000
-    ");
-}
-
-/// Marlin M204: S for both, then P and T; R for the extruder alone.
-/// RepRapFirmware: moves of X or Y only.
-#[test]
-fn accelerations_along_the_path() {
-    let moves = "G1 X10 E1 F600\nG1 X20\nG1 E2\nG1 Z1\n";
-    assert_snapshot!(marlin(&format!("M204 S500 T800\n{moves}M204 R300 P400\n{moves}")), @r"
-    2 feed X0.000>10.000 E0.000>1.000 v10.000 a500
-    3 feed X10.000>20.000 v10.000 a800
-    4 feed E1.000>2.000 v10.000
-    5 feed Z0.000>1.000 v10.000 a800
-    7 feed X20.000>10.000 E2.000>1.000 v10.000 a400
-    8 feed X10.000>20.000 v10.000 a800
-    9 feed E1.000>2.000 v10.000 a300
-    10 feed v10.000 a300
-    ");
-    assert_snapshot!(reprap(&format!("M204 P500 T800\n{moves}")), @r"
-    2 feed X0.000>10.000 E0.000>1.000 v10.000 a500
-    3 feed X10.000>20.000 v10.000 a800
-    4 feed E1.000>2.000 v10.000
-    5 feed Z0.000>1.000 v10.000
-    ");
-    assert_snapshot!(marlin("M204 P0\n"), @"printer-value: this value is out of range");
-}
-
-/// Klipper, [toolhead]: VELOCITY caps the path, ACCEL is along the path; both
-/// may be above the machine file. M204: S, or the smaller of P and T.
-#[test]
-fn klipper_velocity_limits() {
-    assert_snapshot!(klipper(
-        "SET_VELOCITY_LIMIT VELOCITY=50 ACCEL=700 SQUARE_CORNER_VELOCITY=5 MINIMUM_CRUISE_RATIO=0\n\
-         G1 X30 Y40 F60000\nG1 E1\nSET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X0\n\
-         M204 P200 T100\nG1 Y0 F600\nM204 P10\nG1 Y1\nRESET_VELOCITY_LIMIT\nG1 Y0\n"
-    ), @r"
-    2 feed X0.000>30.000 Y0.000>40.000 v50.000 a700
-    3 feed E0.000>1.000 v1000.000
-    5 feed X30.000>0.000 v300.000 a3000 raised 3.00
-    7 feed Y40.000>0.000 v10.000 a100 raised 3.00
-    9 feed Y0.000>1.000 v10.000 a100 raised 3.00
-    11 feed Y1.000>0.000 v10.000
-    ");
-    assert_snapshot!(klipper("SET_VELOCITY_LIMIT ACCEL={a}\n"), @"printer-value: this value is out of range");
-}
-
-/// A raised limit must reach the peak: 10 kg from rest to 300 mm/s at
-/// 3000 mm/s² takes 0.3·10·3 = 9 W, at the machine's own limits 1 W.
-#[test]
-fn raised_limits_raise_the_peak() {
-    let machine = machine("klipper");
-    let peak = |program: &str| {
-        pipeline::analyze(
-            Cursor::new(program.as_bytes()),
-            &machine,
-            &Options::default(),
-            None,
-        )
-        .expect("accepted")
-        .peak_w
-    };
-    let own = peak("G1 X100 F60000\n");
-    let raised = peak("SET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X100 F60000\n");
-    assert!((own - 1.0).abs() < 1e-6, "{own}");
-    assert!((raised - 9.0).abs() < 1e-6, "{raised}");
-    // An arc alike, and Marlin's words for it.
-    let marlin = self::machine("marlin");
-    let arc = pipeline::analyze(
-        Cursor::new("M203 X300 Y300\nG2 X0 Y0 I1000 J0 F60000\n"),
-        &marlin,
-        &Options::default(),
-        None,
-    )
-    .expect("accepted")
-    .peak_w;
-    assert!(arc > 2.0, "{arc}");
-}
-
 /// Klipper, `[gcode_move]`: modes, feed and offsets come back, the extruder's
 /// place does not; MOVE=1 goes back too.
 #[test]
@@ -454,47 +326,6 @@ fn heaters_and_fans() {
     assert_snapshot!(run(&bare, "M104 S200\nM109 S0\n"), @"note heaters");
 }
 
-/// Marlin and Klipper read one command a line; RepRapFirmware reads all.
-#[test]
-fn several_commands_on_a_line() {
-    assert_snapshot!(marlin("G21 G90\nM5 M400\nG1 X1 F60\n"), @r"
-    3 feed X0.000>1.000 v1.000
-    note no-spindle
-    ");
-    assert_snapshot!(marlin("G90 G91\n"), @"two-commands: this controller reads one command a line");
-    assert_snapshot!(marlin("M106 S9 G1 X5\n"), @"two-commands: this controller reads one command a line");
-    assert_snapshot!(reprap("G91 M83 G1 X1 E1 F60 M400 G1 X1 E1\n"), @r"
-    1 feed X0.000>1.000 E0.000>1.000 v1.000
-    1 feed X1.000>2.000 E1.000>2.000 v1.000
-    ");
-}
-
-/// Klipper, "G-Codes": names without motion pass; macros of the machine and
-/// RepRapFirmware's meta commands are refused by name.
-#[test]
-fn extended_commands() {
-    assert_snapshot!(klipper(
-        "SET_PRESSURE_ADVANCE EXTRUDER=extruder ADVANCE=.001\nEXCLUDE_OBJECT_START NAME=part_1\n\
-         TIMELAPSE_TAKE_FRAME\nRESPOND TYPE=echo MSG=\"hi; there\"\nSET_GCODE_OFFSET Z=.1\n\
-         G1 Z1 F60\nset_gcode_offset Z=0 MOVE=1\nBED_MESH_CALIBRATE\n"
-    ), @r"
-    6 feed from anywhere Z v1.000
-    7 feed from anywhere XYZE
-    8 feed from anywhere XYZE
-    note pressure-advance
-    note unknown-moves
-    note bed-levelling
-    ");
-    assert_snapshot!(klipper("PRINT_START BED=60 EXTRUDER=200\n"), @"unknown-macro: `PRINT_START` is a macro or a command that this profile does not know");
-    assert_snapshot!(marlin("SET_VELOCITY_LIMIT ACCEL=5\n"), @"unknown-macro: `SET_VELOCITY_LIMIT` is a macro or a command that this profile does not know");
-    assert_snapshot!(reprap("if x > 1\n"), @"meta-command: `if`: branches, loops and variables are not supported");
-    assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file");
-    assert_snapshot!(reprap("M99\n"), @"unsupported-code: M99 belongs to a macro file");
-    assert_snapshot!(reprap("G1 X{global.x}\n"), @"expression: expressions in `{ }` are not supported");
-    assert_snapshot!(marlin("M502\n"), @"unsupported-code: M502 loads settings that the machine file does not describe");
-    assert_snapshot!(marlin("M209 S1\n"), @"unsupported-code: M209 turns moves of the extruder into retracts");
-}
-
 /// Marlin M92: what the program states is taken for true, but not two values.
 #[test]
 fn steps_per_unit() {
@@ -530,6 +361,37 @@ fn arcs_with_an_end_beside_the_circle() {
     note unknown-moves
     note bed-levelling
     ");
+}
+
+/// The same wall in absolute numbers, in increments behind G92, and with the
+/// extruder set back: Marlin G90 to G92, M82, M83.
+#[test]
+fn twins_in_other_modes_move_alike() {
+    let absolute = "G90\nM82\nG92 E0\nG1 F1800\nG0 X10 Y10 Z0.2\nG1 X50 E2\nG1 Y50 E4\nG3 X40 Y60 I-10 J0 E4.8\nG1 X10 E6.3\nG1 Y10 E8.8\nG1 E7.8\nG0 Z5\n";
+    let relative = "G91\nM83\nG1 F1800\nG0 X10 Y10 Z0.2\nG1 X40 E2\nG1 Y40 E2\nG3 X-10 Y10 I-10 J0 E0.8\nG1 X-30 E1.5\nG1 Y-50 E2.5\nG1 E-1\nG0 Z4.8\n";
+    let shifted = "G90\nM82\nG92 E100\nG1 F1800\nG0 X10 Y10 Z0.2\nG92 X0 Y0\nG1 X40 E102\nG1 Y40 E104\nG92 E0\nG3 X30 Y50 I-10 J0 E0.8\nG1 X0 E2.3\nG1 Y0 E4.8\nG1 E3.8\nG0 Z5\n";
+    for controller in ["marlin", "reprap", "klipper"] {
+        let machine = machine(controller);
+        let lengths = |program: &str| {
+            let mut out = Vec::new();
+            let done = pipeline::moves(
+                Cursor::new(program),
+                &machine,
+                &Options::default(),
+                &mut |mv, _| {
+                    let way = |axis: usize| ((mv.end[axis] - mv.start[axis]) * 1e6).round();
+                    out.push((mv.kind.name(), [0, 1, 2, 9].map(way)));
+                    Ok(())
+                },
+            );
+            assert!(done.is_ok(), "{controller}: {program}");
+            out
+        };
+        let expected = lengths(absolute);
+        assert_eq!(expected.len(), 8, "{controller}");
+        assert_eq!(lengths(relative), expected, "{controller}");
+        assert_eq!(lengths(shifted), expected, "{controller}");
+    }
 }
 
 /// No bytes make the reader panic, and every refusal has a reason.

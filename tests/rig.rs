@@ -81,6 +81,8 @@ fn controller() -> Controller {
             name: "rig".into(),
             family: Family::Iso,
             dwell: Vec::new(),
+            rapid_at_power_on: false,
+            loose_o_words: false,
             metric: true,
             absolute: true,
             arc_absolute: false,

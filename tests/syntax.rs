@@ -149,6 +149,11 @@ proptest! {
     }
 
     #[test]
+    fn a_line_may_end_anywhere_in_a_number(text in "[XYZ0-9.+ -]{0,20}", end in "\r?\n?") {
+        assert_readers_agree(format!("{text}{end}").as_bytes(), false);
+    }
+
+    #[test]
     fn lines_do_not_depend_on_how_they_arrive(
         text in "[ab\r\n]{0,60}",
         sizes in prop::collection::vec(1_usize..9, 1..6),

@@ -142,6 +142,48 @@ fn stock_removal_along_z() {
     assert_eq!(behind(&two), behind(&one));
 }
 
+/// Type II: under the level X52 two valleys. The first, with walls of 45°, is 3 mm
+/// deep and takes a second cut at X48, 2 mm further in; the second, an arc of 5 mm
+/// about X58, is 2 mm deep.
+#[test]
+fn stock_removal_with_pockets() {
+    let program = "G97 S500 M3\nG0 X60. Z2.\nG71 U2. R0.5\nG71 P10 Q20 U0 W0 F0.3\nN10 G0 X52. Z0\nG1 Z-5. F0.1\nX46. Z-8.\nZ-12.\nX52. Z-15.\nG2 X52. Z-23. R5.\nN20 G1 X60. Z-27.\n";
+    assert_snapshot!(moves("fanuc-lathe", program), @r"
+2 rapid X30.0000 Z2.0000
+4 rapid
+4 rapid
+4 rapid
+4 rapid X28.0000
+4 feed Z-25.0000 F150.0000
+4 rapid X28.5000 Z-24.5000
+4 rapid
+4 rapid Z-5.0000
+4 feed X26.0000 F150.0000
+4 feed Z-15.0000 F150.0000
+4 rapid X26.5000 Z-14.5000
+4 rapid
+4 rapid Z-7.0000
+4 feed X24.0000 F150.0000
+4 feed Z-13.0000 F150.0000
+4 rapid X24.5000 Z-12.5000
+4 rapid X28.5000
+4 rapid Z-15.0000
+4 feed X26.0000 F150.0000
+4 feed Z-23.0000 F150.0000
+4 rapid X26.5000 Z-22.5000
+4 rapid X30.0000
+4 rapid Z2.0000
+4 rapid X26.0000 Z0.0000
+4 feed Z-5.0000 F150.0000
+4 feed X23.0000 Z-8.0000 F150.0000
+4 feed Z-12.0000 F150.0000
+4 feed X26.0000 Z-15.0000 F150.0000
+4 arc X26.0000 Z-23.0000 center -19.0000,29.0000 turns -0.2952 F150.0000
+4 feed X30.0000 Z-27.0000 F150.0000
+4 rapid Z2.0000
+");
+}
+
 #[test]
 fn stock_removal_along_x() {
     let program = "G97 S500 M3\nG0 X44. Z2.\nG72 W2. R0.5\nG72 P10 Q20 U0.4 W0.2 F0.3\nN10 G0 Z-6.\nG1 X40. F0.1\nX20. Z-2.\nN20 X10. Z0\n";
@@ -348,7 +390,11 @@ fn what_turning_cycles_refuse() {
         ),
         (
             "G71 P10 Q30 D1. F1.\nN10 G0 X5.\nN20 G1 Z-5.\nX4. Z-6.\nN30 X9.",
-            "contour: the contour goes back on itself (pockets of type II), which is not supported",
+            "contour: the contour rises and falls; pockets (type II) need X and Z in its first block",
+        ),
+        (
+            "G71 P10 Q30 D1. F1.\nN10 G0 X5. Z0\nN20 G1 Z-5.\nX7. Z-4.\nN30 X9. Z-9.",
+            "contour: the contour goes back on itself along the cut",
         ),
         (
             "G95",

@@ -70,7 +70,11 @@ fuzz_target!(|bytes: &[u8]| {
             } else {
                 Start::Unknown
             },
-            block_delete: options & 2 != 0,
+            block_delete: if options & 2 == 0 {
+                gwatt::interpret::BlockDelete::NONE
+            } else {
+                gwatt::interpret::BlockDelete::ALL
+            },
             ..Reading::default()
         },
         certificate: match options >> 2 & 3 {

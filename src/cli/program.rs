@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
+use gwatt::interpret::BlockDelete;
 use gwatt::machine::AxisId;
 
 /// How programs are read.
@@ -21,9 +22,17 @@ pub struct ProgramArgs {
     /// and value in a line each): work offsets, G92, points of G28 and G30
     #[arg(long, value_name = "FILE", help_heading = "Program")]
     pub parameters: Option<PathBuf>,
-    /// Pass over blocks that begin with `/`
-    #[arg(long, help_heading = "Program")]
-    pub block_delete: bool,
+    /// Pass over blocks that begin with `/`; with levels only those, as in
+    /// --block-delete=1,3 for `/`, `/1` and `/3`
+    #[arg(
+        long,
+        value_name = "LEVELS",
+        help_heading = "Program",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "all"
+    )]
+    pub block_delete: Option<DeleteLevels>,
     /// Where the axes stand at the beginning: such as X0,Y0,Z100, or `unknown`
     /// [default: 0]
     #[arg(
@@ -127,5 +136,27 @@ mod tests {
         for wrong in ["", ",", "X", "Q1", "Xnan", "Xinf", "X1X2", "X1,X2", "é1"] {
             assert!(wrong.parse::<StartArg>().is_err(), "{wrong}");
         }
+    }
+}
+
+/// Levels of block delete as they are given.
+#[derive(Debug, Clone, Copy)]
+pub struct DeleteLevels(pub BlockDelete);
+
+impl FromStr for DeleteLevels {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "all" {
+            return Ok(Self(BlockDelete::ALL));
+        }
+        let mut levels = BlockDelete::NONE;
+        for level in text.split(',') {
+            match level.trim().parse() {
+                Ok(level @ 1..=9) => levels = levels.with(level),
+                _ => return Err(format!("`{level}` is no level from 1 to 9")),
+            }
+        }
+        Ok(Self(levels))
     }
 }

@@ -9,7 +9,7 @@ use std::thread;
 
 use anyhow::{Context, Result, bail, ensure};
 use gwatt::diagnostic::Diagnostic;
-use gwatt::interpret::{ParameterFile, ToolTable};
+use gwatt::interpret::{BlockDelete, ParameterFile, ToolTable};
 use gwatt::machine::{self, AXES, Machine, builtin};
 use gwatt::pipeline::{Limits, Options, Reading, Start};
 
@@ -61,7 +61,9 @@ impl Setup {
         let options = Options {
             reading: Reading {
                 start: start(reading.start.as_ref(), &machine)?,
-                block_delete: reading.block_delete,
+                block_delete: reading
+                    .block_delete
+                    .map_or(BlockDelete::NONE, |given| given.0),
                 tools: data_file(reading.tool_table.as_deref(), ToolTable::parse, terminal)?,
                 parameters: data_file(
                     reading.parameters.as_deref(),

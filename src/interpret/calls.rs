@@ -74,6 +74,11 @@ impl Interpreter<'_> {
         self.control.machine.controller.language.family == Family::Rs274
     }
 
+    /// Whether O words are those of `FluidNC`.
+    pub(super) fn loose_o_words(&self) -> bool {
+        self.control.machine.controller.language.loose_o_words
+    }
+
     /// Whether the program has begun with an O number.
     pub(super) fn in_program(&self) -> bool {
         self.control.has_program_number

@@ -89,6 +89,10 @@ pub(super) enum GCode {
     MirrorX,
     /// G31 of Fanuc and Haas: a feed that a signal ends.
     Skip,
+    /// G12 (true) and G13 of Haas.
+    Pocket(bool),
+    /// G70 to G72.2 of `LinuxCNC`; number × 10.
+    LatheCycle(u16),
     /// G70 to G76 of a lathe; number × 10 in systems A and B.
     Turning(u16),
     /// G98 (true): canned cycles return to the initial level; G99: to R.
@@ -127,6 +131,8 @@ impl GCode {
             | Self::RestoreOffset
             | Self::SaveReference
             | Self::DataSetting
+            | Self::LatheCycle(_)
+            | Self::Pocket(_)
             | Self::Turning(_)
             | Self::LocalOffset => 12,
             Self::Ignored => 13,

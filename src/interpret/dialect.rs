@@ -42,10 +42,10 @@ pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Own {
         return super::osp::osp_code(number, dialect.diameter);
     }
     let Some(lathe) = dialect.lathe else {
-        return if number == 310 {
-            Own::Code(GCode::Skip)
-        } else {
-            Own::Common
+        return match number {
+            310 => Own::Code(GCode::Skip),
+            120 | 130 if dialect.circular_pocket => Own::Code(GCode::Pocket(number == 120)),
+            _ => Own::Common,
         };
     };
     let special = |number| GCode::Motion(Motion::Special(number));

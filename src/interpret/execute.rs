@@ -13,7 +13,7 @@ use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::osp::Osp;
 use super::parameters::Parameters;
-use super::position::{Position, Reading};
+use super::position::{BlockDelete, Position, Reading};
 use super::printer;
 use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
@@ -78,7 +78,7 @@ pub(super) struct Control<'m> {
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,
     pub(super) turning: Turning,
-    pub(super) block_delete: bool,
+    pub(super) block_delete: BlockDelete,
     pub(super) begun: bool,
     pub(super) ended: bool,
     pub(super) has_program_number: bool,
@@ -213,18 +213,17 @@ impl<'m> Interpreter<'m> {
         facts: &mut Facts,
         diagnostics: &mut Diagnostics,
     ) {
-        let plain = block.issues.is_empty();
-        self.control.note_message(line, text, block, steps);
-        if plain
-            && self
-                .control
-                .direct(line, text, block, steps, facts)
-                .is_some()
+        let noted = self.control.note_message(line, text, block, steps);
+        if block.issues.is_empty()
+            && let Some(()) = self.control.direct(line, text, block, steps, facts)
         {
+            facts.plain &= !noted;
             return;
         }
         *facts = Facts::default();
         self.execute_any(line, text, block, steps, facts, diagnostics);
+        // It may have gone the short way with values that were worked out.
+        facts.plain = false;
     }
 
     /// The same for any block; `facts` are those of nothing.
@@ -369,7 +368,7 @@ impl Control<'_> {
             );
             return false;
         }
-        self.block_delete
+        self.block_delete.passes(block.delete_level)
     }
 
     /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").

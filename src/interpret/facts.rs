@@ -33,6 +33,9 @@ pub struct Facts {
     pub reads_state: bool,
     /// The block is executed: not deleted, not behind the end, not empty.
     pub executed: bool,
+    /// It moves straight on, and changes nothing else of the state: see
+    /// [`Stance`](super::Stance).
+    pub plain: bool,
     /// The block turns a knob.
     pub turns_knob: bool,
     /// The F word is not a plain number: its value is worked out.

@@ -95,7 +95,11 @@ impl Modal {
     pub fn power_on(machine: &Machine) -> Self {
         let language = &machine.controller.language;
         Self {
-            motion: Motion::None,
+            motion: if language.rapid_at_power_on {
+                Motion::Rapid
+            } else {
+                Motion::None
+            },
             plane: if language.dialect.lathe.is_some() {
                 [2, 0, 1]
             } else {

@@ -32,6 +32,8 @@ impl Control<'_> {
                 GCode::Reference => return self.reference(number, span, run),
                 GCode::Skip => return self.skip(run),
                 GCode::Turning(number) => return self.turning_block(number, span, run),
+                GCode::Pocket(clockwise) => return self.circular_pocket(clockwise, span, run),
+                GCode::LatheCycle(number) => return self.lathe_cycle(number, span, run),
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
                 GCode::RestoreOffset => self.position.restore_offset(),

@@ -24,13 +24,38 @@ pub enum Start {
     Unknown,
 }
 
+/// Switches of block delete: `/` and `/1` go by the first, `/2` to `/9` by those
+/// of their numbers (B-63944EN, "Optional Block Skip").
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BlockDelete(u16);
+
+impl BlockDelete {
+    /// No block is passed over.
+    pub const NONE: Self = Self(0);
+    /// All that begin with `/` are.
+    pub const ALL: Self = Self(u16::MAX);
+
+    /// The same with the switch of that level, 1 to 9, on.
+    #[must_use]
+    pub fn with(self, level: u8) -> Self {
+        Self(self.0 | 1 << level.min(15))
+    }
+
+    /// Whether blocks of that level are passed over; level 0 is a block without
+    /// `/`.
+    #[must_use]
+    pub fn passes(self, level: u8) -> bool {
+        level > 0 && self.0 & 1 << level.min(15) != 0
+    }
+}
+
 /// How a program is to be read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     /// Position at the beginning.
     pub start: Start,
-    /// True: blocks that begin with `/` are passed over.
-    pub block_delete: bool,
+    /// Which blocks that begin with `/` are passed over.
+    pub block_delete: BlockDelete,
     /// The tools, if they are known.
     pub tools: Option<Arc<ToolTable>>,
     /// Parameters that the control has kept, if they are known.
@@ -45,7 +70,7 @@ impl Default for Reading {
     fn default() -> Self {
         Self {
             start: Start::At([0.0; AXES]),
-            block_delete: false,
+            block_delete: BlockDelete::NONE,
             tools: None,
             parameters: None,
             sub_paths: Arc::default(),

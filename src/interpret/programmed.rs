@@ -20,6 +20,8 @@ const SAME_MM: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Programmed {
     rotation: Option<Affine>,
+    /// #CS of the ISG kernel, in which the others stand.
+    system: Option<Affine>,
     scaling: Option<Affine>,
     mirror: [Option<f64>; SPACE],
     /// The coordinates that the control goes by.
@@ -43,7 +45,10 @@ impl Programmed {
         let center = self.mirror.map(Option::unwrap_or_default);
         let factor = self.mirror.map(|at| if at.is_some() { -1.0 } else { 1.0 });
         let mut map = Affine::scaling(center, factor);
-        for next in [&self.scaling, &self.rotation].into_iter().flatten() {
+        for next in [&self.scaling, &self.rotation, &self.system]
+            .into_iter()
+            .flatten()
+        {
             map = map.then(next);
         }
         map
@@ -123,6 +128,13 @@ impl Control<'_> {
         }
         let turn = Affine::rotation([first, second], [at[first], at[second]], angle);
         self.reprogram(|programmed| programmed.rotation = Some(turn));
+    }
+
+    /// The coordinate system that all others stand in.
+    pub(super) fn place_system(&mut self, system: Option<Affine>) {
+        if self.programmed.system != system {
+            self.reprogram(|programmed| programmed.system = system);
+        }
     }
 
     /// G51 (`on`) and G50.

@@ -55,16 +55,16 @@ impl Control<'_> {
         text: &[u8],
         block: &Block,
         steps: &mut Vec<Step>,
-    ) {
+    ) -> bool {
         if block.words_end == block.text_end {
-            return;
+            return false;
         }
         let text = text.get(..block.text_end as usize).unwrap_or(text);
         if text.trim_ascii_end().ends_with(b")")
             && self.plans_ahead()
             && self.machine.controller.language.family == Family::Rs274
             && !self.ended
-            && !(block.delete_level > 0 && self.block_delete)
+            && !self.block_delete.passes(block.delete_level)
             && let Some(place) = message(text)
         {
             steps.push(Step::Action(Action {
@@ -72,7 +72,9 @@ impl Control<'_> {
                 kind: ActionKind::Message,
                 value: place as f64,
             }));
+            return true;
         }
+        false
     }
 }
 

@@ -1,6 +1,7 @@
 //! Where a program goes on, when that is not the next line.
 
 use super::expression::Value;
+use super::lathe_cycle::LatheCycle;
 use super::parameters::LOCALS;
 use super::statement::Keyword;
 use super::turning::Contour;
@@ -47,6 +48,8 @@ pub(crate) enum Transfer {
     Go(Go),
     /// A turning cycle about a contour that stands elsewhere in the program.
     Contour(Box<Contour>),
+    /// The same for `LinuxCNC`, where it stands in a subroutine.
+    LatheCycle(Box<LatheCycle>),
 }
 
 /// What a block of SINUMERIK says about the order of execution.

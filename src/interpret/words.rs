@@ -4,6 +4,7 @@ use arrayvec::ArrayVec;
 
 use super::code::{GCode, Motion, code_number, g_code};
 use super::dialect::{Own, dialect_code};
+use super::lathe_cycle::lathe_cycle_code;
 use super::report::Report;
 use super::special::special_code;
 use crate::machine::{Controller, Family};
@@ -227,6 +228,7 @@ impl Words {
             }
             g_code(number, controller.language.family)
                 .or_else(|| special_code(number, &controller.language))
+                .or_else(|| lathe_cycle_code(number, controller.language.family))
                 .or_else(ignored)
                 .map(|code| (code, number))
         });

@@ -127,6 +127,17 @@ impl<'m> Limiter<'m> {
         self.hand_on(needed, sink);
     }
 
+    /// Whether a move is all right as it is: it ends at rest, fits, and no
+    /// other one waits.
+    #[must_use]
+    pub fn passes(&self, assessment: &Assessment) -> bool {
+        self.slots.is_empty()
+            && !assessment.blended
+            && !assessment.ahead
+            && !(self.shifted && assessment.spindle.runs)
+            && self.solver.model.fits(&assessment.demand)
+    }
+
     /// Hands on what was waiting, at the end of the program.
     pub fn finish<'a>(
         &mut self,

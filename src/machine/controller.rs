@@ -39,6 +39,11 @@ pub struct Language {
     /// The words that `G4` takes, with the seconds in one unit of each; if a
     /// block has several, the last in this list wins (Marlin: S over P).
     pub dwell: Vec<(u8, f64)>,
+    /// `true`: G0 is in force at power-on; else no motion word is.
+    pub rapid_at_power_on: bool,
+    /// `true`: O words as FluidNC has them: a label may serve several branches and
+    /// loops, and a break leaves nothing behind.
+    pub loose_o_words: bool,
     /// `true`: metric at power-on.
     pub metric: bool,
     /// `true`: absolute positions (G90) at power-on.
@@ -99,6 +104,8 @@ pub struct Dialect {
     pub other_m: bool,
     /// F is a feed per revolution at power-on.
     pub per_revolution: bool,
+    /// G12 and G13 mill circular pockets.
+    pub circular_pocket: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
 }

@@ -1,5 +1,7 @@
 //! The certificate: what was written is read, interpreted, planned and
-//! evaluated again, and held against the original.
+//! evaluated again, and held against the original. A plain block that stands in
+//! both programs byte for byte is not read again while both are in the same
+//! state: it could only give the same move.
 //!
 //! It holds only if (a) every move fits, (b) end points, arcs, dwells and
 //! actions are the original's, (c) no effective path speed or acceleration
@@ -9,66 +11,20 @@ mod spindle;
 
 use std::collections::VecDeque;
 
+use super::batch::Batch;
+use super::expected::{Expected, ExpectedMove, Originals, added_stop, different};
 use super::tally::Tally;
-use super::{Failure, Options, Row, RowSink, Summary};
+use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Action, Arc, Diagnostics, Facts, Interpreter, Move, MoveKind, Step};
-use crate::limit::{Depths, Place};
-use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
+use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
+use crate::limit::{Depths, Obstacle, Place};
+use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
 use crate::source::{Span, lines};
 use crate::syntax::{Block, scan_line};
 
 /// Rounding that speeds and accelerations may differ by, as a share.
 const ROUNDING: f64 = 1e-9;
-
-/// What the original does, in order.
-#[derive(Debug)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "moves are the common case and live in reused buffers"
-)]
-pub(super) enum Expected {
-    Move(ExpectedMove),
-    Action(Action),
-    /// A row of the spindle alone, for which the program has no step; with the
-    /// number of the command that it belongs to.
-    Spindle(Box<Row>, u32),
-}
-
-/// A move of the original, as far as the written one must equal it. It starts
-/// where the one before ends.
-#[derive(Debug)]
-pub(super) struct ExpectedMove {
-    pub(super) line: u64,
-    pub(super) text: u16,
-    pub(super) kind: MoveKind,
-    pub(super) end: AxisValues,
-    pub(super) arc: Option<Arc>,
-    pub(super) unknown_start: AxisSet,
-    pub(super) path_mode: PathMode,
-    pub(super) loads: u32,
-    pub(super) dwell_s: f64,
-    pub(super) axis_accel_mm_s2: AxisValues,
-    /// Effective path speed and acceleration.
-    pub(super) speed_mm_s: f64,
-    pub(super) accel_mm_s2: f64,
-    /// Its block has been changed; a rapid was written as a feed.
-    pub(super) changed: bool,
-    pub(super) as_feed: bool,
-    /// It does not fit and could not be helped; the reason has been given.
-    pub(super) hopeless: bool,
-    /// Its row, where rows are wanted.
-    pub(super) row: Option<Box<Row>>,
-}
-
-/// A piece of the written program with what it must do.
-#[derive(Debug, Default)]
-pub(super) struct Batch {
-    /// Whole lines.
-    pub(super) bytes: Vec<u8>,
-    pub(super) expected: Vec<Expected>,
-}
 
 /// Reads the written program.
 pub(super) struct Certifier<'m, 'r> {
@@ -79,6 +35,12 @@ pub(super) struct Certifier<'m, 'r> {
     steps: Vec<Step>,
     facts: Facts,
     line: u64,
+    /// The original's state behind the last block.
+    original: Stance,
+    /// The written program is in the same one.
+    in_step: bool,
+    /// Its interpreter has yet to be told where plain blocks have moved to.
+    behind: bool,
     verdict: Verdict<'m, 'r>,
 }
 
@@ -111,6 +73,16 @@ pub(super) struct Reasons {
 }
 
 impl Reasons {
+    /// A move that does not fit and cannot be helped.
+    pub(super) fn refuse(&mut self, mv: &Move, obstacle: &Obstacle, text: &[u8]) {
+        let Obstacle {
+            rule,
+            message,
+            help,
+        } = obstacle;
+        self.push(mv.line, rule, message.clone(), help, text);
+    }
+
     pub(super) fn push(
         &mut self,
         line: u64,
@@ -145,8 +117,12 @@ impl<'m, 'r> Certifier<'m, 'r> {
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
+        let interpreter = Interpreter::new(machine, &options.reading);
         Self {
-            interpreter: Interpreter::new(machine, &options.reading),
+            original: interpreter.stance(),
+            in_step: true,
+            behind: false,
+            interpreter,
             diagnostics: Diagnostics::default(),
             assessor: Assessor::new(machine, options.certificate, Want::ALL)
                 .starting(options.reading.start),
@@ -161,7 +137,44 @@ impl<'m, 'r> Certifier<'m, 'r> {
     /// Takes the next piece and leaves its buffers empty.
     pub(super) fn take(&mut self, batch: &mut Batch) -> Result<(), Failure> {
         self.verdict.refill(&mut batch.expected);
-        for text in lines(&batch.bytes) {
+        let mut rest = batch.bytes.as_slice();
+        let mut moves = batch.moves.iter_mut();
+        let mut stances = batch.stances.drain(..);
+        for block in &batch.blocks {
+            let Some((text, behind)) = rest.split_at_checked(block.length) else {
+                break;
+            };
+            rest = behind;
+            let mv = if block.plain { moves.next() } else { None };
+            if let Some(mv) = mv {
+                if self.in_step && block.unchanged {
+                    self.original.move_to(&mv.end);
+                    self.repeat(mv, text);
+                    continue;
+                }
+                self.execute(text);
+                self.original.move_to(&mv.end);
+            } else {
+                self.execute(text);
+                if let Some(stance) = stances.next() {
+                    self.original = stance;
+                }
+            }
+            self.in_step = self.interpreter.stands_as(&self.original);
+        }
+        self.execute(rest);
+        drop(stances);
+        batch.clear();
+        self.verdict.expect_nothing();
+        self.verdict.tally.check()
+    }
+
+    /// Executes lines of the written program, and judges what they do.
+    fn execute(&mut self, text: &[u8]) {
+        if std::mem::take(&mut self.behind) {
+            self.interpreter.follow(&self.original);
+        }
+        for text in lines(text) {
             self.line += 1;
             scan_line(text, self.line == 1, &mut self.block);
             self.steps.clear();
@@ -174,6 +187,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 facts,
                 verdict,
                 line,
+                ..
             } = self;
             interpreter.execute(*line, text, block, steps, facts, diagnostics);
             for step in &*steps {
@@ -194,9 +208,23 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 }
             }
         }
-        batch.bytes.clear();
-        self.verdict.expect_nothing();
-        self.verdict.tally.check()
+    }
+
+    /// Judges the move of a plain block that stands in both programs, in the
+    /// same state: read again, it would be the same move.
+    fn repeat(&mut self, mv: &mut Move, text: &[u8]) {
+        let Self {
+            assessor, verdict, ..
+        } = self;
+        self.line += 1;
+        mv.line = self.line;
+        self.behind = true;
+        verdict.pass_spindle();
+        verdict.done += 1;
+        assessor.want = verdict.tally.want();
+        assessor.push(mv, text, &mut |mv, after, text| {
+            verdict.judge(mv, after, text);
+        });
     }
 
     /// Judges what is left and gives the figures.
@@ -206,34 +234,6 @@ impl<'m, 'r> Certifier<'m, 'r> {
         } = &mut self;
         assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
         self.verdict.finish(&self.diagnostics.list, self.line)
-    }
-}
-
-/// What the original does: what is left of earlier pieces, and the last piece.
-#[derive(Debug, Default)]
-struct Originals {
-    left: Vec<Expected>,
-    piece: Vec<Expected>,
-}
-
-impl Originals {
-    /// Drops the first `judged`, takes the next piece, and tells how much of
-    /// earlier ones is left.
-    fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
-        let old = judged.min(self.left.len());
-        let new = (judged - old).min(self.piece.len());
-        self.left.drain(..old);
-        self.left.extend(self.piece.drain(new..));
-        self.piece.clear();
-        std::mem::swap(&mut self.piece, next);
-        self.left.len()
-    }
-
-    fn get(&mut self, place: usize) -> Option<&mut Expected> {
-        match place.checked_sub(self.left.len()) {
-            Some(place) => self.piece.get_mut(place),
-            None => self.left.get_mut(place),
-        }
     }
 }
 
@@ -373,39 +373,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 }
 
-/// Whether a move is a dwell of no time that the original does not have: it
-/// only makes the axes stop.
-fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
-    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
-    is_stop(mv.kind, mv.dwell_s)
-        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
-}
-
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
-
-/// What differs in two moves, if anything.
-fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
-    let same_kind = original.kind == mv.kind
-        || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
-    let message = if !same_kind {
-        "another kind of move"
-    } else if original.end != mv.end {
-        "another end point"
-    } else if original.unknown_start != mv.unknown_start {
-        "another start point"
-    } else if original.arc != mv.arc {
-        "another arc"
-    } else if original.dwell_s != mv.dwell_s {
-        "another dwell"
-    } else if original.path_mode != mv.path_mode {
-        "another path mode"
-    } else if original.loads != mv.loads {
-        "other switched loads"
-    } else {
-        return None;
-    };
-    Some(message)
-}
 
 /// (a), (c) and (d) for one move.
 fn compare(

@@ -1,6 +1,7 @@
 //! What the figures of a run rest on.
 
 use super::{Certificate, Options, Start, Summary};
+use crate::interpret::BlockDelete;
 use crate::machine::{Machine, PathMode, Spindle, SpindleWait};
 
 /// How the spindle counts.
@@ -63,10 +64,10 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         Start::At(_) => "start position as given".to_owned(),
     });
     conditions.push(
-        if options.reading.block_delete {
-            "blocks with / are skipped"
-        } else {
-            "blocks with / are executed"
+        match options.reading.block_delete {
+            BlockDelete::ALL => "blocks with / are skipped",
+            BlockDelete::NONE => "blocks with / are executed",
+            _ => "blocks with / are skipped where their switches are on",
         }
         .to_owned(),
     );

@@ -2,7 +2,7 @@
 
 use super::front::Line;
 use super::table::LineKey;
-use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Step};
+use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{Lathe, Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
@@ -24,6 +24,8 @@ pub(super) struct Entry {
     pub(super) steps: Vec<Step>,
     /// The state behind it.
     pub(super) mark: Mark,
+    /// The same, as far as plain blocks go by it; `None` behind a plain one.
+    pub(super) stance: Option<Stance>,
     pub(super) knobs: Option<KnobState>,
     pub(super) feed_mode: FeedMode,
     /// Path mode of the move before it.
@@ -45,6 +47,7 @@ impl Entry {
             facts: Facts::default(),
             steps: Vec::new(),
             mark: Mark::of(modal),
+            stance: None,
             knobs: None,
             feed_mode: modal.feed_mode,
             mode_before: modal.path_mode,
@@ -78,6 +81,8 @@ impl Entry {
             .filter(|step| matches!(step, Step::Move(_)))
             .count();
         self.mark = Mark::of(modal);
+        let plain = self.facts.plain && matches!(self.steps.as_slice(), [Step::Move(_)]);
+        self.stance = (!plain).then(|| line.interpreter.stance());
         self.knobs = knobs(machine, line.interpreter.knobs());
         self.feed_mode = modal.feed_mode;
         self.mode_before = mode_before;
@@ -119,6 +124,17 @@ impl Entry {
                 .steps
                 .iter()
                 .any(|step| matches!(step, Step::Move(mv) if wanted(mv.kind)))
+    }
+
+    /// One change for all its moves: the lower value of each word.
+    #[inline]
+    pub(super) fn change(&self) -> Option<Change> {
+        let mut changes = self
+            .decided
+            .iter()
+            .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
+        let first = changes.next()?;
+        Some(changes.fold(first, |merged, change| merged.lower(&change)))
     }
 
     /// One of its moves, with what may be changed.

@@ -228,8 +228,17 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         *stuck |= diagnostics.errors > 0 && run > 1;
         let mut transfer = interpreter.transfer();
         let mut done = Ok(());
-        if let Some(Transfer::Contour(contour)) = &transfer {
-            done = flow.turn(contour, interpreter, block, steps, diagnostics);
+        let cycle = match &mut transfer {
+            Some(Transfer::Contour(contour)) => {
+                Some(flow.turn(contour, interpreter, block, steps, diagnostics))
+            }
+            Some(Transfer::LatheCycle(cycle)) => {
+                Some(flow.lathe_cycle(cycle, interpreter, block, steps, diagnostics))
+            }
+            _ => None,
+        };
+        if let Some(cycle) = cycle {
+            done = cycle;
             *stuck |= diagnostics.errors > 0;
             transfer = None;
         }

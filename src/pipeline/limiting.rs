@@ -4,7 +4,8 @@
 use std::io::{Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use super::certify::{Batch, Certified, Certifier};
+use super::batch::Batch;
+use super::certify::{Certified, Certifier};
 use super::conditions::conditions;
 use super::whole::limit_whole;
 use super::writer::{Writer, Written};

@@ -2,11 +2,13 @@
 
 mod advice;
 mod analyze;
+mod batch;
 mod by_line;
 mod certify;
 mod conditions;
 mod describe;
 mod entry;
+mod expected;
 mod front;
 mod judge;
 mod limiting;

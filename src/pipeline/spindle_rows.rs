@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::certify::Expected;
 use super::describe::row;
+use super::expected::Expected;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::Machine;
 use crate::power::{Assessment, PowerModel};
@@ -53,6 +53,12 @@ impl SpindleRows {
             }
             *start_s += assessment.duration_s;
         }
+    }
+
+    /// A move is written where no rows are wanted.
+    pub(super) fn pass(&mut self) {
+        self.rows.clear();
+        self.written += 1;
     }
 
     /// Forgets all rows.

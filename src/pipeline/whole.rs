@@ -5,9 +5,10 @@
 use std::collections::VecDeque;
 use std::io::{Cursor, Read, Seek, Write};
 
-use super::certify::{Certified, Expected, ExpectedMove, Verdict};
+use super::certify::{Certified, Verdict};
 use super::describe::{describe, row};
 use super::entry::Entry;
+use super::expected::{Expected, ExpectedMove};
 use super::front::Front;
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
@@ -297,22 +298,11 @@ impl<'m, 'p> Original<'m, 'p> {
         });
         self.start_s += assessment.duration_s;
         Expected::Move(ExpectedMove {
-            line: mv.line,
-            text: mv.text,
-            kind: mv.kind,
-            end: mv.end,
-            arc: mv.arc,
-            unknown_start: mv.unknown_start,
-            path_mode: mv.path_mode,
-            loads: mv.loads,
-            dwell_s: mv.dwell_s,
-            axis_accel_mm_s2: mv.accel_mm_s2,
-            speed_mm_s: assessment.speed_mm_s,
-            accel_mm_s2: assessment.accel_mm_s2,
             changed: change.is_some(),
             as_feed: change.is_some_and(|change| change.as_feed),
             hopeless,
             row,
+            ..ExpectedMove::of(mv, assessment)
         })
     }
 }

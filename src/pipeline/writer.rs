@@ -1,12 +1,14 @@
 //! The writing half of `limit`: blocks wait until their moves are judged and
 //! decided, are written with their changes, and go to the certifier in pieces.
 
+mod expect;
+
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
 
 use super::analyze::refuse_planned;
-use super::certify::{Batch, Expected, ExpectedMove, Reasons};
-use super::describe::{describe, row};
+use super::batch::Batch;
+use super::certify::Reasons;
 use super::entry::{Entry, knobs};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
@@ -15,7 +17,7 @@ use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Obstacle, Outcome};
+use crate::limit::{Change, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
@@ -131,19 +133,20 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             if self.batch.bytes.len() >= BATCH_BYTES {
                 self.deliver(deliver)?;
             }
-            if let Some(entry) = self.ready.take() {
-                self.write(entry);
-            } else {
-                self.decide();
-                self.write_decided();
-            }
+            self.write_ready();
         }
         self.finish_moves();
         self.write_decided();
         self.expect_spindle();
         if !self.front.interpreter().ended() {
+            let batch = &mut self.batch;
+            let last = batch.bytes.len();
             self.rewriter
-                .finish(&self.mark, self.knobs.as_ref(), &mut self.batch.bytes);
+                .finish(&self.mark, self.knobs.as_ref(), &mut batch.bytes);
+            if batch.bytes.len() > last {
+                // The first byte may be the line end that the last block lacks.
+                batch.blocks.pop();
+            }
         }
         self.deliver(deliver)?;
         self.output.flush().map_err(Failure::Output)?;
@@ -156,12 +159,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.tally.keep_lines();
         }
         while self.read_block()? {
-            if let Some(entry) = self.ready.take() {
-                self.write(entry);
-            } else {
-                self.decide();
-                self.write_decided();
-            }
+            self.write_ready();
         }
         self.finish_moves();
         self.write_decided();
@@ -197,10 +195,46 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Reads a block, lets it wait, and judges its moves.
     fn read_block(&mut self) -> Result<bool, Failure> {
-        let spare = self.spare.pop();
         let Some(mut line) = self.front.next_line()? else {
             return Ok(false);
         };
+        let mut judged = None;
+        if line.facts.plain
+            && self.entries.is_empty()
+            && !self.exact
+            && self.table.is_none()
+            && let [Step::Move(mv)] = line.steps.as_slice()
+            && !self.assessor.waits(mv)
+        {
+            let Self {
+                assessor,
+                tally,
+                spindle,
+                ..
+            } = self;
+            assessor.want = tally.want();
+            assessor.push(mv, line.text, &mut |mv, assessment, text| {
+                tally.add(mv, assessment, text);
+                if spindle.judge(mv, assessment) {
+                    judged = Some(*assessment);
+                }
+            });
+            // Nearly every block of a long program: nothing is to be done.
+            if let Some(assessment) = &judged
+                && self.limiter.passes(assessment)
+                && self
+                    .rewriter
+                    .pass(line.text, &self.mark, &mut self.batch.bytes)
+            {
+                // Without rows: the spindle's are not looked at.
+                self.spindle.pass();
+                self.batch.pass(line.text.len(), mv, assessment);
+                self.start_s += assessment.duration_s;
+                self.mode = mv.path_mode;
+                return Ok(true);
+            }
+        }
+        let spare = self.spare.pop();
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         self.mm_per_unit = entry.mark.mm_per_unit;
@@ -212,7 +246,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
-            self.decide_at_once(&mut entry);
+            self.decide_at_once(&mut entry, judged);
             self.ready = Some(entry);
             return Ok(true);
         }
@@ -269,8 +303,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         Ok(true)
     }
 
-    /// Judges and decides the moves of a block none of which has to wait.
-    fn decide_at_once(&mut self, entry: &mut Entry) {
+    /// Judges and decides the moves of a block none of which has to wait; of a
+    /// plain one, `judged` may be known.
+    fn decide_at_once(&mut self, entry: &mut Entry, judged: Option<Assessment>) {
         for (step, mv) in entry.steps.iter().enumerate() {
             let mv = match mv {
                 Step::Move(mv) => mv,
@@ -290,16 +325,22 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 spindle,
                 ..
             } = self;
-            assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
-                tally.add(judged, assessment, text);
-                if !spindle.judge(judged, assessment) {
-                    return;
-                }
+            let mut decide = |assessment: &Assessment| {
                 let find = |_| Some(entry.waiting(machine, mv, step));
                 limiter.push(mv, assessment, &find, &mut |outcome| {
                     decided.push((*assessment, outcome));
                 });
+            };
+            if let Some(assessment) = &judged {
+                decide(assessment);
+                continue;
+            }
+            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
+                tally.add(judged, assessment, text);
+                if spindle.judge(judged, assessment) {
+                    decide(assessment);
+                }
             });
         }
         std::mem::swap(&mut entry.decided, &mut self.decided);
@@ -356,6 +397,16 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
     }
 
+    /// Writes what can be written after a block was read.
+    fn write_ready(&mut self) {
+        if let Some(entry) = self.ready.take() {
+            self.write(entry);
+        } else if !self.entries.is_empty() {
+            self.decide();
+            self.write_decided();
+        }
+    }
+
     /// Writes the blocks whose moves are all decided.
     fn write_decided(&mut self) {
         while self
@@ -373,7 +424,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Writes a block whose moves are decided, and keeps its buffers.
     fn write(&mut self, mut entry: Box<Entry>) {
-        let change = merge(&entry.decided);
+        let change = entry.change();
         if self.table.is_some() {
             self.note(&entry, change);
             return self.spare.push(entry);
@@ -390,12 +441,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             change: change.as_ref().unwrap_or(&Change::NONE),
             stops: entry.needs_stops(self.machine, change.as_ref()),
         };
+        let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
             self.reasons
                 .push(0, "edit", message, "change the block by hand", &entry.text);
             self.batch.bytes.extend_from_slice(&entry.text);
         }
+        self.batch.end_block(start, &mut entry);
         self.expect(&mut entry, change.as_ref());
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
@@ -411,89 +464,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
             if let Some(obstacle) = outcome.obstacle.as_deref() {
-                let message = obstacle.message.clone();
-                let text = entry.text_of(mv);
-                self.reasons
-                    .push(mv.line, obstacle.rule, message, &obstacle.help, text);
+                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
             }
         }
     }
-
-    /// Tells the certifier of the rows of the spindle before the next move.
-    fn expect_spindle(&mut self) {
-        let of = (self.machine, &self.model, self.exact);
-        let expected = &mut self.batch.expected;
-        self.spindle.hand_over(of, &mut self.start_s, expected);
-    }
-
-    /// Tells the certifier what the block must do.
-    fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
-        let feed_before = entry.feed_before();
-        let mut list = std::mem::take(&mut entry.decided);
-        let mut decided = list.iter_mut();
-        for step in &entry.steps {
-            let mv = match step {
-                Step::Action(action) => {
-                    self.batch.expected.push(Expected::Action(*action));
-                    continue;
-                }
-                Step::Move(mv) => mv,
-            };
-            let Some((assessment, outcome)) = decided.next() else {
-                continue;
-            };
-            self.expect_spindle();
-            self.spindle.write();
-            let hopeless = outcome.obstacle.is_some();
-            if let Some(obstacle) = outcome.obstacle.take() {
-                let Obstacle {
-                    rule,
-                    message,
-                    help,
-                } = *obstacle;
-                let text = entry.text_of(mv);
-                self.reasons.push(mv.line, rule, message, &help, text);
-            }
-            // What a block gets, all its moves get, but not its dwell.
-            let change = change.filter(|_| mv.kind != MoveKind::Dwell);
-            let row = self.exact.then(|| {
-                let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
-                describe(self.machine, mv, change, feed_before, &mut row);
-                if hopeless {
-                    row.action = "none possible";
-                }
-                Box::new(row)
-            });
-            self.start_s += assessment.duration_s;
-            self.batch.expected.push(Expected::Move(ExpectedMove {
-                line: mv.line,
-                text: mv.text,
-                kind: mv.kind,
-                end: mv.end,
-                arc: mv.arc,
-                unknown_start: mv.unknown_start,
-                path_mode: mv.path_mode,
-                loads: mv.loads,
-                dwell_s: mv.dwell_s,
-                axis_accel_mm_s2: mv.accel_mm_s2,
-                speed_mm_s: assessment.speed_mm_s,
-                accel_mm_s2: assessment.accel_mm_s2,
-                changed: change.is_some(),
-                as_feed: change.is_some_and(|change| change.as_feed),
-                hopeless,
-                row,
-            }));
-        }
-        entry.decided = list;
-    }
-}
-
-/// One change for a block of several moves: the lower value of each word.
-#[inline]
-fn merge(decided: &[(Assessment, Outcome)]) -> Option<Change> {
-    let mut changes = decided
-        .iter()
-        .filter_map(|(_, outcome)| outcome.change.as_deref().copied());
-    let first = changes.next()?;
-    Some(changes.fold(first, |merged, change| merged.lower(&change)))
 }

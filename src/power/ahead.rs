@@ -277,7 +277,7 @@ impl Ahead {
             .map(|open| open.mv.length_mm)
             .sum();
         let energy_j = std::mem::take(&mut demand.energy_j);
-        let duration_s = planned.profile().duration_s();
+        let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         for index in from..=to {
             let Some(open) = self.open.get_mut(index) else {

@@ -195,6 +195,11 @@ impl<'a> Circle<'a> {
         if search.covers(envelope) {
             return false;
         }
+        let middle = 0.5 * (from + to);
+        if uneven(phase, from, to) && from < middle && middle < to {
+            let first = self.search_piece(phase, (from, middle), side, search);
+            return self.search_piece(phase, (middle, to), side, search) || first;
+        }
         let piece = Piece::new(self, phase, side, (from, to), &reach);
         search.run(&piece, from, to, envelope.abs());
         true
@@ -274,5 +279,16 @@ impl<'a> Circle<'a> {
             *sign = if speed == 0.0 { 0.0 } else { speed.signum() };
         }
         signs
+    }
+}
+
+/// Whether the rates of a phase differ so much between two instants that bounds
+/// by the larger ones are of little use: at constant power they grow with
+/// 1/v³ and more.
+fn uneven(phase: &Phase, from: f64, to: f64) -> bool {
+    let speed = |t: f64| phase.state_at(t).velocity_mm_s;
+    matches!(phase.kind, PhaseKind::ConstantPower { .. }) && {
+        let (v0, v1) = (speed(from), speed(to));
+        v0.max(v1) > 1.5 * v0.min(v1).max(f64::MIN_POSITIVE)
     }
 }

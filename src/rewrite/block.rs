@@ -77,11 +77,7 @@ impl<'m> Rewriter<'m> {
     /// each other, which leaves the block as it was.
     #[must_use]
     pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
-        let (_, end) = split_line_end(view.text);
-        self.complete = !end.is_empty();
-        if !end.is_empty() && end != self.line_end {
-            self.line_end = end.to_vec();
-        }
+        self.note_end(view.text);
         let facts = view.facts;
         // Nothing can be put back inside a block that takes no further word.
         let sealed = facts.checksum || facts.dwell_takes_feed;
@@ -125,6 +121,30 @@ impl<'m> Rewriter<'m> {
             self.insert_line(&self.dwell(), out);
         }
         fine
+    }
+
+    /// Copies a block that moves and changes nothing else of the state `mark`;
+    /// false, and nothing is written, where the written program is in another
+    /// state.
+    #[must_use]
+    pub fn pass(&mut self, text: &[u8], mark: &Mark, out: &mut Vec<u8>) -> bool {
+        let same = self.written.motion == mark.motion && self.written.feed == mark.feed_value();
+        if !same || !self.turned.is_empty() || self.stopped {
+            return false;
+        }
+        self.note_end(text);
+        out.extend_from_slice(text);
+        true
+    }
+
+    /// Remembers how lines end, and whether this one does.
+    #[inline]
+    fn note_end(&mut self, text: &[u8]) {
+        let (_, end) = split_line_end(text);
+        self.complete = !end.is_empty();
+        if !end.is_empty() && end != self.line_end {
+            self.line_end = end.to_vec();
+        }
     }
 
     /// A dwell of no time.

@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::Fault;
-use super::vector::{Vector, along, cross, dot, left, length, scale, sub, unit};
+use crate::interpret::vector::{Vector, along, cross, dot, left, length, scale, sub, unit};
 
 /// Bends below it are passed by LinuxCNC as if the path were smooth, rad.
 pub(super) const SMOOTH_RAD: f64 = 0.05;

@@ -2,10 +2,10 @@
 
 use super::Fault;
 use super::corner::Track;
-use super::vector::{Vector, add, distance, dot, sub};
 use crate::interpret::arc::{self, Ends};
 use crate::interpret::motion::{STANDSTILL_MM, path_length};
 use crate::interpret::moves::{Arc, Move, MoveKind, Step};
+use crate::interpret::vector::{Vector, add, distance, dot, sub};
 use crate::machine::AxisSet;
 
 /// Steps that may wait: a program that stays longer in one place of the plane

@@ -9,11 +9,11 @@ use std::f64::consts::TAU;
 use super::Fault;
 use super::corner::{Circle, Track, meet};
 use super::hold::place;
-use super::vector::{Vector, along, cross, dot, left, scale, sub, unit};
 use crate::interpret::arc::{self, Ends};
 use crate::interpret::code::GCode;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use crate::interpret::vector::{Vector, along, cross, dot, left, scale, sub, unit};
 
 /// Why such blocks stay as they are.
 const FIXED: &str = "a corner is cut or rounded there";

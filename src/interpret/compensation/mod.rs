@@ -22,16 +22,15 @@ mod insert;
 mod radius;
 mod refusals;
 mod straight;
-mod vector;
 mod words;
 
 use self::fault::Fault;
 use self::hold::{Hold, place};
 pub(super) use self::insert::{Corners, Insert};
 pub(super) use self::radius::{Choice, ContourFeed};
-use self::vector::Vector;
 use super::execute::{Control, Interpreter, Run};
 use super::moves::{Move, MoveKind, Step};
+use super::vector::Vector;
 use crate::machine::{CompensationLead, CutterCompensation};
 
 /// Why blocks under compensation stay as they are.

@@ -87,6 +87,15 @@ impl Control<'_> {
         self.radius_not_known(number, span, run)
     }
 
+    /// The radius of the cutter that the words of the block choose.
+    pub(in crate::interpret) fn cutter_radius_mm(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        span: Span,
+    ) -> Option<f64> {
+        Some(self.nose_by_offset(run, span)?.radius_mm)
+    }
+
     /// D, or H where no tool length takes it (parameter 5001 bit OFH); without
     /// them the last one.
     fn offset_number(&mut self, run: &mut Run<'_, '_>) -> Option<u32> {

@@ -10,8 +10,8 @@ use super::Compensation;
 use super::Fault;
 use super::corner::{Bend, Track};
 use super::follow::Element;
-use super::vector::{Vector, add, dot, left, scale, sub, unit};
 use crate::interpret::moves::{Move, Step};
+use crate::interpret::vector::{Vector, add, dot, left, scale, sub, unit};
 
 impl Compensation {
     /// Takes the tool round `corner`, in front of `mv`.

@@ -14,6 +14,9 @@ const DEPTH_MAX: u32 = 64;
 /// Letters of the longest keyword.
 const AHEAD: usize = 9;
 
+/// Whole numbers of so many digits are exact in an `f64`.
+const EXACT_DIGITS: usize = 15;
+
 /// A place in the text of a block, which moves on as the text is understood.
 #[derive(Debug)]
 pub(in crate::interpret) struct Reader<'t> {
@@ -99,6 +102,13 @@ impl<'t> Reader<'t> {
 
     /// Takes a word of letters if it is next, in either case.
     pub(in crate::interpret) fn take_name(&mut self, name: &[u8]) -> bool {
+        let begins = |next: u8| {
+            name.first()
+                .is_some_and(|it| it.eq_ignore_ascii_case(&next))
+        };
+        if !self.peek().is_some_and(begins) {
+            return false;
+        }
         let ahead = self.ahead();
         let next = ahead
             .bytes
@@ -192,6 +202,12 @@ impl<'t> Reader<'t> {
         let mut left = self.value(variables)?;
         let fanuc = variables.fanuc();
         loop {
+            // Most values have nothing behind them.
+            let may_follow =
+                |byte: u8| byte.is_ascii_alphabetic() || matches!(byte, b'*' | b'/' | b'+' | b'-');
+            if !self.peek().is_some_and(may_follow) {
+                return Ok(left);
+            }
             let ahead = self.ahead();
             let Some((operator, length)) = Operator::read(&ahead.bytes) else {
                 return Ok(left);
@@ -222,6 +238,10 @@ impl<'t> Reader<'t> {
         let length = rest.iter().take_while(|byte| of_number(byte)).count();
         let text = rest.get(..length).unwrap_or_default().trim_ascii_end();
         self.at = start + text.len();
+        if !text.is_empty() && text.len() <= EXACT_DIGITS && text.iter().all(u8::is_ascii_digit) {
+            let digits = text.iter().map(|digit| u64::from(digit - b'0'));
+            return Ok(digits.fold(0, |sum, digit| sum * 10 + digit) as f64);
+        }
         let plain = if text.contains(&b' ') || text.contains(&b'\t') {
             let digits = text.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
             Cow::Owned(digits.copied().collect::<Vec<u8>>())

@@ -17,7 +17,7 @@ impl Flow {
     /// executed, and adds the cycle's moves to `steps`.
     pub(crate) fn turn(
         &mut self,
-        contour: &Contour,
+        contour: &mut Contour,
         interpreter: &mut Interpreter<'_>,
         block: &Block,
         steps: &mut Vec<Step>,
@@ -29,7 +29,7 @@ impl Flow {
 
     fn contour(
         &mut self,
-        contour: &Contour,
+        contour: &mut Contour,
         interpreter: &mut Interpreter<'_>,
         block: &Block,
         steps: &mut Vec<Step>,
@@ -60,6 +60,11 @@ impl Flow {
             interpreter.execute(number, text, &mut own, &mut found, &mut facts, diagnostics);
             if diagnostics.errors != errors {
                 return Ok(());
+            }
+            if place == first {
+                let names =
+                    |letters: &[u8]| own.words.iter().any(|it| letters.contains(&it.letter));
+                contour.two_axes = names(b"XU") && names(b"ZW");
             }
             if interpreter.transfer().is_some() || interpreter.ended() {
                 let message = format!("line {number} leaves the contour of a turning cycle");

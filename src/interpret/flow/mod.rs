@@ -4,6 +4,7 @@
 mod contour;
 mod go;
 mod landmarks;
+mod lathe_cycle;
 mod library;
 mod limits;
 mod macro_b;
@@ -329,7 +330,7 @@ impl Flow {
             Transfer::Siemens(word) => self.siemens(word, interpreter),
             Transfer::Go(word) => self.go(word, interpreter),
             // Its moves belong to its line: see `turn`.
-            Transfer::Contour(_) => Ok(()),
+            Transfer::Contour(_) | Transfer::LatheCycle(_) => Ok(()),
         };
         done.map_err(|trouble| self.trouble(trouble))
     }

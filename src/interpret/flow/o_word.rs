@@ -19,7 +19,9 @@ impl Flow {
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), Trouble> {
         let undecided = self.undecided.take();
-        self.check_label(&label, &verb)?;
+        self.check_label(&label, &verb, interpreter.loose_o_words())?;
+        // Only LinuxCNC remembers a break.
+        self.broke &= !interpreter.loose_o_words();
         match verb {
             Verb::Sub => self.pass_sub(label, interpreter),
             Verb::EndSub(value) | Verb::Return(value) => self.return_from(value, interpreter),
@@ -121,7 +123,7 @@ impl Flow {
 
     /// Each branch and loop of a subroutine has its own label, and what belongs
     /// to it comes behind it.
-    fn check_label(&mut self, label: &Label, verb: &Verb) -> Result<(), Trouble> {
+    fn check_label(&mut self, label: &Label, verb: &Verb, repeat: bool) -> Result<(), Trouble> {
         let keyword = verb.keyword();
         let text = self.texts.get(self.now.text);
         let runs = text.and_then(|text| text.runs.get(self.now.line));
@@ -135,7 +137,7 @@ impl Flow {
         match keyword {
             Keyword::While if matches(&[Keyword::Do]) => Ok(()),
             _ if keyword.opens() => match known {
-                Some((_, before)) if before != line => Err(duplicate(label, before)),
+                Some((_, before)) if before != line && !repeat => Err(duplicate(label, before)),
                 _ => {
                     self.labels.insert(key, (keyword, line));
                     Ok(())

@@ -69,7 +69,9 @@ impl Control<'_> {
         }
         // What stands in a comment or a declaration is no move.
         self.direct = is_direct(self.machine) && !state.comments && !state.declares;
+        let system = state.systems.in_force();
         self.isg = Some(state);
+        self.place_system(system);
         transfers
     }
 }

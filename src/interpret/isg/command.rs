@@ -16,7 +16,7 @@ enum Kind {
 }
 
 /// Commands by how they begin; the first that fits counts.
-const COMMANDS: [(&str, Kind); 41] = [
+const COMMANDS: [(&str, Kind); 40] = [
     ("MSG", Kind::Passes),
     ("ADD", Kind::Passes),
     ("FLUSH", Kind::Smooths),
@@ -29,7 +29,6 @@ const COMMANDS: [(&str, Kind); 41] = [
     ("BACKWARD STORAGE", Kind::Passes),
     ("CACHE", Kind::Passes),
     ("DELETE", Kind::Passes),
-    ("CS OFF", Kind::Passes),
     ("ACS OFF", Kind::Passes),
     ("BCS OFF", Kind::Passes),
     ("ECS OFF", Kind::Passes),
@@ -41,7 +40,7 @@ const COMMANDS: [(&str, Kind); 41] = [
     ("MCS OFF", Kind::Passes),
     ("PTP OFF", Kind::Passes),
     ("CAXTRACK OFF", Kind::Passes),
-    ("CS", Kind::Refused("another coordinate system")),
+    ("CS", Kind::Refused("a coordinate system of another mode")),
     ("ACS", Kind::Refused("another coordinate system")),
     ("BCS", Kind::Refused("another coordinate system")),
     ("ECS", Kind::Refused("the coordinate system of the tool")),
@@ -96,6 +95,10 @@ impl Reading<'_, '_, '_> {
             "ROTATION ON" => self.rotation_on(start, block)?,
             "ROTATION OFF" => self.cursor.add_word(b'G', 69.0, start, start, block)?,
             "HSC ON" => self.hsc(start)?,
+            "CS DEF" => self.define_system(start)?,
+            "CS ON" => self.system_on(start)?,
+            "CS OFF" => self.system_off(false),
+            "CS OFF ALL" => self.system_off(true),
             "OVERRIDE" => self.factors(start)?,
             _ => self.listed(&name, start)?,
         }

@@ -8,6 +8,7 @@ mod block;
 mod command;
 mod flow_words;
 mod rotation;
+mod system;
 mod variable;
 mod word;
 
@@ -37,6 +38,8 @@ pub(super) struct Isg {
     pub(super) pending: Pending,
     /// End and step of loops that count, by text, line and level.
     counts: HashMap<(u16, u64, usize), (f64, f64)>,
+    /// #CS.
+    systems: system::Systems,
     /// Between `%L` and the main program.
     begun: bool,
 }

@@ -31,6 +31,8 @@ pub(crate) struct Contour {
     pub(crate) cycle: ContourCycle,
     /// What is left for finishing in X (of the radius) and Z, mm.
     pub(super) allowance: [f64; 2],
+    /// Its first block names X and Z: stock removal of type II.
+    pub(crate) two_axes: bool,
 }
 
 /// The cycles.
@@ -96,6 +98,7 @@ impl Control<'_> {
             last,
             cycle,
             allowance,
+            two_axes: false,
         })));
     }
 

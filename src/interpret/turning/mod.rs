@@ -7,6 +7,7 @@
 mod contour;
 mod drill;
 mod groove;
+mod pockets;
 mod rough;
 mod single;
 mod thread;

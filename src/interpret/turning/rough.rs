@@ -6,22 +6,25 @@
 //! and back to the start. G72 the same with X and Z exchanged. The escape is a
 //! rapid here, which counts higher than a feed.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::contour::{Contour, ContourCycle, contour_value};
+use super::pockets::Stock;
 use super::{Control, Run, X, Z};
 use crate::interpret::moves::{Arc, Move, MoveKind};
 use crate::machine::{AxisSet, AxisValues};
 
 /// A contour may go back by this much, mm: rounding.
-const TOLERANCE_MM: f64 = 1e-6;
+pub(super) const TOLERANCE_MM: f64 = 1e-6;
 /// Halvings until a crossing is exact.
 const HALVINGS: u32 = 60;
 /// Places of an arc that are looked at.
 const SAMPLES: u32 = 64;
 
 /// A piece of the contour, moved by what is left for finishing.
-struct Piece {
-    start: AxisValues,
-    end: AxisValues,
+pub(super) struct Piece {
+    pub(super) start: AxisValues,
+    pub(super) end: AxisValues,
     arc: Option<Arc>,
     kind: MoveKind,
 }
@@ -49,7 +52,7 @@ impl Piece {
     }
 
     /// Place along an axis, `share` from 0 at the start to 1 at the end.
-    fn place(&self, axis: usize, share: f64) -> f64 {
+    pub(super) fn place(&self, axis: usize, share: f64) -> f64 {
         if let Some(arc) = &self.arc {
             let angle = arc.start_angle_rad + arc.sweep_rad * share;
             if arc.plane[0] == axis {
@@ -60,6 +63,51 @@ impl Piece {
             }
         }
         self.start[axis] + (self.end[axis] - self.start[axis]) * share
+    }
+
+    /// Its parts between the ends of the quarters of its circle, each of which
+    /// goes one way along both axes.
+    pub(super) fn quarters(&self) -> Vec<Self> {
+        let part = |from: f64, to: f64| Self {
+            start: self.at(from),
+            end: self.at(to),
+            arc: self.arc.map(|arc| Arc {
+                start_angle_rad: arc.start_angle_rad + arc.sweep_rad * from,
+                sweep_rad: arc.sweep_rad * (to - from),
+                ..arc
+            }),
+            kind: self.kind,
+        };
+        let Some(arc) = &self.arc else {
+            return vec![part(0.0, 1.0)];
+        };
+        let (first, last) = (arc.start_angle_rad, arc.start_angle_rad + arc.sweep_rad);
+        let (low, high) = (first.min(last), first.max(last));
+        let mut shares = vec![0.0, 1.0];
+        let mut quarter = (low / FRAC_PI_2).ceil();
+        while quarter * FRAC_PI_2 < high && shares.len() < 16 {
+            shares.push((quarter * FRAC_PI_2 - first) / arc.sweep_rad);
+            quarter += 1.0;
+        }
+        shares.sort_by(f64::total_cmp);
+        let pairs = shares.iter().zip(shares.iter().skip(1));
+        pairs
+            .filter(|(from, to)| to > from)
+            .map(|(&from, &to)| part(from, to))
+            .collect()
+    }
+
+    /// Its place in X and Z; other axes do not move.
+    fn at(&self, share: f64) -> AxisValues {
+        let mut place = self.start;
+        if share == 1.0 {
+            return self.end;
+        }
+        if share > 0.0 {
+            place[X] = self.place(X, share);
+            place[Z] = self.place(Z, share);
+        }
+        place
     }
 
     /// Whether it goes one way only along an axis.
@@ -75,7 +123,7 @@ impl Piece {
     }
 
     /// Where it crosses a level along an axis.
-    fn crossing(&self, axis: usize, level: f64) -> Option<f64> {
+    pub(super) fn crossing(&self, axis: usize, level: f64) -> Option<f64> {
         let (mut low, mut high) = (0.0, 1.0);
         let side = |share: f64| self.place(axis, share) - level;
         let begin = side(0.0);
@@ -152,9 +200,14 @@ impl Control<'_> {
             return;
         }
         let one_way = |axis: usize, way: f64| rest.iter().all(|piece| piece.goes(axis, way));
-        if !one_way(deep, -inward) || !one_way(along, forward) {
+        if !one_way(along, forward) {
+            contour_wrong("the contour goes back on itself along the cut", run);
+            return;
+        }
+        let type_two = !one_way(deep, -inward);
+        if type_two && !contour.two_axes {
             contour_wrong(
-                "the contour goes back on itself (pockets of type II), which is not supported",
+                "the contour rises and falls; pockets (type II) need X and Z in its first block",
                 run,
             );
             return;
@@ -170,32 +223,22 @@ impl Control<'_> {
         };
         self.part(run, MoveKind::Rapid, &corner);
         let errors = run.report.diagnostics.errors;
-        let mut pass = 1.0;
-        loop {
-            let level = corner[deep] + inward * depth_mm * pass;
-            if (floor - level) * inward <= TOLERANCE_MM {
-                break;
-            }
-            let crossing = rest.iter().find_map(|piece| {
-                let share = piece.crossing(deep, level)?;
-                Some(piece.place(along, share))
-            });
-            let wall = crossing.unwrap_or(last.end[along]);
-            let mut place = corner;
-            place[deep] = level;
-            self.part(run, into, &place);
-            place[along] = wall;
-            self.part(run, MoveKind::Feed, &place);
-            let away = escape_mm.min((wall - corner[along]).abs());
-            place[deep] -= inward * escape_mm;
-            place[along] -= forward * away;
-            self.part(run, MoveKind::Rapid, &place);
-            place[along] = corner[along];
-            self.part(run, MoveKind::Rapid, &place);
-            if !run.within_limits() || run.report.diagnostics.errors != errors {
-                return;
-            }
-            pass += 1.0;
+        let stock = Stock {
+            deep,
+            depth_mm,
+            escape_mm,
+            corner,
+            inward,
+            forward,
+            into,
+        };
+        if type_two {
+            self.pockets(&stock, rest, run);
+        } else {
+            self.plain_passes(&stock, floor, rest, run);
+        }
+        if !run.within_limits() || run.report.diagnostics.errors != errors {
+            return;
         }
         let mut place = corner;
         place[deep] = floor;
@@ -203,6 +246,40 @@ impl Control<'_> {
         self.part(run, into, &place);
         self.along(rest, run);
         self.part(run, MoveKind::Rapid, &start);
+    }
+
+    /// Type I: passes to where each level meets the contour.
+    fn plain_passes(&mut self, stock: &Stock, floor: f64, rest: &[Piece], run: &mut Run<'_, '_>) {
+        let (deep, along) = (stock.deep, X + Z - stock.deep);
+        let Some(last) = rest.last() else { return };
+        let errors = run.report.diagnostics.errors;
+        let mut number = 1;
+        loop {
+            let level = stock.level(number);
+            if (floor - level) * stock.inward <= TOLERANCE_MM {
+                return;
+            }
+            let crossing = rest.iter().find_map(|piece| {
+                let share = piece.crossing(deep, level)?;
+                Some(piece.place(along, share))
+            });
+            let wall = crossing.unwrap_or(last.end[along]);
+            let mut place = stock.corner;
+            place[deep] = level;
+            self.part(run, stock.into, &place);
+            place[along] = wall;
+            self.part(run, MoveKind::Feed, &place);
+            let away = stock.escape_mm.min((wall - stock.corner[along]).abs());
+            place[deep] -= stock.inward * stock.escape_mm;
+            place[along] -= stock.forward * away;
+            self.part(run, MoveKind::Rapid, &place);
+            place[along] = stock.corner[along];
+            self.part(run, MoveKind::Rapid, &place);
+            if !run.within_limits() || run.report.diagnostics.errors != errors {
+                return;
+            }
+            number += 1;
+        }
     }
 
     /// G73.
@@ -247,7 +324,7 @@ impl Control<'_> {
     }
 }
 
-fn contour_wrong(message: &str, run: &mut Run<'_, '_>) {
+pub(super) fn contour_wrong(message: &str, run: &mut Run<'_, '_>) {
     let whole = run.whole();
     contour_value(message, whole, run);
 }

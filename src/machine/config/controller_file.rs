@@ -41,6 +41,11 @@ pub(crate) struct LanguageTable {
     /// The words that G4 takes; if a block has several, the last one here wins.
     #[schemars(required)]
     pub(crate) dwell: Option<Vec<At<DwellTable>>>,
+    /// The motion word in force at power-on is G0; default false: none is.
+    pub(crate) rapid_at_power_on: Option<bool>,
+    /// O words as FluidNC has them: a label may serve several branches and loops,
+    /// and a break leaves nothing behind; default false.
+    pub(crate) loose_o_words: Option<bool>,
     /// Unit at power-on; default mm.
     pub(crate) units: Option<UnitsName>,
     /// Distance mode at power-on; default absolute.
@@ -88,6 +93,8 @@ pub(crate) struct LanguageTable {
     pub(crate) other_m: Option<bool>,
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
+    /// G12 and G13 mill circular pockets, as on a Haas; default false.
+    pub(crate) circular_pocket: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
 }

@@ -60,6 +60,8 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             FamilyName::Siemens => Family::Siemens,
         },
         dwell,
+        rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
+        loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
         absolute: table.distance != Some(DistanceName::Incremental),
         arc_absolute: table.arc_centre == Some(DistanceName::Absolute),
@@ -113,6 +115,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
+        circular_pocket: table.circular_pocket.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
     };
     dialect.active = dialect != Dialect::default();

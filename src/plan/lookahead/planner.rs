@@ -91,6 +91,13 @@ impl<T> Planned<T> {
         self.accel_mm_s2.max(needed)
     }
 
+    /// How long it takes, s.
+    #[must_use]
+    #[inline]
+    pub fn duration_s(&self) -> f64 {
+        self.speeds2.duration_s(self.length_mm, self.accel_mm_s2)
+    }
+
     /// How it runs.
     #[must_use]
     #[inline]

@@ -13,6 +13,33 @@ pub struct Speeds2 {
     pub top: f64,
 }
 
+impl Speeds2 {
+    /// Duration of [`Profile::between`] in s, to the same bit.
+    pub(super) fn duration_s(&self, length: f64, accel: f64) -> f64 {
+        let Self { start, end, top } = *self;
+        let (v0, v1) = (start.sqrt(), end.sqrt());
+        if 0.5 * (start - end).abs() / length >= accel {
+            return 2.0 * length / (v0 + v1);
+        }
+        let top2 = top.min(0.5 * (start + end) + accel * length);
+        let v = top2.sqrt();
+        let up_mm = 0.5 * (top2 - start) / accel;
+        let down_mm = 0.5 * (top2 - end) / accel;
+        let cruise_mm = length - up_mm - down_mm;
+        let mut duration_s = 0.0;
+        if v > v0 {
+            duration_s += (v - v0) / accel;
+        }
+        if cruise_mm > 1e-12 * length {
+            duration_s += cruise_mm / v;
+        }
+        if v > v1 {
+            duration_s += (v - v1) / accel;
+        }
+        duration_s
+    }
+}
+
 impl Profile {
     /// The fastest profile over `length` (mm, positive) between two speeds with
     /// accelerations of at most `accel` (mm/s², positive).
@@ -65,5 +92,23 @@ fn phase(duration_s: f64, position_mm: f64, v0: f64, v1: f64, accel: f64) -> Pha
         velocity_mm_s: v0,
         end_velocity_mm_s: v1,
         accel_mm_s2: accel,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Profile, Speeds2};
+
+    #[test]
+    fn durations_are_those_of_the_profiles() {
+        let squares = [0.0, 1.0, 30.0, 900.0, 2500.0];
+        for (start, end) in squares.iter().flat_map(|a| squares.map(|b| (*a, b))) {
+            for (top, length) in [(2500.0, 0.01), (2500.0, 3.0), (1e4, 3.0), (1e4, 700.0)] {
+                let speeds2 = Speeds2 { start, end, top };
+                let profile = Profile::between(length, speeds2, 100.0);
+                let duration_s = speeds2.duration_s(length, 100.0);
+                assert_eq!(duration_s.to_bits(), profile.duration_s().to_bits());
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
-//! Vectors in the plane of the compensation.
+//! Vectors in a plane.
 
-/// A point or a direction: first and second axis of the plane, mm.
+/// A point or a direction: first and second axis of the plane.
 pub(super) type Vector = [f64; 2];
 
 pub(super) fn add(a: Vector, b: Vector) -> Vector {

@@ -1,0 +1,130 @@
+//! What the written program must do: what the original does.
+
+use super::Row;
+use crate::interpret::{Action, Arc, Move, MoveKind};
+use crate::machine::{AxisSet, AxisValues, PathMode};
+use crate::power::Assessment;
+
+/// What the original does, in order.
+#[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "moves are the common case and live in reused buffers"
+)]
+pub(super) enum Expected {
+    Move(ExpectedMove),
+    Action(Action),
+    /// A row of the spindle alone, for which the program has no step; with the
+    /// number of the command that it belongs to.
+    Spindle(Box<Row>, u32),
+}
+
+/// A move of the original, as far as the written one must equal it. It starts
+/// where the one before ends.
+#[derive(Debug)]
+pub(super) struct ExpectedMove {
+    pub(super) line: u64,
+    pub(super) text: u16,
+    pub(super) kind: MoveKind,
+    pub(super) end: AxisValues,
+    pub(super) arc: Option<Arc>,
+    pub(super) unknown_start: AxisSet,
+    pub(super) path_mode: PathMode,
+    pub(super) loads: u32,
+    pub(super) dwell_s: f64,
+    pub(super) axis_accel_mm_s2: AxisValues,
+    /// Effective path speed and acceleration.
+    pub(super) speed_mm_s: f64,
+    pub(super) accel_mm_s2: f64,
+    /// Its block has been changed; a rapid was written as a feed.
+    pub(super) changed: bool,
+    pub(super) as_feed: bool,
+    /// It does not fit and could not be helped; the reason has been given.
+    pub(super) hopeless: bool,
+    /// Its row, where rows are wanted.
+    pub(super) row: Option<Box<Row>>,
+}
+
+impl ExpectedMove {
+    /// A move that must not change.
+    pub(super) fn of(mv: &Move, assessment: &Assessment) -> Self {
+        Self {
+            line: mv.line,
+            text: mv.text,
+            kind: mv.kind,
+            end: mv.end,
+            arc: mv.arc,
+            unknown_start: mv.unknown_start,
+            path_mode: mv.path_mode,
+            loads: mv.loads,
+            dwell_s: mv.dwell_s,
+            axis_accel_mm_s2: mv.accel_mm_s2,
+            speed_mm_s: assessment.speed_mm_s,
+            accel_mm_s2: assessment.accel_mm_s2,
+            changed: false,
+            as_feed: false,
+            hopeless: false,
+            row: None,
+        }
+    }
+}
+
+/// What the original does: what is left of earlier pieces, and the last piece.
+#[derive(Debug, Default)]
+pub(super) struct Originals {
+    left: Vec<Expected>,
+    piece: Vec<Expected>,
+}
+
+impl Originals {
+    /// Drops the first `judged`, takes the next piece, and tells how much of
+    /// earlier ones is left.
+    pub(super) fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
+        let old = judged.min(self.left.len());
+        let new = (judged - old).min(self.piece.len());
+        self.left.drain(..old);
+        self.left.extend(self.piece.drain(new..));
+        self.piece.clear();
+        std::mem::swap(&mut self.piece, next);
+        self.left.len()
+    }
+
+    pub(super) fn get(&mut self, place: usize) -> Option<&mut Expected> {
+        match place.checked_sub(self.left.len()) {
+            Some(place) => self.piece.get_mut(place),
+            None => self.left.get_mut(place),
+        }
+    }
+}
+
+/// Whether a move is a dwell of no time that the original does not have: it
+/// only makes the axes stop.
+pub(super) fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
+    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
+    is_stop(mv.kind, mv.dwell_s)
+        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
+}
+
+/// What differs in two moves, if anything.
+pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
+    let same_kind = original.kind == mv.kind
+        || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
+    let message = if !same_kind {
+        "another kind of move"
+    } else if original.end != mv.end {
+        "another end point"
+    } else if original.unknown_start != mv.unknown_start {
+        "another start point"
+    } else if original.arc != mv.arc {
+        "another arc"
+    } else if original.dwell_s != mv.dwell_s {
+        "another dwell"
+    } else if original.path_mode != mv.path_mode {
+        "another path mode"
+    } else if original.loads != mv.loads {
+        "other switched loads"
+    } else {
+        return None;
+    };
+    Some(message)
+}

@@ -1,0 +1,106 @@
+//! Canned cycles of Fanuc and Haas mills.
+
+use insta::assert_snapshot;
+
+use super::moves;
+
+/// Fanuc: rapid to the place, to R, the hole, back to the initial level or R;
+/// P without a point is in milliseconds; K repeats.
+#[test]
+fn fanuc_drills() {
+    let program = "G90 G21 S500 M3\nG0 Z50\nG98 G81 X10 Y5 Z-5 R2 F100\nG99 X20\nG82 X30 P500\nG80\nX0\nG91 G99 G81 X5 Z-4 R-8 K2\nG90 G80 Z60\n";
+    assert_snapshot!(moves("iso", program), @r"
+    2 rapid 0 0 50
+    3 rapid 10 5 50
+    3 rapid 10 5 2
+    3 feed 10 5 -5 F100
+    3 rapid 10 5 50
+    4 rapid 20 5 50
+    4 rapid 20 5 2
+    4 feed 20 5 -5 F100
+    4 rapid 20 5 2
+    5 rapid 30 5 2
+    5 feed 30 5 -5 F100
+    5 dwell 30 5 -5 0.5 s
+    5 rapid 30 5 2
+    7 rapid 0 5 2
+    8 rapid 5 5 2
+    8 rapid 5 5 -6
+    8 feed 5 5 -10 F100
+    8 rapid 5 5 -6
+    8 rapid 10 5 -6
+    8 feed 10 5 -10 F100
+    8 rapid 10 5 -6
+    9 rapid 10 5 60
+    ");
+}
+
+/// Fanuc: pecks stay 1 mm off (a parameter); taps; G85; fine and back boring.
+#[test]
+fn fanuc_pecks_taps_and_bores() {
+    let program = "G90 S500 M3\nG0 Z10\nG99 G83 X1 Z-3 R2 Q3 F100\nG73 X2\nG98 G84 X3 P1.\nG85 X4 L1\nG76 X5 I0.2 J0.1 Q0 P0\nG87 X6 R-4 Z-1 Q0.3 I0.3\nG81 X7 Z-5 K0\n";
+    assert_snapshot!(moves("iso", program), @r"
+    2 rapid 0 0 10
+    3 rapid 1 0 10
+    3 rapid 1 0 2
+    3 feed 1 0 -1 F100
+    3 rapid 1 0 2
+    3 rapid 1 0 0
+    3 feed 1 0 -3 F100
+    3 rapid 1 0 2
+    4 rapid 2 0 2
+    4 feed 2 0 -1 F100
+    4 rapid 2 0 0
+    4 feed 2 0 -3 F100
+    4 rapid 2 0 2
+    5 rapid 3 0 2
+    5 tap 3 0 -3 F100
+    5 dwell 3 0 -3 1 s
+    5 tap 3 0 2 F100
+    5 rapid 3 0 10
+    6 rapid 4 0 10
+    6 rapid 4 0 2
+    6 feed 4 0 -3 F100
+    6 feed 4 0 2 F100
+    6 rapid 4 0 10
+    7 rapid 5 0 10
+    7 rapid 5 0 2
+    7 feed 5 0 -3 F100
+    7 dwell 5 0 -3 0 s
+    7 rapid 5.2 0.1 -3
+    7 rapid 5.2 0.1 10
+    7 rapid 5 0 10
+    8 rapid 6 0 10
+    8 rapid 6.3 0.1 10
+    8 rapid 6.3 0.1 -4
+    8 rapid 6 0 -4
+    8 feed 6 0 -1 F100
+    8 rapid 6.3 0.1 -1
+    8 rapid 6.3 0.1 10
+    8 rapid 6 0 10
+    ");
+}
+
+/// Fanuc G88: the operator retracts to somewhere, then a rapid to the level.
+#[test]
+fn fanuc_retracts_from_an_unknown_place() {
+    let program = "G90 S500 M3\nG0 Z10\nG98 G88 X1 Z-3 R2 F100\n";
+    assert_snapshot!(moves("iso", program), @r"
+    2 rapid 0 0 10
+    3 rapid 1 0 10
+    3 rapid 1 0 2
+    3 feed 1 0 -3 F100
+    3 rapid 1 0 10 from an unknown place
+    ");
+}
+
+/// G31 of Fanuc and Haas is not modal: the rapid comes back.
+#[test]
+fn skipping_is_probing() {
+    assert_snapshot!(moves("iso", "G90 G0 Z10\nG31 Z-5 F60\nX1\nZ10\n"), @r"
+    1 rapid 0 0 10
+    2 probe 0 0 -5 F60
+    3 rapid 1 0 -5
+    4 rapid 1 0 10 from an unknown place
+    ");
+}

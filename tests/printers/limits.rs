@@ -1,0 +1,98 @@
+//! Limits of speed and acceleration that printers' programs set.
+
+use insta::assert_snapshot;
+
+use super::*;
+
+/// Marlin M203 in mm/s, RepRapFirmware M203 in mm/min: lower caps the move,
+/// higher lifts the machine's limit.
+#[test]
+fn speed_limits_of_axes() {
+    assert_snapshot!(marlin("M203 X20 Y150\nG1 X30 Y40 F60000\nG1 Y50\nG1 X0\n"), @r"
+    2 feed X0.000>30.000 Y0.000>40.000 v33.333 raised 1.50
+    3 feed Y40.000>50.000 v150.000 raised 1.50
+    4 feed X30.000>0.000 v20.000
+    ");
+    assert_snapshot!(reprap("M203 X1200\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
+    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000");
+    // Marlin M205 S: no move that extrudes is slower.
+    assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"
+    2 feed X0.000>1.000 E0.000>1.000 v20.000
+    3 feed X1.000>2.000 v10.000
+    ");
+}
+
+/// Marlin M204: S for both, then P and T; R for the extruder alone.
+/// RepRapFirmware: moves of X or Y only.
+#[test]
+fn accelerations_along_the_path() {
+    let moves = "G1 X10 E1 F600\nG1 X20\nG1 E2\nG1 Z1\n";
+    assert_snapshot!(marlin(&format!("M204 S500 T800\n{moves}M204 R300 P400\n{moves}")), @r"
+    2 feed X0.000>10.000 E0.000>1.000 v10.000 a500
+    3 feed X10.000>20.000 v10.000 a800
+    4 feed E1.000>2.000 v10.000
+    5 feed Z0.000>1.000 v10.000 a800
+    7 feed X20.000>10.000 E2.000>1.000 v10.000 a400
+    8 feed X10.000>20.000 v10.000 a800
+    9 feed E1.000>2.000 v10.000 a300
+    10 feed v10.000 a300
+    ");
+    assert_snapshot!(reprap(&format!("M204 P500 T800\n{moves}")), @r"
+    2 feed X0.000>10.000 E0.000>1.000 v10.000 a500
+    3 feed X10.000>20.000 v10.000 a800
+    4 feed E1.000>2.000 v10.000
+    5 feed Z0.000>1.000 v10.000
+    ");
+    assert_snapshot!(marlin("M204 P0\n"), @"printer-value: this value is out of range");
+}
+
+/// Klipper, [toolhead]: VELOCITY caps the path, ACCEL is along the path; both
+/// may be above the machine file. M204: S, or the smaller of P and T.
+#[test]
+fn klipper_velocity_limits() {
+    assert_snapshot!(klipper(
+        "SET_VELOCITY_LIMIT VELOCITY=50 ACCEL=700 SQUARE_CORNER_VELOCITY=5 MINIMUM_CRUISE_RATIO=0\n\
+         G1 X30 Y40 F60000\nG1 E1\nSET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X0\n\
+         M204 P200 T100\nG1 Y0 F600\nM204 P10\nG1 Y1\nRESET_VELOCITY_LIMIT\nG1 Y0\n"
+    ), @r"
+    2 feed X0.000>30.000 Y0.000>40.000 v50.000 a700
+    3 feed E0.000>1.000 v1000.000
+    5 feed X30.000>0.000 v300.000 a3000 raised 3.00
+    7 feed Y40.000>0.000 v10.000 a100 raised 3.00
+    9 feed Y0.000>1.000 v10.000 a100 raised 3.00
+    11 feed Y1.000>0.000 v10.000
+    ");
+    assert_snapshot!(klipper("SET_VELOCITY_LIMIT ACCEL={a}\n"), @"printer-value: this value is out of range");
+}
+
+/// A raised limit must reach the peak: 10 kg from rest to 300 mm/s at
+/// 3000 mm/s² takes 0.3·10·3 = 9 W, at the machine's own limits 1 W.
+#[test]
+fn raised_limits_raise_the_peak() {
+    let machine = machine("klipper");
+    let peak = |program: &str| {
+        pipeline::analyze(
+            Cursor::new(program.as_bytes()),
+            &machine,
+            &Options::default(),
+            None,
+        )
+        .expect("accepted")
+        .peak_w
+    };
+    let own = peak("G1 X100 F60000\n");
+    let raised = peak("SET_VELOCITY_LIMIT VELOCITY=300 ACCEL=3000\nG1 X100 F60000\n");
+    assert!((own - 1.0).abs() < 1e-6, "{own}");
+    assert!((raised - 9.0).abs() < 1e-6, "{raised}");
+    // An arc alike, and Marlin's words for it.
+    let marlin = self::machine("marlin");
+    let arc = pipeline::analyze(
+        Cursor::new("M203 X300 Y300\nG2 X0 Y0 I1000 J0 F60000\n"),
+        &marlin,
+        &Options::default(),
+        None,
+    )
+    .expect("accepted")
+    .peak_w;
+    assert!(arc > 2.0, "{arc}");
+}

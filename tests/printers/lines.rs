@@ -1,0 +1,84 @@
+//! Lines of printers' programs: checksums, free text, several commands, names.
+
+use insta::assert_snapshot;
+
+use super::*;
+
+/// `RepRap` wiki, "G-code", "Checking": XOR of the bytes before the star, 96 for
+/// `N10 G1 X10`; ` F600` turns it into 96 ^ 0x20 ^ 0x46 ^ 0x36 ^ 0x30 ^ 0x30 = 48.
+#[test]
+fn checksums_are_verified() {
+    assert_snapshot!(marlin("N10 G1 X10*96\n"), @r"
+    1 feed X0.000>10.000
+    note no-feed-yet
+    ");
+    assert_snapshot!(marlin("N10 G1 X10*97 ; wrong\n"), @"checksum: the checksum is wrong: the line's own is 96");
+    assert_snapshot!(marlin("N10 G1 X10 F600*12345\n"), @"checksum: the checksum is wrong: the line's own is 48");
+    let text = "N3 M117 Hi";
+    let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);
+    assert_eq!(
+        marlin(&format!("{text}*{sum}\nG0 X1 F60\n")),
+        "2 feed X0.000>1.000 v1.000\n"
+    );
+    assert_snapshot!(marlin("N3 M117 Hi*1\n"), @"checksum: the checksum is wrong: the line's own is 38");
+    assert_snapshot!(marlin("N4 M110 N0\nG0 X1 F60\n"), @"2 feed X0.000>1.000 v1.000");
+}
+
+/// Marlin M117, M118, M23, M862.3, M486: text and flags, read to the comment.
+#[test]
+fn free_text_is_no_fault() {
+    assert_snapshot!(marlin(
+        "M117 Layer 5/10 (25%) \"up\" X9 G1\nM118 E1 hello, world #3\nM23 a~1.gco\n\
+         M862.3 P \"MK3S\"\nM486 A\"Körper\"\nM84 X Y E\nM73 P5 R10 ; five\nM115 U3.9.0\n\
+         M155 S1\nM900 K0.05\nM420 S1 Z10\nM0 Click to go on\nG0 X1 F60\n"
+    ), @r"
+    13 feed X0.000>1.000 v1.000
+    note pressure-advance
+    note bed-levelling
+    ");
+    assert_snapshot!(marlin("M106 S{x}\n"), @"expression: expressions in `{ }` are not supported");
+    assert_snapshot!(marlin("M999.3 ?\nM106 hello\n"), @"unknown-text: this is no parameter of the command");
+    assert_snapshot!(marlin("M1234\n"), @"unknown-code: M1234 is not known to this controller profile");
+    assert_snapshot!(marlin("G1 X10 Y\n"), @"missing-number: `Y` has no number behind it");
+}
+
+/// Marlin and Klipper read one command a line; RepRapFirmware reads all.
+#[test]
+fn several_commands_on_a_line() {
+    assert_snapshot!(marlin("G21 G90\nM5 M400\nG1 X1 F60\n"), @r"
+    3 feed X0.000>1.000 v1.000
+    note no-spindle
+    ");
+    assert_snapshot!(marlin("G90 G91\n"), @"two-commands: this controller reads one command a line");
+    assert_snapshot!(marlin("M106 S9 G1 X5\n"), @"two-commands: this controller reads one command a line");
+    assert_snapshot!(reprap("G91 M83 G1 X1 E1 F60 M400 G1 X1 E1\n"), @r"
+    1 feed X0.000>1.000 E0.000>1.000 v1.000
+    1 feed X1.000>2.000 E1.000>2.000 v1.000
+    ");
+}
+
+/// Klipper, "G-Codes": names without motion pass; macros of the machine and
+/// RepRapFirmware's meta commands are refused by name.
+#[test]
+fn extended_commands() {
+    assert_snapshot!(klipper(
+        "SET_PRESSURE_ADVANCE EXTRUDER=extruder ADVANCE=.001\nEXCLUDE_OBJECT_START NAME=part_1\n\
+         TIMELAPSE_TAKE_FRAME\nRESPOND TYPE=echo MSG=\"hi; there\"\nSET_GCODE_OFFSET Z=.1\n\
+         G1 Z1 F60\nset_gcode_offset Z=0 MOVE=1\nBED_MESH_CALIBRATE\n"
+    ), @r"
+    6 feed from anywhere Z v1.000
+    7 feed from anywhere XYZE
+    8 feed from anywhere XYZE
+    note pressure-advance
+    note unknown-moves
+    note bed-levelling
+    ");
+    assert_snapshot!(klipper("PRINT_START BED=60 EXTRUDER=200\n"), @"unknown-macro: `PRINT_START` is a macro or a command that this profile does not know");
+    assert_snapshot!(marlin("SET_VELOCITY_LIMIT ACCEL=5\n"), @"unknown-macro: `SET_VELOCITY_LIMIT` is a macro or a command that this profile does not know");
+    assert_snapshot!(reprap("if x > 1\n"), @"meta-command: `if`: branches, loops and variables are not supported");
+    assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file");
+    assert_snapshot!(reprap("M99\n"), @"unsupported-code: M99 belongs to a macro file");
+    assert_snapshot!(reprap("G1 X{global.x}\n"), @"expression: expressions in `{ }` are not supported");
+    assert_snapshot!(marlin("M502\n"), @"unsupported-code: M502 loads settings that the machine file does not describe");
+    assert_snapshot!(marlin("M209 S1\n"), @"unsupported-code: M209 turns moves of the extruder into retracts");
+}

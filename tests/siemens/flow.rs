@@ -1,0 +1,165 @@
+//! Jumps, structures, repeated sections and subprograms ("Job Planning").
+
+use insta::assert_snapshot;
+
+use super::moves;
+use crate::listing::{listing, machine};
+/// "Program jumps", "Program branch (CASE)", "Check structures".
+#[test]
+fn jumps_and_structures() {
+    let program = "\
+G0 R1=1 R2=3
+AGAIN: X=R1 ; a label
+R1=R1+1
+IF R1<R2 GOTOB AGAIN
+N50 GOTOF N70
+N60 X99
+N70 GOTOC NOWHERE
+CASE (R1) OF 1 GOTOF ONE 3 GOTOF THREE DEFAULT GOTOF NEITHER
+ONE: X98
+NEITHER: X97
+THREE: IF R1==3
+  IF R1==4
+    X96
+  ELSE
+    Y1
+  ENDIF
+ELSE
+  X95
+ENDIF
+FOR R3=1 TO 2
+  FOR R4=8 TO 9
+    Y=R3*10+R4
+  ENDFOR
+ENDFOR
+WHILE R1>2
+  R1=R1-1
+  Z=R1
+ENDWHILE
+REPEAT
+  R1=R1+1
+  Z=R1*10
+UNTIL R1>=4
+LOOP
+  R1=R1+1
+  IF R1>6 GOTOF OUT
+  Z=R1
+ENDLOOP
+OUT: GOTO 1000
+X94
+:1000 Z0
+M30
+X93
+";
+    assert_snapshot!(moves(program), @r"
+2 rapid X1
+2 rapid X2
+15 rapid Y1
+22 rapid Y18
+22 rapid Y19
+22 rapid Y28
+22 rapid Y29
+27 rapid Z2
+31 rapid Z30
+31 rapid Z40
+36 rapid Z5
+36 rapid Z6
+40 rapid Z0
+");
+}
+
+/// "Repeat program section (REPEAT, REPEATB, ENDLABEL)".
+#[test]
+fn sections_are_repeated() {
+    let program = "\
+G0 G91
+FIRST: X1
+SECOND: X10
+REPEATB FIRST P=2
+REPEAT FIRST SECOND P=1
+REPEAT FIRST P1
+GOTOF DONE
+LATER: Y1
+Y10
+ENDLABEL:
+Y100
+DONE: REPEAT LATER P2
+M30
+";
+    let said = moves(program);
+    // X: 1 11 | 12 13 | 14 24 | then the section up to the REPEAT itself.
+    let ends: Vec<&str> = said.lines().collect();
+    assert_eq!(ends.len(), 6 + 6 + 4, "{said}");
+    assert_snapshot!(moves("G0 G91\nA: X1\nB: Y1\nREPEAT A B P2\nREPEATB A\n"), @r"
+2 rapid X1
+3 rapid Y1
+2 rapid X2
+3 rapid Y2
+2 rapid X3
+3 rapid Y3
+2 rapid X4
+");
+}
+
+/// "Subprogram technique": in the same file, behind `%_N_NAME_SPF`.
+#[test]
+fn subprograms_in_the_same_file() {
+    let program = "\
+%_N_MAIN_MPF
+;$PATH=/_N_MPF_DIR
+EXTERN BOX(REAL, REAL, VAR REAL)
+DEF REAL SIDE=4, SUM
+G0 X1
+BOX(SIDE,,SUM) P2
+X=SUM
+CALL \"L5\"
+L5 P2
+MCALL L5
+X0
+MCALL
+X20
+M30
+%_N_BOX_SPF
+PROC BOX(REAL A, REAL B=2, VAR REAL C) SAVE
+G91 X=A Y=B
+C=A+B
+RET
+%_N_L5_SPF
+Z=$AA_IW[Z]+1
+M17
+";
+    assert_snapshot!(moves(program), @r"
+5 rapid X1
+17 rapid X5 Y2
+17 rapid X9 Y4
+7 rapid X6
+21 rapid Z1
+21 rapid Z2
+21 rapid Z3
+11 rapid X0
+21 rapid Z4
+13 rapid X20
+");
+}
+
+#[test]
+fn subprograms_in_files_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("Hole.spf"),
+        "PROC HOLE(REAL D)\nG1 Z=-D F100\nG0 Z1\nENDPROC\n",
+    )
+    .unwrap();
+    let run = |program: &str| listing(program, &machine("siemens"), Some(folder.path()));
+    assert_snapshot!(run("G0 X5\nhole(3)\nNONE\n"), @r"
+1 rapid X5
+2 feed Z-3 F100
+3 rapid Z1
+3 no-such-subprogram: there is no subprogram NONE, and no word of this name
+");
+    std::fs::write(folder.path().join("OPEN.SPF"), "G0 X1\n").unwrap();
+    assert_snapshot!(run("OPEN\n"), @r"
+1 rapid X1
+1 subprogram: the subprogram ends without a return
+");
+}
