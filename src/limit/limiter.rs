@@ -134,7 +134,7 @@ impl<'m> Limiter<'m> {
         self.slots.is_empty()
             && !assessment.blended
             && !assessment.ahead
-            && !(self.shifted && assessment.spindle.runs)
+            && (!self.shifted || !assessment.spindle.runs)
             && self.solver.model.fits(&assessment.demand)
     }
 

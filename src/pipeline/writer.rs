@@ -206,18 +206,12 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             && let [Step::Move(mv)] = line.steps.as_slice()
             && !self.assessor.waits(mv)
         {
-            let Self {
-                assessor,
-                tally,
-                spindle,
-                ..
-            } = self;
+            let (assessor, tally) = (&mut self.assessor, &mut self.tally);
+            let spindle = &mut self.spindle;
             assessor.want = tally.want();
             assessor.push(mv, line.text, &mut |mv, assessment, text| {
                 tally.add(mv, assessment, text);
-                if spindle.judge(mv, assessment) {
-                    judged = Some(*assessment);
-                }
+                judged = spindle.judge(mv, assessment).then_some(*assessment);
             });
             // Nearly every block of a long program: nothing is to be done.
             if let Some(assessment) = &judged
