@@ -7,7 +7,7 @@ mod profile;
 mod recorded;
 
 use gwatt::interpret::{ActionKind, Diagnostics, Facts, Interpreter, MoveKind, Reading, Step};
-use gwatt::machine::{AXES, LookAhead, Machine};
+use gwatt::machine::{AXES, LookAhead, Machine, QueueEffect};
 use gwatt::plan::Overrides;
 use gwatt::plan::lookahead::{Element, Joint, PathPlanner, Planned};
 use gwatt::syntax::{Block, scan_line};
@@ -162,13 +162,19 @@ pub(crate) fn plan_elements(
                         elements.insert(mv.line, element);
                     }
                 }
-                Step::Action(action) => match action.kind {
-                    ActionKind::Spindle
-                    | ActionKind::ToolChange
-                    | ActionKind::Stop
-                    | ActionKind::End => planner.stop(),
-                    _ => {}
-                },
+                Step::Action(action) => {
+                    let letter = match action.kind {
+                        ActionKind::SpindleSpeed => b'S',
+                        ActionKind::Offset => b'G',
+                        _ => b'M',
+                    };
+                    let number = (action.value * 10.0).round() as u16;
+                    let said = machine.controller.queue.effect(letter, number);
+                    let ends = matches!(action.kind, ActionKind::Stop | ActionKind::End);
+                    if ends || said == Some(QueueEffect::Stop) {
+                        planner.stop();
+                    }
+                }
             }
         }
         pieces.extend(std::iter::from_fn(|| planner.pop()));

@@ -1,5 +1,6 @@
 //! Tests.
 
+mod bus;
 mod layers;
 mod conformance;
 mod converter;

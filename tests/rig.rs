@@ -60,6 +60,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         force_curves: Vec::new(),
         responses: Responses::default(),
         spindle: None,
+        tools: Vec::new(),
         loads: Vec::new(),
         presets: Vec::new(),
         limits: Limits {
@@ -101,10 +102,12 @@ fn controller() -> Controller {
             peck_clearance_mm: 1.0,
             dialect: gwatt::machine::Dialect::default(),
         },
+        queue: gwatt::machine::Queue::default(),
         planner: Planner {
             rapid: RapidPath::Linear,
             arc_rule: ArcRule::Shared,
             rapid_joint: gwatt::machine::RapidJoint::Stop,
+            spindle_wait: gwatt::machine::SpindleWait::Unknown,
             dwell_stops: false,
             look_ahead: None,
         },

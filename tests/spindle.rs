@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use gwatt::machine::{Machine, Spindle, TorquePoint};
+use gwatt::machine::{Machine, Spindle, SpindleWait, TorquePoint};
 use gwatt::plan::SpindleDrive;
 use gwatt::plan::period::{Motion, Ramp};
 use gwatt::power::{SpindlePower, spindle_run};
@@ -28,7 +28,9 @@ fn plain() -> Spindle {
         base_load_w: 0.0,
         peak_power_w: None,
         regen_power_w: None,
-        wait: true,
+        wait: SpindleWait::Feeds,
+        converter: 0,
+        cutting_power_w: 0.0,
     }
 }
 

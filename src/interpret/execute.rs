@@ -20,6 +20,7 @@ use super::report::{Diagnostics, Report};
 use super::siemens::{Siemens, is_beyond_words};
 use super::special::Special;
 use super::spindle_speed::SpindleMode;
+use super::spindle_told::Told;
 use super::state_words::{Saved, Switches};
 use super::tools::Tools;
 use super::transfer::Transfer;
@@ -51,6 +52,7 @@ pub(super) struct Control<'m> {
     /// G16.
     pub(super) polar: Option<Polar>,
     pub(super) spindle: SpindleMode,
+    pub(super) told: Told,
     pub(super) switches: Switches,
     /// What M70 has saved, for each subprogram that is running.
     pub(super) saved: Vec<Option<Box<Saved>>>,
@@ -139,6 +141,7 @@ impl<'m> Interpreter<'m> {
             programmed: Programmed::default(),
             polar: None,
             spindle: SpindleMode::default(),
+            told: Told::default(),
             switches: Switches::default(),
             saved: vec![None],
             probe: [Some(0.0); 10],
@@ -210,13 +213,11 @@ impl<'m> Interpreter<'m> {
         facts: &mut Facts,
         diagnostics: &mut Diagnostics,
     ) {
-        let plain = block.issues.is_empty();
-        if plain
-            && self
-                .control
-                .direct(line, text, block, steps, facts)
-                .is_some()
+        let noted = self.control.note_message(line, text, block, steps);
+        if block.issues.is_empty()
+            && let Some(()) = self.control.direct(line, text, block, steps, facts)
         {
+            facts.plain &= !noted;
             return;
         }
         *facts = Facts::default();
@@ -402,6 +403,7 @@ impl Control<'_> {
         if !self.debts.is_empty() {
             let span = run.whole();
             self.settle_debts(span, run);
+            self.tell_spindle(run);
         }
         let siemens = self.siemens.as_deref();
         let special = siemens.is_some_and(|siemens| !siemens.is_plain_motion(run.words));
@@ -446,6 +448,7 @@ impl Control<'_> {
             self.dwell(run, dwell_s);
         }
         self.settings(run);
+        self.note_queue_and_spindle(run);
         self.turn_knobs(run);
         self.motion(run);
         if run.report.diagnostics.errors == errors {

@@ -32,6 +32,8 @@ pub enum MoveKind {
     Probe,
     /// Waiting.
     Dwell,
+    /// A run of the spindle by itself; programs have none, reports do.
+    Spindle,
 }
 
 impl MoveKind {
@@ -46,6 +48,7 @@ impl MoveKind {
             Self::Tap => "tap",
             Self::Probe => "probe",
             Self::Dwell => "dwell",
+            Self::Spindle => "spindle",
         }
     }
 }
@@ -186,4 +189,23 @@ pub enum ActionKind {
     Other,
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,
+    /// Offsets or lengths change: G54, G92, G43 … (the G number); only where
+    /// the look-ahead is modelled, which may end at it.
+    Offset,
+    /// The speed that S asks for, 1/min, as soon as it is not a surface speed;
+    /// like the following only where the machine has a spindle.
+    SpindleRpm,
+    /// Under G96 the speed of the surface, mm/s; 0: no longer. Before it, the
+    /// largest speed of the spindle and the place of its axis are told.
+    SurfaceSpeed,
+    /// The largest spindle speed under G96, 1/min.
+    SpindleClamp,
+    /// X of the spindle's axis in machine coordinates, mm; not a number where it
+    /// is not known.
+    SpindleCenter,
+    /// The tool in the spindle.
+    ToolLoaded,
+    /// A comment that acts: its place in [`crate::machine::MESSAGES`]; under the
+    /// same condition.
+    Message,
 }

@@ -21,6 +21,15 @@ pub(super) struct SpindleMode {
     pub(super) surface_mm_min: Option<f64>,
     /// Largest speed under G96, 1/min; infinite without a clamp.
     limit_rpm: f64,
+    /// G96 of SINUMERIK: somewhere up to its limit, 1/min.
+    pub(super) unknown_up_to_rpm: Option<f64>,
+}
+
+impl SpindleMode {
+    /// Largest speed under G96, 1/min; infinite without a clamp.
+    pub(super) fn limit_rpm(&self) -> f64 {
+        self.limit_rpm
+    }
 }
 
 impl Default for SpindleMode {
@@ -28,6 +37,7 @@ impl Default for SpindleMode {
         Self {
             surface_mm_min: None,
             limit_rpm: f64::INFINITY,
+            unknown_up_to_rpm: None,
         }
     }
 }

@@ -57,6 +57,9 @@ pub struct Limiter<'m> {
     solver: Solver<'m>,
     slots: VecDeque<Slot>,
     depths: Depths,
+    /// A move has been changed since the spindle was steady last: those behind
+    /// it meet its run later than in the original.
+    shifted: bool,
 }
 
 impl<'m> Limiter<'m> {
@@ -68,6 +71,7 @@ impl<'m> Limiter<'m> {
             solver: Solver::new(machine, how),
             slots: VecDeque::new(),
             depths,
+            shifted: false,
         }
     }
 
@@ -82,6 +86,7 @@ impl<'m> Limiter<'m> {
         sink: &mut impl FnMut(Outcome),
     ) {
         let joined = assessment.joined;
+        self.shifted &= assessment.spindle.runs;
         if assessment.ahead {
             self.settle(find, sink);
             let depth = self.depths.of(mv);
@@ -90,11 +95,14 @@ impl<'m> Limiter<'m> {
                 Certificate::Planned => Ends::Any(depth),
                 Certificate::Robust => Ends::Any(depth.max(2)),
             };
-            sink(self.alone(mv, assessment, ends, find));
+            let outcome = self.alone(mv, assessment, ends, find);
+            self.shifted |= outcome.change.is_some();
+            sink(outcome);
             return;
         }
         if !assessment.blended {
             let outcome = self.alone(mv, assessment, Ends::Rest, find);
+            self.shifted |= outcome.change.is_some();
             if joined && !self.slots.is_empty() {
                 let mut slot = Slot::new(mv, assessment);
                 slot.rider = true;
@@ -126,6 +134,7 @@ impl<'m> Limiter<'m> {
         self.slots.is_empty()
             && !assessment.blended
             && !assessment.ahead
+            && (!self.shifted || !assessment.spindle.runs)
             && self.solver.model.fits(&assessment.demand)
     }
 
@@ -161,6 +170,7 @@ impl<'m> Limiter<'m> {
             let Some(slot) = self.slots.pop_front() else {
                 break;
             };
+            self.shifted |= slot.outcome.change.is_some();
             sink(slot.outcome);
         }
     }
@@ -179,12 +189,16 @@ impl<'m> Limiter<'m> {
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Outcome {
         let deeper = assessment.ahead && self.depths.of(mv) > 0;
-        if self.solver.model.fits(&assessment.demand) && !deeper {
+        let fits = self.solver.model.fits(&assessment.demand) && !deeper;
+        if fits && !(self.shifted && assessment.spindle.runs) {
             return Outcome::default();
         }
         let Some(Waiting { permit, .. }) = find(self.slots.len()) else {
             return Outcome::default();
         };
+        if fits && self.solver.fits_later(mv, assessment, &permit, ends) {
+            return Outcome::default();
+        }
         match self.solver.solve(mv, assessment, &permit, ends) {
             Ok(change) => Outcome {
                 change: (!change.is_none()).then(|| Box::new(change)),

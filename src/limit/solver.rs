@@ -9,7 +9,7 @@ use super::root::largest;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidJoint};
 use crate::plan::{Overrides, Plan, blended_bound, blended_speed, plan};
-use crate::power::{Assessment, PowerModel, Want};
+use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// How often a rounded value is lowered by one more step before giving up.
@@ -83,6 +83,13 @@ impl<'m> Solver<'m> {
         if mv.kind == MoveKind::Dwell
             || assessment.top_speed_mm_s == 0.0 && mv.unknown_start.is_empty()
         {
+            if assessment.spindle.drawn_w > 0.0 || assessment.spindle.fed_back_w > 0.0 {
+                return Err(Obstacle::new(
+                    "spindle-power",
+                    "the spindle, with base load and switched loads, exceeds the limit",
+                    "a lower S, or a drive that runs up more slowly; gwatt writes no S",
+                ));
+            }
             return Err(Obstacle::new(
                 "base-load",
                 "base load, switched loads and holding the axes alone exceed the limit",
@@ -102,6 +109,23 @@ impl<'m> Solver<'m> {
             (Strategy::Optimal, _) => self.optimal(case, levers)?,
         };
         self.verify(case, change)
+    }
+
+    /// Whether a move fits however late it begins during a run of the spindle.
+    pub(super) fn fits_later(
+        &self,
+        mv: &Move,
+        assessment: &Assessment,
+        permit: &Permit,
+        ends: Ends,
+    ) -> bool {
+        let case = Case {
+            mv,
+            assessment,
+            permit,
+            ends,
+        };
+        self.load(case, mv) <= 1.0 + 1e-9
     }
 
     /// Nothing is proposed that does not fit, or that breaks a floor.
@@ -125,16 +149,34 @@ impl<'m> Solver<'m> {
     pub(super) fn load(&self, case: Case<'_>, mv: &Move) -> f64 {
         let depth = match case.ends {
             Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
-            _ => return self.planned(mv).1,
+            _ => return self.planned_load(case, mv),
         };
+        let share = &share(case, mv);
+        let speed_mm_s = blended_speed(self.machine, mv, self.largest);
         if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
             let plan = plan(self.machine, mv, self.largest);
             let ramps = Plan::ramps(plan.speed_limit_mm_s, plan.accel_mm_s2);
-            return self.model.demand(mv, &ramps, Want::PEAKS).load_ratio;
+            let demand = self.model.demand(mv, &ramps, Want::PEAKS);
+            return self.model.load_beside(&demand, share, speed_mm_s);
         }
         let bound = blended_bound(self.machine, mv, self.largest);
-        let load = self.model.robust(mv, &bound, &mv.accel_mm_s2).load_ratio;
+        let demand = self.model.robust(mv, &bound, &mv.accel_mm_s2);
+        let load = self.model.load_beside(&demand, share, speed_mm_s);
         load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
+    }
+
+    /// Load of a move that begins and ends at rest, with the spindle beside it.
+    fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
+        let plan = plan(self.machine, mv, self.largest);
+        let demand = self.model.demand(mv, &plan, Want::PEAKS);
+        let known = mv.unknown_start.is_empty();
+        let speed_mm_s = if known {
+            plan.top_speed_mm_s
+        } else {
+            mv.feed_mm_s * self.largest.feed
+        };
+        let share = &share(case, mv);
+        self.model.load_beside(&demand, share, speed_mm_s)
     }
 
     /// Whether a move has to fit whatever its neighbours do, changed or not.
@@ -149,13 +191,6 @@ impl<'m> Solver<'m> {
         self.machine.controller.planner.rapid_joint != RapidJoint::All
             && rapid.kind == MoveKind::Rapid
             && changed.kind != MoveKind::Rapid
-    }
-
-    /// Plan and load of a move.
-    pub(super) fn planned(&self, mv: &Move) -> (Plan, f64) {
-        let plan = plan(self.machine, mv, self.largest);
-        let load = self.model.demand(mv, &plan, Want::PEAKS).load_ratio;
-        (plan, load)
     }
 
     pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
@@ -184,7 +219,9 @@ impl<'m> Solver<'m> {
             SpeedLever::RapidPercent(_) => base.rapid_factor * 100.0,
             // What its neighbours may carry it up to, however short it is.
             _ if self.is_open(case, &base) => blended_speed(self.machine, &base, self.largest),
-            _ if mv.unknown_start.is_empty() => self.planned(&base).0.top_speed_mm_s,
+            _ if mv.unknown_start.is_empty() => {
+                plan(self.machine, &base, self.largest).top_speed_mm_s
+            }
             _ => base.feed_mm_s.min(1e6),
         };
         let load_top = load_at(lever, top);
@@ -230,7 +267,7 @@ impl<'m> Solver<'m> {
 
     fn by_accel(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         let knob = levers.accel.ok_or_else(|| self.no_accel_lever(case))?;
-        if let Some(load) = self.cruise_load(case.mv).filter(|load| *load > 1.0) {
+        if let Some(load) = self.cruise_load(case).filter(|load| *load > 1.0) {
             return Err(Obstacle::new(
                 "friction-alone",
                 format!(
@@ -316,7 +353,8 @@ impl<'m> Solver<'m> {
     }
 
     /// Load of a cruise at the wanted speed; `None` for moves without a path.
-    fn cruise_load(&self, mv: &Move) -> Option<f64> {
+    fn cruise_load(&self, case: Case<'_>) -> Option<f64> {
+        let mv = case.mv;
         let mut slow = mv.clone();
         // So slow a start that the ramps need next to nothing.
         slow.accel_mm_s2 = slow.accel_mm_s2.map(|accel| accel * 1e-9);
@@ -325,7 +363,10 @@ impl<'m> Solver<'m> {
             return None;
         };
         let cruise = crate::plan::Plan::cruise(planned.speed_limit_mm_s, mv.length_mm);
-        Some(self.model.demand(&slow, &cruise, Want::PEAKS).load_ratio)
+        let demand = self.model.demand(&slow, &cruise, Want::PEAKS);
+        let share = &case.assessment.spindle;
+        let speed_mm_s = planned.speed_limit_mm_s;
+        Some(self.model.load_beside(&demand, share, speed_mm_s))
     }
 
     pub(super) fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {
@@ -415,6 +456,21 @@ impl<'m> Solver<'m> {
             self.machine.controller.name
         );
         Obstacle::new("no-knob", message, "use --strategy optimal or speed")
+    }
+}
+
+/// What the spindle takes of a move, changed or not: a rapid written as a feed
+/// may wait until it has its speed.
+fn share(case: Case<'_>, mv: &Move) -> SpindleShare {
+    let own = case.assessment.spindle;
+    let waits = case.mv.kind == MoveKind::Rapid && mv.kind != MoveKind::Rapid;
+    match own.settled_w.filter(|_| waits) {
+        Some(settled_w) => SpindleShare {
+            drawn_w: settled_w,
+            fed_back_w: 0.0,
+            ..own
+        },
+        None => own,
     }
 }
 

@@ -186,19 +186,31 @@ fn load(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64
         )
     });
     let (bound, accel) = envelope(parts);
-    window_load(solver, window, &bound, &accel)
+    window_load(solver, slots, window, &bound, &accel)
 }
 
 fn window_load(
     solver: &Solver<'_>,
+    slots: &VecDeque<Slot>,
     window: &Window<'_>,
     bound: &SpeedBound,
     accel: &AxisValues,
 ) -> f64 {
     window
         .iter()
-        .map(|member| solver.model.robust(member.mv, bound, accel).load_ratio)
+        .map(|member| {
+            let demand = solver.model.robust(member.mv, bound, accel);
+            let share = &slots[member.index].assessment.spindle;
+            solver.model.load_beside(&demand, share, path_speed(bound))
+        })
         .fold(0.0, f64::max)
+}
+
+/// A path speed that X, Y and Z together do not exceed, mm/s.
+fn path_speed(bound: &SpeedBound) -> f64 {
+    let axes = bound.positive.iter().zip(&bound.negative).take(3);
+    let squares = axes.map(|(positive, negative)| positive.max(*negative).powi(2));
+    squares.sum::<f64>().sqrt()
 }
 
 /// Lowers the axis speeds of the window to a common cap.
@@ -239,7 +251,7 @@ fn lower_speed(
             .iter()
             .zip(factors(cap))
             .map(|(bound, factor)| (scale(bound, factor), &accel));
-        window_load(solver, window, &envelope(scaled).0, &accel)
+        window_load(solver, slots, window, &envelope(scaled).0, &accel)
     };
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;
@@ -339,7 +351,7 @@ fn lower_accel(
     let load_at = |cap: f64| {
         let accels = lowered(cap);
         let (_, accel) = envelope(accels.iter().map(|accel| (SpeedBound::default(), accel)));
-        window_load(solver, window, &bound, &accel)
+        window_load(solver, slots, window, &bound, &accel)
     };
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;

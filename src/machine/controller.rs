@@ -4,6 +4,7 @@
 use super::axis::{Axis, AxisKind};
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
+use super::queue::Queue;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Controller {
     pub language: Language,
     /// How it plans.
     pub planner: Planner,
+    /// What words that move no axis do to the moves before them.
+    pub queue: Queue,
     /// Words that limit speed or acceleration, best first.
     pub knobs: Vec<Knob>,
     /// How the speed of a rapid can be lowered without such a word.
@@ -218,8 +221,23 @@ pub struct Planner {
     /// Whether a dwell of no time ends the move before it at rest, so that a
     /// rapid may be written as a feed between two of them.
     pub dwell_stops: bool,
+    /// What waits for the spindle's speed, if the machine does not say.
+    pub spindle_wait: SpindleWait,
     /// How corners are run through; `None`: not modelled.
     pub look_ahead: Option<LookAhead>,
+}
+
+/// What waits until the spindle has its speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpindleWait {
+    /// It is not known whether anything does.
+    Unknown,
+    /// Nothing.
+    Nothing,
+    /// Moves that cut; rapids do not.
+    Feeds,
+    /// Whatever comes next.
+    Blocks,
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.

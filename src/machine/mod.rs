@@ -7,6 +7,7 @@ mod controller;
 mod look_ahead;
 mod model;
 mod printer;
+mod queue;
 mod response;
 
 pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
@@ -16,4 +17,5 @@ pub use controller::*;
 pub use look_ahead::*;
 pub use model::*;
 pub use printer::*;
+pub use queue::*;
 pub use response::*;

@@ -1,7 +1,7 @@
 //! The validated machine: what the rest of gwatt reads.
 
 use super::axis::{AXES, Axis, AxisId, AxisSet, AxisValues};
-use super::controller::{Controller, PathMode, RapidPath};
+use super::controller::{Controller, PathMode, RapidPath, SpindleWait};
 use super::response::Responses;
 
 /// A machine: its axes, converters and limits, all values checked.
@@ -25,6 +25,8 @@ pub struct Machine {
     pub responses: Responses,
     /// The spindle, if described.
     pub spindle: Option<Spindle>,
+    /// Tools with what cutting takes.
+    pub tools: Vec<CuttingTool>,
     /// What program words switch on and off.
     pub loads: Vec<Load>,
     /// Limits for combinations of axes.
@@ -172,8 +174,32 @@ pub struct Spindle {
     pub peak_power_w: Option<f64>,
     /// Largest electrical power that its drive feeds back; `None`: no limit.
     pub regen_power_w: Option<f64>,
-    /// Whether feed moves wait for the speed.
-    pub wait: bool,
+    /// What waits for the speed.
+    pub wait: SpindleWait,
+    /// Index of its converter.
+    pub converter: usize,
+    /// What cutting takes at the spindle with a tool that `Machine::tools` does
+    /// not have, W.
+    pub cutting_power_w: f64,
+}
+
+/// What cutting with a tool takes at the spindle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cutting {
+    /// This power in W, at any feed.
+    Power(f64),
+    /// This force in N at the speed of the feed: specific cutting force times
+    /// width and depth of cut, `P = kc·ae·ap·vf`.
+    Force(f64),
+}
+
+/// A tool, as far as it draws power.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CuttingTool {
+    /// Its T number.
+    pub number: f64,
+    /// What cutting with it takes.
+    pub cutting: Cutting,
 }
 
 /// A point of a spindle's torque curve.

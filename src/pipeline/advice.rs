@@ -5,6 +5,10 @@ use crate::limit::{Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::Machine;
 use crate::power::Assessment;
 
+/// What helps where the spindle alone is too much.
+pub(super) const SPINDLE_HELP: &str = "a lower S, or a drive that runs up and brakes more slowly \
+     (`peak_power_w`, `regen_power_w` or `accel_time_s` in [spindle]); gwatt writes no S";
+
 /// Gives advice for moves that do not fit.
 pub(super) struct Adviser<'m> {
     machine: &'m Machine,
@@ -31,6 +35,9 @@ impl<'m> Adviser<'m> {
         assessment: &Assessment,
         interpreter: &Interpreter<'_>,
     ) -> String {
+        if mv.kind == MoveKind::Spindle {
+            return SPINDLE_HELP.to_owned();
+        }
         if assessment.blended && !assessment.ahead {
             return "lower feed or acceleration here and in the neighbouring blocks".to_owned();
         }

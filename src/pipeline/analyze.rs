@@ -23,7 +23,9 @@ pub fn analyze<R: Read + Seek + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
-    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL).watching();
+    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL)
+        .starting(options.reading.start)
+        .watching();
     let energy = rows.is_some();
     let mut tally = Tally::new(machine, options, rows);
     let adviser = Adviser::new(machine);

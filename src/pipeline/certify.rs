@@ -7,12 +7,16 @@
 //! actions are the original's, (c) no effective path speed or acceleration
 //! went up, (d) the effective feed of each untouched move is what it was.
 
+mod spindle;
+
+use std::collections::VecDeque;
+
 use super::batch::Batch;
 use super::expected::{Expected, ExpectedMove, Originals, added_stop, different};
 use super::tally::Tally;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Stance, Step};
+use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
 use crate::limit::{Depths, Obstacle, Place};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
@@ -56,6 +60,9 @@ pub(super) struct Verdict<'m, 'r> {
     /// lowered with it.
     before: Option<Place>,
     deepen_next: bool,
+    /// Rows of the spindle in the written program that no row of the original
+    /// has met yet.
+    spindle: VecDeque<Assessment>,
 }
 
 /// Why the certificate does not hold: the first reasons in full.
@@ -117,7 +124,9 @@ impl<'m, 'r> Certifier<'m, 'r> {
             behind: false,
             interpreter,
             diagnostics: Diagnostics::default(),
-            assessor: Assessor::new(machine, options.certificate, Want::ALL).watching(),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL)
+                .starting(options.reading.start)
+                .watching(),
             block: Block::default(),
             steps: Vec::new(),
             facts: Facts::default(),
@@ -211,6 +220,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
         self.line += 1;
         mv.line = self.line;
         self.behind = true;
+        verdict.pass_spindle();
         verdict.done += 1;
         assessor.want = verdict.tally.want();
         assessor.push(mv, text, &mut |mv, after, text| {
@@ -245,6 +255,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             deeper: Vec::new(),
             before: None,
             deepen_next: false,
+            spindle: VecDeque::new(),
         }
     }
 
@@ -260,6 +271,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// Whether the written program must still do something.
     pub(super) fn expects(&mut self) -> bool {
+        self.pass_spindle();
         self.originals.get(self.done).is_some()
     }
 
@@ -279,6 +291,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     /// The figures of the written program, and why the certificate does not
     /// hold.
     pub(super) fn finish(mut self, found: &[Diagnostic], lines: u64) -> Result<Certified, Failure> {
+        self.pass_to_move();
         self.tally.check()?;
         let mut reasons = self.reasons;
         for found in found {
@@ -304,6 +317,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// (b): the step must be the original's next one.
     pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
+        self.pass_spindle();
         let original = self.originals.get(self.done).map(|original| &*original);
         if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
             return;
@@ -322,7 +336,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         let line = match original {
             Some(Expected::Move(original)) => original.line,
             Some(Expected::Action(original)) => original.line,
-            None => 0,
+            Some(Expected::Spindle(..)) | None => 0,
         };
         let message = format!("the written program has {message} here");
         self.reasons
@@ -331,9 +345,10 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// (a), (c) and (d): the written move is judged.
     pub(super) fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
-        while matches!(self.originals.get(self.judged), Some(Expected::Action(_))) {
-            self.judged += 1;
+        if mv.kind == MoveKind::Spindle {
+            return self.judge_spindle(mv, after, text);
         }
+        self.pass_to_move();
         let original = self.originals.get(self.judged).map(|original| &*original);
         if added_stop(mv, original) {
             return;

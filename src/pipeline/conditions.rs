@@ -2,7 +2,22 @@
 
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
-use crate::machine::{Machine, PathMode};
+use crate::machine::{Machine, PathMode, Spindle, SpindleWait};
+
+/// How the spindle counts.
+fn spindle_condition(spindle: &Spindle) -> &'static str {
+    match spindle.wait {
+        SpindleWait::Nothing => "the spindle runs while the axes move: nothing waits for its speed",
+        SpindleWait::Feeds => {
+            "the spindle runs while rapids move; moves that cut wait for its speed"
+        }
+        SpindleWait::Blocks => "whatever comes next waits for the spindle's speed",
+        SpindleWait::Unknown => {
+            "whether moves wait for the spindle is not known: they count with it, \
+             their times without"
+        }
+    }
+}
 
 /// What the figures rest on, in plain sentences.
 pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
@@ -56,8 +71,21 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         }
         .to_owned(),
     );
+    if let Some(spindle) = &machine.spindle {
+        conditions.push(spindle_condition(spindle).to_owned());
+    }
+    let cuts = machine
+        .spindle
+        .as_ref()
+        .is_some_and(|it| it.cutting_power_w > 0.0)
+        || !machine.tools.is_empty();
     conditions.push(
-        "cutting forces are not counted; emergency stop and feed hold are outside".to_owned(),
+        if cuts {
+            "cutting counts as the machine file has it; emergency stop and feed hold are outside"
+        } else {
+            "cutting forces are not counted; emergency stop and feed hold are outside"
+        }
+        .to_owned(),
     );
     if !summary.over_time.is_empty() {
         conditions.push(
@@ -65,6 +93,9 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
              than a window may run again at once"
                 .to_owned(),
         );
+        if machine.spindle.is_some() {
+            conditions.push("limits over time do not count the spindle's power".to_owned());
+        }
         if summary.certificate == Some(Certificate::Robust) {
             conditions.push(
                 "blended moves last no longer than with a stop at both ends, and no shorter than \

@@ -102,6 +102,14 @@ impl Entry {
         }
     }
 
+    /// Its moves in order.
+    pub(super) fn its_moves(&self) -> impl Iterator<Item = &Move> {
+        self.steps.iter().filter_map(|step| match step {
+            Step::Move(mv) => Some(mv),
+            Step::Action(_) => None,
+        })
+    }
+
     /// The text of the line that one of its moves belongs to.
     pub(super) fn text_of(&self, mv: &Move) -> &[u8] {
         let key = (mv.text, mv.line);

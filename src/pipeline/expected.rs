@@ -14,6 +14,9 @@ use crate::power::Assessment;
 pub(super) enum Expected {
     Move(ExpectedMove),
     Action(Action),
+    /// A row of the spindle alone, for which the program has no step; with the
+    /// number of the command that it belongs to.
+    Spindle(Box<Row>, u32),
 }
 
 /// A move of the original, as far as the written one must equal it. It starts

@@ -21,6 +21,7 @@ mod row;
 mod schedule;
 mod series;
 mod spindle;
+mod spindle_rows;
 mod summary;
 mod table;
 mod tally;

@@ -14,7 +14,7 @@ use crate::interpret::{Action, Arc, Move, MoveKind, Step};
 use crate::machine::{AxisValues, Machine, PathMode};
 use crate::plan::lookahead::{Element, PathPlanner, Piece, Planned};
 use crate::plan::{Overrides, Plan, Profile, State, Track, Trajectory, plan};
-use crate::power::{Assessor, Effect, Role, Want, effect, joint, role};
+use crate::power::{Assessor, Effect, Role, Switched, Want, joint, role};
 
 /// A stretch of motion with one law.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +63,7 @@ struct Mover<'m, 'e> {
     machine: &'m Machine,
     overrides: Overrides,
     planner: Option<PathPlanner<u64>>,
+    switched: Switched,
     /// Moves that are not planned to their ends, by number from `first` on.
     open: VecDeque<Move>,
     first: u64,
@@ -91,6 +92,7 @@ pub fn motion<R: Read + Seek + Send>(
         machine,
         overrides,
         planner: rules.map(|rules| PathPlanner::new(machine, rules)),
+        switched: Switched::default(),
         open: VecDeque::new(),
         first: 0,
         next: 0,
@@ -201,7 +203,7 @@ impl Mover<'_, '_> {
     }
 
     fn act(&mut self, action: &Action) -> Result<(), Failure> {
-        match effect(action, self.machine.controller.language.family) {
+        match self.switched.effect(&self.machine.controller, action) {
             Effect::Stop => self.stop(),
             // What may or may not stop is taken not to.
             Effect::None | Effect::Unknown => Ok(()),

@@ -6,7 +6,7 @@ use super::by_line::ByLine;
 use super::describe::row;
 use super::over_time::OverTime;
 use super::{Certificate, Failure, Options, Row, RowSink, Summary, Unfit};
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisSet, Machine};
 use crate::power::{Assessment, PowerModel, Rating, Want};
 use crate::source::split_line_end;
@@ -140,7 +140,7 @@ impl<'m, 'r> Tally<'m, 'r> {
     ) {
         let summary = &mut self.summary;
         let demand = &assessment.demand;
-        summary.moves += 1;
+        summary.moves += u64::from(mv.kind != MoveKind::Spindle);
         summary.duration_s += assessment.duration_s;
         self.energy_j += demand.energy_j;
         if let Some(by_line) = &mut self.by_line {

@@ -10,6 +10,7 @@ use super::describe::{describe, row};
 use super::entry::Entry;
 use super::expected::{Expected, ExpectedMove};
 use super::front::Front;
+use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
 use super::writer::{Writer, Written};
 use super::{Failure, Options, RowSink};
@@ -135,6 +136,7 @@ struct Waiting {
     steps: VecDeque<Held>,
     /// Steps from the front on that are actions or judged.
     judged: usize,
+    spindle: SpindleRows,
 }
 
 /// A step of the original.
@@ -148,7 +150,10 @@ struct Held {
 }
 
 impl Waiting {
-    fn judge(&mut self, assessment: &Assessment) {
+    fn judge(&mut self, mv: &Move, assessment: &Assessment) {
+        if !self.spindle.judge(mv, assessment) {
+            return;
+        }
         self.pass_actions();
         if let Some(held) = self.steps.get_mut(self.judged) {
             held.assessment = Some(*assessment);
@@ -189,7 +194,8 @@ impl<'m, 'p> Original<'m, 'p> {
         exact: bool,
     ) -> Self {
         let want = if exact { Want::ALL } else { Want::PEAKS };
-        let mut assessor = Assessor::new(machine, options.certificate, want);
+        let mut assessor =
+            Assessor::new(machine, options.certificate, want).starting(options.reading.start);
         assessor.want = want;
         Self {
             machine,
@@ -235,8 +241,8 @@ impl<'m, 'p> Original<'m, 'p> {
                         feed,
                         assessment: None,
                     });
-                    let mut sink = |_: &Move, assessment: &Assessment, _: &[u8]| {
-                        waiting.judge(assessment);
+                    let mut sink = |mv: &Move, assessment: &Assessment, _: &[u8]| {
+                        waiting.judge(mv, assessment);
                     };
                     match step {
                         Step::Move(mv) => assessor.push(mv, line.text, &mut sink),
@@ -244,10 +250,14 @@ impl<'m, 'p> Original<'m, 'p> {
                     }
                 }
             } else {
-                assessor.finish(&mut |_, assessment, _| waiting.judge(assessment));
+                assessor.finish(&mut |mv, assessment, _| waiting.judge(mv, assessment));
                 more = false;
             }
             while let Some(held) = self.waiting.take() {
+                if let (Step::Move(_), Some(_)) = (&held.step, held.assessment) {
+                    self.expect_spindle(expected);
+                    self.waiting.spindle.write();
+                }
                 expected.push(match (&held.step, held.assessment) {
                     (Step::Move(mv), Some(assessment)) => self.expect(mv, &held, &assessment),
                     (Step::Action(action), _) => Expected::Action(*action),
@@ -255,7 +265,17 @@ impl<'m, 'p> Original<'m, 'p> {
                 });
             }
         }
+        if !more {
+            self.expect_spindle(expected);
+        }
         Ok(more)
+    }
+
+    /// Rows of the spindle before the next move.
+    fn expect_spindle(&mut self, expected: &mut Vec<Expected>) {
+        let of = (self.machine, &self.model, self.exact);
+        let spindle = &mut self.waiting.spindle;
+        spindle.hand_over(of, &mut self.start_s, expected);
     }
 
     fn expect(&mut self, mv: &Move, held: &Held, assessment: &Assessment) -> Expected {
@@ -299,7 +319,9 @@ fn certify(
 ) -> Result<Certified, Failure> {
     let mut verdict = Verdict::new(machine, options, rows);
     let mut written = Front::new(Cursor::new(text), machine, options);
-    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL).watching();
+    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL)
+        .starting(options.reading.start)
+        .watching();
     let mut expected = Vec::new();
     let mut more = true;
     while more {

@@ -1,17 +1,18 @@
 //! The writing half of `limit`: blocks wait until their moves are judged and
 //! decided, are written with their changes, and go to the certifier in pieces.
 
+mod expect;
+
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
 
 use super::analyze::refuse_planned;
 use super::batch::Batch;
 use super::certify::Reasons;
-use super::describe::{describe, row};
 use super::entry::{Entry, knobs};
-use super::expected::{Expected, ExpectedMove};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
+use super::spindle_rows::SpindleRows;
 use super::table::Table;
 use super::tally::Tally;
 use super::{Failure, Options, Summary};
@@ -68,6 +69,7 @@ pub(super) struct Writer<'m, R, W> {
     model: PowerModel,
     /// Time of the original so far, s.
     start_s: f64,
+    spindle: SpindleRows,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -95,7 +97,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
-            assessor: Assessor::new(machine, options.certificate, Want::ALL).watching(),
+            assessor: Assessor::new(machine, options.certificate, Want::ALL)
+                .starting(options.reading.start)
+                .watching(),
             limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
@@ -112,6 +116,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             exact,
             model,
             start_s: 0.0,
+            spindle: SpindleRows::default(),
             table,
         }
     }
@@ -136,6 +141,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         self.finish_moves();
         self.write_decided();
+        self.expect_spindle();
         if !self.front.interpreter().ended() {
             let batch = &mut self.batch;
             let last = batch.bytes.len();
@@ -205,13 +211,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             && let [Step::Move(mv)] = line.steps.as_slice()
             && !self.assessor.waits(mv)
         {
-            let Self {
-                assessor, tally, ..
-            } = self;
+            let (assessor, tally) = (&mut self.assessor, &mut self.tally);
+            let spindle = &mut self.spindle;
             assessor.want = tally.want();
-            assessor.push(mv, line.text, &mut |_, assessment, text| {
+            assessor.push(mv, line.text, &mut |mv, assessment, text| {
                 tally.add(mv, assessment, text);
-                judged = Some(*assessment);
+                if spindle.judge(mv, assessment) {
+                    judged = Some(*assessment);
+                }
             });
             // Nearly every block of a long program: nothing is to be done.
             if let Some(assessment) = &judged
@@ -220,6 +227,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                     .rewriter
                     .pass(line.text, &self.mark, &mut self.batch.bytes)
             {
+                // Without rows: the spindle's are not looked at.
+                self.spindle.pass();
                 self.batch.pass(line.text.len(), mv, assessment);
                 self.start_s += assessment.duration_s;
                 self.mode = mv.path_mode;
@@ -253,6 +262,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             flights,
             judged,
             outcomes,
+            spindle,
             ..
         } = self;
         let entries = &*entries;
@@ -282,7 +292,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             };
             let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
                 tally.add(mv, assessment, text);
-                judge.take(mv, assessment);
+                if spindle.judge(mv, assessment) {
+                    judge.take(mv, assessment);
+                }
             };
             match step {
                 Step::Move(mv) => assessor.push(mv, entry.text_of(mv), &mut sink),
@@ -311,6 +323,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 tally,
                 machine,
                 decided,
+                spindle,
                 ..
             } = self;
             let mut decide = |assessment: &Assessment| {
@@ -324,9 +337,11 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 continue;
             }
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            assessor.push(mv, entry.text_of(mv), &mut |_, assessment, text| {
-                tally.add(mv, assessment, text);
-                decide(assessment);
+            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
+                tally.add(judged, assessment, text);
+                if spindle.judge(judged, assessment) {
+                    decide(assessment);
+                }
             });
         }
         std::mem::swap(&mut entry.decided, &mut self.decided);
@@ -343,6 +358,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             flights,
             judged,
             outcomes,
+            spindle,
             ..
         } = self;
         let mut judge = Judge {
@@ -358,7 +374,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         };
         assessor.finish(&mut |mv, assessment, text| {
             tally.add(mv, assessment, text);
-            judge.take(mv, assessment);
+            if spindle.judge(mv, assessment) {
+                judge.take(mv, assessment);
+            }
         });
         judge.finish();
         self.decide();
@@ -410,8 +428,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let change = entry.change();
         if self.table.is_some() {
             self.note(&entry, change);
-            self.spare.push(entry);
-            return;
+            return self.spare.push(entry);
         }
         let view = BlockView {
             text: &entry.text,
@@ -441,60 +458,15 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Keeps what was decided for a run of a line.
     fn note(&mut self, entry: &Entry, change: Option<Change>) {
+        self.spindle.clear();
         let Some(table) = &mut self.table else { return };
         if !table.decide(self.machine, entry.key, entry, change) {
             return;
         }
-        let moves = entry.steps.iter().filter_map(|step| match step {
-            Step::Move(mv) => Some(mv),
-            Step::Action(_) => None,
-        });
-        for (mv, (_, outcome)) in moves.zip(&entry.decided) {
+        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
             if let Some(obstacle) = outcome.obstacle.as_deref() {
                 self.reasons.refuse(mv, obstacle, entry.text_of(mv));
             }
         }
-    }
-
-    /// Tells the certifier what the block must do.
-    fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
-        let feed_before = entry.feed_before();
-        let mut list = std::mem::take(&mut entry.decided);
-        let mut decided = list.iter_mut();
-        for step in &entry.steps {
-            let mv = match step {
-                Step::Action(action) => {
-                    self.batch.expected.push(Expected::Action(*action));
-                    continue;
-                }
-                Step::Move(mv) => mv,
-            };
-            let Some((assessment, outcome)) = decided.next() else {
-                continue;
-            };
-            let hopeless = outcome.obstacle.is_some();
-            if let Some(obstacle) = outcome.obstacle.take() {
-                self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
-            }
-            // What a block gets, all its moves get, but not its dwell.
-            let change = change.filter(|_| mv.kind != MoveKind::Dwell);
-            let row = self.exact.then(|| {
-                let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
-                describe(self.machine, mv, change, feed_before, &mut row);
-                if hopeless {
-                    row.action = "none possible";
-                }
-                Box::new(row)
-            });
-            self.start_s += assessment.duration_s;
-            self.batch.expected.push(Expected::Move(ExpectedMove {
-                changed: change.is_some(),
-                as_feed: change.is_some_and(|change| change.as_feed),
-                hopeless,
-                row,
-                ..ExpectedMove::of(mv, assessment)
-            }));
-        }
-        entry.decided = list;
     }
 }

@@ -329,6 +329,28 @@ impl Profile {
         })
     }
 
+    /// What the profile does between two instants, s after its start. The parts
+    /// of the phases that it has there, at least one.
+    #[must_use]
+    pub fn part(&self, from_s: f64, to_s: f64) -> Self {
+        let mut part = Self::default();
+        let mut start = 0.0;
+        let last = self.phases.len().saturating_sub(1);
+        for (index, phase) in self.phases.iter().enumerate() {
+            let end = start + phase.duration_s;
+            let [from, to] = [from_s, to_s].map(|t| (t - start).clamp(0.0, phase.duration_s));
+            if to > from || (index == last && part.phases.is_empty()) {
+                part.phases.push(if to - from < phase.duration_s {
+                    phase.between(from, to)
+                } else {
+                    *phase
+                });
+            }
+            start = end;
+        }
+        part
+    }
+
     /// The state `t` seconds after the start; before and after the profile,
     /// its first and last instant. `None` without phases.
     #[must_use]

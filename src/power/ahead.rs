@@ -324,6 +324,7 @@ impl Ahead {
                 assessment.demand.energy_j += share * energy_j;
             }
             if peaks {
+                assessment.fastest_s += share * duration_s;
                 let top_speed_mm_s = planned.top_speed_mm_s();
                 assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top_speed_mm_s);
                 assessment.demand.include(&demand);

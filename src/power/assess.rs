@@ -6,17 +6,18 @@
 
 use super::ahead::Ahead;
 use super::assessment::{Assessment, Certificate};
+use super::bus::{SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
+use super::effect::{Effect, Switched};
 use super::eye::Eye;
+use super::held::{Held, Rider};
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::robust::Part;
 use super::watch::{Kept, Rating, Watch};
-use crate::interpret::{Action, ActionKind, Move, MoveKind};
-use crate::machine::{Family, Machine, PathMode, RapidJoint};
-use crate::plan::{
-    Overrides, PathFigures, SpeedBound, blended_bound, path_bound, path_figures, plan,
-};
+use crate::interpret::{Action, Move, MoveKind};
+use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::plan::{Overrides, PathFigures, blended_bound, path_bound, path_figures, plan};
 
 /// Judges the moves of one program.
 #[derive(Debug)]
@@ -44,38 +45,10 @@ pub struct Assessor<'m> {
     /// Moves that the controller plans together, where its rules are modelled.
     ahead: Option<Box<Ahead>>,
     eye: Eye,
-}
-
-/// A move that waits for its successor.
-#[derive(Debug)]
-struct Held {
-    mv: Move,
-    text: Vec<u8>,
-    assessment: Assessment,
-    /// Its largest speeds, its neighbours left aside.
-    bound: SpeedBound,
-    /// A dwell stands before it.
-    dwelt: bool,
-    /// Moves of no length behind it: controllers leave them out and blend
-    /// across them.
-    riders: Vec<Rider>,
-}
-
-impl Held {
-    fn part(&self) -> Part<'_> {
-        Part {
-            bound: &self.bound,
-            accel_mm_s2: &self.mv.accel_mm_s2,
-        }
-    }
-}
-
-/// A move of no length that waits with the move before it.
-#[derive(Debug)]
-struct Rider {
-    mv: Move,
-    text: Vec<u8>,
-    assessment: Assessment,
+    /// What is switched on.
+    switched: Switched,
+    /// The spindle beside the axes, where the machine has one.
+    pub(super) bus: Option<Box<SpindleBus<'m>>>,
 }
 
 /// Moves of no length in a row that a controller may look across: more than
@@ -115,6 +88,8 @@ impl<'m> Assessor<'m> {
             dwelt: false,
             ahead,
             eye: Eye::default(),
+            switched: Switched::default(),
+            bus: SpindleBus::new(machine, [largest, nominal], false).map(Box::new),
         }
     }
 
@@ -165,8 +140,20 @@ impl<'m> Assessor<'m> {
     /// Takes something that moves no axis: it may stop the motion. Hands on what
     /// can be judged then.
     pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        let Some(mut bus) = self.bus.take() else {
+            return self.act_on_axes(action, sink);
+        };
+        let want = self.want;
+        self.act_on_axes(action, &mut |mv, judged, text| {
+            bus.take(mv, judged, text, want, sink);
+        });
+        bus.act(action);
+        self.bus = Some(bus);
+    }
+
+    fn act_on_axes(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         let Some(ahead) = &mut self.ahead else { return };
-        match effect(action, self.machine.controller.language.family) {
+        match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
             Effect::Stop => {
                 ahead.stop(&self.model, &mut self.eye);
@@ -215,8 +202,23 @@ impl<'m> Assessor<'m> {
     }
 
     /// Takes the next move with the text of its line, and hands on what can be
-    /// judged now.
+    /// judged now. Where the machine has a spindle, its waits come among them as
+    /// moves of kind [`MoveKind::Spindle`].
+    #[inline]
     pub fn push(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        if self.bus.is_none() {
+            self.push_axes(mv, text, sink);
+        } else {
+            self.push_beside_spindle(mv, text, sink);
+        }
+    }
+
+    pub(super) fn push_axes(
         &mut self,
         mv: &Move,
         text: &[u8],
@@ -300,6 +302,15 @@ impl<'m> Assessor<'m> {
 
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        let Some(mut bus) = self.bus.take() else {
+            return self.finish_axes(sink);
+        };
+        let want = self.want;
+        self.finish_axes(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
+        bus.finish(sink);
+    }
+
+    fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.release(None, false, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(&self.model, &mut self.eye);
@@ -375,11 +386,13 @@ impl<'m> Assessor<'m> {
                 speed_mm_s: path.speed_limit_mm_s,
                 accel_mm_s2: path.accel_mm_s2,
                 top_speed_mm_s: path.top_speed_mm_s,
+                fastest_s: path.duration_s,
                 demand,
                 certificate: Certificate::Planned,
                 blended,
                 joined: false,
                 ahead: false,
+                spindle: SpindleShare::NONE,
             };
             if self.largest != self.nominal {
                 let nominal = plan(self.machine, mv, self.nominal);
@@ -423,6 +436,7 @@ impl<'m> Assessor<'m> {
             speed_mm_s,
             accel_mm_s2: peak_plan.accel_mm_s2,
             top_speed_mm_s: peak_plan.top_speed_mm_s,
+            fastest_s: peak_plan.duration_s,
             demand,
             certificate: if unknown {
                 Certificate::Robust
@@ -432,6 +446,7 @@ impl<'m> Assessor<'m> {
             blended,
             joined: false,
             ahead: false,
+            spindle: SpindleShare::NONE,
         }
     }
 
@@ -468,25 +483,4 @@ impl<'m> Assessor<'m> {
 /// Whether any axis moves.
 fn moves(mv: &Move) -> bool {
     mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
-}
-
-/// What an action does to the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Effect {
-    None,
-    Stop,
-    Unknown,
-}
-
-/// Spindle, tool change, stop and end wait for the axes; those of printers that
-/// set a temperature or a limit go with the moves. What others do is not known.
-pub(crate) fn effect(action: &Action, family: Family) -> Effect {
-    match action.kind {
-        ActionKind::PathMode | ActionKind::ToolSelect => Effect::None,
-        ActionKind::Spindle | ActionKind::ToolChange | ActionKind::Stop | ActionKind::End => {
-            Effect::Stop
-        }
-        ActionKind::Other if family == Family::Marlin => Effect::None,
-        ActionKind::SpindleSpeed | ActionKind::Coolant | ActionKind::Other => Effect::Unknown,
-    }
 }

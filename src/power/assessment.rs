@@ -1,5 +1,6 @@
 //! What is known of a move once it is judged.
 
+use super::bus::SpindleShare;
 use super::demand::Demand;
 
 /// Which bound a figure rests on.
@@ -34,6 +35,8 @@ pub struct Assessment {
     pub accel_mm_s2: f64,
     /// Path speed reached at the largest override, mm/s.
     pub top_speed_mm_s: f64,
+    /// Duration at the largest overrides in s.
+    pub fastest_s: f64,
     /// Peaks at the largest overrides, and the energy at 100 %.
     pub demand: Demand,
     /// Which certificate the peaks belong to.
@@ -46,6 +49,8 @@ pub struct Assessment {
     pub joined: bool,
     /// It is planned together with its neighbours.
     pub ahead: bool,
+    /// What the spindle takes meanwhile.
+    pub spindle: SpindleShare,
 }
 
 impl Assessment {
@@ -55,10 +60,12 @@ impl Assessment {
         speed_mm_s: 0.0,
         accel_mm_s2: 0.0,
         top_speed_mm_s: 0.0,
+        fastest_s: 0.0,
         demand: Demand::NONE,
         certificate: Certificate::Planned,
         blended: true,
         joined: false,
         ahead: true,
+        spindle: SpindleShare::NONE,
     };
 }

@@ -42,6 +42,8 @@ pub struct Demand {
     /// The largest of peak by limit and regenerative peak by limit over all
     /// converters: above 1 the move does not fit.
     pub load_ratio: f64,
+    /// Peak and regenerative peak of the converter that feeds the spindle, W.
+    pub(super) beside: [f64; 2],
 }
 
 impl Demand {
@@ -52,12 +54,14 @@ impl Demand {
         energy_j: 0.0,
         converter: 0,
         load_ratio: f64::NEG_INFINITY,
+        beside: [0.0; 2],
     };
 
     /// Takes in what another part of the same move asks for; the energy is left
     /// aside.
     #[inline]
     pub(super) fn include(&mut self, other: &Self) {
+        let beside = std::array::from_fn(|i| larger(self.beside[i], other.beside[i]));
         if other.converter == self.converter || self.load_ratio == f64::NEG_INFINITY {
             self.converter = other.converter;
             self.peak_w = larger(self.peak_w, other.peak_w);
@@ -69,6 +73,7 @@ impl Demand {
                 ..*other
             };
         }
+        self.beside = beside;
     }
 
     /// A demand that nobody wants to know more of; none where one of its peaks
@@ -78,6 +83,7 @@ impl Demand {
         (peak_w <= want.floor_w && regen_w <= want.regen_floor_w).then_some(Self {
             peak_w,
             regen_w,
+            beside: [peak_w, regen_w],
             ..Self::NONE
         })
     }

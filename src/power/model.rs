@@ -3,6 +3,7 @@
 //! Input: a [`Machine`] once, then moves with their plans. Output: [`Demand`].
 
 use super::axis::AxisPower;
+use super::bus::SpindleShare;
 use super::ceiling::Ceiling;
 use super::demand::{Demand, Totals, Want};
 use super::{arc, independent, straight};
@@ -35,6 +36,8 @@ pub(super) struct ConverterPower {
     pub holding: AxisSet,
     /// A quick upper bound.
     ceiling: Ceiling,
+    /// Whether it feeds the spindle.
+    pub feeds_spindle: bool,
     /// Whether fed-back power feeds the other axes.
     pub credit_regen: bool,
     /// What is drawn at all times in W.
@@ -134,6 +137,24 @@ impl PowerModel {
 }
 
 impl PowerModel {
+    /// The load ratio of a demand of the axes with the spindle beside them, at a
+    /// speed of the path of `speed_mm_s`.
+    #[must_use]
+    pub fn load_beside(&self, demand: &Demand, share: &SpindleShare, speed_mm_s: f64) -> f64 {
+        let fed = self.converters.iter().position(|it| it.feeds_spindle);
+        let Some(index) = fed else {
+            return demand.load_ratio;
+        };
+        let cutting_w = if share.cutting_w_s_mm > 0.0 {
+            share.cutting_w_s_mm * speed_mm_s
+        } else {
+            0.0
+        };
+        let mut both = *demand;
+        both.add_spindle(index, self, [share.drawn_w + cutting_w, share.fed_back_w]);
+        both.load_ratio
+    }
+
     /// A bound of the demand of a path, if it stays below what is of interest:
     /// then the path need not be looked at more closely.
     #[inline]
@@ -171,6 +192,7 @@ impl ConverterPower {
             factored: select(AxisPower::has_factors),
             holding: select(|axis| axis.holding_w() > 0.0),
             ceiling: Ceiling::new(axes, fed),
+            feeds_spindle: machine.spindle.as_ref().map(|it| it.converter) == Some(index),
             credit_regen: converter.credit_regen,
             base_w: converter.base_load_w,
             loads: machine
@@ -237,5 +259,33 @@ impl Demand {
             self.regen_w = totals.regen_w;
         }
         self.energy_j += totals.energy_j;
+        if converter.feeds_spindle {
+            self.beside = [totals.peak_w, totals.regen_w];
+        }
+    }
+
+    /// Adds what the spindle asks of its converter: `drawn_w` on top of the peak,
+    /// `fed_back_w` on top of the power that is fed back; either may be negative.
+    pub(super) fn add_spindle(&mut self, index: usize, model: &PowerModel, by: [f64; 2]) {
+        let [peak_w, regen_w] = self.beside;
+        self.set_spindle(index, model, [peak_w + by[0], (regen_w + by[1]).max(0.0)]);
+    }
+
+    /// Sets what axes and spindle together ask of the spindle's converter.
+    pub(super) fn set_spindle(&mut self, index: usize, model: &PowerModel, peaks: [f64; 2]) {
+        let Some(converter) = model.converters.get(index) else {
+            return;
+        };
+        let regen_ratio = match converter.regen_limit_w {
+            Some(limit) if peaks[1] > 0.0 => peaks[1] / limit,
+            _ => 0.0,
+        };
+        let ratio = (peaks[0] / converter.limit_w).max(regen_ratio);
+        self.beside = peaks;
+        if model.converters.len() == 1 || ratio > self.load_ratio {
+            self.load_ratio = ratio;
+            self.converter = index;
+            [self.peak_w, self.regen_w] = peaks;
+        }
     }
 }

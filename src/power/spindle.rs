@@ -48,6 +48,9 @@ pub struct RunPhase {
     pub least_w: f64,
     /// Electrical energy in J, what is fed back taken off.
     pub energy_j: f64,
+    /// Electrical energy drawn in J, what is fed back left aside; base load not
+    /// counted.
+    pub drawn_j: f64,
 }
 
 /// A run-up or a braking between two speeds.
@@ -134,7 +137,7 @@ impl SpindlePower {
         run
     }
 
-    fn phase(&self, phase: &RampPhase, start_s: f64) -> RunPhase {
+    pub(super) fn phase(&self, phase: &RampPhase, start_s: f64) -> RunPhase {
         let instants = self.instants(phase);
         let first = self.electrical_w(phase.start);
         let mut found = RunPhase {
@@ -145,6 +148,7 @@ impl SpindlePower {
             peak_w: first,
             least_w: first,
             energy_j: self.base_load_w * phase.duration_s,
+            drawn_j: 0.0,
         };
         let mut from = (phase.start, 0.0);
         for &t in &instants {
@@ -154,13 +158,30 @@ impl SpindlePower {
             found.least_w = found.least_w.min(power);
             let squares = (to.0.speed - from.0.speed) * (to.0.speed + from.0.speed);
             let work = 0.5 * self.inertia * squares + self.friction * (to.1 - from.1).abs();
-            found.energy_j += self.converted(work);
+            let electrical = self.converted(work);
+            found.energy_j += electrical;
+            found.drawn_j += electrical.max(0.0);
             from = to;
         }
         found
     }
 
-    fn converted(&self, p: f64) -> f64 {
+    /// The same without the base load.
+    pub(super) fn motor(spindle: &Spindle) -> Self {
+        Self {
+            base_load_w: 0.0,
+            ..Self::new(spindle)
+        }
+    }
+
+    /// Power of inertia by speed and acceleration, W/(1/min · 1/min/s), and of
+    /// friction by speed, W/(1/min).
+    pub(super) fn coefficients(&self) -> [f64; 2] {
+        [self.inertia, self.friction]
+    }
+
+    /// Electrical power of mechanical power `p`, W.
+    pub(super) fn converted(&self, p: f64) -> f64 {
         if p > 0.0 {
             p / self.efficiency
         } else {

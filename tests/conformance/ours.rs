@@ -75,7 +75,7 @@ fn event(mv: &Move) -> Event {
         MoveKind::Rapid => Kind::Rapid,
         MoveKind::Feed | MoveKind::Thread | MoveKind::Tap | MoveKind::Probe => Kind::Feed,
         MoveKind::Arc => Kind::Arc,
-        MoveKind::Dwell => Kind::Dwell,
+        MoveKind::Dwell | MoveKind::Spindle => Kind::Dwell,
     };
     let place = |letter: u8| {
         let axis = ALL_AXES.iter().position(|axis| axis.letter() == letter);

@@ -80,13 +80,16 @@ fn short_lines(word: &str) -> String {
     program + "M2\n"
 }
 
-/// M8 may stop the motion or not: nothing is asked for that is more in either
+/// A word of which the profiles say nothing.
+const UNSAID: &str = "G10 L2 P2 X0\n";
+
+/// It may stop the motion or not: nothing is asked for that is more in either
 /// case, however short the lines are.
 #[test]
 fn what_may_stop_the_motion_counts_as_far_as_it_reaches() {
     for rig in [LINUXCNC, GRBL] {
         let [through, stopped, doubt] =
-            ["", "G4 P0\n", "M8\n"].map(|word| report(rig, &short_lines(word)));
+            ["", "G4 P0\n", UNSAID].map(|word| report(rig, &short_lines(word)));
         // 0.15 m/s takes 2.25 mm: 12 lines brake and 12 speed up.
         assert!(
             through[80..120].iter().all(|row| row.peak_w < 1.0),
@@ -108,6 +111,42 @@ fn what_may_stop_the_motion_counts_as_far_as_it_reaches() {
         assert!(doubt[90..111].iter().all(robust));
         assert!(doubt[150..].iter().all(|row| !robust(row)));
     }
+}
+
+/// Where the profile says that a word stops the motion, it is a stop like any
+/// other, and where it says that it does not, there is none.
+#[test]
+fn words_stop_the_motion_as_the_profile_says() {
+    let same = |rig: Rig, word: &str, like: &str| {
+        let [rows, expected] = [word, like].map(|word| report(rig, &short_lines(word)));
+        assert_eq!(rows, expected, "{word}");
+    };
+    for word in [
+        "M8",
+        "S100",
+        "G55",
+        "G92.1",
+        "(MSG, a)",
+        "M68 E0 Q1",
+        "G4 P0 (b)",
+    ] {
+        same(LINUXCNC, &format!("{word}\n"), "G4 P0\n");
+    }
+    for word in [
+        "T2",
+        "M67 E0 Q1",
+        "(PRINT, a)",
+        "(MSG, a) (b)",
+        "M48",
+        "G54",
+    ] {
+        same(LINUXCNC, &format!("{word}\n"), "(c)\n");
+    }
+    same(GRBL, "M8\n", "G4 P0\n");
+    same(GRBL, "M3 S100\n", "G4 P0\n");
+    // What is in force already stops nothing.
+    same(GRBL, "M9\n", "(c)\n");
+    same(GRBL, "M5 S100\n", "(c)\n");
 }
 
 /// Nothing is in doubt between two stops.
@@ -233,7 +272,7 @@ fn piece() -> impl Strategy<Value = Piece> {
         3 => (-60..60_i32, -60..60_i32, 2..60_u8).prop_map(|(x, y, n)| Piece::Short(x, y, n)),
         1 => (10..3000_i32, any::<bool>()).prop_map(|(r, clockwise)| Piece::Arc(r, clockwise)),
         2 => (200..20_000_u16).prop_map(Piece::Feed),
-        2 => prop::sample::select(vec!["M8", "M9", "G4 P0.5", "S500", "M3 S100", "M5", "G61", "G64"])
+        2 => prop::sample::select(vec!["M8", "M9", "M7", "G4 P0.5", "S500", "M3 S100", "M5", "G61", "G64"])
             .prop_map(Piece::Word),
     ]
 }
@@ -270,6 +309,9 @@ fn text(pieces: &[Piece], controller: &str, doubt: Option<&str>) -> String {
             Piece::Word("G61" | "G64") if controller != "linuxcnc" => Ok(()),
             Piece::Word(word @ ("M8" | "M9")) => match doubt {
                 Some(other) => write!(program, "{other}"),
+                None if matches!(controller, "linuxcnc" | "grbl") => {
+                    write!(program, "{UNSAID}")
+                }
                 None => writeln!(program, "{word}"),
             },
             Piece::Word(word) => writeln!(program, "{word}"),
@@ -332,7 +374,7 @@ proptest! {
         prop_assert_eq!((again, summary.edited_lines), (limited.into_bytes(), 0));
     }
 
-    /// Whether M8 stops the motion or not, no move asks for more than is said.
+    /// Whether a word stops the motion or not, no move asks for more than is said.
     #[test]
     fn doubt_covers_both(
         pieces in prop::collection::vec(piece(), 1..25),

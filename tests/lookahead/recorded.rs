@@ -154,7 +154,12 @@ fn own() -> Vec<(String, String)> {
             "G21 G90 G17 G94 {mode}\nG0 X10 Y0\nG1 X40 F4800\nG3 X50 Y12 R14\nG1 Y40\nG2 X30 Y50 R15\n\
              G1 X10 Y45\nG3 X0 Y30 R12\nG2 X5 Y10 R20\nG1 X10 Y0\nG0 Z5\nG0 X0\nM2\n"
         );
-        programs.push((format!("contour, {mode}"), text));
+        programs.push((format!("contour, {mode}"), text.clone()));
+        let text = text.replace("G1 Y40", "M8\nG1 Y40\nM3 S500\nS600");
+        let text = text
+            .replace("G3 X0", "M62 P0\nG3 X0")
+            .replace("G1 X10 Y0", "M9\nG1 X10 Y0");
+        programs.push((format!("words, {mode}"), text));
     }
     programs
 }

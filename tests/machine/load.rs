@@ -171,7 +171,7 @@ fn loads_limits_and_converters() {
 #[test]
 fn what_is_not_checked_yet_is_named() {
     let (vmc, _) = Machine::load("vmc").unwrap();
-    assert_eq!(vmc.unchecked, ["spindle"]);
+    assert_eq!(vmc.unchecked, <[&str; 0]>::default());
     let jerk = machine(&edited(
         "mass_kg = 900",
         "mass_kg = 900\njerk_mm_s3 = 60000",

@@ -111,6 +111,8 @@ impl Control<'_> {
         self.siemens_feed(state, run);
         self.siemens_speed(state, run);
         self.m_words(run);
+        self.spindle.unknown_up_to_rpm = state.spindle_limit.filter(|_| state.surface_speed);
+        self.tell_spindle(run);
         if let Some(dwell_s) = dwell_s {
             self.dwell(run, dwell_s);
         }

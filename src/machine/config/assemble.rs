@@ -7,7 +7,8 @@ use super::machine_file::{
 };
 use super::value::{At, Num};
 use super::{
-    axis, converter, drive_curve, plausible, preset, profile, response, spindle, unchecked, word,
+    axis, converter, drive_curve, plausible, preset, profile, response, spindle, tool, unchecked,
+    word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
@@ -79,6 +80,11 @@ pub(crate) fn machine(
         .flatten()
         .filter_map(|table| load(findings, table, &converters))
         .collect();
+    let spindle = file
+        .spindle
+        .as_ref()
+        .and_then(|table| spindle::spindle(findings, table, &converters, &controller));
+    let tools = tool::tools(findings, file);
     let machine = Machine {
         name: file.name.as_ref()?.value.clone(),
         path,
@@ -88,10 +94,8 @@ pub(crate) fn machine(
         converters,
         force_curves,
         responses,
-        spindle: file
-            .spindle
-            .as_ref()
-            .and_then(|table| spindle::spindle(findings, table)),
+        spindle,
+        tools,
         loads,
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
@@ -165,14 +169,7 @@ fn load(
         }
     }
     let converter = match converter {
-        Some(name) => converters
-            .iter()
-            .position(|other| other.name == name.value)
-            .or_else(|| {
-                let message = format!("no converter is named \"{}\"", name.value);
-                findings.error("machine-load", &name.span, message, None);
-                None
-            })?,
+        Some(name) => converter_of(findings, name, converters)?,
         None if converters.len() > 1 => {
             let message = "with several converters, a load needs `converter`";
             findings.error("machine-missing", &table.span, message, None);
@@ -189,6 +186,20 @@ fn load(
         power_w: power_w.as_ref()?.value,
         converter,
     })
+}
+
+/// The converter of that name.
+pub(super) fn converter_of(
+    findings: &mut Findings<'_>,
+    name: &At<String>,
+    converters: &[Converter],
+) -> Option<usize> {
+    let found = converters.iter().position(|other| other.name == name.value);
+    if found.is_none() {
+        let message = format!("no converter is named \"{}\"", name.value);
+        findings.error("machine-load", &name.span, message, None);
+    }
+    found
 }
 
 fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {

@@ -218,8 +218,29 @@ pub(crate) struct PlannerTable {
     /// With "g1-where-linear" only on a machine whose file says that its rapids
     /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
+    /// Words before which the motion has stopped, such as `M8`, `S` for all
+    /// words of a letter, or `MSG` for an active comment; words of no list may
+    /// stop it or not.
+    pub(crate) stops: Option<Vec<At<String>>>,
+    /// The same for words that do nothing where what they say is in force.
+    pub(crate) stops_on_change: Option<Vec<At<String>>>,
+    /// Words that act while the axes move on.
+    pub(crate) passes: Option<Vec<At<String>>>,
+    /// What waits for the spindle's speed; default: not known, so that both
+    /// cases are counted.
+    pub(crate) spindle_wait: Option<SpindleWaitName>,
     /// How corners are run through; default: not modelled.
     pub(crate) look_ahead: Option<At<LookAheadTable>>,
+}
+
+/// What waits for the spindle's speed: nothing, moves that cut, or whatever
+/// comes behind M3, M4 and S.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum SpindleWaitName {
+    Nothing,
+    Feeds,
+    Blocks,
 }
 
 /// How acceleration is shared on arcs.

@@ -39,6 +39,8 @@ pub(crate) struct MachineFile {
     pub(crate) axes: Option<At<PerAxis<At<AxisTable>>>>,
     /// The spindle.
     pub(crate) spindle: Option<At<SpindleTable>>,
+    /// Tools with what cutting takes.
+    pub(crate) tool: Option<Vec<At<ToolTable>>>,
     /// What program words switch on and off.
     pub(crate) load: Option<Vec<At<LoadTable>>>,
     /// Limits for combinations of axes.
@@ -324,8 +326,32 @@ pub(crate) struct SpindleTable {
     /// Largest electrical power that the spindle's drive feeds back, in W;
     /// absent: no limit.
     pub(crate) regen_power_w: Option<Positive>,
-    /// Whether feed moves wait for the speed; default true.
+    /// Whether feed moves wait for the speed; default as the controller has it.
     pub(crate) wait: Option<bool>,
+    /// What cutting takes at the spindle in feed moves, with tools that have no
+    /// `[[tool]]`, in W; default 0.
+    pub(crate) cutting_power_w: Option<NotNegative>,
+    /// The converter that feeds it; required if there are several.
+    pub(crate) converter: Option<At<String>>,
+}
+
+/// What cutting with a tool takes at the spindle: a power, or the specific
+/// cutting force with width and depth of cut.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ToolTable {
+    /// Its T number.
+    #[schemars(required)]
+    pub(crate) number: Option<NotNegative>,
+    /// The power in W, at any feed.
+    pub(crate) cutting_power_w: Option<NotNegative>,
+    /// Specific cutting force kc in N/mm²: the power is kc times width, depth
+    /// and feed.
+    pub(crate) kc_n_mm2: Option<Positive>,
+    /// Width of cut in mm; with `kc_n_mm2`.
+    pub(crate) width_mm: Option<Positive>,
+    /// Depth of cut in mm; with `kc_n_mm2`.
+    pub(crate) depth_mm: Option<Positive>,
 }
 
 /// A load that program words switch.

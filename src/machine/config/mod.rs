@@ -26,6 +26,7 @@ mod response;
 mod schema;
 mod spindle;
 mod structure;
+mod tool;
 mod unchecked;
 mod value;
 mod word;

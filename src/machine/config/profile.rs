@@ -4,7 +4,7 @@ use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
     ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
     DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
-    PointName, RapidJointName, RapidKnobName, TargetName, UnitName, UnitsName,
+    PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
@@ -14,8 +14,9 @@ use crate::machine::axis::AxisId;
 use crate::machine::controller::{
     ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
     Knob, KnobArgument, KnobTarget, KnobUnit, Language, Lathe, Planner, Point, RapidJoint,
-    RapidKnob, RapidPath,
+    RapidKnob, RapidPath, SpindleWait,
 };
+use crate::machine::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
 /// the result is not to be used.
@@ -39,6 +40,7 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
             ..language?
         },
         planner: planner(findings, planner_table)?,
+        queue: queue(findings, planner_table),
         knobs,
         rapid_knob: rapid_knob(findings, planner_table),
     })
@@ -185,8 +187,44 @@ fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner>
             Some(RapidJointName::All) | None => RapidJoint::All,
         },
         dwell_stops: table.dwell_stops.unwrap_or(false),
+        spindle_wait: match table.spindle_wait {
+            None => SpindleWait::Unknown,
+            Some(SpindleWaitName::Nothing) => SpindleWait::Nothing,
+            Some(SpindleWaitName::Feeds) => SpindleWait::Feeds,
+            Some(SpindleWaitName::Blocks) => SpindleWait::Blocks,
+        },
         look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
     })
+}
+
+/// Which words stop the motion.
+fn queue(findings: &mut Findings<'_>, table: &PlannerTable) -> Queue {
+    let mut list = |words: &Option<Vec<At<String>>>| {
+        let texts = words.iter().flatten();
+        texts
+            .filter_map(|text| queue_word(findings, text))
+            .collect()
+    };
+    Queue {
+        stops: list(&table.stops),
+        stops_on_change: list(&table.stops_on_change),
+        passes: list(&table.passes),
+    }
+}
+
+fn queue_word(findings: &mut Findings<'_>, text: &At<String>) -> Option<QueueWord> {
+    let message = MESSAGES.iter().position(|name| *name == text.value);
+    let found = message
+        .map(|index| (MESSAGE, Some(index as u16)))
+        .or_else(|| word::code(&text.value).map(|(letter, number)| (letter, Some(number))))
+        .or_else(|| word::letter(&text.value).map(|letter| (letter, None)));
+    let Some((letter, number)) = found else {
+        let message = format!("\"{}\" is not a program word", text.value);
+        let help = Some("such as \"M8\", \"S\" for every S, or \"MSG\"".to_owned());
+        findings.error("machine-word", &text.span, message, help);
+        return None;
+    };
+    Some(QueueWord { letter, number })
 }
 
 /// A rapid may be written as a feed only where it is straight.

@@ -2,15 +2,22 @@
 
 use std::ops::Range;
 
+use super::assemble::converter_of;
 use super::drive_curve::{points, torque_points};
 use super::findings::Findings;
 use super::machine_file::SpindleTable;
 use super::value::{At, Num};
-use crate::machine::model::{Spindle, TorquePoint};
+use crate::machine::controller::{Controller, SpindleWait};
+use crate::machine::model::{Converter, Spindle, TorquePoint};
 use crate::units::RAD_S_PER_RPM;
 
 /// Makes the spindle of its table; `None` if something is missing.
-pub(crate) fn spindle(findings: &mut Findings<'_>, table: &At<SpindleTable>) -> Option<Spindle> {
+pub(crate) fn spindle(
+    findings: &mut Findings<'_>,
+    table: &At<SpindleTable>,
+    converters: &[Converter],
+    controller: &Controller,
+) -> Option<Spindle> {
     let SpindleTable {
         max_rpm,
         base_rpm,
@@ -30,6 +37,15 @@ pub(crate) fn spindle(findings: &mut Findings<'_>, table: &At<SpindleTable>) -> 
         let message = "`jerk_time_s` is longer than `accel_time_s`";
         findings.error("machine-spindle", &jerk.span, message, None);
     }
+    let converter = match &table.value.converter {
+        Some(name) => converter_of(findings, name, converters)?,
+        None if converters.len() > 1 => {
+            let message = "with several converters, the spindle needs `converter`";
+            findings.error("machine-missing", &table.span, message, None);
+            return None;
+        }
+        None => 0,
+    };
     let table = &table.value;
     let friction_nm = value(table.friction_nm.as_ref(), 0.0);
     let torque_curve = match &table.torque_curve {
@@ -48,7 +64,14 @@ pub(crate) fn spindle(findings: &mut Findings<'_>, table: &At<SpindleTable>) -> 
         base_load_w: value(table.base_load_w.as_ref(), 0.0),
         peak_power_w: table.peak_power_w.as_ref().map(|power| power.value),
         regen_power_w: table.regen_power_w.as_ref().map(|power| power.value),
-        wait: table.wait.unwrap_or(true),
+        wait: match (table.wait, controller.planner.spindle_wait) {
+            (None | Some(true), SpindleWait::Blocks) => SpindleWait::Blocks,
+            (Some(true), _) => SpindleWait::Feeds,
+            (Some(false), _) => SpindleWait::Nothing,
+            (None, wait) => wait,
+        },
+        converter,
+        cutting_power_w: value(table.cutting_power_w.as_ref(), 0.0),
     };
     if let Some(peak) = &table.peak_power_w {
         enough_power(findings, &spindle, peak.value, &peak.span);

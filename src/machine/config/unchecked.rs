@@ -23,9 +23,6 @@ pub(crate) fn list(file: &MachineFile) -> Vec<String> {
             names.push(format!("axes.{}.{key}", axis.letter() as char));
         }
     }
-    if file.spindle.is_some() {
-        names.push("spindle".to_owned());
-    }
     names
 }
 

@@ -64,6 +64,21 @@ impl RampPhase {
         }
     }
 
+    /// What it does between two instants, s after its start.
+    #[must_use]
+    pub fn between(&self, from_s: f64, to_s: f64) -> Self {
+        Self {
+            law: self.law,
+            duration_s: to_s - from_s,
+            start: if from_s > 0.0 {
+                self.at(from_s)
+            } else {
+                self.start
+            },
+            end: self.at(to_s),
+        }
+    }
+
     /// How far it has gone `t` seconds after its start.
     #[must_use]
     pub fn distance(&self, t: f64) -> f64 {

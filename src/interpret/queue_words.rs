@@ -1,0 +1,112 @@
+//! Words without an action of their own at which look-ahead may end: offsets,
+//! tool lengths, and comments that act.
+
+use super::code::GCode;
+use super::execute::{Control, Run};
+use super::motion::EXTRUDER;
+use super::moves::{Action, ActionKind, Step};
+use crate::machine::{Family, MESSAGES};
+use crate::syntax::Block;
+
+impl Control<'_> {
+    /// Whether it matters: only where the look-ahead is modelled.
+    fn plans_ahead(&self) -> bool {
+        self.machine.controller.planner.look_ahead.is_some()
+    }
+
+    /// What a block sets that is no action of a word: before it moves.
+    pub(super) fn note_queue_and_spindle(&mut self, run: &mut Run<'_, '_>) {
+        self.note_offsets(run);
+        self.tell_spindle(run);
+    }
+
+    /// Tells of words that change offsets or lengths, or the meaning of S.
+    fn note_offsets(&self, run: &mut Run<'_, '_>) {
+        if !self.plans_ahead() {
+            return;
+        }
+        for index in 0..run.words.g.len() {
+            let (code, number, _) = run.words.g[index];
+            let tells = match code {
+                // The extruder alone takes no part in the path.
+                GCode::SetOffset => run.words.axes().any(|(axis, _)| axis != EXTRUDER),
+                GCode::WorkOffset(_)
+                | GCode::FurtherOffset
+                | GCode::ToolLength(_)
+                | GCode::ClearOffset { .. }
+                | GCode::RestoreOffset
+                | GCode::DataSetting
+                | GCode::LocalOffset
+                | GCode::SurfaceSpeed => true,
+                _ => false,
+            };
+            if tells {
+                run.act(ActionKind::Offset, f64::from(number) / 10.0);
+            }
+        }
+    }
+
+    /// Tells of a comment that acts, such as `(MSG, …)`: the last one of a line
+    /// counts (`LinuxCNC`, "Messages").
+    #[inline]
+    pub(super) fn note_message(
+        &self,
+        line: u64,
+        text: &[u8],
+        block: &Block,
+        steps: &mut Vec<Step>,
+    ) -> bool {
+        if block.words_end == block.text_end {
+            return false;
+        }
+        let text = text.get(..block.text_end as usize).unwrap_or(text);
+        if text.trim_ascii_end().ends_with(b")")
+            && self.plans_ahead()
+            && self.machine.controller.language.family == Family::Rs274
+            && !self.ended
+            && !self.block_delete.passes(block.delete_level)
+            && let Some(place) = message(text)
+        {
+            steps.push(Step::Action(Action {
+                line,
+                kind: ActionKind::Message,
+                value: place as f64,
+            }));
+            return true;
+        }
+        false
+    }
+}
+
+/// Which of [`MESSAGES`] a line ends with.
+pub(super) fn message(text: &[u8]) -> Option<usize> {
+    let open = memchr::memrchr(b'(', text)?;
+    let inside = text.get(open + 1..).unwrap_or_default();
+    let mut letters = inside
+        .iter()
+        .filter(|byte| !matches!(byte, b' ' | b'\t'))
+        .map(u8::to_ascii_uppercase);
+    let word: arrayvec::ArrayVec<u8, 8> = letters
+        .by_ref()
+        .take_while(u8::is_ascii_alphabetic)
+        .take(8)
+        .collect();
+    MESSAGES
+        .iter()
+        .position(|name| name.as_bytes() == word.as_slice())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::message;
+
+    #[test]
+    fn the_last_comment_counts() {
+        assert_eq!(message(b"(MSG, hello)"), Some(0));
+        assert_eq!(message(b"G1 X1 (a) ( debug , #1)"), Some(1));
+        assert_eq!(message(b"(print,1)"), Some(2));
+        assert_eq!(message(b"(MSG, a) (then)"), None);
+        assert_eq!(message(b"(MSGS, a)"), None);
+        assert_eq!(message(b"G1 X1"), None);
+    }
+}

@@ -1,0 +1,82 @@
+//! What words that move no axis do to moves that are planned ahead: whether the
+//! motion stops before them.
+
+/// Comments that act (`LinuxCNC`, "Messages"), in the order of their numbers.
+pub const MESSAGES: [&str; 4] = ["MSG", "DEBUG", "PRINT", "LOG"];
+
+/// The letter under which an active comment is kept.
+pub const MESSAGE: u8 = b'(';
+
+/// A word, or all words of a letter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct QueueWord {
+    /// Its letter; [`MESSAGE`] for an active comment.
+    pub letter: u8,
+    /// Ten times its number, or the place of a comment in [`MESSAGES`]; `None`:
+    /// whatever the number.
+    pub number: Option<u16>,
+}
+
+impl QueueWord {
+    fn is(self, letter: u8, number: u16) -> bool {
+        self.letter == letter && self.number.is_none_or(|own| own == number)
+    }
+}
+
+/// Which words stop the motion; what no list names may stop it or not.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Queue {
+    /// The motion has stopped before they act.
+    pub stops: Vec<QueueWord>,
+    /// The same where they change what is in force, else they do nothing.
+    pub stops_on_change: Vec<QueueWord>,
+    /// They act while the axes move on.
+    pub passes: Vec<QueueWord>,
+}
+
+/// What a word does to the motion before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QueueEffect {
+    /// It stops.
+    Stop,
+    /// It stops if the word changes what is in force.
+    StopOnChange,
+    /// It goes on.
+    Pass,
+}
+
+impl Queue {
+    /// What the profile says of a word, by letter and ten times its number;
+    /// `None` where it says nothing.
+    #[must_use]
+    pub fn effect(&self, letter: u8, number: u16) -> Option<QueueEffect> {
+        let lists = [
+            (&self.stops, QueueEffect::Stop),
+            (&self.stops_on_change, QueueEffect::StopOnChange),
+            (&self.passes, QueueEffect::Pass),
+        ];
+        let named = |list: &[QueueWord]| list.iter().any(|word| word.is(letter, number));
+        let found = lists.into_iter().find(|(list, _)| named(list));
+        found.map(|(_, effect)| effect)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Queue, QueueEffect, QueueWord};
+
+    #[test]
+    fn a_letter_alone_stands_for_all_its_words() {
+        let word = |letter, number| QueueWord { letter, number };
+        let queue = Queue {
+            stops: vec![word(b'S', None), word(b'M', Some(80))],
+            stops_on_change: vec![word(b'M', Some(90))],
+            passes: vec![word(b'M', Some(620))],
+        };
+        assert_eq!(queue.effect(b'S', 15), Some(QueueEffect::Stop));
+        assert_eq!(queue.effect(b'M', 80), Some(QueueEffect::Stop));
+        assert_eq!(queue.effect(b'M', 90), Some(QueueEffect::StopOnChange));
+        assert_eq!(queue.effect(b'M', 620), Some(QueueEffect::Pass));
+        assert_eq!(queue.effect(b'M', 70), None);
+    }
+}

@@ -1,0 +1,63 @@
+//! What the certifier is told that the written program must do.
+
+use std::io::{Read, Seek, Write};
+
+use super::Writer;
+use crate::interpret::{MoveKind, Step};
+use crate::limit::Change;
+use crate::pipeline::describe::{describe, row};
+use crate::pipeline::entry::Entry;
+use crate::pipeline::expected::{Expected, ExpectedMove};
+
+impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+    /// Tells the certifier of the rows of the spindle before the next move.
+    pub(super) fn expect_spindle(&mut self) {
+        let of = (self.machine, &self.model, self.exact);
+        let expected = &mut self.batch.expected;
+        self.spindle.hand_over(of, &mut self.start_s, expected);
+    }
+
+    /// Tells the certifier what the block must do.
+    pub(super) fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
+        let feed_before = entry.feed_before();
+        let mut list = std::mem::take(&mut entry.decided);
+        let mut decided = list.iter_mut();
+        for step in &entry.steps {
+            let mv = match step {
+                Step::Action(action) => {
+                    self.batch.expected.push(Expected::Action(*action));
+                    continue;
+                }
+                Step::Move(mv) => mv,
+            };
+            let Some((assessment, outcome)) = decided.next() else {
+                continue;
+            };
+            self.expect_spindle();
+            self.spindle.write();
+            let hopeless = outcome.obstacle.is_some();
+            if let Some(obstacle) = outcome.obstacle.take() {
+                self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
+            }
+            // What a block gets, all its moves get, but not its dwell.
+            let change = change.filter(|_| mv.kind != MoveKind::Dwell);
+            let row = self.exact.then(|| {
+                let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
+                describe(self.machine, mv, change, feed_before, &mut row);
+                if hopeless {
+                    row.action = "none possible";
+                }
+                Box::new(row)
+            });
+            self.start_s += assessment.duration_s;
+            self.batch.expected.push(Expected::Move(ExpectedMove {
+                changed: change.is_some(),
+                as_feed: change.is_some_and(|change| change.as_feed),
+                hopeless,
+                row,
+                ..ExpectedMove::of(mv, assessment)
+            }));
+        }
+        entry.decided = list;
+    }
+}

@@ -1,0 +1,52 @@
+//! What judging moves has to do with the spindle.
+
+use super::{SpindleBus, SpindleEvent};
+use crate::interpret::{Move, Start};
+use crate::power::{Assessment, Assessor};
+
+impl Assessor<'_> {
+    /// The same for a program that begins from there: where the axes are not
+    /// known, nothing is known of the spindle either.
+    #[must_use]
+    pub fn starting(mut self, start: Start) -> Self {
+        if start == Start::Unknown {
+            let overrides = [self.largest, self.nominal];
+            self.bus = SpindleBus::new(self.machine, overrides, true).map(Box::new);
+        }
+        self
+    }
+
+    /// Keeps the runs of the spindle from now on, for [`Self::spindle_events`].
+    pub fn record_spindle(&mut self) {
+        if let Some(bus) = &mut self.bus {
+            bus.record();
+        }
+    }
+
+    /// The runs of the spindle that began since the last call. Under G96 the
+    /// feeds that it follows are none.
+    pub fn spindle_events(&mut self) -> Vec<SpindleEvent> {
+        let bus = self.bus.as_mut();
+        bus.map(|bus| bus.events()).unwrap_or_default()
+    }
+
+    /// Takes the next move where the machine has a spindle.
+    pub(in crate::power) fn push_beside_spindle(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let Some(mut bus) = self.bus.take() else {
+            return;
+        };
+        bus.push();
+        let want = self.want;
+        self.want = bus.want(want);
+        self.push_axes(mv, text, &mut |mv, judged, text| {
+            bus.take(mv, judged, text, want, sink);
+        });
+        self.want = want;
+        self.bus = Some(bus);
+    }
+}

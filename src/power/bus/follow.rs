@@ -1,0 +1,82 @@
+//! The spindle under G96, which follows X.
+
+use super::SpindleBus;
+use crate::interpret::Move;
+use crate::plan::{blended_speed, plan};
+use crate::power::Assessment;
+use crate::power::spindle_state::SpindleState;
+use crate::power::surface_speed::Surface;
+
+/// What following the surface takes during a move.
+#[derive(Debug)]
+pub(super) struct Followed {
+    /// Largest and smallest power, W.
+    pub(super) extremes: [f64; 2],
+    /// Energy with and without what is fed back taken off, J.
+    pub(super) energy_j: Option<[f64; 2]>,
+}
+
+impl SpindleBus<'_> {
+    /// Under G96 the spindle follows X: what that takes during a move.
+    pub(super) fn follow_surface(
+        &mut self,
+        mv: &Move,
+        assessment: &Assessment,
+    ) -> Option<Followed> {
+        let surface = self.surface.filter(|_| self.direction != 0.0)?;
+        let max = self.spindle.max_rpm;
+        let of = |side: usize| {
+            let factor = self.overrides[side].spindle;
+            Surface {
+                speed_mm_s: surface.speed_mm_s * factor,
+                clamp_rpm: (surface.clamp_rpm * factor).min(max),
+                sign: self.direction,
+                ..surface
+            }
+        };
+        let sides = [of(0), of(1)];
+        let Some(speeds) = sides[0].speeds(mv) else {
+            // Any speed up to the clamp.
+            let clamp = sides[0].clamp_rpm * self.direction;
+            let range = [clamp.min(0.0), clamp.max(0.0)];
+            self.states[0].wander(&self.motor, range, clamp);
+            let extremes = self.states[0].henceforth(&self.motor);
+            self.states[1].pass([assessment.duration_s; 2]);
+            return Some(Followed {
+                extremes,
+                energy_j: None,
+            });
+        };
+        let nominal = sides[1].speeds(mv)?;
+        let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
+        let has =
+            |state: &SpindleState, speed: f64| state.is_steady() && same(state.target(), speed);
+        if same(speeds.range[0], speeds.range[1]) && has(&self.states[0], speeds.end) {
+            return None;
+        }
+        let follows = has(&self.states[0], speeds.start) && has(&self.states[1], nominal.start);
+        let top_mm_s = blended_speed(self.machine, mv, self.overrides[0]);
+        let following = sides[0]
+            .following(&self.motor, mv, top_mm_s)
+            .filter(|_| follows);
+        if let Some(extremes) = following {
+            let planned = plan(self.machine, mv, self.overrides[1]);
+            let energy_j = sides[1].energy(&self.motor.power, mv, &planned);
+            self.states[0].follow(speeds.end);
+            self.states[1].follow(nominal.end);
+            return Some(Followed {
+                extremes,
+                energy_j: Some(energy_j),
+            });
+        }
+        self.states[0].wander(&self.motor, speeds.range, speeds.end);
+        self.states[1].command(&self.motor, nominal.end);
+        self.note_run();
+        let span = self.states[1].span(&self.motor, assessment.duration_s);
+        self.states[1].pass([assessment.duration_s; 2]);
+        Some(Followed {
+            extremes: self.states[0].henceforth(&self.motor),
+            energy_j: Some([span.energy_j, span.drawn_j]),
+        })
+    }
+}
