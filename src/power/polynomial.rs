@@ -51,15 +51,28 @@ impl Polynomial {
         primitive(to) - primitive(from)
     }
 
+    /// Whether the constant term outweighs all others in an interval.
+    fn keeps_its_sign(&self, low: f64, high: f64) -> bool {
+        let [constant, rest @ ..] = self.0;
+        let size = low.abs().max(high.abs());
+        let most = rest.iter().rev().fold(0.0, |sum, c| (sum + c.abs()) * size);
+        // A little more, for rounding.
+        constant.abs() > most * (1.0 + 1e-9)
+    }
+
     /// The points inside an interval where it is 0 and changes its sign.
     pub fn roots(&self, low: f64, high: f64) -> ArrayVec<f64, 4> {
+        if self.keeps_its_sign(low, high) {
+            return ArrayVec::new();
+        }
+        let order = self.0.iter().rposition(|c| *c != 0.0).unwrap_or(0);
         let mut chain = [*self; 4];
         for i in 1..4 {
             chain[i] = chain[i - 1].derivative();
         }
-        // From the linear third derivative up to the polynomial itself.
+        // From the linear derivative up to the polynomial itself.
         let mut found = ArrayVec::<f64, 4>::new();
-        for (degree, polynomial) in (1..=4).zip(chain.iter().rev()) {
+        for (degree, polynomial) in (1..=4).zip(chain.iter().rev()).skip(4 - order) {
             let slope = polynomial.derivative();
             let mut roots = ArrayVec::new();
             let mut from = low;
