@@ -211,13 +211,26 @@ fn both_certificates_can_be_asked_for() {
 fn a_thread_between_feeds_and_its_neighbours_get_the_robust_bound() {
     let rows = report(
         LINUXCNC,
-        "G21 G90 G64 P0.01\nM3 S600\nG1 X100 F6000\nY90\nG33 X50 K1\nG1 X0 Y0 F6000\nX50\nX90\nM2\n",
+        "G21 G90 G64 P0.01 Q0\nM3 S600\nG1 X100 F6000\nY90\nG33 X50 K1\nG1 X0 Y0 F6000\nX50\nX90\nM2\n",
     );
     let robust: Vec<bool> = rows
         .iter()
         .map(|row| row.certificate == Certificate::Robust)
         .collect();
     assert_eq!(robust, [true, true, true, true, true, false]);
+}
+
+/// How fast such lines run into each other is not certain.
+#[test]
+fn lines_that_are_put_together_get_the_robust_bound() {
+    for (words, robust) in [("", true), (" Q0", false)] {
+        let program = format!("G21 G90 G64 P0.01{words}\nG1 X50 F6000\nX90\nM2\n");
+        let rows = report(LINUXCNC, &program);
+        assert_eq!(rows.len(), 2);
+        for row in rows {
+            assert_eq!(row.certificate == Certificate::Robust, robust, "{program}");
+        }
+    }
 }
 
 /// Feeds count at the largest override, and times at 100 %.
