@@ -97,6 +97,16 @@ fn ratio(args: &IdentifyArgs) -> Result<Option<f64>> {
     Ok(Some(ratio))
 }
 
+/// How a flexible axis is estimated, where that is not given too.
+pub(super) fn method(asked: Option<MethodArg>) -> Method {
+    match asked {
+        None | Some(MethodArg::Iv) => Method::Iv,
+        Some(MethodArg::Arx) => Method::Arx,
+        Some(MethodArg::Frequency) => Method::Frequency,
+        Some(MethodArg::Subspace) => Method::Subspace,
+    }
+}
+
 fn choice(args: &IdentifyArgs, ratio: Option<f64>) -> Result<Choice> {
     ensure!(
         args.order.is_none_or(|order| order <= 12),
@@ -121,12 +131,7 @@ fn choice(args: &IdentifyArgs, ratio: Option<f64>) -> Result<Choice> {
         );
     }
     Ok(Choice {
-        method: match args.method {
-            None | Some(MethodArg::Iv) => Method::Iv,
-            Some(MethodArg::Arx) => Method::Arx,
-            Some(MethodArg::Frequency) => Method::Frequency,
-            Some(MethodArg::Subspace) => Method::Subspace,
-        },
+        method: method(args.method),
         given: Given {
             order: args.order,
             zeros: args.zeros,

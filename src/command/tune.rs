@@ -5,7 +5,7 @@ use std::io::{BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
-use gwatt::identify::flexible::{Choice, Method};
+use gwatt::identify::flexible::Choice;
 use gwatt::identify::response_table::ResponseFigures;
 use gwatt::identify::tune::{
     AxisResponse, Discretization, Parameters, Tuned, Wish, excited, of_recording,
@@ -16,11 +16,12 @@ use gwatt::report::{Verdict, sections_csv, tune_page, tuned_json, tuned_text};
 use rayon::prelude::*;
 
 use super::clash::refuse_clashes;
+use super::identify::method;
 use super::input::is_dash;
 use super::into::{Merged, axis_of};
 use super::output::{Spool, Target, print};
 use super::terminal::Terminal;
-use crate::cli::{DiscretizeArg, MethodArg, TuneArgs};
+use crate::cli::{DiscretizeArg, TuneArgs};
 
 /// Largest file of parameters that is read.
 const BYTES_MAX: u64 = 1 << 20;
@@ -241,12 +242,7 @@ fn choice(args: &TuneArgs) -> Result<Choice> {
         );
     }
     Ok(Choice {
-        method: match args.method {
-            None | Some(MethodArg::Iv) => Method::Iv,
-            Some(MethodArg::Arx) => Method::Arx,
-            Some(MethodArg::Frequency) => Method::Frequency,
-            Some(MethodArg::Subspace) => Method::Subspace,
-        },
+        method: method(args.method),
         given: Given {
             order: args.order,
             ..Given::default()
