@@ -226,7 +226,7 @@ fn a_thread_between_feeds_and_its_neighbours_get_the_robust_bound() {
 fn times_of_lines_that_are_put_together_add_up_to_the_motion() {
     let mut program = String::from("G21 G90 G64 P0.05\nG0 X20 Y0\nG1 F4800\n");
     for i in 1..=200 {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / 200.0).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / 200.0);
         writeln!(program, "X{:.4} Y{:.4}", 20.0 * cos, 20.0 * sin).unwrap();
     }
     program += "M2\n";
