@@ -391,6 +391,7 @@ impl Ahead {
             };
             self.first += 1;
             if !moves {
+                eye.pass();
                 sink(&open.mv, &open.assessment, &open.text);
                 self.spare.push(open);
                 continue;
