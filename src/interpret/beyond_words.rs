@@ -6,6 +6,7 @@ use super::expression::{Name, Value};
 use super::report::Report;
 use super::statement::Unread;
 use crate::machine::Family;
+use crate::source::Span;
 use crate::syntax::Block;
 
 impl Control<'_> {
@@ -24,9 +25,21 @@ impl Control<'_> {
         if self.osp.is_some() {
             return self.osp_words(block, report);
         }
+        if self.run > 1
+            && let Some(transfers) = self.replay(block, report)
+        {
+            return transfers;
+        }
         let text = report.text;
-        let statement = match self.statement(text, block) {
-            Ok(statement) => statement,
+        let record = self.traces.wants(self.text, report.line, self.run);
+        let statement = match self.statement(text, block, record) {
+            Ok(mut statement) => {
+                if record {
+                    let trace = statement.trace.take();
+                    self.traces.keep(self.text, report.line, trace);
+                }
+                statement
+            }
             Err(Unread::Fault(fault)) => {
                 report
                     .error(fault.rule, fault.message, fault.span)
@@ -60,25 +73,36 @@ impl Control<'_> {
             report.note_once("alarm-not-raised", message, span);
         }
         for (name, value, span) in &statement.assignments {
-            if *name == Name::Number(3000) && self.raises_alarm(*value) {
-                let message = "#3000 raises an alarm: the program ends here";
-                report.note_once("alarm", message, *span);
-                self.ended = true;
+            if !self.take_assignment(name, *value, *span, report) {
                 block.words.clear();
                 return false;
-            }
-            if let Err(reason) = self.assign(name, *value) {
-                report
-                    .error(
-                        "assignment",
-                        format!("this cannot be assigned: {reason}"),
-                        *span,
-                    )
-                    .help("use another parameter");
             }
         }
         self.transfer = statement.transfer;
         self.transfer.is_some()
+    }
+
+    /// Assigns a parameter; false when that ends the program.
+    pub(super) fn take_assignment(
+        &mut self,
+        name: &Name<'_>,
+        value: Value,
+        span: Span,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        if *name == Name::Number(3000) && self.raises_alarm(value) {
+            let message = "#3000 raises an alarm: the program ends here";
+            report.note_once("alarm", message, span);
+            self.ended = true;
+            return false;
+        }
+        if let Err(reason) = self.assign(name, value) {
+            let message = format!("this cannot be assigned: {reason}");
+            report
+                .error("assignment", message, span)
+                .help("use another parameter");
+        }
+        true
     }
 
     fn raises_alarm(&self, value: Value) -> bool {

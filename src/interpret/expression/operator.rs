@@ -4,7 +4,7 @@ use super::value::Value;
 
 /// An operator; its precedence and meaning depend on the language.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Operator {
+pub(in crate::interpret) enum Operator {
     Power,
     Times,
     Divide,
