@@ -388,9 +388,7 @@ impl<'t> Reader<'t> {
                 Operator::Power.apply(Some(x), Some(exponent), fanuc),
                 Op::Apply(Operator::Power),
             ),
-            (Function::Atan, Some(across)) => {
-                (Ok(libm::atan2(x, across).to_degrees()), Op::Angle)
-            }
+            (Function::Atan, Some(across)) => (Ok(libm::atan2(x, across).to_degrees()), Op::Angle),
             (_, Some(_)) => {
                 let wrong = "a second argument of a function that takes one";
                 return Err(self.impossible(wrong, start));

@@ -3,9 +3,11 @@
 
 mod cursor;
 mod function;
+mod ident;
 mod operator;
 
 pub(super) use cursor::{Cursor, Lexis, Outcome};
+pub(super) use ident::Ident;
 
 use self::function::Function;
 use self::operator::operator;

@@ -3,7 +3,7 @@
 use super::{Isg, Note};
 use crate::interpret::direct::is_direct;
 use crate::interpret::execute::Control;
-use crate::interpret::formula::{Cursor, Lexis, Outcome};
+use crate::interpret::formula::{Cursor, Ident, Lexis, Outcome};
 use crate::interpret::report::Report;
 use crate::interpret::transfer::{Go, Transfer};
 use crate::syntax::{Block, IssueKind, Word};
@@ -17,8 +17,8 @@ pub(super) struct Reading<'c, 'm, 't> {
     /// Text and line.
     pub(super) place: (u16, u64),
     /// Variables that the block has read and assigned so far.
-    pub(super) read: Vec<String>,
-    pub(super) assigned: Vec<String>,
+    pub(super) read: Vec<Ident>,
+    pub(super) assigned: Vec<Ident>,
     /// G4 stands in the block.
     pub(super) dwells: bool,
 }

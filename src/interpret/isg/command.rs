@@ -185,7 +185,7 @@ impl Reading<'_, '_, '_> {
             let start = self.cursor.at;
             let word = self.cursor.name();
             let bare = word.trim_end_matches(|digit: char| digit.is_ascii_digit());
-            let whole = names.iter().position(|name| *name == word);
+            let whole = names.iter().position(|name| word == *name);
             let place = whole.or_else(|| names.iter().position(|name| *name == bare));
             self.cursor.at += if whole.is_some() {
                 word.len()

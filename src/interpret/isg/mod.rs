@@ -16,6 +16,7 @@ pub(super) use block::is_local;
 
 use std::collections::HashMap;
 
+use super::formula::Ident;
 use crate::source::Span;
 use crate::syntax::Block;
 
@@ -26,9 +27,9 @@ const COUNT_MAX: usize = 100_000;
 #[derive(Debug, Default)]
 pub(super) struct Isg {
     /// P parameters, V.P. and V.S. by their names with indices.
-    globals: HashMap<String, f64>,
+    globals: HashMap<Ident, f64>,
     /// V.L. and V.CYC. of the programs that run: seen in those that they call.
-    levels: Vec<HashMap<String, f64>>,
+    levels: Vec<HashMap<Ident, f64>>,
     /// Between #VAR and #ENDVAR.
     declares: bool,
     /// Between #COMMENT BEGIN and #COMMENT END.

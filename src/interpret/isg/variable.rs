@@ -3,7 +3,7 @@
 
 use super::COUNT_MAX;
 use super::block::Reading;
-use crate::interpret::formula::{Cursor, Names, Outcome, Style, expression};
+use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression};
 
 /// Letters P in a row: each asks for the value of the next.
 const INDIRECT_MAX: usize = 8;
@@ -49,12 +49,12 @@ fn both(cursor: &Cursor<'_>, name: &str, start: usize) -> crate::interpret::expr
 impl Reading<'_, '_, '_> {
     /// Takes the name of a variable with its indices, upper case but for what is
     /// free in it: `P10`, `P[10]` and `PP2` by their number, `V.P.NAME[1]`.
-    pub(super) fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<String>> {
+    pub(super) fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Ident>> {
         cursor.peek();
         let name = match (cursor.byte(0), cursor.byte(1)) {
             (b'P', b'0'..=b'9' | b'P' | b'[') => {
                 cursor.at += 1;
-                format!("P{}", self.index_of_p(cursor)?)
+                Ident::of(format_args!("P{}", self.index_of_p(cursor)?))
             }
             (b'V', b'.') => free_name(cursor),
             _ => return Ok(None),
@@ -67,7 +67,7 @@ impl Reading<'_, '_, '_> {
             cursor.at += 1;
             let index = self.index(cursor)?;
             cursor.expect(b']')?;
-            name = format!("{name}[{index}]");
+            name = Ident::of(format_args!("{name}[{index}]"));
         }
         Ok(Some(name))
     }
@@ -117,22 +117,24 @@ impl Reading<'_, '_, '_> {
     }
 
     /// Gives a variable its value; V.L. where it was made, or here.
-    pub(super) fn set(&mut self, name: &str, value: f64, start: usize) -> Outcome<()> {
+    pub(super) fn set(&mut self, name: &Ident, value: f64, start: usize) -> Outcome<()> {
         let kept = if is_local(name) {
             let levels = &mut self.state.levels;
-            let made = levels.iter().rposition(|level| level.contains_key(name));
+            let made = levels
+                .iter()
+                .rposition(|level| level.contains_key(name.as_str()));
             let at = made.unwrap_or(levels.len().saturating_sub(1));
             levels.get_mut(at)
         } else {
             Some(&mut self.state.globals)
         };
         let Some(kept) = kept else { return Ok(()) };
-        if kept.len() >= COUNT_MAX && !kept.contains_key(name) {
+        if kept.len() >= COUNT_MAX && !kept.contains_key(name.as_str()) {
             let message = "more than 100000 variables";
             let help = "look for a loop that makes them";
             return Err(self.cursor.fault("assignment", message, help, start));
         }
-        kept.insert(name.to_owned(), value);
+        kept.insert(name.clone(), value);
         Ok(())
     }
 
@@ -230,11 +232,11 @@ impl Reading<'_, '_, '_> {
     }
 
     /// The name of a variable without its indices.
-    fn base_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<String>> {
+    fn base_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Ident>> {
         Ok(match (cursor.byte(0), cursor.byte(1)) {
             (b'P', b'0'..=b'9') => {
                 cursor.at += 1;
-                Some(format!("P{}", self.index_of_p(cursor)?))
+                Some(Ident::of(format_args!("P{}", self.index_of_p(cursor)?)))
             }
             (b'V', b'.') => Some(free_name(cursor)),
             _ => None,
@@ -242,7 +244,7 @@ impl Reading<'_, '_, '_> {
     }
 
     /// What stands behind the name: lengths of an array, a type, values.
-    fn declare(&mut self, name: &str, start: usize) -> Outcome<()> {
+    fn declare(&mut self, name: &Ident, start: usize) -> Outcome<()> {
         let mut lengths = Vec::new();
         while lengths.len() < DIMENSIONS && self.cursor.take(b'[') {
             lengths.push(self.number()? as usize);
@@ -276,7 +278,7 @@ impl Reading<'_, '_, '_> {
                 indices = format!("[{}]{indices}", rest % length);
                 rest /= length;
             }
-            let name = format!("{name}{indices}");
+            let name = Ident::of(format_args!("{name}{indices}"));
             // A declaration makes it anew at this level.
             if is_local(&name) {
                 let level = self.state.levels.last_mut();
@@ -312,19 +314,24 @@ impl Reading<'_, '_, '_> {
 
 /// `V.P.NAME`: to a blank, an operator, a comment or a bracket. The case of what
 /// is free counts.
-fn free_name(cursor: &mut Cursor<'_>) -> String {
+fn free_name(cursor: &mut Cursor<'_>) -> Ident {
     let rest = cursor.text.get(cursor.at..).unwrap_or_default();
     let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || matches!(**byte, b'_' | b'.');
     let length = rest.iter().take_while(inside).count();
-    let name = String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).into_owned();
+    let name = rest.get(..length).unwrap_or_default();
     cursor.at += length;
-    let upper = name.to_ascii_uppercase();
-    let front = ["V.P.", "V.L.", "V.S.", "V.CYC."]
-        .into_iter()
-        .find(|front| upper.starts_with(front));
+    let begins = |front: &&str| {
+        let own = name.get(..front.len());
+        own.is_some_and(|own| own.eq_ignore_ascii_case(front.as_bytes()))
+    };
+    let front = ["V.P.", "V.L.", "V.S.", "V.CYC."].into_iter().find(begins);
     match front {
-        Some(front) => format!("{front}{}", name.get(front.len()..).unwrap_or_default()),
-        None => upper,
+        Some(front) => {
+            let free = name.get(front.len()..).unwrap_or_default();
+            let free = std::str::from_utf8(free).unwrap_or_default();
+            Ident::of(format_args!("{front}{free}"))
+        }
+        None => Ident::new(name),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Note, Osp};
 use crate::interpret::execute::Control;
 use crate::interpret::expression::Fault;
-use crate::interpret::formula::{Cursor, Lexis, Outcome};
+use crate::interpret::formula::{Cursor, Ident, Lexis, Outcome};
 use crate::interpret::report::Report;
 use crate::interpret::transfer::{Go, Transfer};
 use crate::syntax::{Block, IssueKind, Word};
@@ -13,8 +13,8 @@ pub(super) struct Reading<'c, 't> {
     pub(super) state: &'c mut Osp,
     pub(super) cursor: Cursor<'t>,
     pub(super) notes: Vec<Note>,
-    pub(super) read: Vec<String>,
-    pub(super) assigned: Vec<String>,
+    pub(super) read: Vec<Ident>,
+    pub(super) assigned: Vec<Ident>,
     /// NOEX stands in the block.
     pub(super) passive: bool,
 }

@@ -13,6 +13,7 @@ pub(super) use codes::{OspCode, osp_code, refused_name};
 
 use std::collections::HashMap;
 
+use super::formula::Ident;
 use crate::source::Span;
 use crate::syntax::Block;
 
@@ -23,11 +24,11 @@ const COUNT_MAX: usize = 100_000;
 #[derive(Debug, Default)]
 pub(super) struct Osp {
     /// V1, VC1 and so on: common variables.
-    common: HashMap<String, f64>,
+    common: HashMap<Ident, f64>,
     /// Local variables of the programs that run.
-    levels: Vec<HashMap<String, f64>>,
+    levels: Vec<HashMap<Ident, f64>>,
     /// Those of the program that is called next.
-    pending: HashMap<String, f64>,
+    pending: HashMap<Ident, f64>,
     /// A program's name was read.
     begun: bool,
     /// Between DEF WORK and END: a drawing.

@@ -3,7 +3,7 @@
 use super::COUNT_MAX;
 use super::block::Reading;
 use crate::interpret::expression::Fault;
-use crate::interpret::formula::{Cursor, Names, Outcome, Style, expression};
+use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression};
 
 /// System variables that move nothing: drawings, barriers of chuck and tail
 /// stock, monitoring of load, outputs and messages.
@@ -13,9 +13,9 @@ const PASSIVE: [&str; 9] = [
 
 /// What a name stands for.
 enum Name {
-    Common(String),
-    Local(String),
-    System(String),
+    Common(Ident),
+    Local(Ident),
+    System(Ident),
 }
 
 impl Names for Reading<'_, '_> {
@@ -85,9 +85,9 @@ impl Reading<'_, '_> {
                 return Err(cursor.fault("array-index", message, help, start));
             }
             full = if common {
-                format!("{name}{index}")
+                Ident::of(format_args!("{name}{index}"))
             } else {
-                format!("{name}[{index}]")
+                Ident::of(format_args!("{name}[{index}]"))
             };
         }
         Ok(Some(if common {
@@ -139,7 +139,7 @@ impl Reading<'_, '_> {
         Ok(true)
     }
 
-    fn set(&mut self, name: &str, local: bool, value: f64, start: usize) -> Outcome<()> {
+    fn set(&mut self, name: &Ident, local: bool, value: f64, start: usize) -> Outcome<()> {
         let kept = if local {
             self.state.levels.last_mut()
         } else {
@@ -151,7 +151,7 @@ impl Reading<'_, '_> {
             let help = "look for a loop that makes them";
             return Err(self.cursor.fault("assignment", message, help, start));
         }
-        kept.insert(name.to_owned(), value);
+        kept.insert(name.clone(), value);
         Ok(())
     }
 

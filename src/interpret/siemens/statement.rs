@@ -106,7 +106,8 @@ impl Reading<'_, '_, '_> {
         }
         // `A3` is an angle, `A3=` a vector.
         let word = name.as_bytes().get(1).is_some_and(u8::is_ascii_digit) && !assigns;
-        match Name::of(&name).filter(|_| !word) {
+        let known = if word { None } else { Name::of(&name) };
+        match known {
             Some(Name::Data) => return self.pass_over().map(|()| None),
             Some(Name::Refused(reason)) => return Err(self.refused(&name, reason, start)),
             None => {}
@@ -117,7 +118,7 @@ impl Reading<'_, '_, '_> {
         if name == "L" || assigns || self.cursor.peek() == Some(b'[') {
             return self.assignment(&name, start).map(|()| None);
         }
-        self.call(name, start)
+        self.call(&name, start)
     }
 
     pub(super) fn refused(

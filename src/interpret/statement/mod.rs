@@ -180,8 +180,9 @@ impl Control<'_> {
         }
         block.issues.clear();
         if record {
-            let untold =
-                statement.callee.is_some() || statement.corner.is_some() || statement.alarm.is_some();
+            let untold = statement.callee.is_some()
+                || statement.corner.is_some()
+                || statement.alarm.is_some();
             statement.recorder.lost |= untold;
             let recorder = std::mem::take(&mut statement.recorder);
             statement.trace = recorder.finish(line, reader, statement.transfer.as_ref(), block);

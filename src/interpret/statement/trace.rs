@@ -35,16 +35,32 @@ pub(in crate::interpret) struct Trace {
 /// value end.
 #[derive(Debug)]
 enum Item {
-    Word { word: Word, end: usize },
-    Assign { name: Target, span: Span, end: usize },
+    Word {
+        word: Word,
+        end: usize,
+    },
+    Assign {
+        name: Target,
+        span: Span,
+        end: usize,
+    },
     /// A condition that was so.
-    Guard { holds: bool, end: usize },
+    Guard {
+        holds: bool,
+        end: usize,
+    },
     /// The condition of the transfer.
-    Condition { end: usize },
+    Condition {
+        end: usize,
+    },
     /// A value of the transfer: of `repeat`, `endsub` and `return`.
-    Value { end: usize },
+    Value {
+        end: usize,
+    },
     /// The arguments of a call, one by one.
-    Argument { end: usize },
+    Argument {
+        end: usize,
+    },
 }
 
 /// What is assigned.
@@ -299,7 +315,10 @@ impl Control<'_> {
                 Item::Condition { end } => {
                     let holds = next(*end)?.unwrap_or(0.0) != 0.0;
                     match &mut transfer {
-                        Some(Transfer::Structure { verb: Verb::If(it) | Verb::While(it), .. }) => {
+                        Some(Transfer::Structure {
+                            verb: Verb::If(it) | Verb::While(it),
+                            ..
+                        }) => {
                             *it = holds;
                         }
                         Some(Transfer::Loop { holds: it, .. }) => *it = holds,
@@ -323,7 +342,10 @@ impl Control<'_> {
                     let value = next(*end)?;
                     argument += 1;
                     match &mut transfer {
-                        Some(Transfer::Structure { verb: Verb::Call(values), .. }) => {
+                        Some(Transfer::Structure {
+                            verb: Verb::Call(values),
+                            ..
+                        }) => {
                             *values.get_mut(argument)? = value;
                         }
                         _ => return None,
@@ -333,7 +355,10 @@ impl Control<'_> {
         }
         block.issues.clear();
         block.words_end = trace.words_end;
-        Some(Outcome { assignments, transfer })
+        Some(Outcome {
+            assignments,
+            transfer,
+        })
     }
 
     fn take_effect(
