@@ -171,6 +171,77 @@ M30
 ");
 }
 
+/// "Cycles as global or local subroutines (Call L | LL CYCLE)": @P belong to the
+/// cycle, @X, @Y and @Z are the first, second and third axis of the plane.
+#[test]
+fn cycles_get_parameters_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let drill = "\
+(a hole at @P4, @P5 to the depth @P1, by steps of @P2)
+#VAR
+V.L.DEPTH = 0
+#ENDVAR
+G0 @X@P4 @Y=@P5 @Z@P3
+$WHILE V.L.DEPTH < @P1
+V.L.DEPTH = MIN[V.L.DEPTH+@P2, @P1]
+G1 @Z[-V.L.DEPTH] F100
+@P3 = @P3 + 1
+G0 @Z@P3
+$ENDWHILE
+LL OTHER
+G2 @X[@P4+2] @I1 @J0
+M29
+%L OTHER
+G0 A1
+M29
+";
+    std::fs::write(folder.path().join("drill.cyc"), drill).expect("written");
+    let program = "\
+%L LOCAL
+G0 @X@P1
+M17
+%MAIN
+P1=4
+L CYCLE [NAME=drill.cyc @P1=P1+1 @P2=3 @P3=10 @P4=7 @P5=8]
+G18
+L CYCLE [NAME=drill.cyc, @P1=1, @P2=3, @P3=20, @P4=17, @P5=18]
+LL CYCLE [NAME=LOCAL @P1=30]
+M30
+";
+    let found = listing(program, &machine("isg"), Some(folder.path()));
+    assert_snapshot!(found, @r"
+5 rapid X7 Y8 Z10
+8 feed Z-3 F100
+10 rapid Z11
+8 feed Z-5 F100
+10 rapid Z12
+16 rapid A1
+13 arc X9 Y8 center 8,8 turns -0.5 F100
+5 rapid X18 Y20 Z17
+8 feed Y-1 F100
+10 rapid Y21
+16 rapid
+13 arc X18 Z19 center 18,18 turns -0.5 F100
+2 rapid Z30
+");
+}
+
+/// A cycle does not see the parameters of another one, nor those of its caller.
+#[test]
+fn parameters_of_cycles_are_not_seen_elsewhere() {
+    assert_snapshot!(refused("\
+%L INNER
+G0 X@P1
+M17
+%L OUTER
+LL INNER
+M17
+%MAIN
+LL CYCLE [NAME=OUTER @P1=30]
+M30
+"), @"2 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows");
+}
+
 /// "Dwell time (G04), (#TIME)", "Reference point offset (G92)", "Zero offsets
 /// (G53/G54/...G59)", "Specifying centre point (G161/G162)", "Rotate the
 /// coordinate system in the plane (#ROTATION ON/OFF)", "Comments".
@@ -290,6 +361,15 @@ fn what_is_not_followed_is_named() {
         "X1=10",
         "G80",
         "L CYCLE.CYC [@P1=5]",
+        "L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]",
+        "L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]",
+        "L CYCLE [NAME=a.cyc @P201=5]",
+        "L CYCLE [@P1=5]",
+        "L CYCLE [NAME=a.cyc Q=5]",
+        "G0 L CYCLE [NAME=a.cyc]",
+        "X@P1",
+        "@P1=3",
+        "@X5",
         "$IF P1",
         "$JUMP",
         "$BREAK",
@@ -323,7 +403,16 @@ V.G.NP[1].V.X=10: 1 unsupported-word: V.G.NP[1] belongs to the control or the PL
 X[OVERRIDE FEED_FACT=20]: 1 unsupported-word: X[OVERRIDE …] is a command to one axis or spindle, which gwatt does not follow
 X1=10: 1 unsupported-word: X1 is an axis or spindle by a name, which gwatt does not follow
 G80: 1 unknown-code: G80 is not known to this controller profile
-L CYCLE.CYC [@P1=5]: 1 unsupported-word: L … [ … ] is a cycle with parameters (@P), which gwatt does not follow
+L CYCLE.CYC [@P1=5]: 1 subprogram: parameters behind the name of a subprogram
+L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]: 1 unsupported-word: SysDrillDeepHole.ecy is a cycle of the control's maker, which gwatt does not follow
+L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]: 1 unsupported-word: MODAL is a cycle behind each block that moves, which gwatt does not follow
+L CYCLE [NAME=a.cyc @P201=5]: 1 no-such-parameter: the parameters of a cycle are @P1 to @P200
+L CYCLE [@P1=5]: 1 subprogram: a cycle without its name
+L CYCLE [NAME=a.cyc Q=5]: 1 subprogram: behind CYCLE stand NAME= and the parameters @P1= and so on
+G0 L CYCLE [NAME=a.cyc]: 1 subprogram: a cycle behind other words
+X@P1: 1 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows
+@P1=3: 1 unsupported-word: @P1 belongs to the control or the PLC, and may change offsets
+@X5: 1 syntax: @ stands before P, X, Y, Z, I, J, K and S in cycles
 $IF P1: 1 unknown-value: P1 has no value in this program: what it holds, only the machine knows
 $JUMP: 1 flow: $JUMP is no statement of this language
 $BREAK: 1 structure: there is no loop around this

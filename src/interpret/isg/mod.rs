@@ -6,6 +6,7 @@
 
 mod block;
 mod command;
+mod cycle;
 mod flow_words;
 mod rotation;
 mod system;
@@ -28,8 +29,11 @@ const COUNT_MAX: usize = 100_000;
 pub(super) struct Isg {
     /// P parameters, V.P. and V.S. by their names with indices.
     globals: HashMap<Ident, f64>,
-    /// V.L. and V.CYC. of the programs that run: seen in those that they call.
+    /// V.L. and V.CYC. of the programs that run, seen in those that they call; and
+    /// @P, seen in their cycle only.
     levels: Vec<HashMap<Ident, f64>>,
+    /// @P of the cycle that is called next.
+    arguments: HashMap<Ident, f64>,
     /// Between #VAR and #ENDVAR.
     declares: bool,
     /// Between #COMMENT BEGIN and #COMMENT END.
@@ -70,7 +74,7 @@ impl Isg {
     /// words.
     pub(super) fn is_beyond_words(&self, block: &Block) -> bool {
         let special = |letter: u8, value: f64| match letter {
-            b'L' | b'P' | b'=' => true,
+            b'L' | b'P' | b'=' | b'@' => true,
             b'G' => value == 4.0,
             b'M' => [2.0, 17.0, 29.0, 30.0].contains(&value),
             _ => false,
@@ -86,7 +90,7 @@ impl Isg {
 
     /// A subprogram begins.
     pub(super) fn enter(&mut self) {
-        self.levels.push(HashMap::new());
+        self.levels.push(std::mem::take(&mut self.arguments));
     }
 
     /// A subprogram has ended.

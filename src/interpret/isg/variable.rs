@@ -3,6 +3,7 @@
 
 use super::COUNT_MAX;
 use super::block::Reading;
+use super::cycle::parameter_name;
 use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression};
 
 /// Letters P in a row: each asks for the value of the next.
@@ -29,6 +30,7 @@ impl Names for Reading<'_, '_, '_> {
             let reason = match name.get(..4) {
                 Some("V.E.") => "comes from the PLC",
                 Some("V.G." | "V.A.") => "is kept by the control",
+                _ if name.starts_with('@') => "is given by no call of a cycle",
                 _ => "has no value in this program",
             };
             let message = format!("{name} {reason}: what it holds, only the machine knows");
@@ -57,6 +59,7 @@ impl Reading<'_, '_, '_> {
                 Ident::of(format_args!("P{}", self.index_of_p(cursor)?))
             }
             (b'V', b'.') => free_name(cursor),
+            (b'@', b'P') => return parameter_name(cursor).map(Some),
             _ => return Ok(None),
         };
         let mut name = name;
@@ -109,6 +112,9 @@ impl Reading<'_, '_, '_> {
     }
 
     fn value(&self, name: &str) -> Option<f64> {
+        if name.starts_with('@') {
+            return self.state.levels.last()?.get(name).copied();
+        }
         if is_local(name) {
             let mut levels = self.state.levels.iter().rev();
             return levels.find_map(|level| level.get(name)).copied();
@@ -118,7 +124,9 @@ impl Reading<'_, '_, '_> {
 
     /// Gives a variable its value; V.L. where it was made, or here.
     pub(super) fn set(&mut self, name: &Ident, value: f64, start: usize) -> Outcome<()> {
-        let kept = if is_local(name) {
+        let kept = if name.starts_with('@') {
+            self.state.levels.last_mut()
+        } else if is_local(name) {
             let levels = &mut self.state.levels;
             let made = levels
                 .iter()
@@ -191,6 +199,7 @@ impl Reading<'_, '_, '_> {
 
     fn settable(&self, name: &str, start: usize) -> Outcome<()> {
         let own = name.starts_with('P')
+            || name.starts_with('@') && self.state.is_called()
             || ["V.P.", "V.L.", "V.S.", "V.CYC."]
                 .iter()
                 .any(|front| name.starts_with(front));

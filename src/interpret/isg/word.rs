@@ -21,7 +21,7 @@ impl Reading<'_, '_, '_> {
                 self.cursor.pass_over_rest();
                 return Err(self.refused("a text in quotes", "a macro", start));
             }
-            _ if byte.is_ascii_alphabetic() => return self.address(block),
+            _ if byte.is_ascii_alphabetic() || byte == b'@' => return self.address(block),
             _ => {
                 self.cursor.at += 1;
                 let message = format!("`{}` has no meaning here", byte as char);
@@ -39,6 +39,7 @@ impl Reading<'_, '_, '_> {
         let variable = match letter {
             b'P' => matches!(self.cursor.byte(1), b'0'..=b'9' | b'P' | b'['),
             b'V' => self.cursor.byte(1) == b'.',
+            b'@' => self.cursor.byte(1) == b'P',
             _ => false,
         };
         if variable && self.dwells {
@@ -53,13 +54,23 @@ impl Reading<'_, '_, '_> {
             return Ok(None);
         }
         if letter == b'L' {
-            return self.call().map(Some);
-        }
-        if self.cursor.byte(1) == b'@' || letter == b'@' {
-            self.cursor.at += 1;
-            return Err(self.refused("@P", "a parameter of a cycle", start));
+            return self.call(block).map(Some);
         }
         self.cursor.at += 1;
+        if letter != b'@' {
+            self.value_of(letter, start, block)?;
+            return Ok(None);
+        }
+        let named = self.cursor.byte(0);
+        self.cursor.at += 1;
+        let Some(letter) = self
+            .letter_in_cycle(named)
+            .filter(|_| self.state.is_called())
+        else {
+            let message = "@ stands before P, X, Y, Z, I, J, K and S in cycles";
+            let help = "call the cycle by L CYCLE [NAME=… @P1=…]";
+            return Err(self.cursor.fault("syntax", message, help, start));
+        };
         self.value_of(letter, start, block)?;
         Ok(None)
     }
@@ -175,7 +186,7 @@ impl Reading<'_, '_, '_> {
     }
 
     /// `LL NAME` and `L NAME` ("Local subroutines", "Global subroutines").
-    fn call(&mut self) -> Outcome<Go> {
+    fn call(&mut self, block: &Block) -> Outcome<Go> {
         let start = self.cursor.at;
         let local = self.cursor.byte(1) == b'L' && matches!(self.cursor.byte(2), b' ' | b'\t');
         self.cursor.at += if local { 2 } else { 1 };
@@ -198,6 +209,9 @@ impl Reading<'_, '_, '_> {
             name = String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).into_owned();
             self.cursor.at += length;
         }
+        if name == "CYCLE" && next != Some(b'"') {
+            return self.cycle(local, start, block);
+        }
         if name.is_empty() {
             let message = "a call without the name of a subprogram";
             let help = "write LL and the name of a local subprogram, or L and the name of a file";
@@ -208,7 +222,9 @@ impl Reading<'_, '_, '_> {
         }
         if self.cursor.peek() == Some(b'[') {
             self.cursor.pass_over_rest();
-            return Err(self.refused("L … [ … ]", "a cycle with parameters (@P)", start));
+            let message = "parameters behind the name of a subprogram";
+            let help = "call a cycle by L CYCLE [NAME=… @P1=…]";
+            return Err(self.cursor.fault("subprogram", message, help, start));
         }
         if local {
             return Ok(Go::Local(name));
