@@ -1,5 +1,6 @@
 //! LinuxCNC's stand-alone interpreter, where it is installed.
 
+use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -34,11 +35,32 @@ pub fn installed() -> bool {
     quiet.status().is_ok()
 }
 
+/// A tool table with its lengths in inches: `rs274` takes them to be, and gwatt
+/// takes them in the unit of the machine.
+fn in_inches(table: &str) -> String {
+    let mut lines = String::new();
+    for line in table.lines() {
+        let (words, comment) = line.split_once(';').unwrap_or((line, ""));
+        for word in words.split_whitespace() {
+            let length = word
+                .strip_prefix(['X', 'Y', 'Z', 'U', 'V', 'W', 'D'])
+                .and_then(|number| number.parse::<f64>().ok());
+            let _ = match length {
+                Some(mm) => write!(lines, "{}{} ", &word[..1], mm / 25.4),
+                None => write!(lines, "{word} "),
+            };
+        }
+        let _ = writeln!(lines, ";{comment}");
+    }
+    lines
+}
+
 /// Runs a program; `table` is copied, since `rs274` may write it.
 pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    fs::copy(table, at("tool.tbl")).expect("a tool table");
+    let table = fs::read_to_string(table).expect("a tool table");
+    fs::write(at("tool.tbl"), in_inches(&table)).expect("a tool table");
     File::create(at("par.var")).expect("a file");
     let paths: Vec<String> = subs.iter().map(|path| path.display().to_string()).collect();
     let ini = format!(
