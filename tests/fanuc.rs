@@ -200,6 +200,13 @@ fn alarms_and_state() {
     );
 }
 
+/// Mitsubishi M700V: an `,F` on G0 is not documented well enough to be followed.
+#[test]
+fn a_feed_behind_a_comma_is_refused() {
+    let found = moves_on(&machine("mitsubishi", ""), "G0 X10. ,F500\nM30\n");
+    assert_snapshot!(found, @"1 corner-word: a word behind a comma is not supported");
+}
+
 #[test]
 fn arc_centres_as_the_machine_file_says() {
     // Half a circle about (10, 0); as a distance from the start it is none.

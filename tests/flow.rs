@@ -115,6 +115,19 @@ fn calls_of_programs_and_macros() {
     assert_eq!(ends("iso", program), [9.0, 2.0]);
 }
 
+/// B-63944EN, "Modal Call (G66)": the macro runs behind each block that moves, to
+/// G67. Haas mill operator's manual, "M97 Local Sub-Program Call": to a block of the
+/// same program, L times.
+#[test]
+fn modal_calls_and_calls_of_blocks() {
+    let program = "G0\nG66 P9 A3.\nX10.\nG67\nX30.\nM30\nO9\nX[#1+#5001]\nM99\n";
+    assert_eq!(ends("fanuc", program), [10.0, 13.0, 30.0]);
+    let program = "G0 X0.\nM97 P50 L2\nX5.\nM30\nN50 G91 X1.\nG90\nM99\n";
+    assert_eq!(ends("haas", program), [0.0, 1.0, 2.0, 5.0]);
+    let message = "2 unsupported-code: G66.1 is a macro call, which gwatt does not support";
+    fails("fanuc", "G0 X1.\nG66.1 P9 A3.\nM30\n", message);
+}
+
 #[test]
 fn every_message_of_o_words() {
     let fails = |program: &str, expected: &str| fails("linuxcnc", program, expected);

@@ -340,6 +340,44 @@ fn plain_moves_beside_what_is_more() {
 ");
 }
 
+/// "Acceleration weighting (G130/G131/G230/G231)", "Weighting of rapid traverse
+/// velocity (G129)", "Ramp time weighting (G132/G133/G134/G233)", "#VECTOR LIMIT",
+/// "#LAH", "Feed rate profiling (G08/G09/G900/G901)": they move nothing, and lower
+/// limits or smooth within them.
+#[test]
+fn dynamics_move_nothing() {
+    assert_snapshot!(moves("\
+%MAIN
+G1 F600 X1
+G130 X70 Y60
+G131=50
+G230 X40
+G231=30
+G129=20
+G132 X200 Y=150
+G133=200
+G134 = 100
+G233=50
+X2
+#VECTOR LIMIT ON [ACC=1000 VEL=500]
+#LAH ON
+#SLOPE [TYPE=STEP]
+G08 X3
+G09 X4
+G900 X5
+G901 X6
+#VECTOR LIMIT OFF
+M30
+"), @r"
+2 feed X1 F600
+12 feed X2 F600
+16 feed X3 F600
+17 feed X4 F600
+18 feed X5 F600
+19 feed X6 F600
+");
+}
+
 /// What depends on what the control alone knows, or moves in another way.
 #[test]
 fn what_is_not_followed_is_named() {
@@ -379,6 +417,15 @@ fn what_is_not_followed_is_named() {
         "P1=1 XP1",
         "X[1/0]",
         "X\"MACRO\"",
+        "G133=0",
+        "G132 X200 G1",
+        "#set paramPathDynamics( 700; 700; 3000 )#",
+        "DynOvr=0.4",
+        "#KIN ID [9]",
+        "#TRAFO [KIN_ID=9]",
+        "#TOOL ORI CS",
+        "#ACS ON [0,0,1]",
+        "#CS ADD [A] [0,0,1]",
         "$FOR P1=0,1,0",
         "#ROTATION ON [ANGLE=30]\nG18",
     ];
@@ -422,6 +469,15 @@ $GOTO N77: 1 no-such-block: there is no N77 to jump to in this program
 P1=1 XP1: 1 assignment: the block assigns P1 and uses it
 X[1/0]: 1 arithmetic: a division by zero
 X"MACRO": 1 expression: a value is missing here
+G133=0: 1 knob-value: a ramp time is a percentage above 0, in a block of its own
+G132 X200 G1: 1 knob-value: a ramp time is a percentage above 0, in a block of its own
+#set paramPathDynamics( 700; 700; 3000 )#: 1 unsupported-word: #SET PARAMPATHDYNAMICS is a command of this control, which gwatt does not follow
+DynOvr=0.4: 1 unsupported-word: DynOvr is a word of TwinCAT NC I, another interpreter, which gwatt does not follow
+#KIN ID [9]: 1 unsupported-word: #KIN ID is a kinematic transformation, which gwatt does not follow
+#TRAFO [KIN_ID=9]: 1 unsupported-word: #TRAFO is a kinematic transformation, which gwatt does not follow
+#TOOL ORI CS: 1 unsupported-word: #TOOL ORI CS is a command of this control, which gwatt does not follow
+#ACS ON [0,0,1]: 1 unsupported-word: #ACS ON is another coordinate system, which gwatt does not follow
+#CS ADD [A] [0,0,1]: 1 unsupported-word: #CS ADD is a coordinate system of another mode, which gwatt does not follow
 $FOR P1=0,1,0: 1 endless: $FOR with the step 0 never ends
 #ROTATION ON [ANGLE=30]
 G18: 2 turned-system: another coordinate system while the program is turned or scaled

@@ -90,7 +90,13 @@ impl<'t> Cursor<'t> {
 
     /// Takes a name if it is next, as a whole.
     pub(in crate::interpret) fn take_name(&mut self, name: &str) -> bool {
-        let next = self.name() == *name;
+        self.peek();
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let inside = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+        let next = rest
+            .get(..name.len())
+            .is_some_and(|text| text.eq_ignore_ascii_case(name.as_bytes()))
+            && !rest.get(name.len()).is_some_and(inside);
         self.at += if next { name.len() } else { 0 };
         next
     }

@@ -20,14 +20,12 @@ pub(in crate::interpret) enum Ident {
 impl Ident {
     /// The name that `letters` are, which are ASCII.
     pub(in crate::interpret) fn new(letters: &[u8]) -> Self {
-        let mut name = ArrayString::new();
-        for letter in letters {
-            if name.try_push(letter.to_ascii_uppercase() as char).is_err() {
-                let long = String::from_utf8_lossy(letters);
-                return Self::Long(long.to_ascii_uppercase());
-            }
+        let text = std::str::from_utf8(letters).unwrap_or_default();
+        if let Ok(mut name) = ArrayString::from(text) {
+            name.make_ascii_uppercase();
+            return Self::Short(name);
         }
-        Self::Short(name)
+        Self::Long(text.to_ascii_uppercase())
     }
 
     /// A name that is put together.

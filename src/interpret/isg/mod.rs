@@ -8,6 +8,7 @@ mod block;
 mod command;
 mod cycle;
 mod flow_words;
+mod ramp;
 mod rotation;
 mod system;
 mod variable;
@@ -75,7 +76,7 @@ impl Isg {
     pub(super) fn is_beyond_words(&self, block: &Block) -> bool {
         let special = |letter: u8, value: f64| match letter {
             b'L' | b'P' | b'=' | b'@' => true,
-            b'G' => value == 4.0,
+            b'G' => value == 4.0 || ramp::is_ramp(value),
             b'M' => [2.0, 17.0, 29.0, 30.0].contains(&value),
             _ => false,
         };

@@ -53,6 +53,11 @@ impl Reading<'_, '_, '_> {
             self.assignment()?;
             return Ok(None);
         }
+        if letter == b'D' && self.cursor.name() == "DYNOVR" {
+            self.cursor.pass_over_rest();
+            let reason = "a word of TwinCAT NC I, another interpreter";
+            return Err(self.refused("DynOvr", reason, start));
+        }
         if letter == b'L' {
             return self.call(block).map(Some);
         }
@@ -107,6 +112,9 @@ impl Reading<'_, '_, '_> {
             self.cursor.peek();
             let number = self.cursor.at;
             let value = self.plain_or_expression()?;
+            if letter == b'G' && super::ramp::is_ramp(value) {
+                return self.ramp_times(start, block);
+            }
             self.dwells |= letter == b'G' && value == 4.0;
             self.cursor.add_word(letter, value, start, number, block)?;
             if self.cursor.assigns() {
