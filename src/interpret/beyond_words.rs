@@ -2,12 +2,24 @@
 //! order of execution takes effect.
 
 use super::execute::{Control, Run};
-use super::expression::{Name, Value};
+use super::expression::{Fault, Name, Value};
 use super::report::Report;
 use super::statement::Unread;
+use super::transfer::{Go, Transfer};
 use crate::machine::Family;
 use crate::source::Span;
-use crate::syntax::Block;
+use crate::syntax::{Block, Issue, IssueKind};
+
+/// A note with its rule.
+pub(super) type Note = (&'static str, &'static str, Span);
+
+/// A number of a block that no reader takes.
+pub(super) fn not_finite(block: &Block) -> Option<Fault> {
+    let huge = |issue: &&Issue| issue.kind == IssueKind::NotFinite;
+    let issue = block.issues.iter().find(huge)?;
+    let (message, help) = ("a number beyond all reason", "write a smaller one");
+    Some(Fault::new("syntax", message, help, issue.span))
+}
 
 impl Control<'_> {
     /// Reads a block that is more than plain words: values that are worked out,
@@ -108,6 +120,36 @@ impl Control<'_> {
     fn raises_alarm(&self, value: Value) -> bool {
         self.machine.controller.language.family != Family::Rs274
             && value.is_some_and(|it| it != 0.0)
+    }
+
+    /// Takes what the reading of a block of the ISG kernel or of OSP came to. True
+    /// when the program does not go on at the next line.
+    pub(super) fn take_reading(
+        &mut self,
+        read: Result<Option<Go>, Fault>,
+        notes: Vec<Note>,
+        block: &mut Block,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        for (rule, message, span) in notes {
+            report.note_once(rule, message, span);
+        }
+        match read {
+            Ok(go) => {
+                let transfers = go.is_some();
+                self.transfer = go.map(Transfer::Go);
+                transfers
+            }
+            Err(fault) => {
+                report
+                    .error(fault.rule, fault.message, fault.span)
+                    .help(fault.help);
+                // Nothing of it is executed.
+                block.words.clear();
+                block.issues.clear();
+                false
+            }
+        }
     }
 
     /// Takes an O number; true when it ends the program.

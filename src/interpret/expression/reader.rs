@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 
 use super::function::Function;
-use super::operator::Operator;
+use super::operator;
 use super::tape::{Op, Tape, parameter_number};
 use super::value::{Fault, Read, Value, Variables};
 use crate::diagnostic::excerpt;
+use crate::interpret::operator::Operator;
 use crate::source::Span;
 
 /// Brackets and signs inside one another.
@@ -223,10 +224,10 @@ impl<'t> Reader<'t> {
                 return Ok(left);
             }
             let ahead = self.ahead();
-            let Some((operator, length)) = Operator::read(&ahead.bytes) else {
+            let Some((found, length)) = operator::read(&ahead.bytes, fanuc) else {
                 return Ok(left);
             };
-            let precedence = operator.precedence(fanuc);
+            let precedence = operator::precedence(found);
             if precedence <= least {
                 return Ok(left);
             }
@@ -235,10 +236,9 @@ impl<'t> Reader<'t> {
             self.depth += 1;
             let right = self.operators(precedence, variables)?;
             self.depth -= 1;
-            let result = operator
-                .apply(left, right, fanuc)
+            let result = operator::apply(found, left, right, fanuc)
                 .map_err(|wrong| self.impossible(wrong, start))?;
-            self.tape.push(Op::Apply(operator));
+            self.tape.push(Op::Apply(found));
             left = Some(self.finite(result, start)?);
         }
     }
@@ -385,7 +385,7 @@ impl<'t> Reader<'t> {
         }
         let (result, op) = match (function, second) {
             (Function::Power, Some(exponent)) => (
-                Operator::Power.apply(Some(x), Some(exponent), fanuc),
+                operator::apply(Operator::Power, Some(x), Some(exponent), fanuc),
                 Op::Apply(Operator::Power),
             ),
             (Function::Atan, Some(across)) => (Ok(libm::atan2(x, across).to_degrees()), Op::Angle),

@@ -7,8 +7,9 @@
 use arrayvec::ArrayVec;
 
 use super::function::Function;
-use super::operator::Operator;
+use super::operator;
 use super::value::{Read, Value, Variables};
+use crate::interpret::operator::Operator;
 
 /// Values that wait for an operator.
 const WAITING_MAX: usize = 16;
@@ -102,8 +103,8 @@ pub(in crate::interpret) fn work_out(ops: &[Op], variables: &impl Variables) -> 
                 last = last.map(|value| -value);
                 continue;
             }
-            Op::Apply(operator) => {
-                last = finite(operator.apply(waiting.pop()?, last, fanuc))?;
+            Op::Apply(found) => {
+                last = finite(operator::apply(*found, waiting.pop()?, last, fanuc))?;
                 continue;
             }
             Op::Of(function) => {

@@ -226,6 +226,13 @@ impl<'t> Cursor<'t> {
         Fault::new(rule, message, help, self.span(start))
     }
 
+    /// What changes the motion in a way that is not followed.
+    pub(in crate::interpret) fn refused(&self, name: &str, reason: &str, start: usize) -> Fault {
+        let message = format!("{name} is {reason}, which gwatt does not follow");
+        let help = "nothing is estimated for a program with motion that is not understood";
+        self.fault("unsupported-word", message, help, start)
+    }
+
     /// What stands from `start` to the place; a byte at least.
     pub(in crate::interpret) fn span(&self, start: usize) -> Span {
         let end = self.end().max(start + 1).min(self.text.len());

@@ -136,11 +136,11 @@ impl Reading<'_, '_, '_> {
             Some(Kind::Passes) => {}
             Some(Kind::Smooths) => self.note("smoothing", SMOOTHS, start),
             Some(Kind::Refused(reason)) => {
-                return Err(self.refused(&format!("#{name}"), reason, start));
+                return Err(self.cursor.refused(&format!("#{name}"), reason, start));
             }
             None => {
                 let reason = "a command of this control";
-                return Err(self.refused(&format!("#{name}"), reason, start));
+                return Err(self.cursor.refused(&format!("#{name}"), reason, start));
             }
         }
         // The texts of messages hold any bytes.
@@ -153,7 +153,7 @@ impl Reading<'_, '_, '_> {
     fn hsc(&mut self, start: usize) -> Outcome<()> {
         let values = self.named_values(["OPMODE", "CONTERROR"])?;
         if values.first().copied().flatten().unwrap_or(1.0) != 1.0 {
-            return Err(self.refused("#HSC ON [OPMODE=2]", "a spline", start));
+            return Err(self.cursor.refused("#HSC ON [OPMODE=2]", "a spline", start));
         }
         self.note("smoothing", SMOOTHS, start);
         Ok(())

@@ -53,7 +53,7 @@ impl Reading<'_, '_, '_> {
                 self.cursor = cursor;
                 self.cursor.expect(b'=')?;
                 if self.cursor.peek() == Some(b'"') {
-                    return Err(self.refused("a text for a cycle", "no number", from));
+                    return Err(self.cursor.refused("a text for a cycle", "no number", from));
                 }
                 let value = self.number()?;
                 self.state.arguments.insert(name, value);
@@ -62,7 +62,7 @@ impl Reading<'_, '_, '_> {
                 file = Some(self.file_name());
             } else if self.cursor.name().starts_with("MODAL") {
                 let reason = "a cycle behind each block that moves";
-                return Err(self.refused("MODAL", reason, from));
+                return Err(self.cursor.refused("MODAL", reason, from));
             } else {
                 self.cursor.at = self.cursor.at.max(from + 1);
                 let message = "behind CYCLE stand NAME= and the parameters @P1= and so on";
@@ -87,7 +87,9 @@ impl Reading<'_, '_, '_> {
         // Those of the control's maker are encrypted, and moves that they make
         // are its own.
         if name.to_ascii_lowercase().starts_with("sys") {
-            return Err(self.refused(&name, "a cycle of the control's maker", start));
+            return Err(self
+                .cursor
+                .refused(&name, "a cycle of the control's maker", start));
         }
         let file = name.rsplit(['/', '\\']).next().unwrap_or_default();
         Ok(Go::File(file.to_owned()))

@@ -18,23 +18,19 @@ pub(super) use block::is_local;
 
 use std::collections::HashMap;
 
-use super::formula::Ident;
-use crate::source::Span;
+use super::formula::Kept;
 use crate::syntax::Block;
-
-/// Variables that a program may keep.
-const COUNT_MAX: usize = 100_000;
 
 /// What a control of this language keeps besides the modal state.
 #[derive(Debug, Default)]
 pub(super) struct Isg {
     /// P parameters, V.P. and V.S. by their names with indices.
-    globals: HashMap<Ident, f64>,
+    globals: Kept,
     /// V.L. and V.CYC. of the programs that run, seen in those that they call; and
     /// @P, seen in their cycle only.
-    levels: Vec<HashMap<Ident, f64>>,
+    levels: Vec<Kept>,
     /// @P of the cycle that is called next.
-    arguments: HashMap<Ident, f64>,
+    arguments: Kept,
     /// Between #VAR and #ENDVAR.
     declares: bool,
     /// Between #COMMENT BEGIN and #COMMENT END.
@@ -107,6 +103,3 @@ impl Isg {
         self.levels.len() > 1
     }
 }
-
-/// A note with its rule.
-type Note = (&'static str, &'static str, Span);

@@ -42,7 +42,9 @@ impl Reading<'_, '_, '_> {
         let mut axes = self.control.machine.axes.iter().flatten();
         if shorter && axes.any(|axis| axis.jerk_mm_s3 > 0.0) {
             let reason = "a jerk above the machine file's";
-            return Err(self.refused("a ramp time below 100 percent", reason, start));
+            return Err(self
+                .cursor
+                .refused("a ramp time below 100 percent", reason, start));
         }
         self.note("smoothing", NOTE, start);
         Ok(())

@@ -1,10 +1,9 @@
 //! P parameters and variables ("Parameters and parameter calculation (P)",
 //! "Programming variables (V.)", "Self-defined variables (#VAR, #ENDVAR)").
 
-use super::COUNT_MAX;
 use super::block::Reading;
 use super::cycle::parameter_name;
-use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression};
+use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
 
 /// Letters P in a row: each asks for the value of the next.
 const INDIRECT_MAX: usize = 8;
@@ -23,9 +22,6 @@ impl Names for Reading<'_, '_, '_> {
         let Some(name) = self.variable_name(cursor)? else {
             return Ok(None);
         };
-        if self.assigned.contains(&name) {
-            return Err(both(cursor, &name, start));
-        }
         let Some(value) = self.value(&name) else {
             let reason = match name.get(..4) {
                 Some("V.E.") => "comes from the PLC",
@@ -37,15 +33,9 @@ impl Names for Reading<'_, '_, '_> {
             let help = "give a P parameter or a V.P. variable its value in the program";
             return Err(cursor.fault("unknown-value", message, help, start));
         };
-        self.read.push(name);
+        self.uses.reads(name, cursor, start)?;
         Ok(Some(value))
     }
-}
-
-fn both(cursor: &Cursor<'_>, name: &str, start: usize) -> crate::interpret::expression::Fault {
-    let message = format!("the block assigns {name} and uses it");
-    let help = "write two blocks: which comes first is not told";
-    cursor.fault("assignment", message, help, start)
 }
 
 impl Reading<'_, '_, '_> {
@@ -137,13 +127,7 @@ impl Reading<'_, '_, '_> {
             Some(&mut self.state.globals)
         };
         let Some(kept) = kept else { return Ok(()) };
-        if kept.len() >= COUNT_MAX && !kept.contains_key(name.as_str()) {
-            let message = "more than 100000 variables";
-            let help = "look for a loop that makes them";
-            return Err(self.cursor.fault("assignment", message, help, start));
-        }
-        kept.insert(name.clone(), value);
-        Ok(())
+        keep(kept, name, value, &self.cursor, start)
     }
 
     /// `P1 = …`, `V.P.A = …`; also `+=` and its kin. False where no variable
@@ -164,16 +148,14 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.fault("assignment", message, help, start));
         }
         self.settable(&name, start)?;
-        if self.assigned.contains(&name) || self.read.contains(&name) {
-            return Err(both(&self.cursor, &name, start));
-        }
+        self.uses.assigns(&name, &self.cursor, start)?;
         self.cursor.at += if adds { 2 } else { 1 };
         if self.cursor.peek() == Some(b'"') {
-            return Err(self.refused("a text in a variable", "no number", start));
+            return Err(self
+                .cursor
+                .refused("a text in a variable", "no number", start));
         }
         let mut value = self.number()?;
-        // Its own old value it may use.
-        self.read.retain(|read| *read != name);
         if adds {
             let Some(old) = self.value(&name) else {
                 let message = format!("{name} has no value that could be changed");
@@ -193,7 +175,7 @@ impl Reading<'_, '_, '_> {
             }
         }
         self.set(&name, value, start)?;
-        self.assigned.push(name);
+        self.uses.assigned(name);
         Ok(true)
     }
 

@@ -19,7 +19,7 @@ impl Reading<'_, '_, '_> {
             }
             b'"' => {
                 self.cursor.pass_over_rest();
-                return Err(self.refused("a text in quotes", "a macro", start));
+                return Err(self.cursor.refused("a text in quotes", "a macro", start));
             }
             _ if byte.is_ascii_alphabetic() || byte == b'@' => return self.address(block),
             _ => {
@@ -56,7 +56,7 @@ impl Reading<'_, '_, '_> {
         if letter == b'D' && self.cursor.name() == "DYNOVR" {
             self.cursor.pass_over_rest();
             let reason = "a word of TwinCAT NC I, another interpreter";
-            return Err(self.refused("DynOvr", reason, start));
+            return Err(self.cursor.refused("DynOvr", reason, start));
         }
         if letter == b'L' {
             return self.call(block).map(Some);
@@ -105,7 +105,9 @@ impl Reading<'_, '_, '_> {
                     self.cursor.text.get(start..ahead.at).unwrap_or_default(),
                 )
                 .into_owned();
-                return Err(self.refused(&name, "an axis or spindle by a name", start));
+                return Err(self
+                    .cursor
+                    .refused(&name, "an axis or spindle by a name", start));
             }
         }
         if matches!(letter, b'G' | b'M') {
@@ -180,7 +182,9 @@ impl Reading<'_, '_, '_> {
         if word != "ABS" && (commands.contains(&word.as_str()) || revolutions) {
             self.cursor.brackets()?;
             let name = format!("{}[{word} …]", letter as char);
-            return Err(self.refused(&name, "a command to one axis or spindle", start));
+            return Err(self
+                .cursor
+                .refused(&name, "a command to one axis or spindle", start));
         }
         Ok(())
     }
@@ -226,7 +230,9 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.fault("subprogram", message, help, start));
         }
         if name.starts_with("V.") {
-            return Err(self.refused(&format!("L {name}"), "a call by a variable", start));
+            return Err(self
+                .cursor
+                .refused(&format!("L {name}"), "a call by a variable", start));
         }
         if self.cursor.peek() == Some(b'[') {
             self.cursor.pass_over_rest();

@@ -59,7 +59,7 @@ impl Reading<'_, '_> {
         }
         if let Some((_, reason)) = REFUSED.iter().find(|(known, _)| name == *known) {
             self.cursor.at += name.len();
-            return Err(self.refused(&name, reason, start));
+            return Err(self.cursor.refused(&name, reason, start));
         }
         let letters = name.bytes().take_while(u8::is_ascii_alphabetic).count();
         if letters > 1 {
@@ -234,7 +234,9 @@ impl Reading<'_, '_> {
         };
         let lap = matches!(letter, b'N') && block.words.iter().any(is_automatic);
         if lap {
-            return Err(self.refused("G85 N…", "automatic turning (LAP)", start));
+            return Err(self
+                .cursor
+                .refused("G85 N…", "automatic turning (LAP)", start));
         }
         if matches!(letter, b'N' | b'O' | b'V') {
             let message = format!("{} has no meaning here", letter as char);

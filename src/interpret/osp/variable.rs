@@ -1,9 +1,7 @@
 //! Variables ("User Task": common variables, local variables, system variables).
 
-use super::COUNT_MAX;
 use super::block::Reading;
-use crate::interpret::expression::Fault;
-use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression};
+use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
 
 /// System variables that move nothing: drawings, barriers of chuck and tail
 /// stock, monitoring of load, outputs and messages.
@@ -34,9 +32,6 @@ impl Names for Reading<'_, '_> {
             Name::System(name) => (None, name),
         };
         let value = kept.and_then(|kept| kept.get(&name)).copied();
-        if self.assigned.contains(&name) {
-            return Err(both(cursor, &name, start));
-        }
         let Some(value) = value else {
             let message = format!(
                 "{name} has no value in this program: what it holds, only the control knows"
@@ -44,15 +39,9 @@ impl Names for Reading<'_, '_> {
             let help = "assign it before it is used";
             return Err(cursor.fault("unknown-value", message, help, start));
         };
-        self.read.push(name);
+        self.uses.reads(name, cursor, start)?;
         Ok(Some(value))
     }
-}
-
-fn both(cursor: &Cursor<'_>, name: &str, start: usize) -> Fault {
-    let message = format!("the block assigns {name} and uses it");
-    let help = "write two blocks: which comes first is not told";
-    cursor.fault("assignment", message, help, start)
 }
 
 impl Reading<'_, '_> {
@@ -127,15 +116,11 @@ impl Reading<'_, '_> {
                 return Ok(true);
             }
         };
-        if self.assigned.contains(&text) || self.read.contains(&text) {
-            return Err(both(&self.cursor, &text, start));
-        }
+        self.uses.assigns(&text, &self.cursor, start)?;
         self.cursor.at += 1;
         let value = self.number()?;
-        // Its own old value it may use.
-        self.read.retain(|read| *read != text);
         self.set(&text, local, value, start)?;
-        self.assigned.push(text);
+        self.uses.assigned(text);
         Ok(true)
     }
 
@@ -146,13 +131,7 @@ impl Reading<'_, '_> {
             Some(&mut self.state.common)
         };
         let Some(kept) = kept else { return Ok(()) };
-        if kept.len() >= COUNT_MAX && !kept.contains_key(name) {
-            let message = "more than 100000 variables";
-            let help = "look for a loop that makes them";
-            return Err(self.cursor.fault("assignment", message, help, start));
-        }
-        kept.insert(name.clone(), value);
-        Ok(())
+        keep(kept, name, value, &self.cursor, start)
     }
 
     /// An expression.

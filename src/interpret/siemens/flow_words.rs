@@ -43,7 +43,7 @@ impl Reading<'_, '_, '_> {
                 if self.cursor.peek() == Some(b'(') {
                     self.cursor.pass_over_parentheses()?;
                     let reason = "a return to another place";
-                    return Err(self.refused("RET( )", reason, start));
+                    return Err(self.cursor.refused("RET( )", reason, start));
                 }
                 Go::Return
             }
@@ -289,7 +289,7 @@ impl Reading<'_, '_, '_> {
     /// What is called, with its arguments.
     fn called(&mut self, name: &str, start: usize) -> Outcome<Called> {
         if let Some(super::names::Name::Refused(reason)) = super::names::Name::of(name) {
-            return Err(self.refused(name, reason, start));
+            return Err(self.cursor.refused(name, reason, start));
         }
         let arguments = self.arguments()?;
         if let Some(kind) = cycle::Kind::named(name) {
