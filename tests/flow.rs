@@ -72,6 +72,7 @@ fn fails(controller: &str, program: &str, expected: &str) {
     assert_eq!(found, Err(expected.to_owned()), "{program}");
 }
 
+/// B-63944EN, "Branch and Repetition".
 #[test]
 fn loops_and_jumps_of_macros() {
     let program = "#1=1\nWHILE[#1 LE 3]DO1\nG0 X#1\n#1=#1+1\nEND1\nX9\nM30\n";
@@ -102,6 +103,7 @@ fn grbl_begins_with_g0_and_labels_may_repeat() {
     );
 }
 
+/// B-63944EN, "Subprogram (M98, M99)", "Macro Call": G65 and its letters.
 #[test]
 fn calls_of_programs_and_macros() {
     let program = "O1\nG0 X1\nM98 P2 L2\nX5\nM30\nO2\nG91 X10\nG90\nM99\n";
@@ -297,6 +299,7 @@ fn every_message_of_macros() {
     );
 }
 
+/// Depth of calls, moves by repetition and lines without a move have limits.
 #[test]
 fn what_runs_away_is_stopped() {
     let limited = |program: &str| run("linuxcnc", program, &options(5, 20, 50));

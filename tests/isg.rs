@@ -242,6 +242,39 @@ M30
 "), @"2 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows");
 }
 
+/// "Cycles as global or local subroutines (Call L | LL CYCLE)": what is not followed.
+#[test]
+fn cycles_that_are_refused() {
+    let cases = [
+        "L CYCLE.CYC [@P1=5]",
+        "L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]",
+        "L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]",
+        "L CYCLE [NAME=a.cyc @P201=5]",
+        "L CYCLE [@P1=5]",
+        "L CYCLE [NAME=a.cyc Q=5]",
+        "G0 L CYCLE [NAME=a.cyc]",
+        "X@P1",
+        "@P1=3",
+        "@X5",
+    ];
+    let mut said = String::new();
+    for case in cases {
+        let _ = writeln!(said, "{case}: {}", refused(&format!("{case}\n")));
+    }
+    assert_snapshot!(said, @r"
+L CYCLE.CYC [@P1=5]: 1 subprogram: parameters behind the name of a subprogram
+L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]: 1 unsupported-word: SysDrillDeepHole.ecy is a cycle of the control's maker, which gwatt does not follow
+L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]: 1 unsupported-word: MODAL is a cycle behind each block that moves, which gwatt does not follow
+L CYCLE [NAME=a.cyc @P201=5]: 1 no-such-parameter: the parameters of a cycle are @P1 to @P200
+L CYCLE [@P1=5]: 1 subprogram: a cycle without its name
+L CYCLE [NAME=a.cyc Q=5]: 1 subprogram: behind CYCLE stand NAME= and the parameters @P1= and so on
+G0 L CYCLE [NAME=a.cyc]: 1 subprogram: a cycle behind other words
+X@P1: 1 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows
+@P1=3: 1 unsupported-word: @P1 belongs to the control or the PLC, and may change offsets
+@X5: 1 syntax: @ stands before P, X, Y, Z, I, J, K and S in cycles
+");
+}
+
 /// "Dwell time (G04), (#TIME)", "Reference point offset (G92)", "Zero offsets
 /// (G53/G54/...G59)", "Specifying centre point (G161/G162)", "Rotate the
 /// coordinate system in the plane (#ROTATION ON/OFF)", "Comments".
@@ -398,16 +431,6 @@ fn what_is_not_followed_is_named() {
         "X[OVERRIDE FEED_FACT=20]",
         "X1=10",
         "G80",
-        "L CYCLE.CYC [@P1=5]",
-        "L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]",
-        "L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]",
-        "L CYCLE [NAME=a.cyc @P201=5]",
-        "L CYCLE [@P1=5]",
-        "L CYCLE [NAME=a.cyc Q=5]",
-        "G0 L CYCLE [NAME=a.cyc]",
-        "X@P1",
-        "@P1=3",
-        "@X5",
         "$IF P1",
         "$JUMP",
         "$BREAK",
@@ -450,16 +473,6 @@ V.G.NP[1].V.X=10: 1 unsupported-word: V.G.NP[1] belongs to the control or the PL
 X[OVERRIDE FEED_FACT=20]: 1 unsupported-word: X[OVERRIDE …] is a command to one axis or spindle, which gwatt does not follow
 X1=10: 1 unsupported-word: X1 is an axis or spindle by a name, which gwatt does not follow
 G80: 1 unknown-code: G80 is not known to this controller profile
-L CYCLE.CYC [@P1=5]: 1 subprogram: parameters behind the name of a subprogram
-L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]: 1 unsupported-word: SysDrillDeepHole.ecy is a cycle of the control's maker, which gwatt does not follow
-L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]: 1 unsupported-word: MODAL is a cycle behind each block that moves, which gwatt does not follow
-L CYCLE [NAME=a.cyc @P201=5]: 1 no-such-parameter: the parameters of a cycle are @P1 to @P200
-L CYCLE [@P1=5]: 1 subprogram: a cycle without its name
-L CYCLE [NAME=a.cyc Q=5]: 1 subprogram: behind CYCLE stand NAME= and the parameters @P1= and so on
-G0 L CYCLE [NAME=a.cyc]: 1 subprogram: a cycle behind other words
-X@P1: 1 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows
-@P1=3: 1 unsupported-word: @P1 belongs to the control or the PLC, and may change offsets
-@X5: 1 syntax: @ stands before P, X, Y, Z, I, J, K and S in cycles
 $IF P1: 1 unknown-value: P1 has no value in this program: what it holds, only the machine knows
 $JUMP: 1 flow: $JUMP is no statement of this language
 $BREAK: 1 structure: there is no loop around this

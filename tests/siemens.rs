@@ -90,6 +90,8 @@ fn expressions_have_the_values_of_the_manual() {
     assert_eq!(wrong, "");
 }
 
+/// "Absolute dimensions (G90, AC)", "Incremental dimensions (G91, IC)", "Circular
+/// interpolation" (CR, AR, CIP, TURN), "Deselect work offset (SUPA)".
 #[test]
 fn words_of_axes_and_arcs() {
     let program = "\

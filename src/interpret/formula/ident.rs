@@ -20,12 +20,14 @@ pub(in crate::interpret) enum Ident {
 impl Ident {
     /// The name that `letters` are, which are ASCII.
     pub(in crate::interpret) fn new(letters: &[u8]) -> Self {
-        let text = std::str::from_utf8(letters).unwrap_or_default();
-        if let Ok(mut name) = ArrayString::from(text) {
-            name.make_ascii_uppercase();
-            return Self::Short(name);
+        let mut name = ArrayString::new();
+        for letter in letters {
+            if name.try_push(letter.to_ascii_uppercase() as char).is_err() {
+                let long = String::from_utf8_lossy(letters);
+                return Self::Long(long.to_ascii_uppercase());
+            }
         }
-        Self::Long(text.to_ascii_uppercase())
+        Self::Short(name)
     }
 
     /// A name that is put together.
@@ -85,12 +87,6 @@ impl From<Ident> for String {
 impl PartialEq<&str> for Ident {
     fn eq(&self, other: &&str) -> bool {
         self.as_str() == *other
-    }
-}
-
-impl PartialEq<str> for Ident {
-    fn eq(&self, other: &str) -> bool {
-        self.as_str() == other
     }
 }
 

@@ -24,14 +24,12 @@ pub(super) fn parameter_name(cursor: &mut Cursor<'_>) -> Outcome<Ident> {
     cursor.digits();
     let digits = cursor.text.get(from..cursor.at).unwrap_or_default();
     let number = std::str::from_utf8(digits).ok();
-    match number.and_then(|digits| digits.parse::<u32>().ok()) {
-        Some(number @ 1..=PARAMETER_MAX) => Ok(Ident::of(format_args!("@P{number}"))),
-        _ => {
-            let message = "the parameters of a cycle are @P1 to @P200";
-            let help = "write @P and its number";
-            Err(cursor.fault("no-such-parameter", message, help, start))
-        }
+    if let Some(number @ 1..=PARAMETER_MAX) = number.and_then(|it| it.parse::<u32>().ok()) {
+        return Ok(Ident::of(format_args!("@P{number}")));
     }
+    let message = "the parameters of a cycle are @P1 to @P200";
+    let help = "write @P and its number";
+    Err(cursor.fault("no-such-parameter", message, help, start))
 }
 
 impl Reading<'_, '_, '_> {

@@ -1,6 +1,6 @@
 //! Statements of Fanuc custom macro B (B-63944EN, "Branch and Repetition").
 
-use super::{For, Statement, Unread};
+use super::{For, Statement, Target, Unread};
 use crate::interpret::execute::Control;
 use crate::interpret::expression::{Reader, Value};
 use crate::interpret::transfer::Transfer;
@@ -81,7 +81,7 @@ impl Control<'_> {
         let start = reader.at;
         let from = reader.tape.ops.len();
         let name = reader.parameter_name(self)?;
-        let target = statement.recorder.target(&name, from, reader);
+        let target = Target::read(&name, from, reader);
         if !reader.take(b'=') {
             let message = "THEN takes an assignment";
             return Err(reader

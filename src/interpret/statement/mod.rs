@@ -8,7 +8,7 @@ mod trace;
 pub(super) use o_word::{Keyword, glance};
 pub(super) use trace::{Trace, Traces};
 
-use self::trace::{For, Recorder};
+use self::trace::{For, Recorder, Target};
 
 use super::execute::Control;
 use super::expression::{Fault, Name, Reader, Value, Variables};
@@ -141,7 +141,7 @@ impl Control<'_> {
                 b'#' => {
                     let from = reader.tape.ops.len();
                     let name = reader.parameter_name(self)?;
-                    let target = statement.recorder.target(&name, from, &mut reader);
+                    let target = Target::read(&name, from, &mut reader);
                     if !reader.take(b'=') {
                         return Err(Unread::Foreign);
                     }

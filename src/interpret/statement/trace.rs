@@ -71,6 +71,22 @@ pub(super) enum Target {
     Number(usize),
 }
 
+impl Target {
+    /// The name of what is assigned was read, from step `from` on.
+    pub(super) fn read(name: &Name<'_>, from: usize, reader: &mut Reader<'_>) -> Option<Target> {
+        if !reader.tape.records {
+            return None;
+        }
+        Some(match name {
+            Name::Text(text) => Target::Known(Name::Text(text.to_string().into())),
+            Name::Number(number) if reader.tape.forget_number(from) => {
+                Target::Known(Name::Number(*number))
+            }
+            Name::Number(_) => Target::Number(reader.tape.ops.len()),
+        })
+    }
+}
+
 /// Notes what is read.
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
@@ -105,25 +121,6 @@ impl Recorder {
             For::Value => Item::Value { end },
             For::Argument => Item::Argument { end },
         });
-    }
-
-    /// The name of what is assigned was read, from step `from` on.
-    pub(super) fn target(
-        &mut self,
-        name: &Name<'_>,
-        from: usize,
-        reader: &mut Reader<'_>,
-    ) -> Option<Target> {
-        if !reader.tape.records {
-            return None;
-        }
-        Some(match name {
-            Name::Text(text) => Target::Known(Name::Text(text.to_string().into())),
-            Name::Number(number) if reader.tape.forget_number(from) => {
-                Target::Known(Name::Number(*number))
-            }
-            Name::Number(_) => Target::Number(reader.tape.ops.len()),
-        })
     }
 
     /// The value for it was read too.
