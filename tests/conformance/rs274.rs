@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use super::canon;
@@ -20,6 +21,9 @@ pub enum Run {
     /// It printed a call that says too little to compare.
     Unclear(String),
 }
+
+/// It failed and said nothing.
+const SILENT: &str = "without a word";
 
 /// A program that never ends is given up after this.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -55,8 +59,19 @@ fn in_inches(table: &str) -> String {
     lines
 }
 
-/// Runs a program; `table` is copied, since `rs274` may write it.
+/// Runs a program, one at a time. Where `rs274` ends with neither a result nor a
+/// message it has not judged the program, and runs again.
 pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _one = ONE_AT_A_TIME.lock();
+    match attempt(program, subs, table) {
+        Run::Failed(message) if message == SILENT => attempt(program, subs, table),
+        found => found,
+    }
+}
+
+/// `table` is copied, since `rs274` may write it.
+fn attempt(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let table = fs::read_to_string(table).expect("a tool table");
@@ -107,7 +122,7 @@ pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
         .lines()
         .find(|line| !line.trim().is_empty() && *line != "executing");
     if !status.success() && !said.contains(NO_END) {
-        return Run::Failed(message.unwrap_or("without a word").to_owned());
+        return Run::Failed(message.unwrap_or(SILENT).to_owned());
     }
     match canon::events(&read("out")) {
         Ok(events) if status.success() => Run::Events(events),
