@@ -18,8 +18,9 @@ use std::collections::VecDeque;
 use nalgebra::DMatrix;
 
 use super::normal::{Normal, Solution};
+use super::parameters::{is_admissible, parameters, probes, with};
 use super::state_space::{Measured, Sampled, Simulation};
-use super::transfer::{Factor, TransferFunction};
+use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
 /// An improvement of the sum of squares below this share of one row's ends the
@@ -68,7 +69,7 @@ impl Data<'_> {
 pub struct Estimate {
     /// The model.
     pub transfer: TransferFunction,
-    /// Covariance of the parameters in the order of [`parameters`].
+    /// Covariance of the parameters in the order of [`parameters()`].
     pub covariance: DMatrix<f64>,
     /// Sum of squares of the (whitened) differences.
     pub rest: f64,
@@ -79,6 +80,8 @@ pub struct Estimate {
     pub power: f64,
     /// Parameters that were fitted, offset and first state left out.
     pub count: usize,
+    /// Whole periods of delay and pairs of poles.
+    pub sought: usize,
     /// Offset of the output.
     pub offset: f64,
     /// State at the first sample.
@@ -86,10 +89,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Bayes' information criterion; the smaller, the better.
+    /// Bayes' information criterion; the smaller, the better. Each period of
+    /// delay and each pair of poles counts as a parameter more: which of many
+    /// delays and frequencies it was had to be found too, and noise is tried as
+    /// often. What is there pays for it many times over.
     #[must_use]
     pub fn criterion(&self) -> f64 {
-        criterion(self.rest, self.power, self.rows, self.count)
+        criterion(self.rest, self.power, self.rows, self.count + self.sought)
     }
 
     /// Standard error of the parameter at `index`.
@@ -124,100 +130,6 @@ impl Effort {
         steps: STEPS_MAX,
         to_beat: f64::MAX,
     };
-}
-
-/// The parameters of a model: the gain, then of each zero and each pole `ln ω, ζ`
-/// or `τ`, and the delay where it is free.
-#[must_use]
-pub fn parameters(transfer: &TransferFunction, delay_is_free: bool) -> Vec<f64> {
-    let mut theta = vec![transfer.gain];
-    for factor in transfer.zeros.iter().chain(&transfer.poles) {
-        match *factor {
-            Factor::Pair {
-                omega_rad_s,
-                damping,
-            } => theta.extend([libm::log(omega_rad_s), damping]),
-            Factor::Real { time_constant_s } => theta.push(time_constant_s),
-        }
-    }
-    if delay_is_free {
-        theta.push(transfer.delay_s);
-    }
-    theta
-}
-
-/// The model with other parameters.
-pub(super) fn with(template: &TransferFunction, theta: &[f64]) -> TransferFunction {
-    let mut transfer = template.clone();
-    let mut rest = theta.iter().copied();
-    transfer.gain = rest.next().unwrap_or_default();
-    for factor in transfer.zeros.iter_mut().chain(&mut transfer.poles) {
-        match factor {
-            Factor::Pair {
-                omega_rad_s,
-                damping,
-            } => {
-                *omega_rad_s = libm::exp(rest.next().unwrap_or_default());
-                *damping = rest.next().unwrap_or_default();
-            }
-            Factor::Real { time_constant_s } => {
-                *time_constant_s = rest.next().unwrap_or_default();
-            }
-        }
-    }
-    if let Some(delay_s) = rest.next() {
-        transfer.delay_s = delay_s;
-    }
-    transfer
-}
-
-/// How far each parameter is moved to see what it does.
-pub(super) fn probes(transfer: &TransferFunction, delay_is_free: bool, period_s: f64) -> Vec<f64> {
-    const SMALL: f64 = 1e-6;
-    let mut steps = vec![SMALL * transfer.gain.abs().max(f64::MIN_POSITIVE)];
-    for factor in transfer.zeros.iter().chain(&transfer.poles) {
-        match *factor {
-            Factor::Pair { .. } => steps.extend([SMALL, SMALL]),
-            Factor::Real { time_constant_s } => {
-                steps.push(SMALL * time_constant_s.abs().max(0.1 * period_s));
-            }
-        }
-    }
-    if delay_is_free {
-        steps.push(1e-5 * period_s);
-    }
-    steps
-}
-
-/// True for a model that can be simulated and makes sense.
-pub(super) fn is_admissible(transfer: &TransferFunction, period_s: f64) -> bool {
-    let nyquist = std::f64::consts::PI / period_s;
-    let is_in_range = |omega: f64| omega > 1e-6 / period_s && omega < 20.0 / period_s;
-    let sound_pole = |pole: &Factor| match *pole {
-        // What swings faster than half the sampling rate cannot be told from
-        // its image below.
-        Factor::Pair {
-            omega_rad_s: w,
-            damping,
-        } => {
-            let swing = w * (1.0 - damping * damping).max(0.0).sqrt();
-            is_in_range(w) && damping > 1e-7 && damping < 50.0 && swing < nyquist
-        }
-        Factor::Real { time_constant_s } => {
-            time_constant_s > 1e-3 * period_s && time_constant_s < 1e6 * period_s
-        }
-    };
-    let sound_zero = |zero: &Factor| match *zero {
-        Factor::Pair {
-            omega_rad_s: w,
-            damping,
-        } => is_in_range(w) && damping.abs() < 50.0,
-        Factor::Real { time_constant_s } => time_constant_s.abs() < 1e6 * period_s,
-    };
-    transfer.poles.iter().all(sound_pole)
-        && transfer.zeros.iter().all(sound_zero)
-        && transfer.gain.is_finite()
-        && (0.0..1000.0 * period_s).contains(&transfer.delay_s)
 }
 
 /// A finite impulse response over signals as they pass.
@@ -379,7 +291,8 @@ pub fn refine(
                 }
                 // What is missing, in units of the criterion, against what the
                 // step brought.
-                let missing = criterion(least, power, normal.rows, count) - effort.to_beat;
+                let free = count + sought(&transfer, data.period_s);
+                let missing = criterion(least, power, normal.rows, free) - effort.to_beat;
                 let brought = normal.rows as f64 * gained / least;
                 if round >= 7 && missing > 20.0 && brought < 0.2 * missing {
                     break;
@@ -396,7 +309,13 @@ pub fn refine(
     if data.undisturbed.is_some() {
         (transfer, normal) = instrumental(data, transfer, delay_is_free, whitening)?;
     }
-    finish(transfer, &normal, count, power)
+    let sought = sought(&transfer, data.period_s);
+    finish(transfer, &normal, [count, sought], power)
+}
+
+/// Whole periods of delay and pairs of poles.
+fn sought(transfer: &TransferFunction, period_s: f64) -> usize {
+    libm::floor(transfer.delay_s / period_s + 1e-9) as usize + transfer.order() / 2
 }
 
 /// Steps that bring the products of instruments and differences to zero.
@@ -450,7 +369,7 @@ fn moved(transfer: &TransferFunction, delay_is_free: bool, step: &[f64]) -> Tran
 fn finish(
     transfer: TransferFunction,
     normal: &Normal,
-    count: usize,
+    [count, sought]: [usize; 2],
     power: f64,
 ) -> Option<Estimate> {
     let nuisance = rest(normal, count)?;
@@ -468,6 +387,7 @@ fn finish(
         rows: normal.rows,
         power,
         count,
+        sought,
         offset,
         state,
     })
