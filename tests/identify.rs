@@ -4,6 +4,7 @@ mod accuracy;
 mod power_log;
 mod refusals;
 mod rigid;
+mod signals;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -22,6 +23,10 @@ pub(crate) const PERIOD_S: f64 = 1e-3;
 pub(crate) struct Noise(u64);
 
 impl Noise {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;

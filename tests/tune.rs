@@ -1,6 +1,7 @@
 //! Response correction: filters, delays, files, and the page.
 
 mod command;
+mod commanded;
 mod delays;
 mod estimated;
 mod page;

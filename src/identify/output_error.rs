@@ -13,8 +13,6 @@
 //! Besides the parameters an offset and the state at the first sample are
 //! estimated: a recording may begin in the middle of a motion.
 
-use std::collections::VecDeque;
-
 use nalgebra::DMatrix;
 
 use super::normal::{Normal, Solution};
@@ -40,6 +38,8 @@ pub struct Data<'a> {
     pub period_s: f64,
     /// What was measured.
     pub measured: Measured,
+    /// True for positions as input and output: most of what they are is slow.
+    pub positions: bool,
 }
 
 impl Data<'_> {
@@ -82,6 +82,8 @@ pub struct Estimate {
     pub count: usize,
     /// Whole periods of delay and pairs of poles.
     pub sought: usize,
+    /// Steps that the search took.
+    pub steps: usize,
     /// Offset of the output.
     pub offset: f64,
     /// State at the first sample.
@@ -132,48 +134,25 @@ impl Effort {
     };
 }
 
-/// A finite impulse response over signals as they pass.
-#[derive(Debug, Clone)]
-struct Whitener<'a> {
-    taps: &'a [f64],
-    /// Rows before, the last first.
-    past: VecDeque<Vec<f64>>,
+/// A signal behind the whitening filter, as long as it was; before its first
+/// sample there was nothing.
+fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
+    (0..x.len())
+        .map(|k| {
+            let past = x.get(..k).unwrap_or_default().iter().rev();
+            let sum: f64 = past.zip(taps).map(|(x, tap)| x * tap).sum();
+            sum + x.get(k).copied().unwrap_or_default()
+        })
+        .collect()
 }
 
-impl<'a> Whitener<'a> {
-    fn new(taps: &'a [f64], width: usize) -> Self {
-        Self {
-            taps,
-            past: taps.iter().map(|_| vec![0.0; width]).collect(),
-        }
-    }
-
-    /// Replaces a row by the filtered one: `row + Σ tapᵢ · row i+1 samples ago`.
-    fn pass(&mut self, row: &mut [f64]) {
-        let Some(oldest) = self.past.back() else {
-            return;
-        };
-        let mut filtered = row.to_vec();
-        debug_assert_eq!(oldest.len(), row.len());
-        for (tap, old) in self.taps.iter().zip(&self.past) {
-            for (slot, x) in filtered.iter_mut().zip(old) {
-                *slot += tap * x;
-            }
-        }
-        if let Some(mut oldest) = self.past.pop_back() {
-            oldest.copy_from_slice(row);
-            self.past.push_front(oldest);
-        }
-        row.copy_from_slice(&filtered);
-    }
-}
-
-/// One pass over the data: normal equations of the step at these parameters.
+/// One pass over the data: normal equations of the step at these parameters. The
+/// first samples, where a filter has not swung in, are left out.
 fn gather(
     data: &Data<'_>,
     transfer: &TransferFunction,
     delay_is_free: bool,
-    whitening: &[f64],
+    left_out: usize,
 ) -> Option<Normal> {
     let sampled =
         |transfer: &TransferFunction| Sampled::new(transfer, data.measured, data.period_s);
@@ -197,7 +176,6 @@ fn gather(
     let mut simulation = Simulation::new(base);
     let width = theta.len() + order + 1;
     let mut normal = Normal::new(width);
-    let mut whitener = Whitener::new(whitening, width + 1);
     let mut row = vec![0.0; width + 1];
     let skip = match data.measured {
         Measured::Direct => 0,
@@ -223,11 +201,7 @@ fn gather(
         if let Some(slot) = slots.next() {
             *slot = y - simulated;
         }
-        if k < skip {
-            continue;
-        }
-        whitener.pass(&mut row);
-        if k >= skip + whitening.len()
+        if k >= skip + left_out
             && let Some((right, columns)) = row.split_last()
         {
             normal.add(columns, *right);
@@ -255,18 +229,34 @@ pub fn refine(
     whitening: &[f64],
     effort: Effort,
 ) -> Option<Estimate> {
+    // What is filtered before and behind a model is the same: the signals are
+    // filtered once.
+    let filtered = |x: &[f64]| whitened(x, whitening);
+    let input = filtered(data.input);
+    let output = filtered(data.output);
+    let undisturbed = data.undisturbed.map(filtered);
+    let raw = data;
+    let data = &Data {
+        input: &input,
+        output: &output,
+        undisturbed: undisturbed.as_deref(),
+        ..*raw
+    };
+    let left_out = whitening.len();
     // The search goes down on squares; instruments come at its end.
     let open = Data {
         undisturbed: None,
         ..*data
     };
     let mut transfer = start.clone();
-    let mut normal = gather(&open, &transfer, delay_is_free, whitening)?;
+    let mut normal = gather(&open, &transfer, delay_is_free, left_out)?;
     let count = parameters(&transfer, delay_is_free).len();
     let mut least = rest(&normal, count)?.rest;
     let mut damping = 1e-4;
-    let power: f64 = data.output.iter().map(|y| y * y).sum();
+    let power: f64 = raw.output.iter().map(|y| y * y).sum();
+    let mut steps = 0;
     for round in 0..effort.steps {
+        steps = round + 1;
         let Some(step) = normal.solve_from(0, damping) else {
             damping *= 10.0;
             if damping > 1e6 {
@@ -277,7 +267,7 @@ pub fn refine(
         let next = moved(&transfer, delay_is_free, step.x.as_slice());
         let tried = Some(&next)
             .filter(|next| is_admissible(next, data.period_s))
-            .and_then(|next| gather(&open, next, delay_is_free, whitening))
+            .and_then(|next| gather(&open, next, delay_is_free, left_out))
             .and_then(|normal| Some((rest(&normal, count)?.rest, normal)));
         match tried {
             Some((sum, found)) if sum <= least => {
@@ -307,10 +297,21 @@ pub fn refine(
         }
     }
     if data.undisturbed.is_some() {
-        (transfer, normal) = instrumental(data, transfer, delay_is_free, whitening)?;
+        (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
     }
     let sought = sought(&transfer, data.period_s);
-    finish(transfer, &normal, [count, sought], power)
+    let mut estimate = finish(transfer, &normal, [count, sought], power)?;
+    estimate.steps = steps;
+    if left_out > 0 {
+        // Offset and first state of the signals as they are.
+        let open = Data {
+            undisturbed: None,
+            ..*raw
+        };
+        let normal = gather(&open, &estimate.transfer, delay_is_free, 0)?;
+        (estimate.state, estimate.offset) = nuisance(&rest(&normal, count)?);
+    }
+    Some(estimate)
 }
 
 /// Whole periods of delay and pairs of poles.
@@ -323,10 +324,10 @@ fn instrumental(
     data: &Data<'_>,
     mut transfer: TransferFunction,
     delay_is_free: bool,
-    whitening: &[f64],
+    left_out: usize,
 ) -> Option<(TransferFunction, Normal)> {
     for _ in 0..20 {
-        let normal = gather(data, &transfer, delay_is_free, whitening)?;
+        let normal = gather(data, &transfer, delay_is_free, left_out)?;
         let step = normal.solve()?;
         let mut size = 1.0;
         let next = loop {
@@ -354,7 +355,7 @@ fn instrumental(
             break;
         }
     }
-    let normal = gather(data, &transfer, delay_is_free, whitening)?;
+    let normal = gather(data, &transfer, delay_is_free, left_out)?;
     Some((transfer, normal))
 }
 
@@ -372,25 +373,31 @@ fn finish(
     [count, sought]: [usize; 2],
     power: f64,
 ) -> Option<Estimate> {
-    let nuisance = rest(normal, count)?;
+    let left = rest(normal, count)?;
     let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-12))?;
-    let unknowns = count + nuisance.x.len();
-    let noise = nuisance.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
-    let (state, offset) = match nuisance.x.as_slice().split_last() {
-        Some((offset, state)) => (state.to_vec(), *offset),
-        None => (Vec::new(), 0.0),
-    };
+    let unknowns = count + left.x.len();
+    let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
+    let (state, offset) = nuisance(&left);
     Some(Estimate {
         transfer,
         covariance: solution.inverse.view((0, 0), (count, count)) * noise,
-        rest: nuisance.rest,
+        rest: left.rest,
         rows: normal.rows,
         power,
         count,
         sought,
+        steps: 0,
         offset,
         state,
     })
+}
+
+/// First state and offset.
+fn nuisance(solution: &Solution) -> (Vec<f64>, f64) {
+    match solution.x.as_slice().split_last() {
+        Some((offset, state)) => (state.to_vec(), *offset),
+        None => (Vec::new(), 0.0),
+    }
 }
 
 /// Differences between measured and simulated output, offset and first state

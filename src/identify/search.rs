@@ -27,8 +27,12 @@ const WORTH: f64 = 0.5;
 const SEARCH_STEPS: usize = 20;
 /// How far above the fastest mode another one is looked for at first.
 const ABOVE: [f64; 3] = [1.5, 2.5, 4.0];
+/// Steps of all of them at most: a recording that no model explains to its last
+/// digit is not worth minutes.
+const STEPS_MAX: usize = 500;
+const STEPS_LAST: usize = 120;
 /// Steps from model to model at most.
-const ROUNDS_MAX: usize = 16;
+const ROUNDS_MAX: usize = 12;
 /// Order of the filter that makes noise white, at most.
 const WHITENING_MAX: usize = 40;
 /// Lags over which residuals are tested.
@@ -61,7 +65,7 @@ pub struct Found {
 /// Searches for the model. `None` if none can be fitted.
 #[must_use]
 pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
-    let response = measure(data.input, data.output, instrument, data.period_s, None)?;
+    let response = response_of(data, instrument, None)?;
     let short = data.head(COMPARED);
     let mut taps: Vec<f64> = Vec::new();
     let mut best: Option<(Estimate, bool)> = None;
@@ -96,6 +100,22 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         whitening: taps,
         response,
     })
+}
+
+/// The measured response; of positions by their second differences, as slow
+/// motion would leak into fast.
+#[must_use]
+pub fn response_of(
+    data: &Data<'_>,
+    instrument: Option<&[f64]>,
+    stretch: Option<usize>,
+) -> Option<FrequencyResponse> {
+    if !data.positions {
+        return measure(data.input, data.output, instrument, data.period_s, stretch);
+    }
+    let twice = |x: &[f64]| filtered(x, &[-2.0, 1.0]);
+    let (input, output) = (twice(data.input), twice(data.output));
+    measure(&input, &output, instrument, data.period_s, stretch)
 }
 
 /// A signal behind the whitening filter, its beginning left out.
@@ -133,6 +153,7 @@ fn ladder(
     }
     let mut best = best?;
     let mut is_restarted = false;
+    let mut left = STEPS_MAX;
     for _ in 0..ROUNDS_MAX {
         let mut top: Option<Estimate> = None;
         let next = if is_restarted {
@@ -141,11 +162,16 @@ fn ladder(
             neighbours(&best.transfer, response, given, data.period_s)
         };
         for start in next {
+            if left == 0 {
+                break;
+            }
             let effort = Effort {
                 steps: SEARCH_STEPS,
                 to_beat: top.as_ref().unwrap_or(&best).criterion(),
             };
-            if let Some(found) = refine(data, &start, false, taps, effort)
+            let found = refine(data, &start, false, taps, effort);
+            left = left.saturating_sub(found.as_ref().map_or(1, |found| found.steps));
+            if let Some(found) = found
                 && is_better(&found, top.as_ref())
             {
                 let is_clear = found.criterion() < best.criterion() - CLEAR;
@@ -155,6 +181,8 @@ fn ladder(
                 }
             }
         }
+        // Something is left for what comes next, to leave a wrong path.
+        left = left.max(STEPS_LAST);
         let before = best.criterion();
         if let Some(top) = top.filter(|top| is_better(top, Some(&best))) {
             best = top;
