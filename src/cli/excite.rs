@@ -8,6 +8,7 @@ const EXAMPLES: &str = "\
 Examples:
   gwatt excite --order 12 --amplitude 5 > torque.csv
   gwatt excite --resolution-hz 0.5 --hold 2 --amplitude 5 --repeat 3 -o torque.csv
+  gwatt excite --shape random --from-hz 1 --to-hz 45 --seconds 16 --amplitude 5 > near-40-hz.csv
   gwatt excite --shape log-sweep --from-hz 1 --to-hz 200 --seconds 20 --amplitude 3 -o sweep.csv
   gwatt excite --amplitude 50 --name force_n --mass-kg 90 --stroke-mm 100 --speed-mm-min 6000 -o f.csv
 
@@ -19,6 +20,10 @@ standard error, with a warning where the axis would leave its stroke or speed.";
 #[command(after_help = EXAMPLES)]
 pub struct ExciteArgs {
     /// What to make
+    ///
+    /// An M-sequence tells an axis that nothing is known of. An anti-resonance
+    /// that is roughly known is told most precisely by a random signal that ends
+    /// a tenth above it: noise counts least where little else moves.
     #[arg(long, value_enum, default_value_t = ShapeArg::MSequence)]
     pub shape: ShapeArg,
     /// Largest value, in the unit of --name

@@ -196,7 +196,7 @@ fn samples(from_hz: f64, to_hz: f64, seconds: f64, period_s: f64) -> Outcome<usi
                 "the band {from_hz} to {to_hz} Hz cannot be made at {} Hz",
                 1.0 / period_s
             ),
-            format!("give 0 < --from < --to < {nyquist} Hz"),
+            format!("give 0 < --from-hz < --to-hz < {nyquist}"),
         ));
     }
     let n = seconds / period_s;

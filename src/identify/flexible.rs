@@ -4,7 +4,8 @@ use super::arx;
 use super::column::{Kind, Quantity};
 use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
 use super::noise::Whiteness;
-use super::output_error::{Data, parameters, residuals};
+use super::output_error::{Data, residuals};
+use super::parameters::parameters;
 use super::quality;
 use super::recording::Recording;
 use super::rigid::Figure;
@@ -63,10 +64,10 @@ pub struct Flexible {
     pub zeros: Vec<Root>,
     /// Resonances.
     pub poles: Vec<Root>,
-    /// Delay.
+    /// Delay; from a command that is held, its half period of holding too.
     pub delay_s: Figure,
-    /// The delay that was fitted, s: from a command it is longer by the period by
-    /// which the input was taken early.
+    /// The delay that was fitted, s: from a command it is longer by half a
+    /// period, as the input was taken early.
     pub fitted_delay_s: f64,
     /// Norm of what is left by norm of the output.
     pub rel_error: f64,
@@ -98,9 +99,23 @@ pub(super) struct Prepared {
     measured: Measured,
     period_s: f64,
     is_force: bool,
+    positions: bool,
     /// By which the input is taken early, s.
     lead_s: f64,
     names: (String, String),
+}
+
+impl Prepared {
+    /// By how much the fitted delay is longer than that of the load, s. The input
+    /// is taken early, but a held one comes half a period late on average.
+    fn early_s(&self) -> f64 {
+        self.lead_s
+            - if self.is_force {
+                0.0
+            } else {
+                0.5 * self.period_s
+            }
+    }
 }
 
 fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
@@ -138,7 +153,21 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
     if measured == Measured::Direct {
         quality::not_saturated(output_signal)?;
     }
-    let output = differences(&output_signal.values, measured, t);
+    // From a command both sides are differenced as often as the noise of what was
+    // measured stays white: positions not at all.
+    let (output, command_as) = if is_force {
+        (
+            differences(&output_signal.values, measured, t),
+            Measured::Direct,
+        )
+    } else {
+        let command_as = match measured {
+            Measured::Direct => Measured::Position,
+            Measured::Velocity => Measured::Velocity,
+            Measured::Position => Measured::Direct,
+        };
+        (output_signal.values.clone(), command_as)
+    };
     let factor = match (input_signal.kind, choice.ratio) {
         (Kind::Rotary, Some(ratio)) => ratio,
         _ => 1.0,
@@ -146,12 +175,12 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
     let input = if is_force {
         input_signal.values.iter().map(|u| u * factor).collect()
     } else {
-        differences(&input_signal.values, Measured::Position, t)
+        differences(&input_signal.values, command_as, t)
     };
     let excitation = pick(Quantity::Excitation)
         .filter(|signal| is_force && signal.name != input_signal.name)
         .map(|signal| signal.values.iter().map(|r| r * factor).collect());
-    // From a command, differences of both sides are compared as they are.
+    let positions = !is_force && measured == Measured::Position;
     let measured = if is_force { measured } else { Measured::Direct };
     let mut prepared = Prepared {
         input,
@@ -160,6 +189,7 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
         measured,
         period_s: t,
         is_force,
+        positions,
         lead_s: 0.0,
         names: (input_signal.name.clone(), output_signal.name.clone()),
     };
@@ -232,9 +262,8 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     let prepared = prepare(recording, choice)?;
     let mut choice = choice.clone();
     let searches = matches!(choice.method, Method::Iv | Method::Frequency);
-    let given = choice.given.delay_s.map(|delay| delay + prepared.lead_s);
+    let given = choice.given.delay_s.map(|delay| delay + prepared.early_s());
     choice.given.delay_s = given.or((!searches).then_some(prepared.lead_s));
-    let choice = &choice;
     let undisturbed = match &prepared.excitation {
         Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
             Trouble::new(
@@ -250,13 +279,22 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         undisturbed: undisturbed.as_deref(),
         period_s: prepared.period_s,
         measured: prepared.measured,
+        positions: prepared.positions,
     };
-    let found = match choice.method {
+    let find = |choice: &Choice| match choice.method {
         Method::Iv => by_search(&data, &prepared, choice),
         Method::Frequency => by_response(&data, &prepared, choice),
         Method::Arx => by_arx(&data, &prepared, choice),
         Method::Subspace => by_subspace(&data, &prepared, choice),
     };
+    let mut found = find(&choice);
+    let is_early =
+        |found: &Modelled| found.estimate.transfer.delay_s < prepared.early_s() * (1.0 - 1e-6);
+    if given.is_none() && found.as_ref().is_some_and(is_early) {
+        // The load cannot be ahead of the command: poles stand for a delay.
+        choice.given.delay_s = Some(prepared.early_s());
+        found = find(&choice).or(found);
+    }
     let found = found.ok_or_else(|| {
         Trouble::new(
             "no stable model fits the recording",
@@ -331,7 +369,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     } else {
         0.0
     };
-    transfer.delay_s = (fitted_delay_s - prepared.lead_s).max(0.0);
+    transfer.delay_s = (fitted_delay_s - prepared.early_s()).max(0.0);
     Ok(Flexible {
         fitted_delay_s,
         inertia: prepared.is_force.then(|| Figure {
@@ -373,6 +411,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         undisturbed: None,
         period_s: prepared.period_s,
         measured: prepared.measured,
+        positions: prepared.positions,
     };
     let fitted = TransferFunction {
         delay_s: model.fitted_delay_s,

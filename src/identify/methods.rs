@@ -4,8 +4,8 @@ use super::arx;
 use super::flexible::{Choice, Prepared};
 use super::output_error::{Data, Effort, Estimate, refine};
 use super::response_fit::{self, ResponseFit};
-use super::search::{LAG_MAX, ORDER_MAX, search};
-use super::spectrum::{FrequencyResponse, measure};
+use super::search::{LAG_MAX, ORDER_MAX, response_of, search};
+use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;
 
@@ -29,16 +29,6 @@ pub(super) fn by_search(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -
     })
 }
 
-fn response_of(data: &Data<'_>, prepared: &Prepared) -> Option<FrequencyResponse> {
-    measure(
-        data.input,
-        data.output,
-        prepared.excitation.as_deref(),
-        data.period_s,
-        None,
-    )
-}
-
 /// The model as it is, with its offset and first state.
 pub(super) fn as_it_is(data: &Data<'_>, transfer: &TransferFunction) -> Option<Estimate> {
     let effort = Effort {
@@ -57,14 +47,12 @@ pub(super) fn by_response(
     prepared: &Prepared,
     choice: &Choice,
 ) -> Option<Modelled> {
-    let mut response = response_of(data, prepared)?;
+    let mut response = response_of(data, prepared.excitation.as_deref(), None)?;
     if !response.periodic {
         // Windows blur sharp resonances: the longest stretches blur least.
-        response = measure(
-            data.input,
-            data.output,
+        response = response_of(
+            data,
             prepared.excitation.as_deref(),
-            data.period_s,
             Some((data.len() / 4).next_power_of_two()),
         )?;
     }
@@ -197,7 +185,7 @@ fn finish_plain(
         estimate: as_it_is(data, &transfer)?,
         delay_is_free: false,
         whitening: Vec::new(),
-        response: response_of(data, prepared)?,
+        response: response_of(data, prepared.excitation.as_deref(), None)?,
         has_errors: false,
     })
 }

@@ -25,6 +25,7 @@ mod mode;
 mod noise;
 mod normal;
 mod output_error;
+mod parameters;
 mod polynomial;
 mod quality;
 mod recording;

@@ -13,13 +13,12 @@
 //! Besides the parameters an offset and the state at the first sample are
 //! estimated: a recording may begin in the middle of a motion.
 
-use std::collections::VecDeque;
-
 use nalgebra::DMatrix;
 
 use super::normal::{Normal, Solution};
+use super::parameters::{is_admissible, parameters, probes, with};
 use super::state_space::{Measured, Sampled, Simulation};
-use super::transfer::{Factor, TransferFunction};
+use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
 /// An improvement of the sum of squares below this share of one row's ends the
@@ -39,6 +38,8 @@ pub struct Data<'a> {
     pub period_s: f64,
     /// What was measured.
     pub measured: Measured,
+    /// True for positions as input and output: most of what they are is slow.
+    pub positions: bool,
 }
 
 impl Data<'_> {
@@ -68,7 +69,7 @@ impl Data<'_> {
 pub struct Estimate {
     /// The model.
     pub transfer: TransferFunction,
-    /// Covariance of the parameters in the order of [`parameters`].
+    /// Covariance of the parameters in the order of [`parameters()`].
     pub covariance: DMatrix<f64>,
     /// Sum of squares of the (whitened) differences.
     pub rest: f64,
@@ -79,6 +80,10 @@ pub struct Estimate {
     pub power: f64,
     /// Parameters that were fitted, offset and first state left out.
     pub count: usize,
+    /// Whole periods of delay and pairs of poles.
+    pub sought: usize,
+    /// Steps that the search took.
+    pub steps: usize,
     /// Offset of the output.
     pub offset: f64,
     /// State at the first sample.
@@ -86,10 +91,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Bayes' information criterion; the smaller, the better.
+    /// Bayes' information criterion; the smaller, the better. Each period of
+    /// delay and each pair of poles counts as a parameter more: which of many
+    /// delays and frequencies it was had to be found too, and noise is tried as
+    /// often. What is there pays for it many times over.
     #[must_use]
     pub fn criterion(&self) -> f64 {
-        criterion(self.rest, self.power, self.rows, self.count)
+        criterion(self.rest, self.power, self.rows, self.count + self.sought)
     }
 
     /// Standard error of the parameter at `index`.
@@ -126,142 +134,25 @@ impl Effort {
     };
 }
 
-/// The parameters of a model: the gain, then of each zero and each pole `ln ω, ζ`
-/// or `τ`, and the delay where it is free.
-#[must_use]
-pub fn parameters(transfer: &TransferFunction, delay_is_free: bool) -> Vec<f64> {
-    let mut theta = vec![transfer.gain];
-    for factor in transfer.zeros.iter().chain(&transfer.poles) {
-        match *factor {
-            Factor::Pair {
-                omega_rad_s,
-                damping,
-            } => theta.extend([libm::log(omega_rad_s), damping]),
-            Factor::Real { time_constant_s } => theta.push(time_constant_s),
-        }
-    }
-    if delay_is_free {
-        theta.push(transfer.delay_s);
-    }
-    theta
+/// A signal behind the whitening filter, as long as it was; before its first
+/// sample there was nothing.
+fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
+    (0..x.len())
+        .map(|k| {
+            let past = x.get(..k).unwrap_or_default().iter().rev();
+            let sum: f64 = past.zip(taps).map(|(x, tap)| x * tap).sum();
+            sum + x.get(k).copied().unwrap_or_default()
+        })
+        .collect()
 }
 
-/// The model with other parameters.
-pub(super) fn with(template: &TransferFunction, theta: &[f64]) -> TransferFunction {
-    let mut transfer = template.clone();
-    let mut rest = theta.iter().copied();
-    transfer.gain = rest.next().unwrap_or_default();
-    for factor in transfer.zeros.iter_mut().chain(&mut transfer.poles) {
-        match factor {
-            Factor::Pair {
-                omega_rad_s,
-                damping,
-            } => {
-                *omega_rad_s = libm::exp(rest.next().unwrap_or_default());
-                *damping = rest.next().unwrap_or_default();
-            }
-            Factor::Real { time_constant_s } => {
-                *time_constant_s = rest.next().unwrap_or_default();
-            }
-        }
-    }
-    if let Some(delay_s) = rest.next() {
-        transfer.delay_s = delay_s;
-    }
-    transfer
-}
-
-/// How far each parameter is moved to see what it does.
-pub(super) fn probes(transfer: &TransferFunction, delay_is_free: bool, period_s: f64) -> Vec<f64> {
-    const SMALL: f64 = 1e-6;
-    let mut steps = vec![SMALL * transfer.gain.abs().max(f64::MIN_POSITIVE)];
-    for factor in transfer.zeros.iter().chain(&transfer.poles) {
-        match *factor {
-            Factor::Pair { .. } => steps.extend([SMALL, SMALL]),
-            Factor::Real { time_constant_s } => {
-                steps.push(SMALL * time_constant_s.abs().max(0.1 * period_s));
-            }
-        }
-    }
-    if delay_is_free {
-        steps.push(1e-5 * period_s);
-    }
-    steps
-}
-
-/// True for a model that can be simulated and makes sense.
-pub(super) fn is_admissible(transfer: &TransferFunction, period_s: f64) -> bool {
-    let nyquist = std::f64::consts::PI / period_s;
-    let is_in_range = |omega: f64| omega > 1e-6 / period_s && omega < 20.0 / period_s;
-    let sound_pole = |pole: &Factor| match *pole {
-        // What swings faster than half the sampling rate cannot be told from
-        // its image below.
-        Factor::Pair {
-            omega_rad_s: w,
-            damping,
-        } => {
-            let swing = w * (1.0 - damping * damping).max(0.0).sqrt();
-            is_in_range(w) && damping > 1e-7 && damping < 50.0 && swing < nyquist
-        }
-        Factor::Real { time_constant_s } => {
-            time_constant_s > 1e-3 * period_s && time_constant_s < 1e6 * period_s
-        }
-    };
-    let sound_zero = |zero: &Factor| match *zero {
-        Factor::Pair {
-            omega_rad_s: w,
-            damping,
-        } => is_in_range(w) && damping.abs() < 50.0,
-        Factor::Real { time_constant_s } => time_constant_s.abs() < 1e6 * period_s,
-    };
-    transfer.poles.iter().all(sound_pole)
-        && transfer.zeros.iter().all(sound_zero)
-        && transfer.gain.is_finite()
-        && (0.0..1000.0 * period_s).contains(&transfer.delay_s)
-}
-
-/// A finite impulse response over signals as they pass.
-#[derive(Debug, Clone)]
-struct Whitener<'a> {
-    taps: &'a [f64],
-    /// Rows before, the last first.
-    past: VecDeque<Vec<f64>>,
-}
-
-impl<'a> Whitener<'a> {
-    fn new(taps: &'a [f64], width: usize) -> Self {
-        Self {
-            taps,
-            past: taps.iter().map(|_| vec![0.0; width]).collect(),
-        }
-    }
-
-    /// Replaces a row by the filtered one: `row + Σ tapᵢ · row i+1 samples ago`.
-    fn pass(&mut self, row: &mut [f64]) {
-        let Some(oldest) = self.past.back() else {
-            return;
-        };
-        let mut filtered = row.to_vec();
-        debug_assert_eq!(oldest.len(), row.len());
-        for (tap, old) in self.taps.iter().zip(&self.past) {
-            for (slot, x) in filtered.iter_mut().zip(old) {
-                *slot += tap * x;
-            }
-        }
-        if let Some(mut oldest) = self.past.pop_back() {
-            oldest.copy_from_slice(row);
-            self.past.push_front(oldest);
-        }
-        row.copy_from_slice(&filtered);
-    }
-}
-
-/// One pass over the data: normal equations of the step at these parameters.
+/// One pass over the data: normal equations of the step at these parameters. The
+/// first samples, where a filter has not swung in, are left out.
 fn gather(
     data: &Data<'_>,
     transfer: &TransferFunction,
     delay_is_free: bool,
-    whitening: &[f64],
+    left_out: usize,
 ) -> Option<Normal> {
     let sampled =
         |transfer: &TransferFunction| Sampled::new(transfer, data.measured, data.period_s);
@@ -285,7 +176,6 @@ fn gather(
     let mut simulation = Simulation::new(base);
     let width = theta.len() + order + 1;
     let mut normal = Normal::new(width);
-    let mut whitener = Whitener::new(whitening, width + 1);
     let mut row = vec![0.0; width + 1];
     let skip = match data.measured {
         Measured::Direct => 0,
@@ -311,11 +201,7 @@ fn gather(
         if let Some(slot) = slots.next() {
             *slot = y - simulated;
         }
-        if k < skip {
-            continue;
-        }
-        whitener.pass(&mut row);
-        if k >= skip + whitening.len()
+        if k >= skip + left_out
             && let Some((right, columns)) = row.split_last()
         {
             normal.add(columns, *right);
@@ -343,18 +229,34 @@ pub fn refine(
     whitening: &[f64],
     effort: Effort,
 ) -> Option<Estimate> {
+    // What is filtered before and behind a model is the same: the signals are
+    // filtered once.
+    let filtered = |x: &[f64]| whitened(x, whitening);
+    let input = filtered(data.input);
+    let output = filtered(data.output);
+    let undisturbed = data.undisturbed.map(filtered);
+    let raw = data;
+    let data = &Data {
+        input: &input,
+        output: &output,
+        undisturbed: undisturbed.as_deref(),
+        ..*raw
+    };
+    let left_out = whitening.len();
     // The search goes down on squares; instruments come at its end.
     let open = Data {
         undisturbed: None,
         ..*data
     };
     let mut transfer = start.clone();
-    let mut normal = gather(&open, &transfer, delay_is_free, whitening)?;
+    let mut normal = gather(&open, &transfer, delay_is_free, left_out)?;
     let count = parameters(&transfer, delay_is_free).len();
     let mut least = rest(&normal, count)?.rest;
     let mut damping = 1e-4;
-    let power: f64 = data.output.iter().map(|y| y * y).sum();
+    let power: f64 = raw.output.iter().map(|y| y * y).sum();
+    let mut steps = 0;
     for round in 0..effort.steps {
+        steps = round + 1;
         let Some(step) = normal.solve_from(0, damping) else {
             damping *= 10.0;
             if damping > 1e6 {
@@ -365,7 +267,7 @@ pub fn refine(
         let next = moved(&transfer, delay_is_free, step.x.as_slice());
         let tried = Some(&next)
             .filter(|next| is_admissible(next, data.period_s))
-            .and_then(|next| gather(&open, next, delay_is_free, whitening))
+            .and_then(|next| gather(&open, next, delay_is_free, left_out))
             .and_then(|normal| Some((rest(&normal, count)?.rest, normal)));
         match tried {
             Some((sum, found)) if sum <= least => {
@@ -379,7 +281,8 @@ pub fn refine(
                 }
                 // What is missing, in units of the criterion, against what the
                 // step brought.
-                let missing = criterion(least, power, normal.rows, count) - effort.to_beat;
+                let free = count + sought(&transfer, data.period_s);
+                let missing = criterion(least, power, normal.rows, free) - effort.to_beat;
                 let brought = normal.rows as f64 * gained / least;
                 if round >= 7 && missing > 20.0 && brought < 0.2 * missing {
                     break;
@@ -394,9 +297,26 @@ pub fn refine(
         }
     }
     if data.undisturbed.is_some() {
-        (transfer, normal) = instrumental(data, transfer, delay_is_free, whitening)?;
+        (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
     }
-    finish(transfer, &normal, count, power)
+    let sought = sought(&transfer, data.period_s);
+    let mut estimate = finish(transfer, &normal, [count, sought], power)?;
+    estimate.steps = steps;
+    if left_out > 0 {
+        // Offset and first state of the signals as they are.
+        let open = Data {
+            undisturbed: None,
+            ..*raw
+        };
+        let normal = gather(&open, &estimate.transfer, delay_is_free, 0)?;
+        (estimate.state, estimate.offset) = nuisance(&rest(&normal, count)?);
+    }
+    Some(estimate)
+}
+
+/// Whole periods of delay and pairs of poles.
+fn sought(transfer: &TransferFunction, period_s: f64) -> usize {
+    libm::floor(transfer.delay_s / period_s + 1e-9) as usize + transfer.order() / 2
 }
 
 /// Steps that bring the products of instruments and differences to zero.
@@ -404,10 +324,10 @@ fn instrumental(
     data: &Data<'_>,
     mut transfer: TransferFunction,
     delay_is_free: bool,
-    whitening: &[f64],
+    left_out: usize,
 ) -> Option<(TransferFunction, Normal)> {
     for _ in 0..20 {
-        let normal = gather(data, &transfer, delay_is_free, whitening)?;
+        let normal = gather(data, &transfer, delay_is_free, left_out)?;
         let step = normal.solve()?;
         let mut size = 1.0;
         let next = loop {
@@ -435,7 +355,7 @@ fn instrumental(
             break;
         }
     }
-    let normal = gather(data, &transfer, delay_is_free, whitening)?;
+    let normal = gather(data, &transfer, delay_is_free, left_out)?;
     Some((transfer, normal))
 }
 
@@ -450,27 +370,34 @@ fn moved(transfer: &TransferFunction, delay_is_free: bool, step: &[f64]) -> Tran
 fn finish(
     transfer: TransferFunction,
     normal: &Normal,
-    count: usize,
+    [count, sought]: [usize; 2],
     power: f64,
 ) -> Option<Estimate> {
-    let nuisance = rest(normal, count)?;
+    let left = rest(normal, count)?;
     let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-12))?;
-    let unknowns = count + nuisance.x.len();
-    let noise = nuisance.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
-    let (state, offset) = match nuisance.x.as_slice().split_last() {
-        Some((offset, state)) => (state.to_vec(), *offset),
-        None => (Vec::new(), 0.0),
-    };
+    let unknowns = count + left.x.len();
+    let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
+    let (state, offset) = nuisance(&left);
     Some(Estimate {
         transfer,
         covariance: solution.inverse.view((0, 0), (count, count)) * noise,
-        rest: nuisance.rest,
+        rest: left.rest,
         rows: normal.rows,
         power,
         count,
+        sought,
+        steps: 0,
         offset,
         state,
     })
+}
+
+/// First state and offset.
+fn nuisance(solution: &Solution) -> (Vec<f64>, f64) {
+    match solution.x.as_slice().split_last() {
+        Some((offset, state)) => (state.to_vec(), *offset),
+        None => (Vec::new(), 0.0),
+    }
 }
 
 /// Differences between measured and simulated output, offset and first state

@@ -12,7 +12,7 @@ use nalgebra::{Complex, DMatrix};
 use super::discrete::SampledResponse;
 use super::mode::with_mode;
 use super::normal::Normal;
-use super::output_error::{is_admissible, parameters, probes, with};
+use super::parameters::{is_admissible, parameters, probes, with};
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
 

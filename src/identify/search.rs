@@ -18,10 +18,21 @@ pub const LAG_MAX: usize = 12;
 const COMPARED: usize = 8_000;
 /// A model better by this much is gone on from without looking at others.
 const CLEAR: f64 = 4.0;
+/// By how much a delay between samples has to be better than one of whole
+/// periods.
+const CLEAR_DELAY: f64 = 10.0;
+/// A model better by less is the same one.
+const WORTH: f64 = 0.5;
 /// Steps of each fit on the way.
 const SEARCH_STEPS: usize = 20;
+/// How far above the fastest mode another one is looked for at first.
+const ABOVE: [f64; 3] = [1.5, 2.5, 4.0];
+/// Steps of all of them at most: a recording that no model explains to its last
+/// digit is not worth minutes.
+const STEPS_MAX: usize = 500;
+const STEPS_LAST: usize = 120;
 /// Steps from model to model at most.
-const ROUNDS_MAX: usize = 8;
+const ROUNDS_MAX: usize = 12;
 /// Order of the filter that makes noise white, at most.
 const WHITENING_MAX: usize = 40;
 /// Lags over which residuals are tested.
@@ -54,7 +65,7 @@ pub struct Found {
 /// Searches for the model. `None` if none can be fitted.
 #[must_use]
 pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
-    let response = measure(data.input, data.output, instrument, data.period_s, None)?;
+    let response = response_of(data, instrument, None)?;
     let short = data.head(COMPARED);
     let mut taps: Vec<f64> = Vec::new();
     let mut best: Option<(Estimate, bool)> = None;
@@ -91,6 +102,22 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     })
 }
 
+/// The measured response; of positions by their second differences, as slow
+/// motion would leak into fast.
+#[must_use]
+pub fn response_of(
+    data: &Data<'_>,
+    instrument: Option<&[f64]>,
+    stretch: Option<usize>,
+) -> Option<FrequencyResponse> {
+    if !data.positions {
+        return measure(data.input, data.output, instrument, data.period_s, stretch);
+    }
+    let twice = |x: &[f64]| filtered(x, &[-2.0, 1.0]);
+    let (input, output) = (twice(data.input), twice(data.output));
+    measure(&input, &output, instrument, data.period_s, stretch)
+}
+
 /// A signal behind the whitening filter, its beginning left out.
 #[must_use]
 pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
@@ -125,14 +152,26 @@ fn ladder(
         }
     }
     let mut best = best?;
+    let mut is_restarted = false;
+    let mut left = STEPS_MAX;
     for _ in 0..ROUNDS_MAX {
         let mut top: Option<Estimate> = None;
-        for start in neighbours(&best.transfer, response, given, data.period_s) {
+        let next = if is_restarted {
+            restarts(&best.transfer, response, given, data.period_s)
+        } else {
+            neighbours(&best.transfer, response, given, data.period_s)
+        };
+        for start in next {
+            if left == 0 {
+                break;
+            }
             let effort = Effort {
                 steps: SEARCH_STEPS,
                 to_beat: top.as_ref().unwrap_or(&best).criterion(),
             };
-            if let Some(found) = refine(data, &start, false, taps, effort)
+            let found = refine(data, &start, false, taps, effort);
+            left = left.saturating_sub(found.as_ref().map_or(1, |found| found.steps));
+            if let Some(found) = found
                 && is_better(&found, top.as_ref())
             {
                 let is_clear = found.criterion() < best.criterion() - CLEAR;
@@ -142,9 +181,18 @@ fn ladder(
                 }
             }
         }
-        match top {
-            Some(top) if is_better(&top, Some(&best)) => best = top,
-            _ => break,
+        // Something is left for what comes next, to leave a wrong path.
+        left = left.max(STEPS_LAST);
+        let before = best.criterion();
+        if let Some(top) = top.filter(|top| is_better(top, Some(&best))) {
+            best = top;
+        }
+        if best.criterion() < before - WORTH {
+            is_restarted = false;
+        } else if is_restarted {
+            break;
+        } else {
+            is_restarted = true;
         }
     }
     if given.delay_s.is_some() {
@@ -161,13 +209,9 @@ fn neighbours(
     given: Given,
     period_s: f64,
 ) -> Vec<TransferFunction> {
-    // Dampers make a real zero far above the band: seldom seen in the response,
-    // but not nothing.
-    let far_zero = Factor::Real {
-        time_constant_s: 0.1 * period_s,
-    };
+    let far_zero = far_zero(period_s);
     let lean = lean(from);
-    let mut out = Vec::new();
+    let mut out = reflected(from, given, period_s);
     if given.order.is_none() && lean.order() < from.order() {
         // Fast poles and zeros may have stood for a delay.
         let later = if given.delay_s.is_none() { 2 } else { 0 };
@@ -223,6 +267,42 @@ fn neighbours(
     out
 }
 
+/// Dampers make a real zero far above the band: seldom seen in the response, but
+/// not nothing.
+fn far_zero(period_s: f64) -> Factor {
+    Factor::Real {
+        time_constant_s: 0.1 * period_s,
+    }
+}
+
+/// Zeros that swing come from what hangs on the load, and that is damped: where
+/// they came out undamped, the same ones damped, with less delay.
+fn reflected(from: &TransferFunction, given: Given, period_s: f64) -> Vec<TransferFunction> {
+    let mut damped = from.clone();
+    let mut is_other = false;
+    for zero in &mut damped.zeros {
+        if zero.oscillates()
+            && let Factor::Pair { damping, .. } = zero
+            && *damping < 0.0
+        {
+            *damping = -*damping;
+            is_other = true;
+        }
+    }
+    if !is_other {
+        return Vec::new();
+    }
+    let sooner = if given.delay_s.is_none() { 3 } else { 1 };
+    (0..sooner)
+        .map(|periods| from.delay_s - f64::from(periods) * period_s)
+        .filter(|delay_s| *delay_s >= 0.0)
+        .map(|delay_s| TransferFunction {
+            delay_s,
+            ..damped.clone()
+        })
+        .collect()
+}
+
 /// What swings of a model: the rest often stands for nothing but noise.
 fn lean(from: &TransferFunction) -> TransferFunction {
     let swings =
@@ -238,30 +318,75 @@ fn lean(from: &TransferFunction) -> TransferFunction {
     }
 }
 
-/// Without the pole whose zeros lie nearest, and without those.
+/// Where no neighbour is better: the slowest of what swings, with one faster mode
+/// placed anew, by the response or well above. Outside the band of the excitation
+/// a mode may have gone astray.
+fn restarts(
+    from: &TransferFunction,
+    response: &FrequencyResponse,
+    given: Given,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    if given.order.is_some() || given.zeros.is_some() {
+        return Vec::new();
+    }
+    let lean = lean(from);
+    (1..=lean.poles.len())
+        .flat_map(|count| {
+            let mut slow = lean.clone();
+            for list in [&mut slow.zeros, &mut slow.poles] {
+                list.sort_by(|a, b| a.corner_rad_s().total_cmp(&b.corner_rad_s()));
+                list.truncate(count);
+            }
+            let mut starts = with_mode(&slow, response, period_s);
+            for above in ABOVE {
+                let mut stiff = slow.clone();
+                let fastest = slow.poles.last().map(|pole| pole.corner_rad_s());
+                stiff.poles.extend(fastest.map(|omega| Factor::Pair {
+                    omega_rad_s: above * omega,
+                    damping: 0.05,
+                }));
+                stiff.zeros.push(far_zero(period_s));
+                starts.push(stiff);
+            }
+            starts
+        })
+        .collect()
+}
+
+/// Without one pole, and without none or one of the zeros: the nearest first.
 fn without_mode(from: &TransferFunction, far_zero: Factor) -> Vec<TransferFunction> {
     let mut out = Vec::new();
     for (at, pole) in from.poles.iter().enumerate() {
         let distance = |zero: &Factor| libm::log(zero.corner_rad_s() / pole.corner_rad_s()).abs();
         let mut less = from.clone();
         less.poles.remove(at);
-        let nearest = less
+        let mut zeros: Vec<(f64, usize)> = less
             .zeros
             .iter()
             .enumerate()
             .filter(|(_, zero)| zero.degree() == pole.degree())
-            .min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)))
-            .map(|(index, _)| index);
-        if let Some(index) = nearest {
-            less.zeros.remove(index);
-        }
-        if less.zero_count() < less.order() {
-            let mut more = less.clone();
-            more.zeros.push(far_zero);
-            out.push(more);
-        }
-        if less.zero_count() <= less.order() {
-            out.push(less);
+            .map(|(index, zero)| (distance(zero), index))
+            .collect();
+        zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut shapes: Vec<TransferFunction> = zeros
+            .iter()
+            .map(|(_, index)| {
+                let mut lesser = less.clone();
+                lesser.zeros.remove(*index);
+                lesser
+            })
+            .collect();
+        shapes.push(less);
+        for shape in shapes {
+            if shape.zero_count() < shape.order() {
+                let mut more = shape.clone();
+                more.zeros.push(far_zero);
+                out.push(more);
+            }
+            if shape.zero_count() <= shape.order() {
+                out.push(shape);
+            }
         }
     }
     out
@@ -333,7 +458,8 @@ fn is_better(found: &Estimate, than: Option<&Estimate>) -> bool {
     than.is_none_or(|than| found.criterion() < than.criterion())
 }
 
-/// The delay set free, if that is worth a parameter.
+/// The delay set free, if that is clearly worth a parameter: beside a fast zero
+/// and a fast pole it makes all of them uncertain.
 fn any_delay(data: &Data<'_>, best: Estimate, taps: &[f64]) -> (Estimate, bool) {
     let t = data.period_s;
     for part in [0.3, -0.3] {
@@ -343,7 +469,7 @@ fn any_delay(data: &Data<'_>, best: Estimate, taps: &[f64]) -> (Estimate, bool) 
             continue;
         }
         if let Some(found) = refine(data, &start, true, taps, Effort::FULL)
-            && is_better(&found, Some(&best))
+            && found.criterion() < best.criterion() - CLEAR_DELAY
         {
             return (found, true);
         }

@@ -44,17 +44,14 @@ pub fn dips(response: &FrequencyResponse) -> Vec<Dip> {
         if !is_least {
             continue;
         }
-        let left = shoulder(before.iter().rev(), *here);
-        let right = shoulder(after.iter(), *here);
-        let depth_db = 20.0 * libm::log10(left.1.min(right.1) / here.max(f64::MIN_POSITIVE));
-        let is_clear = |at: Option<usize>, gain: f64| {
-            let loud = at.and_then(|at| noise.get(at)).copied();
-            loud.is_some_and(|loud| gain > CLEAR * loud)
+        let (Some(noise_before), Some(noise_after)) = (noise.get(..index), noise.get(index + 1..))
+        else {
+            continue;
         };
-        if depth_db >= DEPTH_DB
-            && is_clear(index.checked_sub(left.0), left.1)
-            && is_clear(index.checked_add(right.0), right.1)
-        {
+        let left = shoulder(before.iter().zip(noise_before).rev(), *here);
+        let right = shoulder(after.iter().zip(noise_after), *here);
+        let depth_db = 20.0 * libm::log10(left.min(right) / here.max(f64::MIN_POSITIVE));
+        if depth_db >= DEPTH_DB {
             dips.push(Dip {
                 frequency_hz,
                 gain: *here,
@@ -65,18 +62,14 @@ pub fn dips(response: &FrequencyResponse) -> Vec<Dip> {
     dips
 }
 
-/// The largest gain before it falls below `least`, and how far away it is.
-fn shoulder<'a>(gains: impl Iterator<Item = &'a f64>, least: f64) -> (usize, f64) {
-    let mut found = (0, 0.0);
-    for (index, gain) in gains.enumerate() {
-        if *gain < least {
-            break;
-        }
-        if *gain > found.1 {
-            found = (index + 1, *gain);
-        }
-    }
-    found
+/// The largest gain that stands out of the noise, before it falls below `least`.
+/// Beyond the band of the excitation there is nothing but noise.
+fn shoulder<'a>(points: impl Iterator<Item = (&'a f64, &'a f64)>, least: f64) -> f64 {
+    points
+        .take_while(|(gain, _)| **gain >= least)
+        .filter(|(gain, noise)| **gain > CLEAR * **noise)
+        .map(|(gain, _)| *gain)
+        .fold(0.0, f64::max)
 }
 
 fn smoothed(
@@ -147,6 +140,13 @@ mod tests {
         // The average over three samples: 1 - 0.9·(1 + 2·0.9)/3 = 0.16.
         assert!((found[0].depth_db - 15.9).abs() < 0.1, "{found:?}");
         assert!(dips(&measured(dip, 0.4)).is_empty());
+        // Beyond 60 Hz nothing was excited: loud, and all noise.
+        let mut ends = measured(dip, 0.01);
+        for k in 60..ends.response.len() {
+            ends.response[k] = Complex::new(5.0, 0.0);
+            ends.variance[k] = 100.0;
+        }
+        assert_eq!(dips(&ends).len(), 1);
         // A fall without end is no dip, nor is ripple.
         assert!(dips(&measured(|hz| 1.0 / hz, 0.0)).is_empty());
         assert!(dips(&measured(|hz| 1.0 + 0.1 * libm::sin(hz / 5.0), 0.0)).is_empty());

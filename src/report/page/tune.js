@@ -132,19 +132,19 @@ function marks(least, most) {
 }
 // One plot: curves are {kind, points: [[hz, value], …]}.
 function plot(title, curves, range, height) {
-  const [width, left, top, bottom] = [760, 60, 22, 24];
+  const [width, left, right, top, bottom] = [760, 60, 18, 22, 24];
   const values = curves.flatMap((c) => c.points.map((p) => p[1])).filter(Number.isFinite);
   let least = Math.min(...values), most = Math.max(...values);
   if (!(most - least > 1e-3)) [least, most] = [least - 1 || -1, least + 1 || 1];
   const room = 0.05 * (most - least);
   [least, most] = [least - room, most + room];
   const [from, to] = range.map(Math.log10);
-  const x = (hz) => left + (Math.log10(hz) - from) / (to - from) * (width - left - 10);
+  const x = (hz) => left + (Math.log10(hz) - from) / (to - from) * (width - left - right);
   const y = (v) => top + (most - v) / (most - least) * (height - top - bottom);
   const svg = el("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": title });
   svg.append(el("text", { x: left, y: 14, "font-weight": "bold" }, title));
   for (const mark of marks(least, most)) {
-    svg.append(el("path", { class: "grid", d: `M${left} ${y(mark)}H${width - 10}` }));
+    svg.append(el("path", { class: "grid", d: `M${left} ${y(mark)}H${width - right}` }));
     svg.append(el("text", { x: left - 6, y: y(mark) + 4, "text-anchor": "end" }, String(mark)));
   }
   for (let decade = Math.floor(from); decade <= to; decade++) {

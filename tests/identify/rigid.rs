@@ -1,0 +1,72 @@
+//! Rigid axes: mass and friction.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+
+use gwatt::identify::rigid::{self, Friction};
+use gwatt::identify::{Judgement, Recording, judgement};
+
+use super::{Noise, PERIOD_S, shared, table};
+
+/// To and fro with friction; position with noise of an encoder.
+fn rigid_table(noise: f64) -> Recording {
+    let mut random = Noise(9);
+    let (mut force, mut position) = (Vec::new(), Vec::new());
+    for k in 0..20_000 {
+        let t = f64::from(k) * PERIOD_S;
+        let mut sums = [0.0; 3];
+        for (amplitude, hz) in [(0.05, 0.5), (0.02, 1.3), (0.004, 4.1)] {
+            let (sin, cos) = libm::sincos(TAU * hz * t);
+            let w = TAU * hz;
+            sums[0] += amplitude * sin;
+            sums[1] += amplitude * w * cos;
+            sums[2] -= amplitude * w * w * sin;
+        }
+        let [x, v, a] = sums;
+        let friction = 25.0 * v.signum() + 300.0 * v;
+        force.push(80.0 * a + friction - 6.0 + 5.0 * random.normal());
+        position.push(x + noise * random.normal());
+    }
+    table(&["force_n", "position_m"], &[&force, &position])
+}
+
+#[test]
+fn a_rigid_axis_is_found_with_its_friction() {
+    let found = rigid::fit(&rigid_table(1e-6), None, Friction::Symmetric, None).unwrap();
+    for (figure, truth) in [
+        (found.mass, 80.0),
+        (found.viscous.unwrap(), 300.0),
+        (found.coulomb.unwrap(), 25.0),
+        (found.offset, -6.0),
+    ] {
+        let error = figure.value - truth;
+        assert!(
+            error.abs() < 4.0 * figure.std + 0.005 * truth.abs(),
+            "{figure:?} {truth}"
+        );
+        assert!(figure.std < 0.02 * truth.abs(), "{figure:?}");
+    }
+    assert_eq!(judgement::rigid(&found), Judgement::Good);
+}
+
+#[test]
+fn the_published_axis_comes_out_as_published() {
+    let Some(path) = shared("measured/emps/DATA_EMPS.csv") else {
+        return;
+    };
+    // Force in N from the drive's voltage: the published constant.
+    let mut text = "time_s,force_n,position_m\n".to_owned();
+    for line in fs::read_to_string(path).unwrap().lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|x| x.trim().parse().unwrap()).collect();
+        writeln!(text, "{},{},{}", row[0], row[3] * 35.150_651_88, row[2]).unwrap();
+    }
+    let recording = Recording::read(text.as_bytes(), None).unwrap();
+    let found = rigid::fit(&recording, None, Friction::Symmetric, None).unwrap();
+    assert!((found.mass.value - 95.109).abs() < 0.22, "{:?}", found.mass);
+    assert!((found.viscous.unwrap().value - 203.50).abs() < 2.3);
+    assert!((found.coulomb.unwrap().value - 20.394).abs() < 0.2);
+    assert!(found.rel_error <= 0.041, "{}", found.rel_error);
+    let found = rigid::fit(&recording, None, Friction::Directional, None).unwrap();
+    assert!(found.rel_error <= 0.029, "{}", found.rel_error);
+}
