@@ -12,6 +12,7 @@
 use super::demand::Want;
 use super::model::{ConverterPower, PowerModel};
 use super::spindle_trace::{SpindleSpan, SpindleTrace};
+use super::trace::{Flow, Slice};
 use super::{arc, independent, straight};
 use crate::interpret::Move;
 use crate::machine::AxisSet;
@@ -23,8 +24,6 @@ const TOLERANCE: f64 = 1e-7;
 const BUDGET: u32 = 4000;
 /// Depth of halving.
 const DEPTH: usize = 48;
-/// A power far below any other: a sum may then be negative.
-const FAR_W: f64 = 1e8;
 
 /// Largest power drawn and fed back of axes and spindle, W; the spindle without
 /// its base load, the converter with its own.
@@ -35,15 +34,25 @@ pub(super) fn peaks(
     plan: &Plan,
     (trace, from_s): (&SpindleTrace, f64),
 ) -> [f64; 2] {
-    let sum = Sum {
-        model,
-        converter,
-        mv,
-        plan,
-        trace,
-        from_s,
-    };
-    [Side::Drawn, Side::FedBack].map(|side| sum.largest(side))
+    [Side::Drawn, Side::FedBack].map(|side| {
+        let flow = match side {
+            Side::Drawn => Flow::Drawn,
+            Side::FedBack => Flow::FedBack,
+        };
+        // Without credit no axis takes anything off, and arcs have no exact slices.
+        let signed = converter.credit_regen && mv.arc.is_none();
+        let slices = signed.then(|| model.slices(converter, mv, plan, flow));
+        let sum = Sum {
+            model,
+            converter,
+            mv,
+            plan,
+            trace,
+            from_s,
+            slices,
+        };
+        sum.largest(side)
+    })
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +68,8 @@ struct Sum<'a> {
     plan: &'a Plan,
     trace: &'a SpindleTrace,
     from_s: f64,
+    /// Power of the axes over time, negative where they give more than is drawn.
+    slices: Option<Vec<Slice>>,
 }
 
 /// A span of time and what the sum reaches in it, at least and at most.
@@ -130,6 +141,9 @@ impl Sum<'_> {
 
     /// The largest power of the axes and the converter's own load in a span.
     fn axes(&self, side: Side, from: f64, to: f64) -> f64 {
+        if let Some(slices) = &self.slices {
+            return largest_between(slices, from, to);
+        }
         let (converter, mv) = (self.converter, self.mv);
         let moving = AxisSet(mv.moving.0 & converter.axes.0);
         let idle_w = match &self.plan.trajectory {
@@ -140,20 +154,13 @@ impl Sum<'_> {
                 converter.idle_w(mv, &self.model.axes, AxisSet::default())
             }
         };
-        // Without credit nothing is taken off; on arcs the tolerance is one of
-        // the whole.
-        let (far_w, shift_w) = if converter.credit_regen && mv.arc.is_none() {
-            (idle_w - FAR_W, FAR_W)
-        } else {
-            (idle_w, 0.0)
-        };
         let want = Want::PEAKS;
         let totals = match &self.plan.trajectory {
             Trajectory::Path(profile) => {
                 let part = profile.part(from, to);
                 match &mv.arc {
-                    Some(arc) => arc::totals(self.model, converter, mv, arc, &part, far_w, want),
-                    None => straight::totals(self.model, converter, mv, &part, far_w, want),
+                    Some(arc) => arc::totals(self.model, converter, mv, arc, &part, idle_w, want),
+                    None => straight::totals(self.model, converter, mv, &part, idle_w, want),
                 }
             }
             Trajectory::Axes(profiles) => {
@@ -161,7 +168,7 @@ impl Sum<'_> {
                     .iter()
                     .map(|(axis, profile)| (*axis, profile.part(from, to)))
                     .collect();
-                independent::totals(self.model, converter, mv, &parts, far_w, want)
+                independent::totals(self.model, converter, mv, &parts, idle_w, want)
             }
             Trajectory::Rest | Trajectory::Unknown(_) => {
                 return match side {
@@ -172,8 +179,26 @@ impl Sum<'_> {
             }
         };
         match side {
-            Side::Drawn => totals.peak_w + shift_w,
-            Side::FedBack => totals.regen_w - shift_w,
+            Side::Drawn => totals.peak_w,
+            Side::FedBack => totals.regen_w,
         }
     }
+}
+
+/// The largest power between two instants.
+fn largest_between(slices: &[Slice], from: f64, to: f64) -> f64 {
+    let mut largest = f64::NEG_INFINITY;
+    let mut start = 0.0;
+    for (index, slice) in slices.iter().enumerate() {
+        let end = start + slice.duration_s;
+        // Rounding: the last slice lasts to the end.
+        let last = index + 1 == slices.len();
+        if start <= to && (end >= from || last) {
+            let [from, to] = [from, to].map(|t| (t - start).clamp(0.0, slice.duration_s));
+            let part = slice.part(slice.at(from), slice.at(to));
+            largest = super::demand::larger(largest, part.peak_w());
+        }
+        start = end;
+    }
+    largest
 }

@@ -63,22 +63,36 @@ impl PowerModel {
     /// converter that does not exist.
     #[must_use]
     pub fn trace(&self, mv: &Move, plan: &Plan, converter: usize, flow: Flow) -> Vec<Slice> {
+        let converter = self.converters.get(converter);
+        converter.map_or_else(Vec::new, |converter| self.slices(converter, mv, plan, flow))
+    }
+
+    /// The same of a converter.
+    pub(super) fn slices(
+        &self,
+        converter: &ConverterPower,
+        mv: &Move,
+        plan: &Plan,
+        flow: Flow,
+    ) -> Vec<Slice> {
         let mut slices = Vec::new();
-        if let Some(tracer) = self.tracer(converter, flow) {
-            tracer.plan(mv, plan, &mut |slice| slices.push(slice));
-        }
+        self.tracer_of(converter, flow)
+            .plan(mv, plan, &mut |slice| slices.push(slice));
         slices
     }
 
     /// For a converter that exists.
     pub(super) fn tracer(&self, converter: usize, flow: Flow) -> Option<Tracer<'_>> {
-        let converter = self.converters.get(converter)?;
-        Some(Tracer {
+        Some(self.tracer_of(self.converters.get(converter)?, flow))
+    }
+
+    fn tracer_of<'a>(&'a self, converter: &'a ConverterPower, flow: Flow) -> Tracer<'a> {
+        Tracer {
             model: self,
             converter,
             flow,
             tolerance_w: TOLERANCE * converter.limit_w(),
-        })
+        }
     }
 }
 
