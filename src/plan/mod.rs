@@ -1,7 +1,7 @@
 //! Moves to profiles: how speed runs along each move.
 //!
 //! Every block ends at rest (exact stop): a trapezoid or a triangle under the
-//! limits that feed, axes and arcs set.
+//! limits that feed, axes and arcs set, or an S-curve where axes limit their jerk.
 
 mod arc;
 mod bound;
@@ -12,6 +12,7 @@ pub mod lookahead;
 pub mod period;
 mod power_law;
 mod profile;
+mod s_curve;
 mod slope;
 mod spindle;
 mod track;

@@ -117,19 +117,33 @@ impl Phase {
             parts.push(*self);
             return parts;
         };
-        let (v, a) = (self.velocity_mm_s, self.accel_mm_s2);
+        let (v, a, end) = (self.velocity_mm_s, self.accel_mm_s2, self.duration_s);
         // v + a·t + j·t²/2 = 0 without cancellation.
         let root = -a - (a * a - 2.0 * j * v).sqrt().copysign(a);
-        let mut instants = [-a / j, root / j, 2.0 * v / root];
-        instants.sort_unstable_by(f64::total_cmp);
+        let stops = [root / j, 2.0 * v / root];
         let mut from = 0.0;
-        for instant in instants {
-            if instant > from && instant < self.duration_s {
-                parts.push(self.between(from, instant));
-                from = instant;
+        let mut speed = v;
+        let top = -a / j;
+        for to in [if top > 0.0 && top < end { top } else { end }, end] {
+            let last = to >= end;
+            // A phase that ends at rest does not turn back by rounding.
+            let reached = if last {
+                self.end_velocity_mm_s
+            } else {
+                self.state_at(to).velocity_mm_s
+            };
+            if speed * reached < 0.0
+                && let Some(stop) = stops.into_iter().find(|stop| *stop > from && *stop < to)
+            {
+                parts.push(self.between(from, stop));
+                from = stop;
             }
+            parts.push(self.between(from, to));
+            if last {
+                break;
+            }
+            (from, speed) = (to, reached);
         }
-        parts.push(self.between(from, self.duration_s));
         parts
     }
 

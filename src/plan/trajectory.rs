@@ -7,6 +7,7 @@
 use super::bound::{SpeedBound, speed_bound};
 use super::limits::{self, PathLimits};
 use super::profile::{Outline, Phase, PhaseKind, Profile};
+use super::s_curve::{SCurve, Steepness};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidPath};
 
@@ -196,6 +197,8 @@ pub struct PathFigures {
     pub speed_limit_mm_s: f64,
     pub accel_mm_s2: f64,
     pub top_speed_mm_s: f64,
+    /// Path jerk in mm/s³; infinite: no limit.
+    pub jerk_mm_s3: f64,
 }
 
 /// The figures of [`plan`] for a move on one path, at a fraction of its cost;
@@ -219,26 +222,65 @@ pub fn path_figures(machine: &Machine, mv: &Move, overrides: Overrides) -> Optio
 impl PathFigures {
     #[inline]
     fn new(length: f64, limits: PathLimits) -> Self {
+        if limits.jerk_mm_s3 < f64::INFINITY {
+            return Self::smooth(length, limits);
+        }
         let outline = Outline::new(length, limits.speed_mm_s, limits.accel_mm_s2);
         Self {
             duration_s: outline.duration_s(),
             speed_limit_mm_s: limits.speed_mm_s,
             accel_mm_s2: limits.accel_mm_s2,
             top_speed_mm_s: outline.top_speed,
+            jerk_mm_s3: limits.jerk_mm_s3,
+        }
+    }
+
+    fn smooth(length: f64, limits: PathLimits) -> Self {
+        let curve = limits.s_curve(length);
+        Self {
+            duration_s: curve.duration_s(),
+            speed_limit_mm_s: limits.speed_mm_s,
+            accel_mm_s2: limits.accel_mm_s2,
+            top_speed_mm_s: curve.top,
+            jerk_mm_s3: limits.jerk_mm_s3,
         }
     }
 
     /// The whole plan of the path, `length` mm long.
     #[must_use]
     pub fn plan(self, length: f64) -> Plan {
-        let profile = Profile::trapezoid(length, self.speed_limit_mm_s, self.accel_mm_s2);
+        let limits = PathLimits {
+            speed_mm_s: self.speed_limit_mm_s,
+            accel_mm_s2: self.accel_mm_s2,
+            jerk_mm_s3: self.jerk_mm_s3,
+        };
         Plan {
-            trajectory: Trajectory::Path(profile),
+            trajectory: Trajectory::Path(limits.profile(length)),
             duration_s: self.duration_s,
             speed_limit_mm_s: self.speed_limit_mm_s,
             accel_mm_s2: self.accel_mm_s2,
             top_speed_mm_s: self.top_speed_mm_s,
         }
+    }
+}
+
+impl PathLimits {
+    /// The fastest profile from rest to rest under these limits.
+    #[inline]
+    fn profile(&self, length: f64) -> Profile {
+        if self.jerk_mm_s3 < f64::INFINITY {
+            self.s_curve(length).profile()
+        } else {
+            Profile::trapezoid(length, self.speed_mm_s, self.accel_mm_s2)
+        }
+    }
+
+    fn s_curve(&self, length: f64) -> SCurve {
+        let steepness = Steepness {
+            accel_mm_s2: self.accel_mm_s2,
+            jerk_mm_s3: self.jerk_mm_s3,
+        };
+        SCurve::from_rest(length, self.speed_mm_s, steepness)
     }
 }
 
@@ -271,7 +313,7 @@ fn independent(
         let distance = (mv.end[axis] - mv.start[axis]).abs();
         let limits = PathLimits::of_rapid_axis(machine, mv, axis, overrides, caps);
         if distance > 0.0 {
-            let profile = Profile::trapezoid(distance, limits.speed_mm_s, limits.accel_mm_s2);
+            let profile = limits.profile(distance);
             plan.duration_s = plan.duration_s.max(profile.duration_s());
             plan.top_speed_mm_s = plan.top_speed_mm_s.max(profile.top_speed_mm_s());
             axes.push((axis, profile));
