@@ -21,6 +21,7 @@ mod trajectory;
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
+pub use s_curve::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{

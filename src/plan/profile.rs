@@ -14,6 +14,9 @@ use super::power_law::PowerLaw;
 use super::slope;
 use arrayvec::ArrayVec;
 
+/// Steps at most in the search for an instant.
+const STEPS: u32 = 100;
+
 /// What a phase keeps constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
@@ -88,6 +91,48 @@ impl Phase {
             }
             PhaseKind::ConstantSlope { slope_per_s } => slope::state(self, slope_per_s, t),
         }
+    }
+
+    /// When the phase is at a path position, s after its beginning; the path must
+    /// run forwards all along.
+    #[must_use]
+    pub fn time_at(&self, position_mm: f64) -> f64 {
+        let (v, a, distance) = (
+            self.velocity_mm_s,
+            self.accel_mm_s2,
+            position_mm - self.position_mm,
+        );
+        if distance <= 0.0 {
+            return 0.0;
+        }
+        // x = v·t + a·t²/2 without cancellation.
+        let square = v * v + 2.0 * a * distance;
+        let steady = 2.0 * distance / (v + square.max(0.0).sqrt());
+        if self.kind == PhaseKind::ConstantAcceleration {
+            return steady.min(self.duration_s);
+        }
+        let (mut low, mut high) = (0.0, self.duration_s);
+        let mut t = if steady < high { steady } else { 0.5 * high };
+        for _ in 0..STEPS {
+            let state = self.state_at(t);
+            let beyond = state.position_mm - position_mm;
+            if beyond > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let step = beyond / state.velocity_mm_s;
+            if step.abs() <= f64::EPSILON * t || high - low <= f64::EPSILON * high {
+                break;
+            }
+            let newton = t - step;
+            t = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        t
     }
 
     /// What the phase does between two instants, s after its beginning.

@@ -27,6 +27,22 @@ pub(super) struct Steepness {
 }
 
 impl Steepness {
+    /// No limit.
+    pub const NONE: Self = Self {
+        accel_mm_s2: f64::INFINITY,
+        jerk_mm_s3: f64::INFINITY,
+    };
+
+    /// The lower limits of two.
+    #[inline]
+    pub fn lowest(self, other: Self) -> Self {
+        let lower = |a: f64, b: f64| if b < a { b } else { a };
+        Self {
+            accel_mm_s2: lower(self.accel_mm_s2, other.accel_mm_s2),
+            jerk_mm_s3: lower(self.jerk_mm_s3, other.jerk_mm_s3),
+        }
+    }
+
     /// Change of speed from which on the acceleration is reached, mm/s.
     #[inline]
     fn knee(self) -> f64 {
@@ -71,6 +87,63 @@ impl Steepness {
     #[inline]
     pub fn length(self, low: f64, high: f64) -> f64 {
         0.5 * (low + high) * self.time(high - low)
+    }
+
+    /// A length within which `high` is reached from any lower speed, mm; see
+    /// [`Self::farthest`].
+    #[inline]
+    pub fn longest(self, high: f64) -> f64 {
+        let c = self.knee();
+        let worst = if high >= 1.5 * c { 0.5 * c } else { high / 3.0 };
+        self.length(worst, high) * (1.0 + 1e-9)
+    }
+
+    /// A speed that can be reached from the speed `low` over a length, and from
+    /// which `low` can be reached, mm/s. It grows with `low`.
+    ///
+    /// At full acceleration a ramp from v₀ to v₁ with `c = a²/j` is
+    /// `(v₀ + v₁)/2·((v₁ − v₀)/a + a/j)` long, without it
+    /// `(v₀ + v₁)·√((v₁ − v₀)/j)`. Neither falls with a higher v₀ below v₁/3, or
+    /// below c/2: to a slow speed it is farther than to rest. Up to there the
+    /// longest one counts, so that the result always grows.
+    #[inline]
+    pub fn farthest(self, low: f64, length: f64) -> f64 {
+        let (a, j, c) = (self.accel_mm_s2, self.jerk_mm_s3, self.knee());
+        // From the speed to which it is farthest.
+        let braked = (2.0 * a * length).sqrt();
+        let (free, worst) = if braked >= 2.0 * c {
+            (braked - 0.5 * c, 0.5 * c)
+        } else {
+            // (4/3)·v·√(2·v/(3·j)) = L
+            let free = libm::cbrt(0.84375 * j * length * length);
+            (free, free / 3.0)
+        };
+        let free = free * (1.0 - 1e-13);
+        if low <= worst {
+            return free;
+        }
+        let at_knee = (2.0 * low + c) * (a / j);
+        let change = if length >= at_knee {
+            // Δ² + Δ·(2·v + c) + 2·v·c − 2·a·L = 0 without cancellation.
+            let b = 2.0 * low - c;
+            let root = (b * b + 8.0 * a * length).sqrt();
+            4.0 * (a * length - low * c) / (root + 2.0 * low + c)
+        } else {
+            // x³ + 2·v·x = L·√j with x = √Δ, from above.
+            let (p, q) = (2.0 * low, length * j.sqrt());
+            let mut x = q / p;
+            for _ in 0..STEPS {
+                let step = (x * (x * x + p) - q) / (3.0 * x * x + p);
+                x -= step;
+                if step <= 1e-15 * x {
+                    break;
+                }
+            }
+            x * x
+        };
+        // No further than the length, whatever rounding does.
+        let change = change * (1.0 - 1e-13);
+        free.max(low + (change - f64::EPSILON * (low + change)).max(0.0))
     }
 
     /// The speed that is reached from rest in half a length, if none other
@@ -235,6 +308,82 @@ impl SCurve {
         if jerk_s > 0.0 {
             push(profile, -sign * j, jerk_s, position, [v, v1], sign * a);
         }
+    }
+}
+
+/// A piece of the path of an S-curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    curve: SCurve,
+    from_mm: f64,
+    /// When it begins and ends.
+    time_s: [f64; 2],
+}
+
+impl Section {
+    /// The piece from `from_mm` on between two instants.
+    #[inline]
+    pub(super) fn new(curve: SCurve, from_mm: f64, time_s: [f64; 2]) -> Self {
+        Self {
+            curve,
+            from_mm,
+            time_s,
+        }
+    }
+
+    /// How long it takes, s.
+    #[must_use]
+    #[inline]
+    pub fn duration_s(&self) -> f64 {
+        self.time_s[1] - self.time_s[0]
+    }
+
+    /// How it runs, from position 0 on.
+    #[must_use]
+    pub fn profile(&self) -> Profile {
+        let [from_s, to_s] = self.time_s;
+        let mut part = self.curve.profile().part(from_s, to_s);
+        for phase in &mut part.phases {
+            phase.position_mm -= self.from_mm;
+        }
+        part
+    }
+
+    /// The largest speed, of those at both ends and that of the curve, and a
+    /// bound of the acceleration.
+    #[inline]
+    pub(super) fn extremes(&self, start: f64, end: f64) -> (f64, f64) {
+        let curve = &self.curve;
+        let [up, down] = [curve.start, curve.end].map(|own| curve.top - own);
+        let [from_s, to_s] = self.time_s;
+        let up_s = curve.steepness.time(up);
+        let down_s = curve.duration_s() - curve.steepness.time(down);
+        let slack = 1e-9 * (to_s - from_s);
+        let mut accel = 0.0_f64;
+        if from_s < up_s + slack {
+            accel = curve.steepness.peak(up);
+        }
+        if to_s > down_s - slack {
+            accel = accel.max(curve.steepness.peak(down));
+        }
+        let cruises = to_s >= up_s - slack && from_s <= down_s + slack;
+        let top = if cruises { curve.top } else { start.max(end) };
+        (top.max(start).max(end), accel)
+    }
+
+    /// A speed that is reached over the piece at least from another one, with
+    /// half of the limits and without acceleration at both ends, mm/s.
+    #[must_use]
+    pub fn reached(&self, speed_mm_s: f64, length_mm: f64) -> f64 {
+        let Steepness {
+            accel_mm_s2,
+            jerk_mm_s3,
+        } = self.curve.steepness;
+        let half = Steepness {
+            accel_mm_s2: 0.5 * accel_mm_s2,
+            jerk_mm_s3: 0.5 * jerk_mm_s3,
+        };
+        half.farthest(speed_mm_s, length_mm)
     }
 }
 

@@ -248,6 +248,7 @@ mod tests {
                     top: v0.max(v1) * v0.max(v1),
                 },
                 accel_mm_s2: accel_mm_s2.abs(),
+                section: None,
                 certain: true,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);

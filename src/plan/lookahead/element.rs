@@ -61,6 +61,9 @@ pub struct Element<T> {
     /// Acceleration along the path that program and controller permit whatever
     /// the direction, mm/s²; infinite where only the axes have limits.
     pub path_accel_mm_s2: f64,
+    /// Jerk along the path that the axes permit, mm/s³; infinite: no limit. Of
+    /// an arc by the rule that shares it.
+    pub jerk_mm_s3: f64,
     /// Speed that curvature permits, mm/s; infinite on a straight path.
     pub curve_speed_mm_s: f64,
     /// Acceleration limits of the axes, mm/s².
@@ -105,6 +108,7 @@ impl<T> Element<T> {
             speed_mm_s: limits.speed_mm_s,
             accel_mm_s2: limits.accel_mm_s2.min(mv.path_accel_mm_s2),
             path_accel_mm_s2: mv.path_accel_mm_s2,
+            jerk_mm_s3: limits.jerk_mm_s3,
             curve_speed_mm_s: f64::INFINITY,
             axis_accel_mm_s2: mv.accel_mm_s2,
             start: [0.0; AXES],

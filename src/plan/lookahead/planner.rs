@@ -12,7 +12,7 @@ use super::linuxcnc::LinuxCnc;
 use super::ramp::Speeds2;
 use super::window::{Node, Window};
 use crate::machine::{CornerRule, LookAhead, Machine};
-use crate::plan::Profile;
+use crate::plan::{Profile, Section};
 
 /// A piece of path that a controller lays round a corner: a circle in space,
 /// begun by a straight rest of the element before where that was too short to
@@ -65,8 +65,10 @@ pub struct Planned<T> {
     pub length_mm: f64,
     /// Its speeds, squared.
     pub speeds2: Speeds2,
-    /// Its acceleration, mm/s².
+    /// Its acceleration, mm/s²; on an S-curve a bound of it.
     pub accel_mm_s2: f64,
+    /// Its part of an S-curve, where jerk is limited: how it runs.
+    pub section: Option<Section>,
     /// False where the controller may do otherwise than planned: the robust
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
@@ -79,6 +81,9 @@ impl<T> Planned<T> {
     #[inline]
     pub fn top_speed_mm_s(&self) -> f64 {
         let Speeds2 { start, end, top } = self.speeds2;
+        if self.section.is_some() {
+            return top.sqrt();
+        }
         let reached = 0.5 * (start + end) + self.accel_mm_s2 * self.length_mm;
         top.min(reached).max(start).max(end).sqrt()
     }
@@ -87,6 +92,9 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn largest_accel_mm_s2(&self) -> f64 {
+        if self.section.is_some() {
+            return self.accel_mm_s2;
+        }
         let needed = 0.5 * (self.speeds2.start - self.speeds2.end).abs() / self.length_mm;
         self.accel_mm_s2.max(needed)
     }
@@ -95,6 +103,9 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn duration_s(&self) -> f64 {
+        if let Some(section) = &self.section {
+            return section.duration_s();
+        }
         self.speeds2.duration_s(self.length_mm, self.accel_mm_s2)
     }
 
@@ -102,7 +113,25 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn profile(&self) -> Profile {
+        if let Some(section) = &self.section {
+            return section.profile();
+        }
         Profile::between(self.length_mm, self.speeds2, self.accel_mm_s2)
+    }
+}
+
+impl<T> Planned<T> {
+    /// Speed, squared, that is reached at its end at least from another one at
+    /// its start, with half of the limits, mm²/s².
+    #[must_use]
+    pub fn reached2(&self, start2: f64) -> f64 {
+        match &self.section {
+            Some(section) => {
+                let speed = section.reached(start2.sqrt(), self.length_mm);
+                speed * speed
+            }
+            None => start2 + self.accel_mm_s2 * self.length_mm,
+        }
     }
 }
 
@@ -160,10 +189,19 @@ impl<T: Copy> PathPlanner<T> {
             }
             _ => Rule::Corner(None),
         };
+        let mut window = Window::new(look_ahead.blocks, look_ahead.min_cruise_ratio > 0.0);
+        if machine
+            .axes
+            .iter()
+            .flatten()
+            .any(|axis| axis.jerk_mm_s3 > 0.0)
+        {
+            window = window.with_jerk();
+        }
         Self {
             look_ahead,
             rule,
-            window: Window::new(look_ahead.blocks, look_ahead.min_cruise_ratio > 0.0),
+            window,
         }
     }
 
@@ -221,6 +259,7 @@ impl<T: Copy> PathPlanner<T> {
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
         node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
         node.step2 = corner::start2(rule, element);
+        node.jerk = element.jerk_mm_s3;
         self.window.push(node);
         match before {
             Some(before) => *before = *element,
@@ -260,6 +299,7 @@ impl<T: Copy> PathPlanner<T> {
                 top: span.top2,
             },
             accel_mm_s2: span.accel,
+            section: span.section,
             certain: span.certain && span.payload.certain,
         })
     }
