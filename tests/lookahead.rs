@@ -49,6 +49,7 @@ pub(crate) fn line(to: [f64; 3], feed_mm_s: f64, accel_mm_s2: f64, joint: Joint)
         feed_mm_s,
         speed_mm_s: 1e3,
         accel_mm_s2,
+        drive_accel_mm_s2: f64::INFINITY,
         path_accel_mm_s2: f64::INFINITY,
         jerk_mm_s3: f64::INFINITY,
         curve_speed_mm_s: f64::INFINITY,

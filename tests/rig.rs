@@ -71,7 +71,6 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             min_feed_mm_s: 0.0,
             min_feed_ratio: 0.0,
         },
-        unchecked: Vec::new(),
     }
 }
 

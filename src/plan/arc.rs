@@ -18,7 +18,11 @@
 //! tangent turning (v³/r²) takes half at most, which limits the speed. The
 //! acceleration is limited by the second at the largest speed that axes and
 //! turning permit, whatever F asks for.
+//!
+//! Where drives have curves of force the lowest acceleration that they leave at
+//! any speed is the limit of the axis.
 
+use super::drive::{self, Heading};
 use super::limits::{self, PathLimits};
 use super::trajectory::Caps;
 use crate::interpret::{Arc, Move};
@@ -117,7 +121,12 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
     let mut plane_accel = f64::INFINITY;
     let mut linear_accel = f64::INFINITY;
     for (axis, limit) in limits::moving(machine, mv) {
-        let accel = limits::accel(mv, axis, caps);
+        let mut accel = limits::accel(mv, axis, caps);
+        if !machine.force_curves.is_empty() {
+            // Whatever F asks for.
+            let speed = limit.rapid_mm_s * raised;
+            accel = accel.min(drive::lowest(machine, axis, speed, Heading::Both));
+        }
         if limit.kind == AxisKind::Linear {
             linear_accel = linear_accel.min(accel);
         }

@@ -6,6 +6,7 @@
 mod arc;
 mod bound;
 pub mod curve;
+mod drive;
 pub mod jerk;
 mod limits;
 pub mod lookahead;
@@ -25,6 +26,6 @@ pub use s_curve::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{
-    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, is_independent, path_figures,
-    plan, plan_with,
+    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, driven_accel, is_independent,
+    path_figures, plan, plan_with,
 };

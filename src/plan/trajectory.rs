@@ -5,6 +5,7 @@
 //! for moves from an unknown start.
 
 use super::bound::{SpeedBound, speed_bound};
+use super::drive;
 use super::limits::{self, PathLimits};
 use super::profile::{Outline, Phase, PhaseKind, Profile};
 use super::s_curve::{SCurve, Steepness};
@@ -185,6 +186,9 @@ pub fn plan_with(machine: &Machine, mv: &Move, overrides: Overrides, caps: Caps)
     if is_independent(machine, mv) {
         return independent(machine, mv, overrides, &caps, limits);
     }
+    if !machine.force_curves.is_empty() && mv.arc.is_none() {
+        return limits.plan(drive::path(machine, mv, &limits));
+    }
     PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
 }
 
@@ -202,13 +206,14 @@ pub struct PathFigures {
 }
 
 /// The figures of [`plan`] for a move on one path, at a fraction of its cost;
-/// `None` for all others.
+/// `None` for all others, and where drives have curves of force.
 #[must_use]
 #[inline]
 pub fn path_figures(machine: &Machine, mv: &Move, overrides: Overrides) -> Option<PathFigures> {
     let on_path = mv.kind != MoveKind::Dwell
         && mv.unknown_start.is_empty()
         && mv.length_mm > 0.0
+        && machine.force_curves.is_empty()
         && !is_independent(machine, mv);
     if !on_path {
         return None;
@@ -265,9 +270,20 @@ impl PathFigures {
 }
 
 impl PathLimits {
+    /// A plan under these limits.
+    fn plan(&self, profile: Profile) -> Plan {
+        Plan {
+            duration_s: profile.duration_s(),
+            speed_limit_mm_s: self.speed_mm_s,
+            accel_mm_s2: self.accel_mm_s2,
+            top_speed_mm_s: profile.top_speed_mm_s(),
+            trajectory: Trajectory::Path(profile),
+        }
+    }
+
     /// The fastest profile from rest to rest under these limits.
     #[inline]
-    fn profile(&self, length: f64) -> Profile {
+    pub(super) fn profile(&self, length: f64) -> Profile {
         if self.jerk_mm_s3 < f64::INFINITY {
             self.s_curve(length).profile()
         } else {
@@ -282,6 +298,16 @@ impl PathLimits {
         };
         SCurve::from_rest(length, self.speed_mm_s, steepness)
     }
+}
+
+/// The lowest acceleration along a straight path, in mm/s², that the drives leave
+/// at any speed up to `speed_mm_s`; infinite where none has a curve of force.
+#[must_use]
+pub fn driven_accel(machine: &Machine, mv: &Move, speed_mm_s: f64) -> f64 {
+    if machine.force_curves.is_empty() {
+        return f64::INFINITY;
+    }
+    drive::lowest_on_path(machine, mv, speed_mm_s)
 }
 
 /// Whether each axis of a move runs for itself.
@@ -313,7 +339,12 @@ fn independent(
         let distance = (mv.end[axis] - mv.start[axis]).abs();
         let limits = PathLimits::of_rapid_axis(machine, mv, axis, overrides, caps);
         if distance > 0.0 {
-            let profile = limits.profile(distance);
+            let profile = if machine.force_curves.is_empty() {
+                limits.profile(distance)
+            } else {
+                let heading = (mv.end[axis] - mv.start[axis]).signum();
+                drive::axis(machine, axis, distance, heading, &limits)
+            };
             plan.duration_s = plan.duration_s.max(profile.duration_s());
             plan.top_speed_mm_s = plan.top_speed_mm_s.max(profile.top_speed_mm_s());
             axes.push((axis, profile));
@@ -333,6 +364,11 @@ fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> P
     };
     let limits = PathLimits::of(machine, mv, overrides, caps);
     let mut plan = if mv.length_mm > 0.0 && limits.permit_motion() {
+        let mut limits = limits;
+        if mv.arc.is_none() {
+            let driven = driven_accel(machine, mv, limits.speed_mm_s);
+            limits.accel_mm_s2 = limits.accel_mm_s2.min(driven);
+        }
         PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
     } else {
         Plan::rest(0.0)

@@ -209,10 +209,13 @@ impl<T: Copy> PathPlanner<T> {
     #[inline]
     pub fn push(&mut self, element: &Element<T>) {
         let mut limited;
-        let element = if element.path_accel_mm_s2 > self.look_ahead.path_accel_mm_s2 {
+        let path = self.look_ahead.path_accel_mm_s2;
+        let driven = element.drive_accel_mm_s2 < element.accel_mm_s2;
+        let element = if element.path_accel_mm_s2 > path || driven {
             limited = *element;
-            limited.path_accel_mm_s2 = self.look_ahead.path_accel_mm_s2;
-            limited.accel_mm_s2 = limited.accel_mm_s2.min(limited.path_accel_mm_s2);
+            limited.path_accel_mm_s2 = limited.path_accel_mm_s2.min(path);
+            let most = limited.path_accel_mm_s2.min(limited.drive_accel_mm_s2);
+            limited.accel_mm_s2 = limited.accel_mm_s2.min(most);
             &limited
         } else {
             element
