@@ -47,7 +47,7 @@ fn a_straight_move_follows_the_curve() {
     let machine = driven();
     let mv = straight(&machine, &[500.0], f64::INFINITY);
     let plan = plan(&machine, &mv, Overrides::default());
-    let (ln2, ln125) = (2.0_f64.ln(), 1.25_f64.ln());
+    let (ln2, ln125) = (libm::log(2.0), libm::log(1.25));
     let ramps_mm = 11.25 + 70.0 * ln2 - 20.0 + 90.0 * ln125 - 10.0 + 16.0;
     let ramps_s = 0.075 + 0.1 * ln2 + 0.1 * ln125 + 0.08;
     close(plan.duration_s, ramps_s + (500.0 - ramps_mm) / 500.0);

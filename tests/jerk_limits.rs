@@ -77,7 +77,6 @@ fn close(a: f64, b: f64) {
 }
 
 const JERK: &str = "jerk_mm_s3 = 30000";
-const WEAK: &str = "peak_power_w = 350\nregen_power_w = 1000";
 const STRONG: &str = "peak_power_w = 1e6\nregen_power_w = 1e6";
 const THERE_AND_BACK: &str = "G21 G90 G94\nG0 X400\nG0 X0\nG0 X400 Y30\nG0 X0\nM30\n";
 
@@ -113,18 +112,21 @@ fn a_rapid_is_an_s_curve() {
 
 #[test]
 fn rapids_are_limited_under_limits_of_jerk() {
-    for axis in [
-        JERK,
-        "force_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 12000, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
-    ] {
-        let shop = Shop::new("iso", axis, WEAK);
+    let curve = "force_curve = [{ speed_mm_min = 0, force_n = 650 }, \
+                 { speed_mm_min = 12000, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]";
+    for (axis, most) in [(JERK, 350.0), (curve, 250.0)] {
+        let weak = format!("peak_power_w = {most}\nregen_power_w = 1000");
+        let shop = Shop::new("iso", axis, &weak);
         shop.put("a.ngc", THERE_AND_BACK);
         let (code, out, told) = shop.run("limit a.ngc --json a.json");
         assert_eq!(code, 0, "{told}");
         assert!(out.contains("G1"), "{out}");
         let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
         let after = report["peak_after_w"].as_f64().unwrap();
-        assert!(after <= 350.0 * (1.0 + 1e-9) && after > 330.0, "{after}");
+        assert!(
+            after <= most * (1.0 + 1e-9) && after > 0.9 * most,
+            "{after}"
+        );
         shop.put("b.ngc", &out);
         let (code, ..) = shop.run("check b.ngc");
         assert_eq!(code, 0);
@@ -145,8 +147,9 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 fn joints_that_limit_nothing_leave_no_trace() {
     let shop = Shop::new("ahead.toml", JERK, STRONG);
     let one = shop.duration_s("G21 G90 G94 G64\nG1 X100 F9000\nM30\n");
-    // 150 mm/s: 0.05 + 0.1 s over 11.25 mm.
-    close(one, (100.0 - 22.5) / 150.0 + 0.3);
+    // 150 mm/s without reaching the acceleration: 2·√(150/30000) s.
+    let ramp_s = 2.0 * f64::sqrt(150.0 / 30e3);
+    close(one, 100.0 / 150.0 + ramp_s);
     let mut many = "G21 G90 G94 G64 F9000\n".to_owned();
     for i in 1..=1000 {
         let _ = writeln!(many, "G1 X{}", 0.1 * f64::from(i));
@@ -198,7 +201,7 @@ fn programs_are_limited_under_look_ahead_too() {
             "force_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
             "jerk_mm_s3 = 80000\nforce_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
         ] {
-            let shop = Shop::new(controller, axis, "peak_power_w = 180\nregen_power_w = 1000");
+            let shop = Shop::new(controller, axis, "peak_power_w = 200\nregen_power_w = 1000");
             let free = Shop::new(controller, axis, STRONG);
             let plain = Shop::new(controller, "", STRONG);
             let program = pocket();
@@ -217,7 +220,7 @@ fn programs_are_limited_under_look_ahead_too() {
             assert_eq!(code, 0, "{controller} {axis}: {told}");
             let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
             let after = report["peak_after_w"].as_f64().unwrap();
-            assert!(after <= 180.0 * (1.0 + 1e-9), "{after}");
+            assert!(after <= 200.0 * (1.0 + 1e-9), "{after}");
         }
     }
 }
@@ -255,6 +258,10 @@ fn a_series_adds_up_to_the_report() {
             energy += 0.5 * dt * (pair[0][bus] + pair[1][bus]);
             for axis in 0..3 {
                 let (v, a) = (2 + 4 * axis, 3 + 4 * axis);
+                if controller == "linuxcnc" {
+                    // Overlapping ramps stand for their speeds alone.
+                    continue;
+                }
                 assert!(pair[0][a].abs() <= 3000.0 * (1.0 + 1e-6), "{}", pair[0][a]);
                 let change = 0.5 * dt * (pair[0][a] + pair[1][a]);
                 let off = (pair[1][v] - pair[0][v] - change).abs();
@@ -263,5 +270,50 @@ fn a_series_adds_up_to_the_report() {
             }
         }
         close(energy, "energy_j", 1e-3);
+    }
+}
+
+/// Without losses but Coulomb friction, with equal masses and what is fed back
+/// credited, the energy of all moves is that of friction: 100 N by the way of
+/// each axis.
+#[test]
+fn the_energy_balance_closes() {
+    let mut text = "G21 G90 G94\nG64\n".to_owned();
+    let (mut last, mut way_mm) = ([0.0_f64; 2], 0.0);
+    for i in 0..400 {
+        let t = 0.05 * f64::from(i);
+        // Smooth lines in small steps, and a corner now and then.
+        let corner = if i % 50 == 0 { 3.0 } else { 0.0 };
+        let point = [40.0 * libm::sin(t) + corner, 25.0 * libm::cos(0.7 * t)];
+        let point = point.map(|value| (value * 1e4).round() / 1e4);
+        let _ = writeln!(
+            text,
+            "G1 X{} Y{} F{}",
+            point[0],
+            point[1],
+            4000 + 100 * (i / 37)
+        );
+        way_mm += (point[0] - last[0]).abs() + (point[1] - last[1]).abs();
+        last = point;
+    }
+    text.push_str("M30\n");
+    let ratings = "peak_power_w = 1e6\nregen_power_w = 1e6\ncredit_regen = true";
+    for controller in ["ahead.toml", "grbl", "iso"] {
+        for axis in [JERK, "jerk_mm_s3 = 2000", "jerk_mm_s3 = 5e5"] {
+            let shop = Shop::new(controller, axis, ratings);
+            let machine = shop.get("mill.toml").replace("efficiency = 0.8\n", "");
+            shop.put("mill.toml", &machine.replace("base_load_w = 100\n", ""));
+            let text = if controller == "ahead.toml" {
+                text.clone()
+            } else {
+                text.replace("G64\n", "")
+            };
+            let energy = shop.report(&text)["energy_j"].as_f64().unwrap();
+            let friction = 0.1 * way_mm;
+            assert!(
+                (energy / friction - 1.0).abs() < 1e-9,
+                "{controller}: {energy} {friction}"
+            );
+        }
     }
 }

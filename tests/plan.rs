@@ -196,13 +196,19 @@ fn an_unknown_start_is_bounded_in_both_directions() {
 
 #[test]
 fn extreme_numbers_end() {
-    let machine = machine(&[axis(), axis(), axis()]);
-    for length in [1e-300, 1e-160, 1e-9, 1e9, 1e160, 1e300] {
-        for feed in [1e-300, 1.0, 1e300, f64::INFINITY] {
-            let plan = planned(&machine, &straight(&machine, &[length], feed));
-            assert!(plan.duration_s >= 0.0);
-            let turn = arc(&machine, [0, 1], length, [0.0, 3.0], 1.0, feed.min(1e300));
-            assert!(planned(&machine, &turn).duration_s >= 0.0);
+    let jerky = |jerk_mm_s3| Axis {
+        jerk_mm_s3,
+        ..axis()
+    };
+    let axes = [0.0, 1e-300, 5e4, 1e300].map(jerky);
+    for machine in axes.map(|axis| machine(&[axis, axis, axis])) {
+        for length in [1e-300, 1e-160, 1e-9, 1e9, 1e160, 1e300] {
+            for feed in [1e-300, 1.0, 1e300, f64::INFINITY] {
+                let plan = planned(&machine, &straight(&machine, &[length], feed));
+                assert!(plan.duration_s >= 0.0);
+                let turn = arc(&machine, [0, 1], length, [0.0, 3.0], 1.0, feed.min(1e300));
+                assert!(planned(&machine, &turn).duration_s >= 0.0);
+            }
         }
     }
 }

@@ -24,6 +24,7 @@
 
 use super::drive::{self, Heading};
 use super::limits::{self, PathLimits};
+use super::s_curve::cbrt_of_square;
 use super::trajectory::Caps;
 use crate::interpret::{Arc, Move};
 use crate::machine::{ArcRule, AxisKind, Machine};
@@ -130,17 +131,14 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         if limit.kind == AxisKind::Linear {
             linear_accel = linear_accel.min(accel);
         }
-        match arc.plane.iter().position(|&plane| plane == axis) {
-            Some(i) => {
-                plane_accel = plane_accel.min(accel);
-                plane_jerk = plane_jerk.min(limits::jerk(limit));
-                let speed = limit.rapid_mm_s * raised / (share * ranges[i].largest());
-                limits.speed_mm_s = limits.speed_mm_s.min(speed);
-            }
-            None => {
-                let jerk = limits::jerk(limit);
-                limits.take(mv, axis, limit.rapid_mm_s * raised, accel, jerk);
-            }
+        let jerk = limits::jerk(limit);
+        if let Some(i) = arc.plane.iter().position(|&plane| plane == axis) {
+            plane_accel = plane_accel.min(accel);
+            plane_jerk = plane_jerk.min(jerk);
+            let speed = limit.rapid_mm_s * raised / (share * ranges[i].largest());
+            limits.speed_mm_s = limits.speed_mm_s.min(speed);
+        } else {
+            limits.take(mv, axis, limit.rapid_mm_s * raised, accel, jerk);
         }
     }
     let radius = arc.radius_mm;
@@ -167,11 +165,12 @@ impl PathLimits {
     /// are larger than in the plane, by 1/`share`, which is left aside.
     fn share_jerk(&mut self, jerk: f64, radius: f64, share: f64) {
         let part = jerk * FRAC_1_SQRT_2;
-        let turning = libm::cbrt(0.5 * part * radius * radius) / share;
+        let turning = cbrt_of_square((0.5 * part).sqrt() * radius) / share;
         self.speed_mm_s = self.speed_mm_s.min(turning);
         let v = self.speed_mm_s * share;
-        let left = part - v * v * v / (radius * radius);
-        self.accel_mm_s2 = self.accel_mm_s2.min(part * radius / (3.0 * v));
+        let turn = v / radius;
+        let left = part - v * turn * turn;
+        self.accel_mm_s2 = self.accel_mm_s2.min(part / (3.0 * turn));
         self.jerk_mm_s3 = self.jerk_mm_s3.min(left);
     }
 }

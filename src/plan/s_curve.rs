@@ -115,7 +115,7 @@ impl Steepness {
             (braked - 0.5 * c, 0.5 * c)
         } else {
             // (4/3)·v·√(2·v/(3·j)) = L
-            let free = libm::cbrt(0.84375 * j * length * length);
+            let free = cbrt_of_square(0.84375_f64.sqrt() * length * j.sqrt());
             (free, free / 3.0)
         };
         let free = free * (1.0 - 1e-13);
@@ -158,7 +158,7 @@ impl Steepness {
             v
         } else {
             // 2·v·√(v/j) = L
-            libm::cbrt(0.25 * j * length * length)
+            cbrt_of_square(0.5 * length * j.sqrt())
         }
     }
 
@@ -207,6 +207,13 @@ impl Steepness {
         };
         0.5 * self.time(change) + 0.5 * (low + high) * by_change
     }
+}
+
+/// The cube root of x², which itself may be too large or too small.
+#[inline]
+pub(super) fn cbrt_of_square(x: f64) -> f64 {
+    let root = libm::cbrt(x);
+    root * root
 }
 
 /// A path between two speeds without acceleration at both.

@@ -257,7 +257,7 @@ fn curves_of_axes() {
       |                ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
     ");
     assert_snapshot!(axis("coulomb_n = 700\ngravity_n = -300\nforce_curve = [\n{ speed_mm_min = 0, force_n = 9000 },\n{ speed_mm_min = 40000, force_n = 100 }]"), @r"
-    line 16, error machine-curve: nothing is left to accelerate with at 36000 mm/min: friction and weight take 1000.0 N of 990.0 N
+    line 17, error machine-curve: nothing is left to accelerate with at 36000 mm/min: friction and weight take 1000.0 N of 990.0 N
       | { speed_mm_min = 40000, force_n = 100 }]
       | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
     ");

@@ -3,6 +3,8 @@
 //! ```text
 //! elements ─chords→ ─corner or blend→ nodes ─window→ speeds ─→ profiles
 //! ```
+//!
+//! Where an axis of the machine limits its jerk, `runs` is the window.
 
 use super::blend::Axes;
 use super::chord::Chords;
@@ -164,7 +166,7 @@ enum Rule<T> {
 /// What changes with the limits of one element: a clone taken before it, given
 /// the changed element and those behind it, plans them anew. From the first
 /// piece on that begins as before at a joint that the change did not reach, all
-/// is as it was.
+/// is as it was; under limits of jerk that is a joint that limits the speed.
 #[derive(Debug, Clone)]
 pub struct PathPlanner<T> {
     look_ahead: LookAhead,

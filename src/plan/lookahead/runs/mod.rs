@@ -99,7 +99,8 @@ pub(super) struct Runs<P> {
     /// Those that wait until the controller's own look-ahead is known.
     unseen: VecDeque<Node<P>>,
     elements: VecDeque<Element<P>>,
-    runs: VecDeque<Run>,
+    /// Those that grow no more.
+    closed: VecDeque<Run>,
     growing: Option<Growing>,
     current: Option<Current>,
     /// How many of the first runs are final.
@@ -126,7 +127,7 @@ impl<P> Runs<P> {
         Self {
             unseen: VecDeque::new(),
             elements: VecDeque::with_capacity(128),
-            runs: VecDeque::with_capacity(64),
+            closed: VecDeque::with_capacity(64),
             growing: None,
             current: None,
             ready: 0,
@@ -214,7 +215,7 @@ impl<P> Runs<P> {
     #[inline]
     fn begin(&mut self, element: &Element<P>, top: f64, entry: f64) {
         // Before the first run there is nothing: it begins at rest.
-        let first = self.runs.is_empty() && self.current.is_none();
+        let first = self.closed.is_empty() && self.current.is_none();
         self.growing = Some(Growing {
             run: Run {
                 count: 1,
@@ -290,8 +291,8 @@ impl<P> Runs<P> {
     #[inline]
     fn add(&mut self, run: Run) {
         self.open += run.count;
-        self.runs.push_back(run);
-        if self.runs.len() - self.ready >= self.settle_at || self.open >= self.open_max {
+        self.closed.push_back(run);
+        if self.closed.len() - self.ready >= self.settle_at || self.open >= self.open_max {
             self.settle();
         }
     }
@@ -303,7 +304,7 @@ impl<P> Runs<P> {
         }
         self.close();
         self.backward();
-        self.ready = self.runs.len();
+        self.ready = self.closed.len();
         self.open = 0;
         self.settle_at = self.open_min;
     }
@@ -314,7 +315,7 @@ impl<P> Runs<P> {
         self.release(anchor, false);
         if self.open >= self.open_max {
             let (mut until, mut left) = (self.ready, self.open / 2);
-            while let Some(run) = self.runs.get(until)
+            while let Some(run) = self.closed.get(until)
                 && left > 0
             {
                 left = left.saturating_sub(run.count);
@@ -322,13 +323,13 @@ impl<P> Runs<P> {
             }
             self.release(until, true);
         }
-        let open = self.runs.len() - self.ready;
+        let open = self.closed.len() - self.ready;
         self.settle_at = (2 * open).saturating_add(self.open_min);
     }
 
     /// Makes the runs before an index final.
     fn release(&mut self, until: usize, forced: bool) {
-        for run in self.runs.range_mut(self.ready.min(until)..until) {
+        for run in self.closed.range_mut(self.ready.min(until)..until) {
             run.forced |= forced;
             self.open -= run.count.min(self.open);
         }
@@ -340,7 +341,7 @@ impl<P> Runs<P> {
     fn backward(&mut self) -> usize {
         let mut speed = 0.0;
         let mut anchor = None;
-        for (i, run) in self.runs.iter_mut().enumerate().skip(self.ready).rev() {
+        for (i, run) in self.closed.iter_mut().enumerate().skip(self.ready).rev() {
             let reach = run.steepness.farthest(speed, run.length);
             if reach >= run.entry {
                 speed = run.entry;
@@ -377,8 +378,8 @@ impl<P> Runs<P> {
         if self.ready == 0 {
             return None;
         }
-        let end = self.runs.get(1).map_or(0.0, |next| next.planned);
-        let run = self.runs.pop_front()?;
+        let end = self.closed.get(1).map_or(0.0, |next| next.planned);
+        let run = self.closed.pop_front()?;
         self.ready -= 1;
         let start = self.now;
         let end = lower(end, run.steepness.farthest(start, run.length));
