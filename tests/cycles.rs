@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use std::io::Cursor;
 
 use gwatt::diagnostic::Severity;
+use gwatt::interpret::Corner;
 use gwatt::limit::{Law, Strategy};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, LimitOptions, Limits, Options, Reading};
@@ -416,4 +417,23 @@ fn limit_says_why_a_thread_stays() {
         summary.reasons[0].message,
         "the block may not be changed: it moves in step with the spindle"
     );
+}
+
+/// LinuxCNC's interpreter lifts to R before it changes to G61 for the holes
+/// (`interp_cycles.cc`; the canonical calls of its `rs274` show the same).
+#[test]
+fn holes_run_under_exact_path_and_the_lift_to_r_does_not() {
+    let machine = machine("linuxcnc", 1e5);
+    let program = "G21 G90 G17 G64 P0.05\nG0 X0 Y0 Z2\nG81 X10 Y10 Z-1 R5 F100\nG80\nG0 X0\nM2\n";
+    let mut exact = Vec::new();
+    let options = Options::default();
+    pipeline::moves(Cursor::new(program), &machine, &options, &mut |mv, _| {
+        if mv.length_mm > 0.0 {
+            exact.push(mv.corner == Corner::Exact);
+        }
+        Ok(())
+    })
+    .unwrap();
+    // To Z2, to R, across, down, up, and back under G64.
+    assert_eq!(exact, [false, false, true, true, true, false]);
 }

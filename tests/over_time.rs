@@ -305,3 +305,35 @@ fn a_series_is_whole_or_not_there() {
         assert!(told.contains(message), "{told}");
     }
 }
+
+/// A machine whose converter bears less ceases to fit a program whose moves all
+/// fit.
+#[test]
+fn machines_are_compared_by_their_limits_over_time_too() {
+    let shop = Shop::new("iso", "", "peak_power_w = 1000");
+    shop.put("a.ngc", THERE_AND_BACK);
+    let text = shop.get("mill.toml");
+    let weaker = "peak_power_w = 1000\ncontinuous_power_w = 90";
+    shop.put("weak.toml", &text.replace("peak_power_w = 1000", weaker));
+    let diff = |from: &str, to: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+            .args(["diff", "a.ngc", "--from", from, "--to", to])
+            .args(["--csv", "diff.csv"])
+            .current_dir(shop.0.path())
+            .output()
+            .unwrap();
+        let told = String::from_utf8(output.stdout).unwrap();
+        (output.status.code().unwrap(), told)
+    };
+    let (code, told) = diff("mill.toml", "weak.toml");
+    assert_eq!(code, 1, "{told}");
+    let ceases = "a.ngc: continuous power over 3 min ceases to fit\n";
+    assert!(told.ends_with(ceases), "{told}");
+    assert!(shop.get("diff.csv").ends_with(",0,0,0,0,0,1\r\n"));
+    let (code, told) = diff("weak.toml", "mill.toml");
+    assert_eq!(code, 0, "{told}");
+    assert!(told.contains("3 min begins to fit\n"), "{told}");
+    let (code, told) = diff("weak.toml", "weak.toml");
+    assert_eq!(code, 0, "{told}");
+    assert!(!told.contains("3 min"), "{told}");
+}

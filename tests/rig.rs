@@ -90,6 +90,7 @@ fn controller() -> Controller {
             g61: PathMode::ExactStop,
             g61_1: PathMode::ExactStop,
             g64: PathMode::LookAhead,
+            power_on_tolerance_mm: 0.0,
             power_on_mode: PathMode::ExactStop,
             rapid_uses_feed: false,
             ignored_g: Vec::new(),

@@ -116,7 +116,10 @@ impl Modal {
             },
             feed: None,
             path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
-            corner: Corner::default(),
+            corner: Corner::Round {
+                tolerance_mm: language.power_on_tolerance_mm,
+                join_mm: 0.0,
+            },
             spindle_rpm: 0.0,
             diameter: language.dialect.diameter,
         }

@@ -58,6 +58,8 @@ pub struct Language {
     pub g64: PathMode,
     /// Path mode at power-on.
     pub power_on_mode: PathMode,
+    /// Tolerance of rounded corners at power-on in mm; 0: none.
+    pub power_on_tolerance_mm: f64,
     /// Whether G0 obeys F like G1.
     pub rapid_uses_feed: bool,
     /// Further G words (number × 10, rounded) without motion that are passed over.

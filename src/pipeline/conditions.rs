@@ -113,9 +113,6 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
              than a window may run again at once"
                 .to_owned(),
         );
-        if machine.spindle.is_some() {
-            conditions.push("limits over time do not count the spindle's power".to_owned());
-        }
         if summary.certificate == Some(Certificate::Robust) {
             conditions.push(
                 "blended moves last no longer than with a stop at both ends, and no shorter than \

@@ -295,9 +295,10 @@ impl Ahead {
             eye.show_piece(&open.mv, planned);
         }
         let mut demand = piece_demand(model, &open.mv, planned, open.want);
-        let joined = matches!(planned.piece, Piece::Joined { .. });
         let certain = !peaks || self.is_certain(planned, from, to);
-        let lengths: f64 = (from..=to)
+        // Half of a blend belongs to what is behind it.
+        let halves = if planned.next.is_some() { 0.5 } else { 1.0 };
+        let lengths: f64 = (from..=own)
             .filter_map(|index| self.open.get(index))
             .map(|open| open.mv.length_mm)
             .sum();
@@ -311,10 +312,10 @@ impl Ahead {
             if open.mv.length_mm <= 0.0 {
                 continue;
             }
-            let share = match planned.piece {
-                Piece::Blend(_) => 0.5,
-                _ if joined => open.mv.length_mm / lengths,
-                _ => 1.0,
+            let share = if index > own {
+                1.0 - halves
+            } else {
+                halves * open.mv.length_mm / lengths
             };
             let assessment = &mut open.assessment;
             open.certain &= certain;
@@ -390,6 +391,7 @@ impl Ahead {
             };
             self.first += 1;
             if !moves {
+                eye.pass();
                 sink(&open.mv, &open.assessment, &open.text);
                 self.spare.push(open);
                 continue;

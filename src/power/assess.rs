@@ -44,7 +44,7 @@ pub struct Assessor<'m> {
     dwelt: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     ahead: Option<Box<Ahead>>,
-    eye: Eye,
+    pub(super) eye: Eye,
     /// What is switched on.
     switched: Switched,
     /// The spindle beside the axes, where the machine has one.
@@ -98,6 +98,7 @@ impl<'m> Assessor<'m> {
     #[must_use]
     pub fn watching(mut self) -> Self {
         self.eye.watch = Watch::new(self.machine, &self.model);
+        self.watch_spindle();
         self
     }
 
@@ -147,6 +148,7 @@ impl<'m> Assessor<'m> {
         self.act_on_axes(action, &mut |mv, judged, text| {
             bus.take(mv, judged, text, want, sink);
         });
+        self.eye.beside(&self.model, &mut bus.beside);
         bus.act(action);
         self.bus = Some(bus);
     }
@@ -308,6 +310,7 @@ impl<'m> Assessor<'m> {
         let want = self.want;
         self.finish_axes(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
         bus.finish(sink);
+        self.eye.beside(&self.model, &mut bus.beside);
     }
 
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
@@ -367,6 +370,7 @@ impl<'m> Assessor<'m> {
         }
         sink(&held.mv, &held.assessment, &held.text);
         for rider in &held.riders {
+            self.eye.pass();
             sink(&rider.mv, &rider.assessment, &rider.text);
         }
         held.riders.clear();

@@ -7,7 +7,7 @@
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::robust::Part;
-use super::watch::{Kept, Span, Watch};
+use super::watch::{Beside, Kept, Span, Watch};
 use crate::interpret::Move;
 use crate::machine::Machine;
 use crate::plan::lookahead::Planned;
@@ -27,6 +27,24 @@ impl Eye {
     pub fn alone(&mut self, machine: &Machine, model: &PowerModel, mv: &Move, largest: Overrides) {
         if self.watch.is_some() {
             self.watch_alone(machine, model, mv, largest);
+        }
+    }
+
+    /// A move that takes no time.
+    #[inline]
+    pub fn pass(&mut self) {
+        if let Some(watch) = &mut self.watch {
+            watch.pass();
+        }
+    }
+
+    /// What the spindle does during the moves handed on since, in their order.
+    #[inline]
+    pub fn beside(&mut self, model: &PowerModel, beside: &mut Option<Vec<Beside>>) {
+        if let (Some(watch), Some(beside)) = (&mut self.watch, beside) {
+            for beside in beside.drain(..) {
+                watch.beside(model, &beside);
+            }
         }
     }
 

@@ -167,6 +167,14 @@ impl SpindleTrace {
         span.unwrap_or_else(|| SpindleSpan::steady(self.holding_w(), 0.0))
     }
 
+    /// The instants after one and up to another at which the law of motion
+    /// changes, and that one, s after the command.
+    pub(super) fn ends(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = f64> {
+        let inside = move |t: &f64| *t > from_s && *t < to_s;
+        let last = (to_s > from_s).then_some(to_s);
+        self.instants().filter(inside).chain(last)
+    }
+
     /// The instants at which the law of motion changes, s after the command.
     pub(super) fn instants(&self) -> impl Iterator<Item = f64> {
         let mut end = 0.0;

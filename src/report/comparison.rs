@@ -9,7 +9,7 @@ use super::checked::Verdict;
 use super::figure::Figure;
 use super::quantity::{duration, energy, power};
 use super::text::aligned;
-use crate::pipeline::{Failure, Summary};
+use crate::pipeline::{Failure, OverTime, Summary};
 
 /// Changes that are listed a program.
 const LISTED_MAX: usize = 10;
@@ -56,12 +56,26 @@ impl Comparison {
     /// Does not fit when something fits on the first machine only.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        if self.from.is_err() || self.to.is_err() {
-            Verdict::Refused
-        } else {
-            Verdict::of(self.cease == 0)
+        match (&self.from, &self.to) {
+            (Ok(from), Ok(to)) => {
+                Verdict::of(self.cease == 0 && exceeded_beyond(to, from).next().is_none())
+            }
+            _ => Verdict::Refused,
         }
     }
+}
+
+/// Limits over time that a program exceeds on one machine, but not on the other
+/// one, be it that it has none.
+fn exceeded_beyond<'a>(one: &'a Summary, other: &'a Summary) -> impl Iterator<Item = &'a OverTime> {
+    let exceeded = |summary: &'a Summary| {
+        let limits = summary.over_time.iter();
+        limits.filter(|limit| !limit.rating.fits())
+    };
+    let same = |a: &OverTime, b: &OverTime| {
+        a.converter == b.converter && a.rating.measure.name() == b.rating.measure.name()
+    };
+    exceeded(one).filter(move |limit| !exceeded(other).any(|it| same(limit, it)))
 }
 
 /// A table with a line a program, and below it what begins and ceases to fit.
@@ -98,6 +112,11 @@ pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str) -> Stri
             comparison.cease.to_string(),
         ]);
         changes.push_str(&listed(comparison));
+        for (one, other, verb) in [(after, before, "ceases"), (before, after, "begins")] {
+            for limit in exceeded_beyond(one, other) {
+                let _ = writeln!(changes, "{program}: {} {verb} to fit", limit.title());
+            }
+        }
     }
     format!("from {from}\nto   {to}\n\n{}{changes}", aligned(&rows, ""))
 }
@@ -133,6 +152,8 @@ struct Line<'a> {
     unfit_to: u64,
     begin_to_fit: u64,
     cease_to_fit: u64,
+    limits_begin_to_fit: usize,
+    limits_cease_to_fit: usize,
 }
 
 /// The table as CSV, without programs that are refused.
@@ -168,6 +189,8 @@ pub fn comparison_csv(
             unfit_to: after.unfit_count,
             begin_to_fit: comparison.begin,
             cease_to_fit: comparison.cease,
+            limits_begin_to_fit: exceeded_beyond(before, after).count(),
+            limits_cease_to_fit: exceeded_beyond(after, before).count(),
         })?;
     }
     out.flush()

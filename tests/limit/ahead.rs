@@ -3,7 +3,7 @@
 
 use super::{RIG, Rig, Run};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Row, RowSink, analyze};
+use gwatt::pipeline::{Certificate, Row, RowSink, analyze, motion};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -220,17 +220,44 @@ fn a_thread_between_feeds_and_its_neighbours_get_the_robust_bound() {
     assert_eq!(robust, [true, true, true, true, true, false]);
 }
 
-/// How fast such lines run into each other is not certain.
+/// 0.001 inch until a program says otherwise; G64 alone sets none.
 #[test]
-fn lines_that_are_put_together_get_the_robust_bound() {
-    for (words, robust) in [("", true), (" Q0", false)] {
-        let program = format!("G21 G90 G64 P0.01{words}\nG1 X50 F6000\nX90\nM2\n");
+fn linuxcnc_rounds_corners_with_a_tolerance_at_power_on() {
+    let durations = |words: &str| -> Vec<f64> {
+        let program = format!("G21 G90 {words}\nG1 X20 F6000\nG1 Y20\nG1 X0\nM2\n");
         let rows = report(LINUXCNC, &program);
-        assert_eq!(rows.len(), 2);
-        for row in rows {
-            assert_eq!(row.certificate == Certificate::Robust, robust, "{program}");
-        }
+        rows.iter().map(|row| row.duration_s).collect()
+    };
+    assert_eq!(durations(""), durations("G64 P0.0254 Q0"));
+    let [with, without] = [durations(""), durations("G64")].map(|it| it.iter().sum::<f64>());
+    assert!(without < 0.99 * with, "{without} s, {with} s");
+}
+
+/// Half of a blend is the time of the lines that were put together before it,
+/// however many they are.
+#[test]
+fn times_of_lines_that_are_put_together_add_up_to_the_motion() {
+    let mut program = String::from("G21 G90 G64 P0.05\nG0 X20 Y0\nG1 F4800\n");
+    for i in 1..=200 {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / 200.0);
+        writeln!(program, "X{:.4} Y{:.4}", 20.0 * cos, 20.0 * sin).unwrap();
     }
+    program += "M2\n";
+    let rows = report(LINUXCNC, &program);
+    assert!(
+        rows.iter()
+            .all(|row| row.certificate == Certificate::Planned)
+    );
+    let sum: f64 = rows.iter().map(|row| row.duration_s).sum();
+    let mut moving = 0.0;
+    let input = std::io::Cursor::new(program.as_bytes());
+    let options = super::options(LINUXCNC.options);
+    motion(input, &LINUXCNC.machine(), &options, &mut |stretch| {
+        moving += stretch.duration_s;
+        Ok(())
+    })
+    .unwrap();
+    assert!((sum / moving - 1.0).abs() < 1e-9, "{sum} s, {moving} s");
 }
 
 /// Feeds count at the largest override, and times at 100 %.

@@ -111,18 +111,18 @@ impl Control<'_> {
         let initial_mm = self.initial_level(normal, !series);
         let mut now_mm = from[normal];
         let mut over_mm = initial_mm;
-        // It runs under G61, whatever is in force.
-        let before = (self.modal.path_mode, self.modal.corner);
-        self.modal.corner = Corner::Exact;
-        if self.machine.path.mode != Some(PathMode::ExactStop) {
-            self.modal.path_mode = self.machine.controller.language.g61;
-        }
         if initial_mm < hole.r_mm {
             let mut up = self.believed();
             up[normal] = hole.r_mm;
             self.part(run, MoveKind::Rapid, &up);
             over_mm = hole.r_mm;
             now_mm = hole.r_mm;
+        }
+        // The holes run under G61, whatever is in force.
+        let before = (self.modal.path_mode, self.modal.corner);
+        self.modal.corner = Corner::Exact;
+        if self.machine.path.mode != Some(PathMode::ExactStop) {
+            self.modal.path_mode = self.machine.controller.language.g61;
         }
         if !self.special.to_initial {
             over_mm = hole.r_mm;

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::look_ahead::LookAheadTable;
 use super::machine_file::{PathModeName, RapidName};
 use super::printer::PrinterTable;
-use super::value::{At, Positive};
+use super::value::{At, NotNegative, Positive};
 
 /// What a controller reads, how it plans, and which words limit it.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -55,6 +55,9 @@ pub(crate) struct LanguageTable {
     /// Path mode at power-on.
     #[schemars(required)]
     pub(crate) power_on: Option<PathModeName>,
+    /// The tolerance of rounded corners at power-on, as P of G64 gives it; default
+    /// 0: none.
+    pub(crate) power_on_tolerance_mm: Option<NotNegative>,
     /// What G61 selects; default: as at power-on.
     pub(crate) g61: Option<PathModeName>,
     /// What G61.1 selects; default: as at power-on.

@@ -69,6 +69,10 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         g61_1: table.g61_1.map_or(power_on, path_mode),
         g64: table.g64.map_or(power_on, path_mode),
         power_on_mode: power_on,
+        power_on_tolerance_mm: table
+            .power_on_tolerance_mm
+            .as_ref()
+            .map_or(0.0, |tolerance| tolerance.value),
         rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
         ignored_g,
         ignored_m,

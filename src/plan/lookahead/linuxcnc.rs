@@ -321,7 +321,7 @@ impl<T: Copy> LinuxCnc<T> {
             first: if consumed { before.first } else { tag },
             next: Some(next.first),
             piece,
-            certain: !before.several && !next.several,
+            certain: true,
         };
         let top2 = top * top;
         let before2 = window.last_top2();
@@ -387,8 +387,7 @@ impl<T: Copy> LinuxCnc<T> {
             first: of.first,
             next: None,
             piece: of.piece(),
-            // Of lines put together a planner was recorded at twice this speed.
-            certain: !of.parabolic && !of.several,
+            certain: !of.parabolic,
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let parabolic = matches!(of.element.joint, Joint::Blend { .. });

@@ -8,6 +8,7 @@ use crate::power::cutting::cuts;
 use crate::power::demand::{Demand, Totals};
 use crate::power::spindle_state::SpindleState;
 use crate::power::spindle_trace::SpindleSpan;
+use crate::power::watch::Beside;
 use crate::power::{Assessment, Certificate, SpindleShare};
 
 /// The text of a row that belongs to no block.
@@ -123,6 +124,17 @@ impl SpindleBus<'_> {
             let held_j = self.motor.holding_w(self.states[1].target()) * duration_s;
             span.energy_j -= held_j;
             span.drawn_j -= held_j;
+        }
+        if let Some(place) = self.place(Some(mv))
+            && self.beside.is_some()
+        {
+            let longest_s = self.states[0].left_s();
+            let window = self.states[0].window(&self.motor, longest_s);
+            let beside = Beside {
+                levels: self.levels(&window, (longest_s, false), 0.0),
+                alone: Some(Box::new(place)),
+            };
+            self.beside.get_or_insert_default().push(beside);
         }
         self.states.iter_mut().for_each(SpindleState::settle);
         self.clock_s += duration_s;

@@ -12,8 +12,19 @@ impl Assessor<'_> {
         if start == Start::Unknown {
             let overrides = [self.largest, self.nominal];
             self.bus = SpindleBus::new(self.machine, overrides, true).map(Box::new);
+            self.watch_spindle();
         }
         self
+    }
+
+    /// Has the spindle tell what it draws, where that is watched over time.
+    pub(in crate::power) fn watch_spindle(&mut self) {
+        let watch = self.eye.watch.as_ref();
+        if let Some(bus) = &mut self.bus {
+            bus.beside = watch
+                .filter(|watch| watch.follows_spindle())
+                .map(|_| Vec::new());
+        }
     }
 
     /// Keeps the runs of the spindle from now on, for [`Self::spindle_events`].
@@ -47,6 +58,7 @@ impl Assessor<'_> {
             bus.take(mv, judged, text, want, sink);
         });
         self.want = want;
+        self.eye.beside(&self.model, &mut bus.beside);
         self.bus = Some(bus);
     }
 }

@@ -13,6 +13,7 @@ mod assessor;
 mod command;
 mod figures;
 mod follow;
+mod levels;
 
 use std::collections::VecDeque;
 
@@ -28,6 +29,7 @@ use crate::power::overlap;
 use crate::power::spindle_state::{SpindleMotor, SpindleState, Window};
 use crate::power::spindle_trace::SpindleTrace;
 use crate::power::surface_speed::Surface;
+use crate::power::watch::Beside;
 
 /// What the spindle takes of a move's converter, for whoever lowers the move.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -98,6 +100,8 @@ pub(super) struct SpindleBus<'m> {
     clock_s: f64,
     /// Runs that nobody has taken yet, where they are wanted.
     events: Option<Vec<SpindleEvent>>,
+    /// What it does during the moves handed on, where that is watched over time.
+    pub(super) beside: Option<Vec<Beside>>,
     last: Option<Move>,
     /// No more than this is drawn and fed back before the commands that wait
     /// have been looked at, W.
@@ -138,6 +142,7 @@ impl<'m> SpindleBus<'m> {
             commands: 0,
             clock_s: 0.0,
             events: None,
+            beside: None,
             last: None,
             reserve_w: [0.0; 2],
         };
@@ -210,6 +215,14 @@ impl<'m> SpindleBus<'m> {
         let covered = followed.as_ref().map(|it| it.extremes).or(tapping);
         let cutting_w = self.cut(mv, &mut judged);
         let window = self.states[0].window(&self.motor, duration_s);
+        let beside = self.beside.is_some().then(|| {
+            let covered = covered.map(Window::Between);
+            let window = covered.as_ref().unwrap_or(&window);
+            Beside {
+                levels: self.levels(window, (duration_s, judged.ahead), cutting_w),
+                alone: None,
+            }
+        });
         let later = covered.unwrap_or_else(|| self.states[0].henceforth(&self.motor));
         let runs = !matches!(window, Window::Steady(_)) || covered.is_some();
         let mut exact = None;
@@ -255,6 +268,9 @@ impl<'m> SpindleBus<'m> {
             self.count_energy(mv, &mut judged, followed.as_ref());
         }
         self.move_on(mv, &judged, followed.is_some());
+        if let (Some(list), Some(beside)) = (&mut self.beside, beside) {
+            list.push(beside);
+        }
         match &mut self.last {
             Some(last) => last.clone_from(mv),
             None => self.last = Some(mv.clone()),

@@ -17,11 +17,15 @@
 //! because more was fed back than is taken, H the heat that the resistor has
 //! taken and not given off yet. All limits are less the margin.
 //!
+//! What the spindle draws beside the axes comes on top, slice by slice
+//! ([`Level`]).
+//!
 //! Of a move that may be blended in a way that is not modelled only the largest
 //! power is known. It is taken to last no longer than with a stop at both ends, and
 //! no shorter than its path at full speed: whichever is worse counts for each
 //! limit. A move from an unknown start may last for ever.
 
+mod beside;
 mod limits;
 mod overload;
 mod rating;
@@ -29,6 +33,7 @@ mod rms;
 mod span;
 mod store;
 
+pub(super) use beside::{Beside, Level};
 pub use rating::{Measure, Rating};
 pub(super) use span::Span;
 
@@ -39,6 +44,7 @@ use crate::interpret::Move;
 use crate::machine::Machine;
 use crate::plan::Plan;
 use crate::plan::lookahead::Planned;
+use beside::{Levels, Waiting, Waits};
 use limits::Limits;
 use rating::Place;
 
@@ -46,6 +52,8 @@ use rating::Place;
 #[derive(Debug)]
 pub(super) struct Watch {
     tracks: Vec<Track>,
+    /// Where the spindle's converter is watched: moves that wait for it.
+    waiting: Option<Waiting>,
 }
 
 /// One converter and one direction of its power.
@@ -92,12 +100,83 @@ impl Watch {
             })
             .filter(|track| !track.limits.is_empty())
             .collect();
-        (!tracks.is_empty()).then(|| Box::new(Self { tracks }))
+        let spindle = machine.spindle.as_ref();
+        let converter = spindle
+            .map(|spindle| spindle.converter)
+            .filter(|converter| tracks.iter().any(|track| track.converter == *converter));
+        let waiting = converter.map(|converter| Waiting {
+            converter,
+            ..Waiting::default()
+        });
+        (!tracks.is_empty()).then(|| Box::new(Self { tracks, waiting }))
+    }
+
+    /// Whether it has to be told what the spindle does.
+    pub fn follows_spindle(&self) -> bool {
+        self.waiting.is_some()
+    }
+
+    /// A move that takes no time.
+    pub fn pass(&mut self) {
+        if let Some(waiting) = &mut self.waiting {
+            let slices = waiting.room();
+            waiting.moves.push_back(Waits {
+                place: Place::default(),
+                slices,
+                lasting: None,
+            });
+        }
+    }
+
+    /// What the spindle does during the next move, or by itself before it.
+    pub fn beside(&mut self, model: &PowerModel, beside: &Beside) {
+        let Some(waiting) = &mut self.waiting else {
+            return;
+        };
+        let Some(mv) = &beside.alone else {
+            waiting.hand_on(&beside.levels, &mut self.tracks);
+            return;
+        };
+        let place = Place::of(mv);
+        let duration_s = beside.levels.iter().map(|level| level.duration_s).sum();
+        for track in &mut self.tracks {
+            let [drawn_w, fed_back_w] = model.resting_w(track.converter, mv);
+            let power_w = match track.flow {
+                Flow::Drawn => drawn_w,
+                Flow::FedBack => fed_back_w,
+            };
+            if duration_s > 0.0 {
+                let slice = Slice::constant(duration_s, power_w);
+                let mut levels = Levels::new(&beside.levels, track, waiting.converter);
+                levels.add(&slice, &mut |slice| track.take(slice, place));
+            }
+        }
     }
 
     /// Takes a move that runs as planned.
     pub fn plan(&mut self, model: &PowerModel, mv: &Move, plan: &Plan) {
         let place = Place::of(mv);
+        if let Some(waiting) = &mut self.waiting {
+            let mut slices = waiting.room();
+            let mut lasting = None;
+            if plan.duration_s.is_finite() {
+                for (index, track) in self.tracks.iter().enumerate() {
+                    if let Some(tracer) = model.tracer(track.converter, track.flow) {
+                        tracer.plan(mv, plan, &mut |slice| slices.push((index, slice)));
+                    }
+                }
+            } else {
+                let tracks = self.tracks.iter();
+                let powers = tracks.map(|track| model.resting_w(track.converter, mv));
+                lasting = Some((powers.collect(), Span::ANY));
+            }
+            waiting.moves.push_back(Waits {
+                place,
+                slices,
+                lasting,
+            });
+            return;
+        }
         for track in &mut self.tracks {
             if plan.duration_s.is_finite() {
                 if let Some(tracer) = model.tracer(track.converter, track.flow) {
@@ -123,6 +202,15 @@ impl Watch {
     /// Takes what was kept of a move that runs as planned.
     pub fn kept(&mut self, mv: &Move, kept: &mut Kept) {
         let place = Place::of(mv);
+        if let Some(waiting) = &mut self.waiting {
+            let slices = std::mem::replace(&mut kept.0, waiting.room());
+            waiting.moves.push_back(Waits {
+                place,
+                slices,
+                lasting: None,
+            });
+            return;
+        }
         for (index, slice) in kept.0.drain(..) {
             if let Some(track) = self.tracks.get_mut(index) {
                 track.take(&slice, place);
@@ -142,6 +230,7 @@ impl Watch {
         span: Span,
     ) {
         let place = Place::of(mv);
+        let mut all = Vec::new();
         for (index, track) in self.tracks.iter_mut().enumerate() {
             let mut powers = model.robust_powers(track.converter, mv, parts);
             let of_flow = match track.flow {
@@ -152,9 +241,21 @@ impl Watch {
             *of_flow = own.fold(*of_flow, |most, (_, slice)| {
                 super::demand::larger(most, slice.peak_w())
             });
-            track.span(powers, span, place);
+            if self.waiting.is_some() {
+                all.push(powers);
+            } else {
+                track.span(powers, span, place);
+            }
         }
         kept.clear();
+        if let Some(waiting) = &mut self.waiting {
+            let slices = waiting.room();
+            waiting.moves.push_back(Waits {
+                place,
+                slices,
+                lasting: Some((all, span)),
+            });
+        }
     }
 
     /// What was found, converter by converter.
@@ -167,8 +268,7 @@ impl Watch {
 }
 
 impl Track {
-    /// All power passes here, slice by slice: what another load draws at the
-    /// same time, such as a spindle that runs up, is to be added before.
+    /// All power passes here, slice by slice.
     fn take(&mut self, slice: &Slice, place: Place) {
         self.limits.take(slice, self.time_s, place);
         self.time_s += slice.duration_s;

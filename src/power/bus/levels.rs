@@ -1,0 +1,88 @@
+//! The spindle over time in steps, for whoever watches the converter.
+
+use super::SpindleBus;
+use crate::power::spindle_state::Window;
+use crate::power::spindle_trace::{SpindleSpan, SpindleTrace};
+use crate::power::watch::Level;
+
+/// Steps of a run are no higher than this share of its largest power.
+const STEP: f64 = 0.002;
+/// Depth of halving.
+const DEPTH: u32 = 12;
+
+impl SpindleBus<'_> {
+    /// What it draws at most while a move lasts, step by step: base load and
+    /// cutting are in it. Where the move is planned with others its time is not
+    /// known as well as a run is steep: the largest power counts throughout.
+    pub(super) fn levels(
+        &self,
+        window: &Window<'_>,
+        (duration_s, ahead): (f64, bool),
+        cutting_w: f64,
+    ) -> Vec<Level> {
+        let level = |duration_s: f64, largest_w: f64, least_w: f64| {
+            let base_w = self.spindle.base_load_w;
+            let more_w = base_w + cutting_w;
+            if self.credits() {
+                Level {
+                    duration_s,
+                    drawn_w: largest_w + more_w,
+                    fed_back_w: -least_w - base_w,
+                }
+            } else {
+                Level {
+                    duration_s,
+                    drawn_w: largest_w.max(0.0) + more_w,
+                    fed_back_w: (-least_w).max(0.0),
+                }
+            }
+        };
+        match window {
+            Window::Steady(power_w) => vec![level(duration_s, *power_w, *power_w)],
+            Window::Between([largest_w, least_w]) => {
+                vec![level(duration_s, *largest_w, *least_w)]
+            }
+            Window::Run(trace, from_s) => {
+                let to_s = from_s + duration_s;
+                let whole = trace.over(*from_s, to_s);
+                if ahead || !duration_s.is_finite() {
+                    return vec![level(duration_s, whole.largest_w, whole.least_w)];
+                }
+                let most_w = whole.largest_w.abs().max(whole.least_w.abs());
+                let mut levels = Vec::new();
+                let mut from_s = *from_s;
+                for end_s in trace.ends(from_s, to_s) {
+                    steps(
+                        trace,
+                        [from_s, end_s],
+                        STEP * most_w,
+                        DEPTH,
+                        &mut |span, part| {
+                            levels.push(level(span, part.largest_w, part.least_w));
+                        },
+                    );
+                    from_s = end_s;
+                }
+                levels
+            }
+        }
+    }
+}
+
+/// Spans of time in which the power changes by no more than a step.
+fn steps(
+    trace: &SpindleTrace,
+    [from_s, to_s]: [f64; 2],
+    step_w: f64,
+    depth: u32,
+    out: &mut impl FnMut(f64, &SpindleSpan),
+) {
+    let part = trace.over(from_s, to_s);
+    if depth == 0 || part.largest_w - part.least_w <= step_w {
+        out(to_s - from_s, &part);
+        return;
+    }
+    let middle_s = f64::midpoint(from_s, to_s);
+    steps(trace, [from_s, middle_s], step_w, depth - 1, out);
+    steps(trace, [middle_s, to_s], step_w, depth - 1, out);
+}
