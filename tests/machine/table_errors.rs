@@ -264,7 +264,7 @@ fn curves_of_axes() {
     assert_snapshot!(axis("force_curve = [{ speed_mm_min = 0, force_n = 9000 }, { speed_mm_min = 20000, force_n = 9000 }]"), @r"
     line 13, error machine-curve: the curve ends at 20000 mm/min, below the rapid speed of 36000 mm/min / give a point at the rapid speed or beyond
       | force_curve = [{ speed_mm_min = 0, force_n = 9000 }, { speed_mm_min = 20000, force_n = 9000 }]
-      |                                                      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+      |                                                      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
     ");
     let points: Vec<String> = (0..17)
         .map(|i| format!("{{ speed_mm_min = {i}, force_n = 9 }}"))
