@@ -206,7 +206,8 @@ impl<P> Runs<P> {
             self.close();
             self.begin(&element, top, entry);
         } else {
-            self.begin(&element, top, lower(entry, top));
+            // Nothing stands before it, or a stop.
+            self.begin(&element, top, 0.0);
         }
         self.elements.push_back(element);
     }
@@ -214,14 +215,12 @@ impl<P> Runs<P> {
     /// A run of one element.
     #[inline]
     fn begin(&mut self, element: &Element<P>, top: f64, entry: f64) {
-        // Before the first run there is nothing: it begins at rest.
-        let first = self.closed.is_empty() && self.current.is_none();
         self.growing = Some(Growing {
             run: Run {
                 count: 1,
                 length: element.length,
                 top,
-                entry: if first { self.now.min(entry) } else { entry },
+                entry,
                 steepness: element.steepness,
                 planned: 0.0,
                 forced: false,
