@@ -69,3 +69,30 @@ fn custom_macro(bencher: Bencher<'_, '_>) {
     );
     run(bencher, "fanuc", &program);
 }
+
+#[divan::bench]
+fn sinumerik(bencher: Bencher<'_, '_>) {
+    let program = format!(
+        "G71 G90 F600\nR1=0\nWHILE R1<{ROWS}\nR2=0\nWHILE R2<{STEPS}\n\
+         G1 X=R2*0.5 Y=R1*0.5+3*SIN(R2*3.6)\nR2=R2+1\nENDWHILE\nR1=R1+1\nENDWHILE\nM30\n"
+    );
+    run(bencher, "siemens", &program);
+}
+
+#[divan::bench]
+fn isg(bencher: Bencher<'_, '_>) {
+    let program = format!(
+        "%MAIN\nG90 F600\nP1=0\n$WHILE P1<{ROWS}\nP2=0\n$WHILE P2<{STEPS}\n\
+         G1 X[P2*0.5] Y[P1*0.5+3*SIN[P2*3.6]]\nP2=P2+1\n$ENDWHILE\nP1=P1+1\n$ENDWHILE\nM30\n"
+    );
+    run(bencher, "isg", &program);
+}
+
+#[divan::bench]
+fn osp(bencher: Bencher<'_, '_>) {
+    let program = format!(
+        "G90 F600\nVC1=0\nN1 VC2=0\nN2 G1 X=VC2*0.5 Y=VC1*0.5+3*SIN[VC2*3.6]\nVC2=VC2+1\n\
+         IF [VC2 LT {STEPS}] N2\nVC1=VC1+1\nIF [VC1 LT {ROWS}] N1\nM2\n"
+    );
+    run(bencher, "okuma", &program);
+}

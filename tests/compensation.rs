@@ -90,6 +90,7 @@ fn shown(controller: &str, options: &Options, program: &str) -> String {
     out
 }
 
+/// LinuxCNC, "Cutter Compensation", "G41, G42": outside corners by arcs.
 #[test]
 fn outside_a_square() {
     // Clockwise with the tool on the left: corners are rounded by arcs about
@@ -110,6 +111,7 @@ fn outside_a_square() {
 "#);
 }
 
+/// "Cutter Compensation": inside corners where the shifted lines meet.
 #[test]
 fn inside_a_square() {
     // Counter-clockwise with the tool on the left: the corners of the pocket
@@ -148,6 +150,7 @@ fn the_other_side_is_the_mirror_image() {
     assert_eq!(moves(left), moves(&by_sign));
 }
 
+/// "Cutter Compensation": lines and arcs, "concave corners".
 #[test]
 fn inside_corners_of_lines_and_arcs() {
     // Arc of radius 5 about (4, 3) from the origin, the tool (r = 1) outside
@@ -233,6 +236,7 @@ fn rapids_go_round_corners_straight() {
 "#);
 }
 
+/// LinuxCNC, "Lathe User Information", "Tool Orientations".
 #[test]
 fn a_lathe_tool_by_its_orientation() {
     // Orientation 2: the controlled point lies at smaller X and smaller Z than
@@ -264,6 +268,7 @@ fn helices_and_arcs_as_first_moves() {
 "#);
 }
 
+/// LinuxCNC, "G40": the move behind it leads back.
 #[test]
 fn the_ends_of_compensation() {
     // M2 ends it; G40 without motion and D0 change nothing.

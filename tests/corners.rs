@@ -78,6 +78,7 @@ fn type_b() -> Machine {
     machine("fanuc", language)
 }
 
+/// B-63944EN, "Details of Cutter Compensation", "Tool Movement in Offset Mode".
 #[test]
 fn outside_corners_of_90_degrees() {
     // Radius 5, the tool to the left of a clockwise square: each corner is the
@@ -166,6 +167,7 @@ fn inside_corners() {
 ");
 }
 
+/// B-63944EN, "Tool Movement in Start-up", type B.
 #[test]
 fn type_b_goes_round_the_first_and_the_last_corner() {
     // The first move comes from the lower right, the path bends by 45°: to
@@ -414,6 +416,7 @@ fn sinumerik_goes_round_corners_by_arcs_or_to_where_lines_meet() {
 ");
 }
 
+/// B-63944EN, "Optional Chamfering and Corner R".
 #[test]
 fn chamfers_and_rounded_corners() {
     // A radius of 5 in the corner (40, 0), a chamfer of 3 in (40, 30). Between
@@ -479,6 +482,7 @@ fn chamfers_and_rounded_corners_under_compensation() {
 ");
 }
 
+/// "Chamfer, rounding (CHF, CHR, RND, RNDM)".
 #[test]
 fn chamfers_and_roundings_of_sinumerik() {
     // CHF is the chamfer's length: 2 across a right angle are legs of √2. CHR
@@ -546,6 +550,8 @@ fn corners_that_cannot_be() {
 ");
 }
 
+/// "Thread cutting (G33)", "Tapping (G331, G332)", "Tapping with compensating chuck
+/// (G63)".
 #[test]
 fn threads_and_taps_of_sinumerik() {
     // A lead of 2 at 600/min: 1200 mm/min along Z; on a taper of 4 in 10 the

@@ -310,6 +310,20 @@ fn probing_forgets_the_position() {
     }
 }
 
+/// "G38.n": towards the piece or away from it, with an error or without one; where
+/// each ends only the machine knows.
+#[test]
+fn every_form_of_probing_forgets_the_position() {
+    for word in ["G38.2", "G38.3", "G38.4", "G38.5"] {
+        let program = format!("G21 F100\nG0 Z5\n{word} Z-5\nG0 X1\nG92 Z0\nM2\n");
+        let machine = crate::listing::machine("linuxcnc");
+        let found = crate::listing::listing(&program, &machine, None);
+        let expected = "2 rapid Z5\n3 probe Z-5 F100\n4 rapid X1\n\
+                        5 offset-from-unknown: G92 for an axis whose position is not known\n";
+        assert_eq!(found, expected, "{word}");
+    }
+}
+
 /// "G5 Cubic Spline", "G5.1", "G5.2": 15 lines for each control point; the
 /// points are those of the curves' formulas.
 #[test]

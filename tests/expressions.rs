@@ -61,6 +61,8 @@ fn near(controller: &str, cases: &[(&str, f64)]) {
 
 const BOTH: [&str; 2] = ["linuxcnc", "iso"];
 
+/// LinuxCNC, "Expressions", "Binary Operators"; B-63944EN, "Arithmetic and Logic
+/// Operation": brackets, the order of operators, signs.
 #[test]
 fn arithmetic_and_its_order() {
     for controller in BOTH {
@@ -100,6 +102,8 @@ fn arithmetic_and_its_order() {
     near("iso", &[("[-7 MOD 3]", -1.0), ("[7 MOD -3]", 1.0)]);
 }
 
+/// LinuxCNC, "Binary Operators", "Equality and floating-point values"; B-63944EN,
+/// "Branch and Repetition", "Operators".
 #[test]
 fn comparison_and_logic() {
     near(
@@ -139,6 +143,7 @@ fn comparison_and_logic() {
     );
 }
 
+/// LinuxCNC, "Functions"; B-63944EN, "Arithmetic and Logic Operation".
 #[test]
 fn functions() {
     for controller in BOTH {
@@ -183,6 +188,7 @@ fn functions() {
     );
 }
 
+/// LinuxCNC, "Parameters": a value takes effect behind its block.
 #[test]
 fn parameters_take_effect_behind_their_block() {
     let end = |program: &str| end("linuxcnc", program);
@@ -199,6 +205,7 @@ fn parameters_take_effect_behind_their_block() {
     );
 }
 
+/// B-63944EN, "Variables", "Undefined variable".
 #[test]
 fn null_is_nothing() {
     let end = |program: &str| end("iso", program);

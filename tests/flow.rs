@@ -72,6 +72,7 @@ fn fails(controller: &str, program: &str, expected: &str) {
     assert_eq!(found, Err(expected.to_owned()), "{program}");
 }
 
+/// B-63944EN, "Branch and Repetition".
 #[test]
 fn loops_and_jumps_of_macros() {
     let program = "#1=1\nWHILE[#1 LE 3]DO1\nG0 X#1\n#1=#1+1\nEND1\nX9\nM30\n";
@@ -102,6 +103,7 @@ fn grbl_begins_with_g0_and_labels_may_repeat() {
     );
 }
 
+/// B-63944EN, "Subprogram (M98, M99)", "Macro Call": G65 and its letters.
 #[test]
 fn calls_of_programs_and_macros() {
     let program = "O1\nG0 X1\nM98 P2 L2\nX5\nM30\nO2\nG91 X10\nG90\nM99\n";
@@ -113,6 +115,19 @@ fn calls_of_programs_and_macros() {
     // M99 with a block number: the caller goes on there.
     let program = "O1\nM98 P2\nG0 X1\nN50 G0 X2\nM30\nO2\nG0 X9\nM99 P50\n";
     assert_eq!(ends("iso", program), [9.0, 2.0]);
+}
+
+/// B-63944EN, "Modal Call (G66)": the macro runs behind each block that moves, to
+/// G67. Haas mill operator's manual, "M97 Local Sub-Program Call": to a block of the
+/// same program, L times.
+#[test]
+fn modal_calls_and_calls_of_blocks() {
+    let program = "G0\nG66 P9 A3.\nX10.\nG67\nX30.\nM30\nO9\nX[#1+#5001]\nM99\n";
+    assert_eq!(ends("fanuc", program), [10.0, 13.0, 30.0]);
+    let program = "G0 X0.\nM97 P50 L2\nX5.\nM30\nN50 G91 X1.\nG90\nM99\n";
+    assert_eq!(ends("haas", program), [0.0, 1.0, 2.0, 5.0]);
+    let message = "2 unsupported-code: G66.1 is a macro call, which gwatt does not support";
+    fails("fanuc", "G0 X1.\nG66.1 P9 A3.\nM30\n", message);
 }
 
 #[test]
@@ -284,6 +299,7 @@ fn every_message_of_macros() {
     );
 }
 
+/// Depth of calls, moves by repetition and lines without a move have limits.
 #[test]
 fn what_runs_away_is_stopped() {
     let limited = |program: &str| run("linuxcnc", program, &options(5, 20, 50));

@@ -65,6 +65,8 @@ pub(crate) fn moves_with(controller: &str, program: &str, options: &Options) -> 
     out
 }
 
+/// LinuxCNC, "G90, G91", "G20, G21", "G54-G59.3", "G92": the program's numbers in the
+/// machine's millimetres.
 #[test]
 fn distance_modes_units_and_offsets() {
     let program = "G21 G90 G0 X10 Y5\nG91 X1 Y-1\nG90 G20 X1\nG21 G92 X0\nG1 X10 F100\nG92.2\nX40\nG92.3\nX0\nG92.1\nX0\nG53 G0 X7\n";
@@ -80,6 +82,7 @@ fn distance_modes_units_and_offsets() {
 "#);
 }
 
+/// LinuxCNC, "G2, G3 Arc Move", "Center Format Arcs", "Radius Format Arcs".
 #[test]
 fn arcs_in_three_planes() {
     let program = "F600\nG17 G2 X10 I5 J0\nG3 X0 R5\nG18 G2 Z10 X0 K5 I0\nG19 G3 Y0 Z20 J0 K5\nG17 G90.1 G2 X0 Y0 I5 J0\nG91.1 G3 I1 Z30 P2\n";
@@ -93,6 +96,8 @@ fn arcs_in_three_planes() {
 "#);
 }
 
+/// LinuxCNC, "G93, G94, G95"; F speaks for the linear axes where any moves, else for
+/// the rotary ones ("Feed Rate").
 #[test]
 fn feeds_of_each_mode() {
     let program = "G1 X10 A90 F100\nA0\nC90 A45\nG93 X20 F2\nG94 X0 F50\nS300 M3\nG95 X10 F0.2\n";
@@ -106,6 +111,7 @@ fn feeds_of_each_mode() {
 "#);
 }
 
+/// LinuxCNC, "G20, G21 Units": F stays what it was in millimetres.
 #[test]
 fn a_unit_change_keeps_the_feed() {
     assert_snapshot!(moves("linuxcnc", "G21 G1 X1 F100\nG20 X1\nX2 F10\nG21 X0 F60\n"), @r#"
@@ -122,6 +128,8 @@ fn a_unit_change_keeps_the_feed() {
 "#);
 }
 
+/// LinuxCNC "G4 Dwell" (P in seconds), Marlin G4 (P in milliseconds, S in seconds),
+/// Fanuc B-63944EN "Dwell (G04)" (X in seconds, P in milliseconds).
 #[test]
 fn dwells_of_each_dialect() {
     assert_snapshot!(moves("iso", "G4 P1\nG04 F2\nG4 X0.5\nG0 X1\n"), @r#"
@@ -140,6 +148,7 @@ fn dwells_of_each_dialect() {
 "#);
 }
 
+/// LinuxCNC, "G28, G28.1", "G30, G30.1", "M2, M30".
 #[test]
 fn reference_points_and_the_end() {
     let program = "%\nO1\nG0 X5 Z5\nG28 G91 Z1\nG90 G30 X6\nM30\nX99\n%\n";
@@ -184,6 +193,7 @@ fn block_delete_and_tape_marks() {
     assert_eq!(lines(BlockDelete::NONE.with(2).with(9)), [2, 3, 5, 6]);
 }
 
+/// Marlin, "G0-G1 Linear Move": both at F.
 #[test]
 fn marlin_moves_g0_at_the_feed() {
     assert_snapshot!(moves("marlin", "G0 X10\nG1 F600 X0\nG0 X10\nM201 X500\nG92 X0\nG0 X1\n"), @r#"
@@ -194,6 +204,7 @@ fn marlin_moves_g0_at_the_feed() {
 "#);
 }
 
+/// Each profile's plain words against the same block with more in it.
 #[test]
 fn plain_blocks_mean_what_all_blocks_mean() {
     // G40 sends a block the long way round.

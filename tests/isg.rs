@@ -171,6 +171,110 @@ M30
 ");
 }
 
+/// "Cycles as global or local subroutines (Call L | LL CYCLE)": @P belong to the
+/// cycle, @X, @Y and @Z are the first, second and third axis of the plane.
+#[test]
+fn cycles_get_parameters_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let drill = "\
+(a hole at @P4, @P5 to the depth @P1, by steps of @P2)
+#VAR
+V.L.DEPTH = 0
+#ENDVAR
+G0 @X@P4 @Y=@P5 @Z@P3
+$WHILE V.L.DEPTH < @P1
+V.L.DEPTH = MIN[V.L.DEPTH+@P2, @P1]
+G1 @Z[-V.L.DEPTH] F100
+@P3 = @P3 + 1
+G0 @Z@P3
+$ENDWHILE
+LL OTHER
+G2 @X[@P4+2] @I1 @J0
+M29
+%L OTHER
+G0 A1
+M29
+";
+    std::fs::write(folder.path().join("drill.cyc"), drill).expect("written");
+    let program = "\
+%L LOCAL
+G0 @X@P1
+M17
+%MAIN
+P1=4
+L CYCLE [NAME=drill.cyc @P1=P1+1 @P2=3 @P3=10 @P4=7 @P5=8]
+G18
+L CYCLE [NAME=drill.cyc, @P1=1, @P2=3, @P3=20, @P4=17, @P5=18]
+LL CYCLE [NAME=LOCAL @P1=30]
+M30
+";
+    let found = listing(program, &machine("isg"), Some(folder.path()));
+    assert_snapshot!(found, @r"
+5 rapid X7 Y8 Z10
+8 feed Z-3 F100
+10 rapid Z11
+8 feed Z-5 F100
+10 rapid Z12
+16 rapid A1
+13 arc X9 Y8 center 8,8 turns -0.5 F100
+5 rapid X18 Y20 Z17
+8 feed Y-1 F100
+10 rapid Y21
+16 rapid
+13 arc X18 Z19 center 18,18 turns -0.5 F100
+2 rapid Z30
+");
+}
+
+/// A cycle does not see the parameters of another one, nor those of its caller.
+#[test]
+fn parameters_of_cycles_are_not_seen_elsewhere() {
+    assert_snapshot!(refused("\
+%L INNER
+G0 X@P1
+M17
+%L OUTER
+LL INNER
+M17
+%MAIN
+LL CYCLE [NAME=OUTER @P1=30]
+M30
+"), @"2 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows");
+}
+
+/// "Cycles as global or local subroutines (Call L | LL CYCLE)": what is not followed.
+#[test]
+fn cycles_that_are_refused() {
+    let cases = [
+        "L CYCLE.CYC [@P1=5]",
+        "L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]",
+        "L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]",
+        "L CYCLE [NAME=a.cyc @P201=5]",
+        "L CYCLE [@P1=5]",
+        "L CYCLE [NAME=a.cyc Q=5]",
+        "G0 L CYCLE [NAME=a.cyc]",
+        "X@P1",
+        "@P1=3",
+        "@X5",
+    ];
+    let mut said = String::new();
+    for case in cases {
+        let _ = writeln!(said, "{case}: {}", refused(&format!("{case}\n")));
+    }
+    assert_snapshot!(said, @r"
+L CYCLE.CYC [@P1=5]: 1 subprogram: parameters behind the name of a subprogram
+L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]: 1 unsupported-word: SysDrillDeepHole.ecy is a cycle of the control's maker, which gwatt does not follow
+L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]: 1 unsupported-word: MODAL is a cycle behind each block that moves, which gwatt does not follow
+L CYCLE [NAME=a.cyc @P201=5]: 1 no-such-parameter: the parameters of a cycle are @P1 to @P200
+L CYCLE [@P1=5]: 1 subprogram: a cycle without its name
+L CYCLE [NAME=a.cyc Q=5]: 1 subprogram: behind CYCLE stand NAME= and the parameters @P1= and so on
+G0 L CYCLE [NAME=a.cyc]: 1 subprogram: a cycle behind other words
+X@P1: 1 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows
+@P1=3: 1 unsupported-word: @P1 belongs to the control or the PLC, and may change offsets
+@X5: 1 syntax: @ stands before P, X, Y, Z, I, J, K and S in cycles
+");
+}
+
 /// "Dwell time (G04), (#TIME)", "Reference point offset (G92)", "Zero offsets
 /// (G53/G54/...G59)", "Specifying centre point (G161/G162)", "Rotate the
 /// coordinate system in the plane (#ROTATION ON/OFF)", "Comments".
@@ -269,6 +373,44 @@ fn plain_moves_beside_what_is_more() {
 ");
 }
 
+/// "Acceleration weighting (G130/G131/G230/G231)", "Weighting of rapid traverse
+/// velocity (G129)", "Ramp time weighting (G132/G133/G134/G233)", "#VECTOR LIMIT",
+/// "#LAH", "Feed rate profiling (G08/G09/G900/G901)": they move nothing, and lower
+/// limits or smooth within them.
+#[test]
+fn dynamics_move_nothing() {
+    assert_snapshot!(moves("\
+%MAIN
+G1 F600 X1
+G130 X70 Y60
+G131=50
+G230 X40
+G231=30
+G129=20
+G132 X200 Y=150
+G133=200
+G134 = 100
+G233=50
+X2
+#VECTOR LIMIT ON [ACC=1000 VEL=500]
+#LAH ON
+#SLOPE [TYPE=STEP]
+G08 X3
+G09 X4
+G900 X5
+G901 X6
+#VECTOR LIMIT OFF
+M30
+"), @r"
+2 feed X1 F600
+12 feed X2 F600
+16 feed X3 F600
+17 feed X4 F600
+18 feed X5 F600
+19 feed X6 F600
+");
+}
+
 /// What depends on what the control alone knows, or moves in another way.
 #[test]
 fn what_is_not_followed_is_named() {
@@ -289,7 +431,6 @@ fn what_is_not_followed_is_named() {
         "X[OVERRIDE FEED_FACT=20]",
         "X1=10",
         "G80",
-        "L CYCLE.CYC [@P1=5]",
         "$IF P1",
         "$JUMP",
         "$BREAK",
@@ -299,6 +440,15 @@ fn what_is_not_followed_is_named() {
         "P1=1 XP1",
         "X[1/0]",
         "X\"MACRO\"",
+        "G133=0",
+        "G132 X200 G1",
+        "#set paramPathDynamics( 700; 700; 3000 )#",
+        "DynOvr=0.4",
+        "#KIN ID [9]",
+        "#TRAFO [KIN_ID=9]",
+        "#TOOL ORI CS",
+        "#ACS ON [0,0,1]",
+        "#CS ADD [A] [0,0,1]",
         "$FOR P1=0,1,0",
         "#ROTATION ON [ANGLE=30]\nG18",
     ];
@@ -323,7 +473,6 @@ V.G.NP[1].V.X=10: 1 unsupported-word: V.G.NP[1] belongs to the control or the PL
 X[OVERRIDE FEED_FACT=20]: 1 unsupported-word: X[OVERRIDE …] is a command to one axis or spindle, which gwatt does not follow
 X1=10: 1 unsupported-word: X1 is an axis or spindle by a name, which gwatt does not follow
 G80: 1 unknown-code: G80 is not known to this controller profile
-L CYCLE.CYC [@P1=5]: 1 unsupported-word: L … [ … ] is a cycle with parameters (@P), which gwatt does not follow
 $IF P1: 1 unknown-value: P1 has no value in this program: what it holds, only the machine knows
 $JUMP: 1 flow: $JUMP is no statement of this language
 $BREAK: 1 structure: there is no loop around this
@@ -333,6 +482,15 @@ $GOTO N77: 1 no-such-block: there is no N77 to jump to in this program
 P1=1 XP1: 1 assignment: the block assigns P1 and uses it
 X[1/0]: 1 arithmetic: a division by zero
 X"MACRO": 1 expression: a value is missing here
+G133=0: 1 knob-value: a ramp time is a percentage above 0, in a block of its own
+G132 X200 G1: 1 knob-value: a ramp time is a percentage above 0, in a block of its own
+#set paramPathDynamics( 700; 700; 3000 )#: 1 unsupported-word: #SET PARAMPATHDYNAMICS is a command of this control, which gwatt does not follow
+DynOvr=0.4: 1 unsupported-word: DynOvr is a word of TwinCAT NC I, another interpreter, which gwatt does not follow
+#KIN ID [9]: 1 unsupported-word: #KIN ID is a kinematic transformation, which gwatt does not follow
+#TRAFO [KIN_ID=9]: 1 unsupported-word: #TRAFO is a kinematic transformation, which gwatt does not follow
+#TOOL ORI CS: 1 unsupported-word: #TOOL ORI CS is a command of this control, which gwatt does not follow
+#ACS ON [0,0,1]: 1 unsupported-word: #ACS ON is another coordinate system, which gwatt does not follow
+#CS ADD [A] [0,0,1]: 1 unsupported-word: #CS ADD is a coordinate system of another mode, which gwatt does not follow
 $FOR P1=0,1,0: 1 endless: $FOR with the step 0 never ends
 #ROTATION ON [ANGLE=30]
 G18: 2 turned-system: another coordinate system while the program is turned or scaled

@@ -42,3 +42,4 @@ mod turning;
 mod pocket;
 mod borrowed;
 mod lathe_cycles;
+mod repeated;

@@ -235,10 +235,12 @@ M02
 14 feed Z-10 F200
 15 feed X50 F100
 ");
-    assert_snapshot!(refusals("G85 N0207 D7 F0.4\nG71\nG33\n", &lathe), @r"
+    assert_snapshot!(refusals("G85 N0207 D7 F0.4\nG71\nG33\nG75\nG76\n", &lathe), @r"
 1 unsupported-word: G85 N… is automatic turning (LAP), which gwatt does not follow
 2 unsupported-code: G71 is a turning or threading cycle, which gwatt does not support
 3 unsupported-code: G33 is thread cutting, which gwatt does not support
+4 unsupported-code: G75 is a chamfer or a rounded corner, which gwatt does not support
+5 unsupported-code: G76 is a chamfer or a rounded corner, which gwatt does not support
 ");
 }
 

@@ -90,6 +90,8 @@ fn expressions_have_the_values_of_the_manual() {
     assert_eq!(wrong, "");
 }
 
+/// "Absolute dimensions (G90, AC)", "Incremental dimensions (G91, IC)", "Circular
+/// interpolation" (CR, AR, CIP, TURN), "Deselect work offset (SUPA)".
 #[test]
 fn words_of_axes_and_arcs() {
     let program = "\
@@ -178,6 +180,91 @@ X1
 17 arc X20 Y10 center 10,10 turns 0.25 F600
 19 feed X1 F600
 20 feed X6 F600
+");
+}
+
+/// "Settable work offset (G54 ... G57, G505 ... G599, G53, G500, SUPA, G153)":
+/// without a parameter file all are 0. "Continuous-path mode (G64, G641 to G645,
+/// ADIS, ADISPOS)", "Exact stop mode (G60, G9)", "Programmable limits of dynamics
+/// (ACC, VELOLIM, JERKLIM)", TRAORI, TRAFOOF: no motion of their own; under TRAORI
+/// the words are those of the axes.
+#[test]
+fn offsets_path_modes_and_dynamics_move_nothing() {
+    assert_snapshot!(moves("\
+G500 G1 F1000 X1
+G54
+X2
+G505 X3
+G599 X4
+G641 ADIS=0.5 X5
+G642 X6
+G645 X7
+G60 X8
+G9 X9
+G64 X10
+ACC[X]=50 VELOLIM[X]=60 JERKLIM[X]=70
+X11
+TRAORI
+X12 A5
+TRAFOOF
+X13
+M30
+"), @r"
+1 feed X1 F1000
+3 feed X2 F1000
+4 feed X3 F1000
+5 feed X4 F1000
+6 feed X5 F1000
+7 feed X6 F1000
+8 feed X7 F1000
+9 feed X8 F1000
+10 feed X9 F1000
+11 feed X10 F1000
+13 feed X11 F1000
+15 feed X12 A5 F1000
+17 feed X13 F1000
+");
+}
+
+/// "Programmable rotation (ROT, AROT)", "Programmable scaling (SCALE, ASCALE)",
+/// "Programmable mirroring (MIRROR, AMIRROR)": the second of each adds to what is
+/// in force. TRANS X10, then 90° about Z: the axes stand at Y10 there, and X5 is
+/// (0, 5); ASCALE X2: X6 is (0, 12); AMIRROR X0: X7 is (0, -14).
+#[test]
+fn frames_are_added() {
+    assert_snapshot!(moves("\
+G0 TRANS X10
+AROT Z90
+X5
+ASCALE X2
+X6
+AMIRROR X0
+X7
+M30
+"), @r"
+3 rapid Y5
+5 rapid Y12
+7 rapid Y-14
+");
+}
+
+/// "Return jump to start of program (GOTOS)".
+#[test]
+fn a_program_begins_anew() {
+    assert_snapshot!(moves("\
+%_N_MAIN_MPF
+R1=0
+UP
+M30
+%_N_UP_SPF
+G0 X=R1
+R1=R1+1
+IF R1 < 3 GOTOS
+RET
+"), @r"
+6 rapid
+6 rapid X1
+6 rapid X2
 ");
 }
 

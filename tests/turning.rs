@@ -8,6 +8,8 @@ use insta::assert_snapshot;
 
 use crate::fanuc::moves;
 
+/// B-63604EN, "Absolute and Incremental Programming", "Diameter and Radius
+/// Programming": U, V, W and H.
 #[test]
 fn words_of_system_a_are_incremental_and_x_is_a_diameter() {
     // W and H go with U; G98 is a feed per minute, G99 one per revolution.
@@ -21,6 +23,7 @@ fn words_of_system_a_are_incremental_and_x_is_a_diameter() {
 ");
 }
 
+/// B-63604EN, "Workpiece Coordinate System (G50, G92)".
 #[test]
 fn coordinates_are_preset_and_shifted() {
     // G50 calls the place X50. Z100.; U and W change that by so much.
@@ -31,6 +34,7 @@ fn coordinates_are_preset_and_shifted() {
 ");
 }
 
+/// B-63604EN, "Constant Surface Speed Control (G96, G97)": G50 S.
 #[test]
 fn the_clamp_of_the_spindle_holds() {
     // At a radius of 10 mm 100 m/min are 1592 1/min; G50 permits 600.
@@ -42,6 +46,7 @@ fn the_clamp_of_the_spindle_holds() {
 ");
 }
 
+/// B-63604EN, "Canned Cycle (G90, G92, G94)".
 #[test]
 fn single_cycles() {
     let program = "G97 S600 M3\nG0 X60. Z2.\nG90 X50. Z-30. F0.2\nU-18. R-2.\nG94 X20. Z-1.\nZ-2. R-1.\nG92 X58. Z-20. F1.5\nG0 X80.\n";
@@ -83,6 +88,7 @@ fn single_cycles() {
     assert_eq!(in_b, expected);
 }
 
+/// B-63604EN, "Thread Cutting (G32)".
 #[test]
 fn a_thread_follows_the_spindle() {
     // Along the longer axis one lead a turn: 600/min · 2 mm; √2 of it at 45°.
@@ -184,6 +190,7 @@ fn stock_removal_with_pockets() {
 ");
 }
 
+/// B-63604EN, "Stock Removal in Facing (G72)".
 #[test]
 fn stock_removal_along_x() {
     let program = "G97 S500 M3\nG0 X44. Z2.\nG72 W2. R0.5\nG72 P10 Q20 U0.4 W0.2 F0.3\nN10 G0 Z-6.\nG1 X40. F0.1\nX20. Z-2.\nN20 X10. Z0\n";
@@ -210,6 +217,7 @@ fn stock_removal_along_x() {
 ");
 }
 
+/// B-63604EN, "Pattern Repeating (G73)".
 #[test]
 fn a_pattern_comes_nearer_in_equal_steps() {
     // 6 mm of the radius and 2 mm in Z in three divisions: 6, 3, 0 and 2, 1, 0.
@@ -232,6 +240,8 @@ fn a_pattern_comes_nearer_in_equal_steps() {
 ");
 }
 
+/// B-63604EN, "End Face Peck Drilling Cycle (G74)", "Outer Diameter/Internal Diameter
+/// Drilling Cycle (G75)".
 #[test]
 fn pecks_and_grooves() {
     let program = "G97 S500 M3\nG0 X0 Z2.\nG74 R1.\nG74 Z-10. Q5000 F0.1\nG0 X50. Z-5.\nG75 R0.5\nG75 X40. Z-9. P3000 Q2500 F0.1\n";
@@ -263,6 +273,7 @@ fn pecks_and_grooves() {
 ");
 }
 
+/// B-63604EN, "Multiple Thread Cutting Cycle (G76)".
 #[test]
 fn a_thread_in_many_passes() {
     // 1 mm high: 0.5·√n deep, at least 0.1 more each time, 0.1 left for the two
@@ -304,6 +315,7 @@ fn a_thread_in_many_passes() {
     assert!(one.contains("3 thread Z-20.0000 F1200.0000\n3 rapid X15.0000\n3 rapid Z5.0000\n"));
 }
 
+/// B-63604EN, "Canned Cycle for Drilling (G80 to G89)".
 #[test]
 fn drilling_along_z_and_x() {
     let program = "G97 S500 M3\nG0 X0 Z10.\nG83 Z-10. R-8. Q8000 F0.1 P200\nG80 G0 X50. C0\nG98 G87 X30. R-2. F100. C90.\nG80 G99\nG85 Z-5. R-8. F0.2\nG84 Z-6. R-8. F1.5\n";

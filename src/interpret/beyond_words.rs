@@ -2,11 +2,24 @@
 //! order of execution takes effect.
 
 use super::execute::{Control, Run};
-use super::expression::{Name, Value};
+use super::expression::{Fault, Name, Value};
 use super::report::Report;
 use super::statement::Unread;
+use super::transfer::{Go, Transfer};
 use crate::machine::Family;
-use crate::syntax::Block;
+use crate::source::Span;
+use crate::syntax::{Block, Issue, IssueKind};
+
+/// A note with its rule.
+pub(super) type Note = (&'static str, &'static str, Span);
+
+/// A number of a block that no reader takes.
+pub(super) fn not_finite(block: &Block) -> Option<Fault> {
+    let huge = |issue: &&Issue| issue.kind == IssueKind::NotFinite;
+    let issue = block.issues.iter().find(huge)?;
+    let (message, help) = ("a number beyond all reason", "write a smaller one");
+    Some(Fault::new("syntax", message, help, issue.span))
+}
 
 impl Control<'_> {
     /// Reads a block that is more than plain words: values that are worked out,
@@ -24,9 +37,21 @@ impl Control<'_> {
         if self.osp.is_some() {
             return self.osp_words(block, report);
         }
+        if self.run > 1
+            && let Some(transfers) = self.replay(block, report)
+        {
+            return transfers;
+        }
         let text = report.text;
-        let statement = match self.statement(text, block) {
-            Ok(statement) => statement,
+        let record = self.traces.wants(self.text, report.line, self.run);
+        let statement = match self.statement(text, block, record) {
+            Ok(mut statement) => {
+                if record {
+                    let trace = statement.trace.take();
+                    self.traces.keep(self.text, report.line, trace);
+                }
+                statement
+            }
             Err(Unread::Fault(fault)) => {
                 report
                     .error(fault.rule, fault.message, fault.span)
@@ -60,30 +85,71 @@ impl Control<'_> {
             report.note_once("alarm-not-raised", message, span);
         }
         for (name, value, span) in &statement.assignments {
-            if *name == Name::Number(3000) && self.raises_alarm(*value) {
-                let message = "#3000 raises an alarm: the program ends here";
-                report.note_once("alarm", message, *span);
-                self.ended = true;
+            if !self.take_assignment(name, *value, *span, report) {
                 block.words.clear();
                 return false;
-            }
-            if let Err(reason) = self.assign(name, *value) {
-                report
-                    .error(
-                        "assignment",
-                        format!("this cannot be assigned: {reason}"),
-                        *span,
-                    )
-                    .help("use another parameter");
             }
         }
         self.transfer = statement.transfer;
         self.transfer.is_some()
     }
 
+    /// Assigns a parameter; false when that ends the program.
+    pub(super) fn take_assignment(
+        &mut self,
+        name: &Name<'_>,
+        value: Value,
+        span: Span,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        if *name == Name::Number(3000) && self.raises_alarm(value) {
+            let message = "#3000 raises an alarm: the program ends here";
+            report.note_once("alarm", message, span);
+            self.ended = true;
+            return false;
+        }
+        if let Err(reason) = self.assign(name, value) {
+            let message = format!("this cannot be assigned: {reason}");
+            report
+                .error("assignment", message, span)
+                .help("use another parameter");
+        }
+        true
+    }
+
     fn raises_alarm(&self, value: Value) -> bool {
         self.machine.controller.language.family != Family::Rs274
             && value.is_some_and(|it| it != 0.0)
+    }
+
+    /// Takes what the reading of a block of the ISG kernel or of OSP came to. True
+    /// when the program does not go on at the next line.
+    pub(super) fn take_reading(
+        &mut self,
+        read: Result<Option<Go>, Fault>,
+        notes: Vec<Note>,
+        block: &mut Block,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        for (rule, message, span) in notes {
+            report.note_once(rule, message, span);
+        }
+        match read {
+            Ok(go) => {
+                let transfers = go.is_some();
+                self.transfer = go.map(Transfer::Go);
+                transfers
+            }
+            Err(fault) => {
+                report
+                    .error(fault.rule, fault.message, fault.span)
+                    .help(fault.help);
+                // Nothing of it is executed.
+                block.words.clear();
+                block.issues.clear();
+                false
+            }
+        }
     }
 
     /// Takes an O number; true when it ends the program.

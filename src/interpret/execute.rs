@@ -22,6 +22,7 @@ use super::special::Special;
 use super::spindle_speed::SpindleMode;
 use super::spindle_told::Told;
 use super::state_words::{Saved, Switches};
+use super::statement::Traces;
 use super::tools::Tools;
 use super::transfer::Transfer;
 use super::turning::Turning;
@@ -87,6 +88,8 @@ pub(super) struct Control<'m> {
     /// Which text it stands in; 0 is the program itself.
     pub(super) text: u16,
     pub(super) parameters: Parameters,
+    /// Lines that run again and again.
+    pub(super) traces: Traces,
     pub(super) transfer: Option<Transfer>,
     /// A value of the block shows the motion word or the F in force.
     pub(super) reads_state: Cell<bool>,
@@ -164,6 +167,7 @@ impl<'m> Interpreter<'m> {
             run: 1,
             text: 0,
             parameters: Parameters::new(machine.controller.language.family),
+            traces: Traces::default(),
             transfer: None,
             reads_state: Cell::new(false),
             siemens: (machine.controller.language.family == Family::Siemens)
@@ -338,10 +342,7 @@ impl<'m> Interpreter<'m> {
 impl Control<'_> {
     /// Whether the block is deleted, a tape mark, or behind the end.
     fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
-        let all = Span {
-            start: 0,
-            end: block.text_end,
-        };
+        let all = Span::new(0, block.text_end as usize);
         if self.ended {
             if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
                 report.note_once(

@@ -30,6 +30,7 @@ mod motion;
 mod moves;
 mod named_parameters;
 mod offsets;
+mod operator;
 mod osp;
 mod parameter_file;
 mod parameters;

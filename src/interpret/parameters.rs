@@ -101,6 +101,16 @@ impl Parameters {
         }
     }
 
+    /// What a number of the subroutine that runs holds; `None` for others.
+    fn local(&self, number: u32) -> Option<Value> {
+        let value = self.locals.get(number as usize).copied()?;
+        (1..self.own).contains(&number).then(|| {
+            // Without null it is 0.
+            let rs274 = self.own < LOCALS as u32;
+            if rs274 { value.or(Some(0.0)) } else { value }
+        })
+    }
+
     /// A value that was assigned; `None` if none was.
     pub(super) fn number(&self, number: u32) -> Option<Value> {
         match self.locals.get(number as usize) {
@@ -150,6 +160,9 @@ impl Parameters {
 
 impl Variables for Control<'_> {
     fn numbered(&self, number: u32) -> Read {
+        if let Some(value) = self.parameters.local(number) {
+            return Read::Value(value);
+        }
         if self.fanuc() {
             return self.fanuc_variable(number);
         }

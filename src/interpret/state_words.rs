@@ -144,6 +144,14 @@ impl Control<'_> {
                     run.words.take(letter);
                 }
                 self.input_unknown = true;
+                if self.is_on_way_back() {
+                    let message = "M66 between G40 and the move that takes the tool back: \
+                                   where that begins, LinuxCNC and its rs274 do not agree";
+                    run.report
+                        .error("compensation", message, span)
+                        .help("write a move in the plane behind G40 first");
+                    return;
+                }
                 both[0].is_some() != both[1].is_some()
             }
             _ => {

@@ -35,9 +35,10 @@ pub fn machine() -> Machine {
 pub fn run(
     program: &Path,
     subs: &[PathBuf],
+    table: Option<&Path>,
     machine: &Machine,
 ) -> Result<Vec<Event>, (String, String)> {
-    let tools = std::env::var_os("GWATT_CONFORMANCE_TABLE").map(|table| {
+    let tools = table.map(|table| {
         let bytes = std::fs::read(table).expect("a tool table");
         ToolTable::parse(&bytes).expect("a tool table").into()
     });

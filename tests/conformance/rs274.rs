@@ -1,8 +1,10 @@
 //! LinuxCNC's stand-alone interpreter, where it is installed.
 
+use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use super::canon;
@@ -20,6 +22,9 @@ pub enum Run {
     Unclear(String),
 }
 
+/// It failed and said nothing.
+const SILENT: &str = "without a word";
+
 /// A program that never ends is given up after this.
 const PATIENCE: Duration = Duration::from_mins(1);
 const PRINTED_MAX: u64 = 1 << 28;
@@ -34,11 +39,43 @@ pub fn installed() -> bool {
     quiet.status().is_ok()
 }
 
-/// Runs a program; `table` is copied, since `rs274` may write it.
+/// A tool table with its lengths in inches: `rs274` takes them to be, and gwatt
+/// takes them in the unit of the machine.
+fn in_inches(table: &str) -> String {
+    let mut lines = String::new();
+    for line in table.lines() {
+        let (words, comment) = line.split_once(';').unwrap_or((line, ""));
+        for word in words.split_whitespace() {
+            let length = word
+                .strip_prefix(['X', 'Y', 'Z', 'U', 'V', 'W', 'D'])
+                .and_then(|number| number.parse::<f64>().ok());
+            let _ = match length {
+                Some(mm) => write!(lines, "{}{} ", &word[..1], mm / 25.4),
+                None => write!(lines, "{word} "),
+            };
+        }
+        let _ = writeln!(lines, ";{comment}");
+    }
+    lines
+}
+
+/// Runs a program, one at a time. Where `rs274` ends with neither a result nor a
+/// message it has not judged the program, and runs again.
 pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _one = ONE_AT_A_TIME.lock();
+    match attempt(program, subs, table) {
+        Run::Failed(message) if message == SILENT => attempt(program, subs, table),
+        found => found,
+    }
+}
+
+/// `table` is copied, since `rs274` may write it.
+fn attempt(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    fs::copy(table, at("tool.tbl")).expect("a tool table");
+    let table = fs::read_to_string(table).expect("a tool table");
+    fs::write(at("tool.tbl"), in_inches(&table)).expect("a tool table");
     File::create(at("par.var")).expect("a file");
     let paths: Vec<String> = subs.iter().map(|path| path.display().to_string()).collect();
     let ini = format!(
@@ -85,7 +122,7 @@ pub fn run(program: &Path, subs: &[PathBuf], table: &Path) -> Run {
         .lines()
         .find(|line| !line.trim().is_empty() && *line != "executing");
     if !status.success() && !said.contains(NO_END) {
-        return Run::Failed(message.unwrap_or("without a word").to_owned());
+        return Run::Failed(message.unwrap_or(SILENT).to_owned());
     }
     match canon::events(&read("out")) {
         Ok(events) if status.success() => Run::Events(events),

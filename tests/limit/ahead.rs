@@ -220,17 +220,20 @@ fn a_thread_between_feeds_and_its_neighbours_get_the_robust_bound() {
     assert_eq!(robust, [true, true, true, true, true, false]);
 }
 
-/// 0.001 inch until a program says otherwise; G64 alone sets none.
+/// A start-up code's tolerance counts until the program gives one.
 #[test]
-fn linuxcnc_rounds_corners_with_a_tolerance_at_power_on() {
-    let durations = |words: &str| -> Vec<f64> {
+fn corners_are_rounded_with_the_tolerance_of_power_on() {
+    let durations = |tolerance_mm: f64, words: &str| -> Vec<f64> {
+        let mut machine = LINUXCNC.machine();
+        assert_eq!(machine.controller.language.power_on_tolerance_mm, 0.0);
+        machine.controller.language.power_on_tolerance_mm = tolerance_mm;
         let program = format!("G21 G90 {words}\nG1 X20 F6000\nG1 Y20\nG1 X0\nM2\n");
-        let rows = report(LINUXCNC, &program);
+        let rows = rows(&machine, LINUXCNC.options, &program);
         rows.iter().map(|row| row.duration_s).collect()
     };
-    assert_eq!(durations(""), durations("G64 P0.0254 Q0"));
-    let [with, without] = [durations(""), durations("G64")].map(|it| it.iter().sum::<f64>());
-    assert!(without < 0.99 * with, "{without} s, {with} s");
+    assert_eq!(durations(0.0254, ""), durations(0.0, "G64 P0.0254 Q0"));
+    assert_eq!(durations(0.0, ""), durations(0.0254, "G64"));
+    assert_ne!(durations(0.0, ""), durations(0.0254, ""));
 }
 
 /// Half of a blend is the time of the lines that were put together before it,

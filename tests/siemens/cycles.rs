@@ -117,6 +117,7 @@ Y6
 ");
 }
 
+/// "Modal call (MCALL)" of a subprogram, at the places of HOLES2.
 #[test]
 fn a_pattern_calls_a_subprogram_at_each_place() {
     let program = "\

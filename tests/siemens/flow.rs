@@ -142,6 +142,7 @@ M17
 ");
 }
 
+/// "Subprogram technique": PROC, VAR parameters, SAVE, RET, in files of their own.
 #[test]
 fn subprograms_in_files_of_their_own() {
     let folder = tempfile::tempdir().unwrap();

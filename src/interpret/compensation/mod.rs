@@ -189,6 +189,32 @@ impl Interpreter<'_> {
 }
 
 impl Control<'_> {
+    /// LinuxCNC asks the machine where it is behind a tool change: what was left
+    /// of a compensation that G40 has switched off is forgotten, and the axes are
+    /// where they are, beside the path.
+    pub(super) fn forget_way_back(&mut self) {
+        let Some(compensation) = &mut self.compensation else {
+            return;
+        };
+        if compensation.state != State::Leaving
+            || compensation.style.lead != CompensationLead::Beside
+        {
+            return;
+        }
+        compensation.state = State::Off;
+        let places = compensation.plane.into_iter().zip(compensation.hold.tool);
+        for (axis, at) in places {
+            self.position.at[axis] = at;
+        }
+    }
+
+    /// Whether the tool is still beside the path of a compensation that was
+    /// switched off.
+    pub(super) fn is_on_way_back(&self) -> bool {
+        let compensation = self.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.state == State::Leaving)
+    }
+
     /// Sends what a block gave through the compensation.
     #[cold]
     pub(super) fn compensate(&mut self, run: &mut Run<'_, '_>, before: usize, errors: u64) {

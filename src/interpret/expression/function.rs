@@ -5,7 +5,7 @@ const ROUND_MAX: f64 = 2_147_483_647.0;
 
 /// A function by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Function {
+pub(in crate::interpret) enum Function {
     Abs,
     Acos,
     Asin,

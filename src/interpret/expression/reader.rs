@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 
 use super::function::Function;
-use super::operator::Operator;
+use super::operator;
+use super::tape::{Op, Tape, parameter_number};
 use super::value::{Fault, Read, Value, Variables};
 use crate::diagnostic::excerpt;
+use crate::interpret::operator::Operator;
 use crate::source::Span;
 
 /// Brackets and signs inside one another.
@@ -22,6 +24,8 @@ const EXACT_DIGITS: usize = 15;
 pub(in crate::interpret) struct Reader<'t> {
     pub(in crate::interpret) text: &'t [u8],
     pub(in crate::interpret) at: usize,
+    /// What is worked out on the way, where that is wanted.
+    pub(in crate::interpret) tape: Tape,
     depth: u32,
 }
 
@@ -52,7 +56,12 @@ type Outcome<T> = Result<T, Fault>;
 
 impl<'t> Reader<'t> {
     pub(in crate::interpret) fn new(text: &'t [u8], at: usize) -> Self {
-        Self { text, at, depth: 0 }
+        Self {
+            text,
+            at,
+            tape: Tape::default(),
+            depth: 0,
+        }
     }
 
     /// The next byte behind blanks and comments, upper case; it stays.
@@ -152,13 +161,19 @@ impl<'t> Reader<'t> {
             Some(b'#') => self.parameter(variables),
             Some(b'-') => {
                 self.at += 1;
-                Ok(self.value(variables)?.map(|value| -value))
+                let value = self.value(variables)?;
+                self.tape.push(Op::Negate);
+                Ok(value.map(|value| -value))
             }
             Some(b'+') => {
                 self.at += 1;
                 self.value(variables)
             }
-            Some(b'0'..=b'9' | b'.') => self.number(!variables.fanuc()).map(Some),
+            Some(b'0'..=b'9' | b'.') => {
+                let number = self.number(!variables.fanuc())?;
+                self.tape.push(Op::Number(number));
+                Ok(Some(number))
+            }
             Some(b'A'..=b'Z') => self.function(variables).map(Some),
             _ => {
                 let start = self.at;
@@ -209,10 +224,10 @@ impl<'t> Reader<'t> {
                 return Ok(left);
             }
             let ahead = self.ahead();
-            let Some((operator, length)) = Operator::read(&ahead.bytes) else {
+            let Some((found, length)) = operator::read(&ahead.bytes, fanuc) else {
                 return Ok(left);
             };
-            let precedence = operator.precedence(fanuc);
+            let precedence = operator::precedence(found);
             if precedence <= least {
                 return Ok(left);
             }
@@ -221,9 +236,9 @@ impl<'t> Reader<'t> {
             self.depth += 1;
             let right = self.operators(precedence, variables)?;
             self.depth -= 1;
-            let result = operator
-                .apply(left, right, fanuc)
+            let result = operator::apply(found, left, right, fanuc)
                 .map_err(|wrong| self.impossible(wrong, start))?;
+            self.tape.push(Op::Apply(found));
             left = Some(self.finite(result, start)?);
         }
     }
@@ -265,11 +280,13 @@ impl<'t> Reader<'t> {
     /// `#5`, `##5`, `#[…]` or `#<name>` and what it holds.
     fn parameter(&mut self, variables: &impl Variables) -> Outcome<Value> {
         let start = self.at;
+        let from = self.tape.ops.len();
         let name = self.parameter_name(variables)?;
         let read = match &name {
             Name::Number(number) => variables.numbered(*number),
             Name::Text(text) => variables.named(text),
         };
+        self.tape.load(from, &name);
         match read {
             Read::Value(value) => Ok(value),
             Read::Unknown(reason) => Err(self.fault(
@@ -300,14 +317,14 @@ impl<'t> Reader<'t> {
         if self.peek() == Some(b'<') {
             return self.angle_name().map(Name::Text);
         }
-        let value = self.value(variables)?.unwrap_or(0.0);
-        let number = value.round();
-        if (value - number).abs() > 1e-4 || !(0.0..=1e9).contains(&number) {
+        let value = self.value(variables)?;
+        let Some(number) = parameter_number(value) else {
+            let value = value.unwrap_or(0.0);
             let message = format!("{value} is not the number of a parameter");
             let help = "parameters have whole positive numbers";
             return Err(self.fault("no-such-parameter", message, help, start));
-        }
-        Ok(Name::Number(number as u32))
+        };
+        Ok(Name::Number(number))
     }
 
     /// `<name>`: lower case, blanks left out.
@@ -366,20 +383,27 @@ impl<'t> Reader<'t> {
             let help = "close each bracket, and write operators between values";
             return Err(self.fault("expression", message, help, self.at));
         }
-        let result = match (function, second) {
-            (Function::Power, Some(exponent)) => {
-                Operator::Power.apply(Some(x), Some(exponent), fanuc)
+        let (result, op) = match (function, second) {
+            (Function::Power, Some(exponent)) => (
+                operator::apply(Operator::Power, Some(x), Some(exponent), fanuc),
+                Op::Apply(Operator::Power),
+            ),
+            (Function::Atan, Some(across)) => (Ok(libm::atan2(x, across).to_degrees()), Op::Angle),
+            (_, Some(_)) => {
+                let wrong = "a second argument of a function that takes one";
+                return Err(self.impossible(wrong, start));
             }
-            (Function::Atan, Some(across)) => Ok(libm::atan2(x, across).to_degrees()),
-            (_, Some(_)) => Err("a second argument of a function that takes one"),
             // ATAN[y]/[x] is one function of two values.
             (Function::Atan, None) if self.slash_bracket() => {
                 let across = self.brackets(variables)?.unwrap_or(0.0);
-                Ok(libm::atan2(x, across).to_degrees())
+                (Ok(libm::atan2(x, across).to_degrees()), Op::Angle)
             }
-            (Function::Atan, None) if !fanuc => Err("ATAN[…] without /[…] behind it"),
-            (function, None) => function.apply(x, fanuc),
+            (Function::Atan, None) if !fanuc => {
+                return Err(self.impossible("ATAN[…] without /[…] behind it", start));
+            }
+            (function, None) => (function.apply(x, fanuc), Op::Of(function)),
         };
+        self.tape.push(op);
         let result = result.map_err(|wrong| self.impossible(wrong, start))?;
         self.finite(result, start)
     }
@@ -397,6 +421,8 @@ impl<'t> Reader<'t> {
     /// `EXISTS[#<name>]`: whether the parameter has a value.
     fn exists(&mut self, variables: &impl Variables) -> Outcome<f64> {
         let start = self.at;
+        // It asks whether there is a value, not for one.
+        self.tape.lost = true;
         let open = self.take(b'[');
         self.peek();
         let name = self.parameter_name(variables)?;

@@ -1,5 +1,6 @@
 //! A place in the text of a block, which moves on as the text is understood.
 
+use super::Ident;
 use crate::diagnostic::excerpt;
 use crate::interpret::expression::Fault;
 use crate::source::Span;
@@ -74,22 +75,28 @@ impl<'t> Cursor<'t> {
     }
 
     /// The name that is next, upper case; empty where none begins. It stays.
-    pub(in crate::interpret) fn name(&mut self) -> String {
+    pub(in crate::interpret) fn name(&mut self) -> Ident {
         let marks = self.lexis == Lexis::Sinumerik;
         let begins = |byte: u8| byte.is_ascii_alphabetic() || marks && matches!(byte, b'_' | b'$');
         let begins = self.peek().is_some_and(begins);
         if !begins {
-            return String::new();
+            return Ident::new(&[]);
         }
         let rest = self.text.get(self.at..).unwrap_or_default();
         let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
         let length = 1 + rest.iter().skip(1).take_while(inside).count();
-        String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).to_ascii_uppercase()
+        Ident::new(rest.get(..length).unwrap_or_default())
     }
 
     /// Takes a name if it is next, as a whole.
     pub(in crate::interpret) fn take_name(&mut self, name: &str) -> bool {
-        let next = self.name() == name;
+        self.peek();
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let inside = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+        let next = rest
+            .get(..name.len())
+            .is_some_and(|text| text.eq_ignore_ascii_case(name.as_bytes()))
+            && !rest.get(name.len()).is_some_and(inside);
         self.at += if next { name.len() } else { 0 };
         next
     }
@@ -110,11 +117,15 @@ impl<'t> Cursor<'t> {
             self.at += 1;
             self.digits();
         }
-        let mut digits = self.since(start);
         let exponent = self.text.get(self.at..self.at + 2);
-        if self.lexis == Lexis::Sinumerik
-            && exponent.is_some_and(|letters| letters.eq_ignore_ascii_case(b"EX"))
-        {
+        let raised = self.lexis == Lexis::Sinumerik
+            && exponent.is_some_and(|letters| letters.eq_ignore_ascii_case(b"EX"));
+        let digits = self.text.get(start..self.at).unwrap_or_default();
+        if !raised && let Some(value) = exact_decimal(digits) {
+            return Ok(value);
+        }
+        let mut digits = self.since(start);
+        if raised {
             self.at += 2;
             let from = self.at;
             if matches!(self.text.get(self.at), Some(b'+' | b'-')) {
@@ -215,6 +226,13 @@ impl<'t> Cursor<'t> {
         Fault::new(rule, message, help, self.span(start))
     }
 
+    /// What changes the motion in a way that is not followed.
+    pub(in crate::interpret) fn refused(&self, name: &str, reason: &str, start: usize) -> Fault {
+        let message = format!("{name} is {reason}, which gwatt does not follow");
+        let help = "nothing is estimated for a program with motion that is not understood";
+        self.fault("unsupported-word", message, help, start)
+    }
+
     /// What stands from `start` to the place; a byte at least.
     pub(in crate::interpret) fn span(&self, start: usize) -> Span {
         let end = self.end().max(start + 1).min(self.text.len());
@@ -226,4 +244,23 @@ impl<'t> Cursor<'t> {
         let before = self.text.get(..self.at).unwrap_or(self.text);
         before.trim_ascii_end().len()
     }
+}
+
+/// A number of so few digits that a division of whole numbers gives it exactly as
+/// the nearest one.
+fn exact_decimal(text: &[u8]) -> Option<f64> {
+    let (mut whole, mut scale, mut behind) = (0_u64, 1_u64, false);
+    if text.len() < 2 && !text.first().is_some_and(u8::is_ascii_digit) || text.len() > 16 {
+        return None;
+    }
+    for byte in text {
+        match byte {
+            b'0'..=b'9' => {
+                whole = whole * 10 + u64::from(byte - b'0');
+                scale *= if behind { 10 } else { 1 };
+            }
+            _ => behind = true,
+        }
+    }
+    (whole < 1 << 53).then(|| whole as f64 / scale as f64)
 }

@@ -3,12 +3,16 @@
 
 mod cursor;
 mod function;
+mod ident;
 mod operator;
+mod variables;
 
 pub(super) use cursor::{Cursor, Lexis, Outcome};
+pub(super) use ident::Ident;
+pub(super) use variables::{Kept, Uses, keep};
 
 use self::function::Function;
-use self::operator::operator;
+use self::operator::{RULES, operator, priority};
 
 /// Brackets and signs inside one another.
 const DEPTH_MAX: u32 = 64;
@@ -57,14 +61,14 @@ fn deeper(
 fn operators<N: Names + ?Sized>(cursor: &mut Cursor<'_>, names: &mut N, least: u8) -> Outcome<f64> {
     let mut left = unary(cursor, names)?;
     while let Some((operator, length)) = operator(cursor, names.style()) {
-        if operator.priority() <= least {
+        if priority(operator) <= least {
             break;
         }
         let start = cursor.at;
         cursor.at += length;
-        let right = operators(cursor, names, operator.priority())?;
+        let right = operators(cursor, names, priority(operator))?;
         left = operator
-            .apply(left, right)
+            .apply(left, right, &RULES)
             .map_err(|wrong| impossible(cursor, wrong, start))?;
         left = finite(cursor, left, start)?;
     }

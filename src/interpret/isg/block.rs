@@ -1,12 +1,13 @@
 //! A block, word by word ("Structure of NC blocks", "Program structure").
 
-use super::{Isg, Note};
+use super::Isg;
+use crate::interpret::beyond_words::{Note, not_finite};
 use crate::interpret::direct::is_direct;
 use crate::interpret::execute::Control;
-use crate::interpret::formula::{Cursor, Lexis, Outcome};
+use crate::interpret::formula::{Cursor, Lexis, Outcome, Uses};
 use crate::interpret::report::Report;
-use crate::interpret::transfer::{Go, Transfer};
-use crate::syntax::{Block, IssueKind, Word};
+use crate::interpret::transfer::Go;
+use crate::syntax::{Block, Word};
 
 /// A block while it is read.
 pub(super) struct Reading<'c, 'm, 't> {
@@ -16,9 +17,7 @@ pub(super) struct Reading<'c, 'm, 't> {
     pub(super) notes: Vec<Note>,
     /// Text and line.
     pub(super) place: (u16, u64),
-    /// Variables that the block has read and assigned so far.
-    pub(super) read: Vec<String>,
-    pub(super) assigned: Vec<String>,
+    pub(super) uses: Uses,
     /// G4 stands in the block.
     pub(super) dwells: bool,
 }
@@ -43,30 +42,13 @@ impl Control<'_> {
             cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Comments),
             notes: Vec::new(),
             place: (self.text, report.line),
-            read: Vec::new(),
-            assigned: Vec::new(),
+            uses: Uses::default(),
             dwells: false,
         };
         let read = reading.read(block);
-        for (rule, message, span) in reading.notes {
-            report.note_once(rule, message, span);
-        }
-        let mut transfers = false;
-        match read {
-            Ok(go) => {
-                transfers = go.is_some();
-                self.transfer = go.map(Transfer::Go);
-                self.begun |= transfers || !block.words.is_empty();
-            }
-            Err(fault) => {
-                report
-                    .error(fault.rule, fault.message, fault.span)
-                    .help(fault.help);
-                // Nothing of it is executed.
-                block.words.clear();
-                block.issues.clear();
-            }
-        }
+        let notes = reading.notes;
+        self.begun |= matches!(&read, Ok(go) if go.is_some() || !block.words.is_empty());
+        let transfers = self.take_reading(read, notes, block, report);
         // What stands in a comment or a declaration is no move.
         self.direct = is_direct(self.machine) && !state.comments && !state.declares;
         let system = state.systems.in_force();
@@ -80,12 +62,8 @@ impl Reading<'_, '_, '_> {
     /// Reads the block: its words get their values. Gives where the program
     /// goes on, if that is not the next line.
     fn read(&mut self, block: &mut Block) -> Outcome<Option<Go>> {
-        let huge = |issue: &&crate::syntax::Issue| issue.kind == IssueKind::NotFinite;
-        if let Some(issue) = block.issues.iter().find(huge) {
-            let (message, help) = ("a number beyond all reason", "write a smaller one");
-            return Err(crate::interpret::expression::Fault::new(
-                "syntax", message, help, issue.span,
-            ));
+        if let Some(fault) = not_finite(block) {
+            return Err(fault);
         }
         let tape = block.tape;
         block.words.clear();
@@ -191,17 +169,6 @@ impl Reading<'_, '_, '_> {
     pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {
         let span = self.cursor.span(start);
         self.notes.push((rule, message, span));
-    }
-
-    pub(super) fn refused(
-        &self,
-        name: &str,
-        reason: &str,
-        start: usize,
-    ) -> crate::interpret::expression::Fault {
-        let message = format!("{name} is {reason}, which gwatt does not follow");
-        let help = "nothing is estimated for a program with motion that is not understood";
-        self.cursor.fault("unsupported-word", message, help, start)
     }
 }
 

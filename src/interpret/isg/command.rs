@@ -136,11 +136,11 @@ impl Reading<'_, '_, '_> {
             Some(Kind::Passes) => {}
             Some(Kind::Smooths) => self.note("smoothing", SMOOTHS, start),
             Some(Kind::Refused(reason)) => {
-                return Err(self.refused(&format!("#{name}"), reason, start));
+                return Err(self.cursor.refused(&format!("#{name}"), reason, start));
             }
             None => {
                 let reason = "a command of this control";
-                return Err(self.refused(&format!("#{name}"), reason, start));
+                return Err(self.cursor.refused(&format!("#{name}"), reason, start));
             }
         }
         // The texts of messages hold any bytes.
@@ -153,7 +153,7 @@ impl Reading<'_, '_, '_> {
     fn hsc(&mut self, start: usize) -> Outcome<()> {
         let values = self.named_values(["OPMODE", "CONTERROR"])?;
         if values.first().copied().flatten().unwrap_or(1.0) != 1.0 {
-            return Err(self.refused("#HSC ON [OPMODE=2]", "a spline", start));
+            return Err(self.cursor.refused("#HSC ON [OPMODE=2]", "a spline", start));
         }
         self.note("smoothing", SMOOTHS, start);
         Ok(())
@@ -185,7 +185,7 @@ impl Reading<'_, '_, '_> {
             let start = self.cursor.at;
             let word = self.cursor.name();
             let bare = word.trim_end_matches(|digit: char| digit.is_ascii_digit());
-            let whole = names.iter().position(|name| *name == word);
+            let whole = names.iter().position(|name| word == *name);
             let place = whole.or_else(|| names.iter().position(|name| *name == bare));
             self.cursor.at += if whole.is_some() {
                 word.len()

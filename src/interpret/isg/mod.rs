@@ -6,7 +6,9 @@
 
 mod block;
 mod command;
+mod cycle;
 mod flow_words;
+mod ramp;
 mod rotation;
 mod system;
 mod variable;
@@ -16,19 +18,19 @@ pub(super) use block::is_local;
 
 use std::collections::HashMap;
 
-use crate::source::Span;
+use super::formula::Kept;
 use crate::syntax::Block;
-
-/// Variables that a program may keep.
-const COUNT_MAX: usize = 100_000;
 
 /// What a control of this language keeps besides the modal state.
 #[derive(Debug, Default)]
 pub(super) struct Isg {
     /// P parameters, V.P. and V.S. by their names with indices.
-    globals: HashMap<String, f64>,
-    /// V.L. and V.CYC. of the programs that run: seen in those that they call.
-    levels: Vec<HashMap<String, f64>>,
+    globals: Kept,
+    /// V.L. and V.CYC. of the programs that run, seen in those that they call; and
+    /// @P, seen in their cycle only.
+    levels: Vec<Kept>,
+    /// @P of the cycle that is called next.
+    arguments: Kept,
     /// Between #VAR and #ENDVAR.
     declares: bool,
     /// Between #COMMENT BEGIN and #COMMENT END.
@@ -69,8 +71,8 @@ impl Isg {
     /// words.
     pub(super) fn is_beyond_words(&self, block: &Block) -> bool {
         let special = |letter: u8, value: f64| match letter {
-            b'L' | b'P' | b'=' => true,
-            b'G' => value == 4.0,
+            b'L' | b'P' | b'=' | b'@' => true,
+            b'G' => value == 4.0 || ramp::is_ramp(value),
             b'M' => [2.0, 17.0, 29.0, 30.0].contains(&value),
             _ => false,
         };
@@ -85,7 +87,7 @@ impl Isg {
 
     /// A subprogram begins.
     pub(super) fn enter(&mut self) {
-        self.levels.push(HashMap::new());
+        self.levels.push(std::mem::take(&mut self.arguments));
     }
 
     /// A subprogram has ended.
@@ -101,6 +103,3 @@ impl Isg {
         self.levels.len() > 1
     }
 }
-
-/// A note with its rule.
-type Note = (&'static str, &'static str, Span);

@@ -1,9 +1,9 @@
 //! P parameters and variables ("Parameters and parameter calculation (P)",
 //! "Programming variables (V.)", "Self-defined variables (#VAR, #ENDVAR)").
 
-use super::COUNT_MAX;
 use super::block::Reading;
-use crate::interpret::formula::{Cursor, Names, Outcome, Style, expression};
+use super::cycle::parameter_name;
+use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
 
 /// Letters P in a row: each asks for the value of the next.
 const INDIRECT_MAX: usize = 8;
@@ -22,41 +22,34 @@ impl Names for Reading<'_, '_, '_> {
         let Some(name) = self.variable_name(cursor)? else {
             return Ok(None);
         };
-        if self.assigned.contains(&name) {
-            return Err(both(cursor, &name, start));
-        }
         let Some(value) = self.value(&name) else {
             let reason = match name.get(..4) {
                 Some("V.E.") => "comes from the PLC",
                 Some("V.G." | "V.A.") => "is kept by the control",
+                _ if name.starts_with('@') => "is given by no call of a cycle",
                 _ => "has no value in this program",
             };
             let message = format!("{name} {reason}: what it holds, only the machine knows");
             let help = "give a P parameter or a V.P. variable its value in the program";
             return Err(cursor.fault("unknown-value", message, help, start));
         };
-        self.read.push(name);
+        self.uses.reads(name, cursor, start)?;
         Ok(Some(value))
     }
-}
-
-fn both(cursor: &Cursor<'_>, name: &str, start: usize) -> crate::interpret::expression::Fault {
-    let message = format!("the block assigns {name} and uses it");
-    let help = "write two blocks: which comes first is not told";
-    cursor.fault("assignment", message, help, start)
 }
 
 impl Reading<'_, '_, '_> {
     /// Takes the name of a variable with its indices, upper case but for what is
     /// free in it: `P10`, `P[10]` and `PP2` by their number, `V.P.NAME[1]`.
-    pub(super) fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<String>> {
+    pub(super) fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Ident>> {
         cursor.peek();
         let name = match (cursor.byte(0), cursor.byte(1)) {
             (b'P', b'0'..=b'9' | b'P' | b'[') => {
                 cursor.at += 1;
-                format!("P{}", self.index_of_p(cursor)?)
+                Ident::of(format_args!("P{}", self.index_of_p(cursor)?))
             }
             (b'V', b'.') => free_name(cursor),
+            (b'@', b'P') => return parameter_name(cursor).map(Some),
             _ => return Ok(None),
         };
         let mut name = name;
@@ -67,7 +60,7 @@ impl Reading<'_, '_, '_> {
             cursor.at += 1;
             let index = self.index(cursor)?;
             cursor.expect(b']')?;
-            name = format!("{name}[{index}]");
+            name = Ident::of(format_args!("{name}[{index}]"));
         }
         Ok(Some(name))
     }
@@ -109,6 +102,9 @@ impl Reading<'_, '_, '_> {
     }
 
     fn value(&self, name: &str) -> Option<f64> {
+        if name.starts_with('@') {
+            return self.state.levels.last()?.get(name).copied();
+        }
         if is_local(name) {
             let mut levels = self.state.levels.iter().rev();
             return levels.find_map(|level| level.get(name)).copied();
@@ -117,23 +113,21 @@ impl Reading<'_, '_, '_> {
     }
 
     /// Gives a variable its value; V.L. where it was made, or here.
-    pub(super) fn set(&mut self, name: &str, value: f64, start: usize) -> Outcome<()> {
-        let kept = if is_local(name) {
+    pub(super) fn set(&mut self, name: &Ident, value: f64, start: usize) -> Outcome<()> {
+        let kept = if name.starts_with('@') {
+            self.state.levels.last_mut()
+        } else if is_local(name) {
             let levels = &mut self.state.levels;
-            let made = levels.iter().rposition(|level| level.contains_key(name));
+            let made = levels
+                .iter()
+                .rposition(|level| level.contains_key(name.as_str()));
             let at = made.unwrap_or(levels.len().saturating_sub(1));
             levels.get_mut(at)
         } else {
             Some(&mut self.state.globals)
         };
         let Some(kept) = kept else { return Ok(()) };
-        if kept.len() >= COUNT_MAX && !kept.contains_key(name) {
-            let message = "more than 100000 variables";
-            let help = "look for a loop that makes them";
-            return Err(self.cursor.fault("assignment", message, help, start));
-        }
-        kept.insert(name.to_owned(), value);
-        Ok(())
+        keep(kept, name, value, &self.cursor, start)
     }
 
     /// `P1 = …`, `V.P.A = …`; also `+=` and its kin. False where no variable
@@ -154,16 +148,14 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.fault("assignment", message, help, start));
         }
         self.settable(&name, start)?;
-        if self.assigned.contains(&name) || self.read.contains(&name) {
-            return Err(both(&self.cursor, &name, start));
-        }
+        self.uses.assigns(&name, &self.cursor, start)?;
         self.cursor.at += if adds { 2 } else { 1 };
         if self.cursor.peek() == Some(b'"') {
-            return Err(self.refused("a text in a variable", "no number", start));
+            return Err(self
+                .cursor
+                .refused("a text in a variable", "no number", start));
         }
         let mut value = self.number()?;
-        // Its own old value it may use.
-        self.read.retain(|read| *read != name);
         if adds {
             let Some(old) = self.value(&name) else {
                 let message = format!("{name} has no value that could be changed");
@@ -183,12 +175,13 @@ impl Reading<'_, '_, '_> {
             }
         }
         self.set(&name, value, start)?;
-        self.assigned.push(name);
+        self.uses.assigned(name);
         Ok(true)
     }
 
     fn settable(&self, name: &str, start: usize) -> Outcome<()> {
         let own = name.starts_with('P')
+            || name.starts_with('@') && self.state.is_called()
             || ["V.P.", "V.L.", "V.S.", "V.CYC."]
                 .iter()
                 .any(|front| name.starts_with(front));
@@ -230,11 +223,11 @@ impl Reading<'_, '_, '_> {
     }
 
     /// The name of a variable without its indices.
-    fn base_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<String>> {
+    fn base_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Ident>> {
         Ok(match (cursor.byte(0), cursor.byte(1)) {
             (b'P', b'0'..=b'9') => {
                 cursor.at += 1;
-                Some(format!("P{}", self.index_of_p(cursor)?))
+                Some(Ident::of(format_args!("P{}", self.index_of_p(cursor)?)))
             }
             (b'V', b'.') => Some(free_name(cursor)),
             _ => None,
@@ -242,7 +235,7 @@ impl Reading<'_, '_, '_> {
     }
 
     /// What stands behind the name: lengths of an array, a type, values.
-    fn declare(&mut self, name: &str, start: usize) -> Outcome<()> {
+    fn declare(&mut self, name: &Ident, start: usize) -> Outcome<()> {
         let mut lengths = Vec::new();
         while lengths.len() < DIMENSIONS && self.cursor.take(b'[') {
             lengths.push(self.number()? as usize);
@@ -276,7 +269,7 @@ impl Reading<'_, '_, '_> {
                 indices = format!("[{}]{indices}", rest % length);
                 rest /= length;
             }
-            let name = format!("{name}{indices}");
+            let name = Ident::of(format_args!("{name}{indices}"));
             // A declaration makes it anew at this level.
             if is_local(&name) {
                 let level = self.state.levels.last_mut();
@@ -312,19 +305,24 @@ impl Reading<'_, '_, '_> {
 
 /// `V.P.NAME`: to a blank, an operator, a comment or a bracket. The case of what
 /// is free counts.
-fn free_name(cursor: &mut Cursor<'_>) -> String {
+fn free_name(cursor: &mut Cursor<'_>) -> Ident {
     let rest = cursor.text.get(cursor.at..).unwrap_or_default();
     let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || matches!(**byte, b'_' | b'.');
     let length = rest.iter().take_while(inside).count();
-    let name = String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).into_owned();
+    let name = rest.get(..length).unwrap_or_default();
     cursor.at += length;
-    let upper = name.to_ascii_uppercase();
-    let front = ["V.P.", "V.L.", "V.S.", "V.CYC."]
-        .into_iter()
-        .find(|front| upper.starts_with(front));
+    let begins = |front: &&str| {
+        let own = name.get(..front.len());
+        own.is_some_and(|own| own.eq_ignore_ascii_case(front.as_bytes()))
+    };
+    let front = ["V.P.", "V.L.", "V.S.", "V.CYC."].into_iter().find(begins);
     match front {
-        Some(front) => format!("{front}{}", name.get(front.len()..).unwrap_or_default()),
-        None => upper,
+        Some(front) => {
+            let free = name.get(front.len()..).unwrap_or_default();
+            let free = std::str::from_utf8(free).unwrap_or_default();
+            Ident::of(format_args!("{front}{free}"))
+        }
+        None => Ident::new(name),
     }
 }
 

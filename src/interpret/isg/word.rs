@@ -19,9 +19,9 @@ impl Reading<'_, '_, '_> {
             }
             b'"' => {
                 self.cursor.pass_over_rest();
-                return Err(self.refused("a text in quotes", "a macro", start));
+                return Err(self.cursor.refused("a text in quotes", "a macro", start));
             }
-            _ if byte.is_ascii_alphabetic() => return self.address(block),
+            _ if byte.is_ascii_alphabetic() || byte == b'@' => return self.address(block),
             _ => {
                 self.cursor.at += 1;
                 let message = format!("`{}` has no meaning here", byte as char);
@@ -39,6 +39,7 @@ impl Reading<'_, '_, '_> {
         let variable = match letter {
             b'P' => matches!(self.cursor.byte(1), b'0'..=b'9' | b'P' | b'['),
             b'V' => self.cursor.byte(1) == b'.',
+            b'@' => self.cursor.byte(1) == b'P',
             _ => false,
         };
         if variable && self.dwells {
@@ -52,14 +53,29 @@ impl Reading<'_, '_, '_> {
             self.assignment()?;
             return Ok(None);
         }
-        if letter == b'L' {
-            return self.call().map(Some);
+        if letter == b'D' && self.cursor.name() == "DYNOVR" {
+            self.cursor.pass_over_rest();
+            let reason = "a word of TwinCAT NC I, another interpreter";
+            return Err(self.cursor.refused("DynOvr", reason, start));
         }
-        if self.cursor.byte(1) == b'@' || letter == b'@' {
-            self.cursor.at += 1;
-            return Err(self.refused("@P", "a parameter of a cycle", start));
+        if letter == b'L' {
+            return self.call(block).map(Some);
         }
         self.cursor.at += 1;
+        if letter != b'@' {
+            self.value_of(letter, start, block)?;
+            return Ok(None);
+        }
+        let named = self.cursor.byte(0);
+        self.cursor.at += 1;
+        let Some(letter) = self
+            .letter_in_cycle(named)
+            .filter(|_| self.state.is_called())
+        else {
+            let message = "@ stands before P, X, Y, Z, I, J, K and S in cycles";
+            let help = "call the cycle by L CYCLE [NAME=… @P1=…]";
+            return Err(self.cursor.fault("syntax", message, help, start));
+        };
         self.value_of(letter, start, block)?;
         Ok(None)
     }
@@ -89,13 +105,18 @@ impl Reading<'_, '_, '_> {
                     self.cursor.text.get(start..ahead.at).unwrap_or_default(),
                 )
                 .into_owned();
-                return Err(self.refused(&name, "an axis or spindle by a name", start));
+                return Err(self
+                    .cursor
+                    .refused(&name, "an axis or spindle by a name", start));
             }
         }
         if matches!(letter, b'G' | b'M') {
             self.cursor.peek();
             let number = self.cursor.at;
             let value = self.plain_or_expression()?;
+            if letter == b'G' && super::ramp::is_ramp(value) {
+                return self.ramp_times(start, block);
+            }
             self.dwells |= letter == b'G' && value == 4.0;
             self.cursor.add_word(letter, value, start, number, block)?;
             if self.cursor.assigns() {
@@ -161,7 +182,9 @@ impl Reading<'_, '_, '_> {
         if word != "ABS" && (commands.contains(&word.as_str()) || revolutions) {
             self.cursor.brackets()?;
             let name = format!("{}[{word} …]", letter as char);
-            return Err(self.refused(&name, "a command to one axis or spindle", start));
+            return Err(self
+                .cursor
+                .refused(&name, "a command to one axis or spindle", start));
         }
         Ok(())
     }
@@ -175,7 +198,7 @@ impl Reading<'_, '_, '_> {
     }
 
     /// `LL NAME` and `L NAME` ("Local subroutines", "Global subroutines").
-    fn call(&mut self) -> Outcome<Go> {
+    fn call(&mut self, block: &Block) -> Outcome<Go> {
         let start = self.cursor.at;
         let local = self.cursor.byte(1) == b'L' && matches!(self.cursor.byte(2), b' ' | b'\t');
         self.cursor.at += if local { 2 } else { 1 };
@@ -198,17 +221,24 @@ impl Reading<'_, '_, '_> {
             name = String::from_utf8_lossy(rest.get(..length).unwrap_or_default()).into_owned();
             self.cursor.at += length;
         }
+        if name == "CYCLE" && next != Some(b'"') {
+            return self.cycle(local, start, block);
+        }
         if name.is_empty() {
             let message = "a call without the name of a subprogram";
             let help = "write LL and the name of a local subprogram, or L and the name of a file";
             return Err(self.cursor.fault("subprogram", message, help, start));
         }
         if name.starts_with("V.") {
-            return Err(self.refused(&format!("L {name}"), "a call by a variable", start));
+            return Err(self
+                .cursor
+                .refused(&format!("L {name}"), "a call by a variable", start));
         }
         if self.cursor.peek() == Some(b'[') {
             self.cursor.pass_over_rest();
-            return Err(self.refused("L … [ … ]", "a cycle with parameters (@P)", start));
+            let message = "parameters behind the name of a subprogram";
+            let help = "call a cycle by L CYCLE [NAME=… @P1=…]";
+            return Err(self.cursor.fault("subprogram", message, help, start));
         }
         if local {
             return Ok(Go::Local(name));

@@ -1,20 +1,20 @@
 //! A block, word by word ("Program Configuration", "Sequence Name").
 
-use super::{Note, Osp};
+use super::Osp;
+use crate::interpret::beyond_words::{Note, not_finite};
 use crate::interpret::execute::Control;
 use crate::interpret::expression::Fault;
-use crate::interpret::formula::{Cursor, Lexis, Outcome};
+use crate::interpret::formula::{Cursor, Lexis, Outcome, Uses};
 use crate::interpret::report::Report;
-use crate::interpret::transfer::{Go, Transfer};
-use crate::syntax::{Block, IssueKind, Word};
+use crate::interpret::transfer::Go;
+use crate::syntax::{Block, Word};
 
 /// A block while it is read.
 pub(super) struct Reading<'c, 't> {
     pub(super) state: &'c mut Osp,
     pub(super) cursor: Cursor<'t>,
     pub(super) notes: Vec<Note>,
-    pub(super) read: Vec<String>,
-    pub(super) assigned: Vec<String>,
+    pub(super) uses: Uses,
     /// NOEX stands in the block.
     pub(super) passive: bool,
 }
@@ -36,32 +36,14 @@ impl Control<'_> {
             state: &mut state,
             cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Comments),
             notes: Vec::new(),
-            read: Vec::new(),
-            assigned: Vec::new(),
+            uses: Uses::default(),
             passive: false,
         };
         let read = reading.read(block);
-        for (rule, message, span) in reading.notes {
-            report.note_once(rule, message, span);
-        }
-        let mut transfers = false;
-        match read {
-            Ok(go) => {
-                transfers = go.is_some();
-                self.transfer = go.map(Transfer::Go);
-                self.begun = true;
-            }
-            Err(fault) => {
-                report
-                    .error(fault.rule, fault.message, fault.span)
-                    .help(fault.help);
-                // Nothing of it is executed.
-                block.words.clear();
-                block.issues.clear();
-            }
-        }
+        let notes = reading.notes;
+        self.begun |= read.is_ok();
         self.osp = Some(state);
-        transfers
+        self.take_reading(read, notes, block, report)
     }
 }
 
@@ -69,10 +51,8 @@ impl Reading<'_, '_> {
     /// Reads the block: its words get their values. Gives where the program
     /// goes on, if that is not the next line.
     fn read(&mut self, block: &mut Block) -> Outcome<Option<Go>> {
-        let huge = |issue: &&crate::syntax::Issue| issue.kind == IssueKind::NotFinite;
-        if let Some(issue) = block.issues.iter().find(huge) {
-            let (message, help) = ("a number beyond all reason", "write a smaller one");
-            return Err(Fault::new("syntax", message, help, issue.span));
+        if let Some(fault) = not_finite(block) {
+            return Err(fault);
         }
         block.words.clear();
         block.issues.clear();
@@ -154,11 +134,5 @@ impl Reading<'_, '_> {
     pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {
         let span = self.cursor.span(start);
         self.notes.push((rule, message, span));
-    }
-
-    pub(super) fn refused(&self, name: &str, reason: &str, start: usize) -> Fault {
-        let message = format!("{name} is {reason}, which gwatt does not follow");
-        let help = "nothing is estimated for a program with motion that is not understood";
-        self.cursor.fault("unsupported-word", message, help, start)
     }
 }

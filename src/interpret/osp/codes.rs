@@ -65,6 +65,7 @@ pub(in crate::interpret) fn refused_name(number: u16) -> Option<&'static str> {
         600 => "positioning from one side",
         620 => "mirroring",
         690 => "a turn of the coordinates in space",
+        750 | 760 => "a chamfer or a rounded corner",
         710..=790 => "a turning or threading cycle",
         800..=880 => "automatic turning (LAP)",
         _ => return None,

@@ -11,23 +11,18 @@ mod variable;
 
 pub(super) use codes::{OspCode, osp_code, refused_name};
 
-use std::collections::HashMap;
-
-use crate::source::Span;
+use super::formula::Kept;
 use crate::syntax::Block;
-
-/// Variables that a program may keep.
-const COUNT_MAX: usize = 100_000;
 
 /// What a control of this language keeps besides the modal state.
 #[derive(Debug, Default)]
 pub(super) struct Osp {
     /// V1, VC1 and so on: common variables.
-    common: HashMap<String, f64>,
+    common: Kept,
     /// Local variables of the programs that run.
-    levels: Vec<HashMap<String, f64>>,
+    levels: Vec<Kept>,
     /// Those of the program that is called next.
-    pending: HashMap<String, f64>,
+    pending: Kept,
     /// A program's name was read.
     begun: bool,
     /// Between DEF WORK and END: a drawing.
@@ -53,7 +48,7 @@ pub(super) enum Return {
 impl Osp {
     pub(super) fn new() -> Self {
         Self {
-            levels: vec![HashMap::new()],
+            levels: vec![Kept::new()],
             ..Self::default()
         }
     }
@@ -86,6 +81,3 @@ impl Osp {
         self.levels.len() > 1
     }
 }
-
-/// A note with its rule.
-type Note = (&'static str, &'static str, Span);

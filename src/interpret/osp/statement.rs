@@ -57,9 +57,9 @@ impl Reading<'_, '_> {
         if self.assignment()? {
             return Ok(None);
         }
-        if let Some((_, reason)) = REFUSED.iter().find(|(known, _)| *known == name) {
+        if let Some((_, reason)) = REFUSED.iter().find(|(known, _)| name == *known) {
             self.cursor.at += name.len();
-            return Err(self.refused(&name, reason, start));
+            return Err(self.cursor.refused(&name, reason, start));
         }
         let letters = name.bytes().take_while(u8::is_ascii_alphabetic).count();
         if letters > 1 {
@@ -148,7 +148,7 @@ impl Reading<'_, '_> {
             let digits = name.get(1..).unwrap_or_default();
             let label = match digits.parse::<u64>() {
                 Ok(number) => format!("N{number}"),
-                Err(_) => name,
+                Err(_) => name.into(),
             };
             return Ok(Go::Jump(label));
         }
@@ -204,7 +204,7 @@ impl Reading<'_, '_> {
             let help = "write CALL O100 Q3 NAME=5";
             return Err(self.cursor.fault("subprogram", message, help, from));
         }
-        Ok((name, times))
+        Ok((name.into(), times))
     }
 
     /// `X10`, `X=V1+5`.
@@ -234,7 +234,9 @@ impl Reading<'_, '_> {
         };
         let lap = matches!(letter, b'N') && block.words.iter().any(is_automatic);
         if lap {
-            return Err(self.refused("G85 N…", "automatic turning (LAP)", start));
+            return Err(self
+                .cursor
+                .refused("G85 N…", "automatic turning (LAP)", start));
         }
         if matches!(letter, b'N' | b'O' | b'V') {
             let message = format!("{} has no meaning here", letter as char);

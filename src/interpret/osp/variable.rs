@@ -1,9 +1,7 @@
 //! Variables ("User Task": common variables, local variables, system variables).
 
-use super::COUNT_MAX;
 use super::block::Reading;
-use crate::interpret::expression::Fault;
-use crate::interpret::formula::{Cursor, Names, Outcome, Style, expression};
+use crate::interpret::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
 
 /// System variables that move nothing: drawings, barriers of chuck and tail
 /// stock, monitoring of load, outputs and messages.
@@ -13,9 +11,9 @@ const PASSIVE: [&str; 9] = [
 
 /// What a name stands for.
 enum Name {
-    Common(String),
-    Local(String),
-    System(String),
+    Common(Ident),
+    Local(Ident),
+    System(Ident),
 }
 
 impl Names for Reading<'_, '_> {
@@ -34,9 +32,6 @@ impl Names for Reading<'_, '_> {
             Name::System(name) => (None, name),
         };
         let value = kept.and_then(|kept| kept.get(&name)).copied();
-        if self.assigned.contains(&name) {
-            return Err(both(cursor, &name, start));
-        }
         let Some(value) = value else {
             let message = format!(
                 "{name} has no value in this program: what it holds, only the control knows"
@@ -44,15 +39,9 @@ impl Names for Reading<'_, '_> {
             let help = "assign it before it is used";
             return Err(cursor.fault("unknown-value", message, help, start));
         };
-        self.read.push(name);
+        self.uses.reads(name, cursor, start)?;
         Ok(Some(value))
     }
-}
-
-fn both(cursor: &Cursor<'_>, name: &str, start: usize) -> Fault {
-    let message = format!("the block assigns {name} and uses it");
-    let help = "write two blocks: which comes first is not told";
-    cursor.fault("assignment", message, help, start)
 }
 
 impl Reading<'_, '_> {
@@ -85,9 +74,9 @@ impl Reading<'_, '_> {
                 return Err(cursor.fault("array-index", message, help, start));
             }
             full = if common {
-                format!("{name}{index}")
+                Ident::of(format_args!("{name}{index}"))
             } else {
-                format!("{name}[{index}]")
+                Ident::of(format_args!("{name}[{index}]"))
             };
         }
         Ok(Some(if common {
@@ -127,32 +116,22 @@ impl Reading<'_, '_> {
                 return Ok(true);
             }
         };
-        if self.assigned.contains(&text) || self.read.contains(&text) {
-            return Err(both(&self.cursor, &text, start));
-        }
+        self.uses.assigns(&text, &self.cursor, start)?;
         self.cursor.at += 1;
         let value = self.number()?;
-        // Its own old value it may use.
-        self.read.retain(|read| *read != text);
         self.set(&text, local, value, start)?;
-        self.assigned.push(text);
+        self.uses.assigned(text);
         Ok(true)
     }
 
-    fn set(&mut self, name: &str, local: bool, value: f64, start: usize) -> Outcome<()> {
+    fn set(&mut self, name: &Ident, local: bool, value: f64, start: usize) -> Outcome<()> {
         let kept = if local {
             self.state.levels.last_mut()
         } else {
             Some(&mut self.state.common)
         };
         let Some(kept) = kept else { return Ok(()) };
-        if kept.len() >= COUNT_MAX && !kept.contains_key(name) {
-            let message = "more than 100000 variables";
-            let help = "look for a loop that makes them";
-            return Err(self.cursor.fault("assignment", message, help, start));
-        }
-        kept.insert(name.to_owned(), value);
-        Ok(())
+        keep(kept, name, value, &self.cursor, start)
     }
 
     /// An expression.

@@ -3,14 +3,14 @@
 
 use super::codes::Code;
 use super::{Called, Siemens};
+use crate::interpret::beyond_words::not_finite;
 use crate::interpret::code::{GCode, Motion};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::expression::Fault;
 use crate::interpret::moves::{ActionKind, FeedMode, Step};
 use crate::interpret::report::Report;
 use crate::interpret::transfer::{Siemens as Go, Transfer};
 use crate::machine::{AxisKind, Family, PathMode};
-use crate::syntax::{Block, IssueKind};
+use crate::syntax::Block;
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 
 use super::reading::Reading;
@@ -35,15 +35,7 @@ impl Control<'_> {
             cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Sinumerik),
             notes: Vec::new(),
         };
-        let not_finite = block
-            .issues
-            .iter()
-            .find(|issue| issue.kind == IssueKind::NotFinite)
-            .map(|issue| {
-                let message = "a number beyond all reason";
-                Fault::new("syntax", message, "write a smaller one", issue.span)
-            });
-        let read = match not_finite {
+        let read = match not_finite(block) {
             Some(fault) => Err(fault),
             None => reading.read(block),
         };

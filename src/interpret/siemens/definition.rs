@@ -262,13 +262,13 @@ impl Reading<'_, '_, '_> {
         if let Some(Some(argument)) = scope.arguments.get(position) {
             value = argument.value.clone();
             if let Some(callers) = argument.variable.clone().filter(|_| gives_back) {
-                scope.given_back.push((name.clone(), callers));
+                scope.given_back.push((name.to_string(), callers));
             }
         }
         if let Some(variable) = Variable::new(kind, SINGLE)
             && scope.variables.len() < COUNT_MAX
         {
-            scope.variables.insert(name.clone(), variable);
+            scope.variables.insert(name.to_string(), variable);
         }
         self.assign(&name, [0; 3], value, start)
     }

@@ -43,7 +43,7 @@ impl Reading<'_, '_, '_> {
                 if self.cursor.peek() == Some(b'(') {
                     self.cursor.pass_over_parentheses()?;
                     let reason = "a return to another place";
-                    return Err(self.refused("RET( )", reason, start));
+                    return Err(self.cursor.refused("RET( )", reason, start));
                 }
                 Go::Return
             }
@@ -54,7 +54,7 @@ impl Reading<'_, '_, '_> {
                     self.cursor.expect(b')')?;
                 }
                 let file = name.rsplit(['/', '\\']).next().unwrap_or_default();
-                self.program_call(file.to_ascii_uppercase(), start)?
+                self.program_call(&file.to_ascii_uppercase(), start)?
             }
             "MCALL" => {
                 self.state.modal_call = None;
@@ -62,7 +62,7 @@ impl Reading<'_, '_, '_> {
                 if !name.is_empty() {
                     let start = self.cursor.at;
                     self.cursor.at += name.len();
-                    let what = self.called(name, start)?;
+                    let what = self.called(&name, start)?;
                     let depth = self.state.scopes.len();
                     self.state.modal_call = Some(ModalCall { what, depth });
                 }
@@ -119,12 +119,12 @@ impl Reading<'_, '_, '_> {
             .state
             .scopes
             .last()
-            .and_then(|scope| scope.variables.get(&name))
+            .and_then(|scope| scope.variables.get(name.as_str()))
             .and_then(|variable| variable.values.first());
         if let Some(Val::Text(text)) = defined {
             return Ok(text.to_ascii_uppercase());
         }
-        Ok(name)
+        Ok(name.into())
     }
 
     /// `FOR variable = start TO end`.
@@ -151,9 +151,9 @@ impl Reading<'_, '_, '_> {
                     .state
                     .scopes
                     .last()
-                    .and_then(|scope| scope.variables.get(&name))
+                    .and_then(|scope| scope.variables.get(name.as_str()))
                     .and_then(|variable| variable.values.get(variable.place(index)?))
-                    .or_else(|| self.state.globals.get(&name));
+                    .or_else(|| self.state.globals.get(name.as_str()));
                 known.cloned()
             };
             if let Some(Val::Number(here)) = here {
@@ -181,7 +181,7 @@ impl Reading<'_, '_, '_> {
                 break;
             }
             self.cursor.at += name.len();
-            labels.push(name);
+            labels.push(String::from(name));
         }
         let mut labels = labels.into_iter();
         let Some(from) = labels.next() else {
@@ -259,8 +259,8 @@ impl Reading<'_, '_, '_> {
     }
 
     /// A name that is none of the language: a cycle, or a subprogram.
-    pub(super) fn call(&mut self, name: String, start: usize) -> Outcome<Option<Go>> {
-        if cycle::Kind::named(&name).is_some() {
+    pub(super) fn call(&mut self, name: &str, start: usize) -> Outcome<Option<Go>> {
+        if cycle::Kind::named(name).is_some() {
             if let Called::Cycle(call) = self.called(name, start)? {
                 self.extra().cycle = Some(call);
             }
@@ -269,7 +269,7 @@ impl Reading<'_, '_, '_> {
         self.program_call(name, start).map(Some)
     }
 
-    fn program_call(&mut self, name: String, start: usize) -> Outcome<Go> {
+    fn program_call(&mut self, name: &str, start: usize) -> Outcome<Go> {
         let what = self.called(name, start)?;
         let times = self.times()?.unwrap_or(1);
         match what {
@@ -287,12 +287,12 @@ impl Reading<'_, '_, '_> {
     }
 
     /// What is called, with its arguments.
-    fn called(&mut self, name: String, start: usize) -> Outcome<Called> {
-        if let Some(super::names::Name::Refused(reason)) = super::names::Name::of(&name) {
-            return Err(self.refused(&name, reason, start));
+    fn called(&mut self, name: &str, start: usize) -> Outcome<Called> {
+        if let Some(super::names::Name::Refused(reason)) = super::names::Name::of(name) {
+            return Err(self.cursor.refused(name, reason, start));
         }
         let arguments = self.arguments()?;
-        if let Some(kind) = cycle::Kind::named(&name) {
+        if let Some(kind) = cycle::Kind::named(name) {
             let mut values = Vec::new();
             for argument in arguments {
                 values.push(match argument {
@@ -303,6 +303,7 @@ impl Reading<'_, '_, '_> {
             let span = self.cursor.span(start);
             return Ok(Called::Cycle(cycle::Call { kind, values, span }));
         }
+        let name = name.to_owned();
         Ok(Called::Program { name, arguments })
     }
 
@@ -332,10 +333,10 @@ impl Reading<'_, '_, '_> {
                     .state
                     .scopes
                     .last()
-                    .is_some_and(|scope| scope.variables.contains_key(&name));
+                    .is_some_and(|scope| scope.variables.contains_key(name.as_str()));
             arguments.push(Some(Argument {
                 value,
-                variable: is_variable.then_some(name),
+                variable: is_variable.then(|| name.into()),
             }));
             if self.cursor.peek() != Some(b')') {
                 self.cursor.expect(b',')?;

@@ -271,6 +271,9 @@ const REFUSED: &[(&str, &str)] = &[
 impl Name {
     /// What a name in upper case is; `None` for those that are not in the list.
     pub(super) fn of(name: &str) -> Option<Self> {
+        if name.len() < 2 {
+            return None;
+        }
         if DATA.contains(&name) {
             return Some(Self::Data);
         }

@@ -19,7 +19,7 @@ impl Reading<'_, '_, '_> {
             "DIAMOF" => self.state.diameter = false,
             "DIAM90" => {
                 let reason = "diameters under G90 only";
-                return Err(self.refused(name, reason, start));
+                return Err(self.cursor.refused(name, reason, start));
             }
             "TRANS" | "ATRANS" | "ROT" | "AROT" | "SCALE" | "ASCALE" | "MIRROR" | "AMIRROR" => {
                 self.frame_word(name, start)?;
@@ -77,7 +77,7 @@ impl Reading<'_, '_, '_> {
                 if self.cursor.peek() != Some(b')') {
                     self.cursor.pass_over_rest();
                     let reason = "a swivelled plane, which turns axes as the machine is built";
-                    return Err(self.refused(name, reason, start));
+                    return Err(self.cursor.refused(name, reason, start));
                 }
                 self.cursor.at += 1;
             }

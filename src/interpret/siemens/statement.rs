@@ -106,9 +106,10 @@ impl Reading<'_, '_, '_> {
         }
         // `A3` is an angle, `A3=` a vector.
         let word = name.as_bytes().get(1).is_some_and(u8::is_ascii_digit) && !assigns;
-        match Name::of(&name).filter(|_| !word) {
+        let known = if word { None } else { Name::of(&name) };
+        match known {
             Some(Name::Data) => return self.pass_over().map(|()| None),
-            Some(Name::Refused(reason)) => return Err(self.refused(&name, reason, start)),
+            Some(Name::Refused(reason)) => return Err(self.cursor.refused(&name, reason, start)),
             None => {}
         }
         if self.address(&name, assigns, start, block)? {
@@ -117,18 +118,7 @@ impl Reading<'_, '_, '_> {
         if name == "L" || assigns || self.cursor.peek() == Some(b'[') {
             return self.assignment(&name, start).map(|()| None);
         }
-        self.call(name, start)
-    }
-
-    pub(super) fn refused(
-        &self,
-        name: &str,
-        reason: &str,
-        start: usize,
-    ) -> super::super::expression::Fault {
-        let message = format!("{name} is {reason}, which gwatt does not follow");
-        let help = "nothing is estimated for a program with motion that is not understood";
-        self.cursor.fault("unsupported-word", message, help, start)
+        self.call(&name, start)
     }
 
     fn is_variable(&self, name: &str) -> bool {
@@ -362,7 +352,7 @@ impl Reading<'_, '_, '_> {
             (b'H', _) => {}
             (b'A' | b'B' | b'C', 2..=5) => {
                 if let Some(Name::Refused(reason)) = Name::of(name) {
-                    return Err(self.refused(name, reason, start));
+                    return Err(self.cursor.refused(name, reason, start));
                 }
             }
             // "Reference point approach (G74)": machine axes.

@@ -1,6 +1,6 @@
 //! Statements of Fanuc custom macro B (B-63944EN, "Branch and Repetition").
 
-use super::{Statement, Unread};
+use super::{For, Statement, Target, Unread};
 use crate::interpret::execute::Control;
 use crate::interpret::expression::{Reader, Value};
 use crate::interpret::transfer::Transfer;
@@ -14,7 +14,7 @@ impl Control<'_> {
         statement: &mut Statement<'t>,
     ) -> Result<bool, Unread> {
         if reader.take_name(b"GOTO") {
-            statement.transfer = Some(Transfer::Goto(self.block_number(reader)?));
+            statement.transfer = Some(Transfer::Goto(self.block_number(reader, statement)?));
         } else if takes_if(reader) {
             let before = reader.at;
             let holds = match self.macro_condition(reader) {
@@ -29,9 +29,12 @@ impl Control<'_> {
                 holds => holds?,
             };
             if reader.take_name(b"THEN") {
+                statement.recorder.value(For::Guard(holds), reader);
                 self.then(holds, reader, statement)?;
             } else if reader.take_name(b"GOTO") {
-                let block = self.block_number(reader)?;
+                statement.recorder.value(For::Condition, reader);
+                let block = self.block_number(reader, statement)?;
+                statement.recorder.goes = Some(Transfer::Goto(block));
                 statement.transfer = holds.then_some(Transfer::Goto(block));
             } else {
                 let message = "IF without THEN or GOTO";
@@ -40,20 +43,21 @@ impl Control<'_> {
             }
         } else if reader.take_name(b"WHILE") {
             let holds = self.macro_condition(reader)?;
+            statement.recorder.value(For::Condition, reader);
             if !reader.take_name(b"DO") {
                 let message = "WHILE without DO";
                 return Err(reader
                     .fault("macro", message, "write WHILE [ … ] DO1", reader.at)
                     .into());
             }
-            let number = self.loop_number(reader)?;
+            let number = self.loop_number(reader, statement)?;
             statement.transfer = Some(Transfer::Loop { number, holds });
         } else if reader.take_name(b"DO") {
-            let number = self.loop_number(reader)?;
+            let number = self.loop_number(reader, statement)?;
             let holds = true;
             statement.transfer = Some(Transfer::Loop { number, holds });
         } else if reader.take_name(b"END") {
-            statement.transfer = Some(Transfer::EndLoop(self.loop_number(reader)?));
+            statement.transfer = Some(Transfer::EndLoop(self.loop_number(reader, statement)?));
         } else if [&b"DPRNT"[..], b"BPRNT", b"POPEN", b"PCLOS"]
             .iter()
             .any(|name| reader.take_name(name))
@@ -75,7 +79,9 @@ impl Control<'_> {
     ) -> Result<(), Unread> {
         reader.peek();
         let start = reader.at;
+        let from = reader.tape.ops.len();
         let name = reader.parameter_name(self)?;
+        let target = Target::read(&name, from, reader);
         if !reader.take(b'=') {
             let message = "THEN takes an assignment";
             return Err(reader
@@ -85,6 +91,7 @@ impl Control<'_> {
         if holds {
             let value = reader.expression(self)?;
             let span = Span::new(start, reader.at);
+            statement.recorder.assign(target, span, reader);
             statement.assignments.push((name, value, span));
         } else {
             // What is not assigned need not have a value.
@@ -97,9 +104,16 @@ impl Control<'_> {
         Ok(reader.brackets(self)?.unwrap_or(0.0) != 0.0)
     }
 
-    fn block_number(&self, reader: &mut Reader<'_>) -> Result<u64, Unread> {
+    fn block_number(
+        &self,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+    ) -> Result<u64, Unread> {
         let start = reader.at;
-        match whole(reader.value(self)?, 1e9) {
+        let from = reader.tape.ops.len();
+        let number = reader.value(self)?;
+        statement.recorder.fixed(from, reader);
+        match whole(number, 1e9) {
             Some(number) => Ok(number),
             None => Err(reader
                 .fault(
@@ -112,9 +126,16 @@ impl Control<'_> {
         }
     }
 
-    fn loop_number(&self, reader: &mut Reader<'_>) -> Result<u8, Unread> {
+    fn loop_number(
+        &self,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+    ) -> Result<u8, Unread> {
         let start = reader.at;
-        match whole(reader.value(self)?, 3.0).filter(|number| *number > 0) {
+        let from = reader.tape.ops.len();
+        let number = reader.value(self)?;
+        statement.recorder.fixed(from, reader);
+        match whole(number, 3.0).filter(|number| *number > 0) {
             Some(number) => Ok(number as u8),
             None => Err(reader
                 .fault(

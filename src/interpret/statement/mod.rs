@@ -3,8 +3,12 @@
 
 mod macro_b;
 mod o_word;
+mod trace;
 
 pub(super) use o_word::{Keyword, glance};
+pub(super) use trace::{Trace, Traces};
+
+use self::trace::{For, Recorder, Target};
 
 use super::execute::Control;
 use super::expression::{Fault, Name, Reader, Value, Variables};
@@ -28,6 +32,9 @@ pub(super) struct Statement<'t> {
     pub(super) corner: Option<Word>,
     /// An alarm whose condition nobody knows.
     pub(super) alarm: Option<Span>,
+    recorder: Recorder,
+    /// How it was read, if that is recorded.
+    pub(super) trace: Option<Box<Trace>>,
 }
 
 /// Why a block could not be read.
@@ -51,6 +58,7 @@ fn program_name(
         statement.callee = Some(name);
         return;
     }
+    statement.recorder.lost = true;
     let span = Span::new(start, reader.at);
     block.words.push(Word {
         letter: b'O',
@@ -106,11 +114,12 @@ impl From<Fault> for Unread {
 
 impl Control<'_> {
     /// Reads a block that plain words could not express. Its words get their
-    /// values, and its issues go.
+    /// values, and its issues go. `record`: how it was read is kept.
     pub(super) fn statement<'t>(
         &self,
-        text: &'t [u8],
+        line: &'t [u8],
         block: &mut Block,
+        record: bool,
     ) -> Result<Statement<'t>, Unread> {
         let family = self.machine.controller.language.family;
         if !matches!(family, Family::Rs274 | Family::Iso) {
@@ -120,8 +129,9 @@ impl Control<'_> {
         if block.issues.iter().any(|issue| hopeless(issue.kind)) {
             return Err(Unread::Foreign);
         }
-        let text = text.get(..block.text_end as usize).unwrap_or(text);
+        let text = line.get(..block.text_end as usize).unwrap_or(line);
         let mut reader = Reader::new(text, 0);
+        reader.tape.records = record;
         self.skip_front(&mut reader, block);
         let mut statement = Statement::default();
         block.words.clear();
@@ -129,12 +139,15 @@ impl Control<'_> {
             let start = reader.at;
             match byte {
                 b'#' => {
+                    let from = reader.tape.ops.len();
                     let name = reader.parameter_name(self)?;
+                    let target = Target::read(&name, from, &mut reader);
                     if !reader.take(b'=') {
                         return Err(Unread::Foreign);
                     }
                     let value = reader.expression(self)?;
                     let span = Span::new(start, reader.at);
+                    statement.recorder.assign(target, span, &reader);
                     if statement.assignments.len() == ASSIGNMENTS_MAX {
                         let message = "more than 64 assignments in a block";
                         return Err(reader
@@ -158,12 +171,22 @@ impl Control<'_> {
                 }
                 b'A'..=b'Z'
                     if family == Family::Iso && self.keyword(&mut reader, &mut statement)? => {}
-                b'A'..=b'Z' | b'@' | b'^' => self.word(byte, &mut reader, block)?,
+                b'A'..=b'Z' | b'@' | b'^' => {
+                    self.word(byte, &mut reader, &mut statement, block)?;
+                }
                 _ => return Err(Unread::Foreign),
             }
             block.words_end = reader.at as u32;
         }
         block.issues.clear();
+        if record {
+            let untold = statement.callee.is_some()
+                || statement.corner.is_some()
+                || statement.alarm.is_some();
+            statement.recorder.lost |= untold;
+            let recorder = std::mem::take(&mut statement.recorder);
+            statement.trace = recorder.finish(line, reader, statement.transfer.as_ref(), block);
+        }
         Ok(statement)
     }
 
@@ -179,13 +202,13 @@ impl Control<'_> {
             reader.at += 1;
             if reader.peek() != Some(b'<') {
                 reader.at = start;
-                return self.word(b'O', reader, block);
+                return self.word(b'O', reader, statement, block);
             }
             let name = reader.angle_name()?.into_owned();
             program_name(name, start, reader, statement, block);
             return Ok(());
         }
-        self.word(b'O', reader, block)
+        self.word(b'O', reader, statement, block)
     }
 
     /// Passes over the byte order mark, the block delete and the block number.
@@ -206,7 +229,13 @@ impl Control<'_> {
     }
 
     /// A letter with its value.
-    fn word(&self, letter: u8, reader: &mut Reader<'_>, block: &mut Block) -> Result<(), Unread> {
+    fn word(
+        &self,
+        letter: u8,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+        block: &mut Block,
+    ) -> Result<(), Unread> {
         let start = reader.at;
         reader.at += 1;
         // Two letters in a row are a name that this language does not have,
@@ -221,14 +250,17 @@ impl Control<'_> {
             }
             Err(fault) => return Err(fault.into()),
         };
-        // Fanuc: an address with a null variable is as if not written.
-        let Some(value) = value else { return Ok(()) };
         let word = Word {
             letter,
-            value,
+            value: value.unwrap_or(0.0),
             span: Span::new(start, reader.at),
             number: Span::new(number, reader.at),
         };
+        statement.recorder.value(For::Word(word), reader);
+        // Fanuc: an address with a null variable is as if not written.
+        if value.is_none() {
+            return Ok(());
+        }
         if block.words.len() >= 256 {
             let message = "more than 256 words in a block";
             return Err(reader

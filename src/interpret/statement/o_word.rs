@@ -1,6 +1,6 @@
 //! O-words: subroutines, branches and loops (`LinuxCNC`, "O Codes").
 
-use super::{Statement, Unread};
+use super::{For, Statement, Unread};
 use crate::interpret::execute::Control;
 use crate::interpret::expression::Reader;
 use crate::interpret::parameters::LOCALS;
@@ -34,7 +34,9 @@ impl Control<'_> {
         let label = if reader.peek() == Some(b'<') {
             Label::Name(reader.angle_name()?.into_owned())
         } else {
+            let from = reader.tape.ops.len();
             let value = reader.value(self)?.unwrap_or(0.0);
+            statement.recorder.fixed(from, reader);
             if !(0.0..4e9).contains(&value) || (value - value.round()).abs() > 1e-4 {
                 let message = format!("{value} is not the number of a subroutine");
                 return Err(reader
@@ -46,6 +48,7 @@ impl Control<'_> {
         if reader.peek().is_none()
             && let Label::Number(value) = label
         {
+            statement.recorder.lost = true;
             block.words.push(Word {
                 letter: b'O',
                 value: f64::from(value),
@@ -54,7 +57,7 @@ impl Control<'_> {
             });
             return Ok(());
         }
-        let Some(verb) = self.verb(reader)? else {
+        let Some(verb) = self.verb(reader, statement)? else {
             let message = "this O-word says nothing that is known";
             let help = "write sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue behind it";
             reader.at = reader.text.len();
@@ -72,20 +75,25 @@ impl Control<'_> {
         Ok(())
     }
 
-    fn verb(&self, reader: &mut Reader<'_>) -> Result<Option<Verb>, Unread> {
+    fn verb(
+        &self,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+    ) -> Result<Option<Verb>, Unread> {
         let Some(keyword) = keyword(reader) else {
             return Ok(None);
         };
         Ok(Some(match keyword {
             Keyword::Sub => Verb::Sub,
-            Keyword::EndSub => Verb::EndSub(self.optional(reader)?),
-            Keyword::Return => Verb::Return(self.optional(reader)?),
+            Keyword::EndSub => Verb::EndSub(self.optional(reader, statement)?),
+            Keyword::Return => Verb::Return(self.optional(reader, statement)?),
             Keyword::Call => {
                 let mut arguments = [Some(0.0); LOCALS];
                 let mut count = 0;
                 while reader.peek() == Some(b'[') {
                     let start = reader.at;
                     let value = reader.brackets(self)?;
+                    statement.recorder.value(For::Argument, reader);
                     count += 1;
                     match arguments.get_mut(count) {
                         Some(argument) if count <= ARGUMENTS_MAX => *argument = value,
@@ -99,7 +107,7 @@ impl Control<'_> {
                 }
                 Verb::Call(Box::new(arguments))
             }
-            Keyword::If => Verb::If(self.condition(reader)?),
+            Keyword::If => Verb::If(self.condition(reader, statement)?),
             Keyword::ElseIf => {
                 let start = {
                     reader.peek();
@@ -110,23 +118,39 @@ impl Control<'_> {
             }
             Keyword::Else => Verb::Else,
             Keyword::EndIf => Verb::EndIf,
-            Keyword::While => Verb::While(self.condition(reader)?),
+            Keyword::While => Verb::While(self.condition(reader, statement)?),
             Keyword::EndWhile => Verb::EndWhile,
             Keyword::Do => Verb::Do,
-            Keyword::Repeat => Verb::Repeat(reader.brackets(self)?.unwrap_or(0.0)),
+            Keyword::Repeat => {
+                let times = reader.brackets(self)?.unwrap_or(0.0);
+                statement.recorder.value(For::Value, reader);
+                Verb::Repeat(times)
+            }
             Keyword::EndRepeat => Verb::EndRepeat,
             Keyword::Break => Verb::Break,
             Keyword::Continue => Verb::Continue,
         }))
     }
 
-    fn condition(&self, reader: &mut Reader<'_>) -> Result<bool, Unread> {
-        Ok(reader.brackets(self)?.unwrap_or(0.0) != 0.0)
+    fn condition(
+        &self,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+    ) -> Result<bool, Unread> {
+        let value = reader.brackets(self)?;
+        statement.recorder.value(For::Condition, reader);
+        Ok(value.unwrap_or(0.0) != 0.0)
     }
 
-    fn optional(&self, reader: &mut Reader<'_>) -> Result<Option<f64>, Unread> {
+    fn optional(
+        &self,
+        reader: &mut Reader<'_>,
+        statement: &mut Statement<'_>,
+    ) -> Result<Option<f64>, Unread> {
         if reader.peek() == Some(b'[') {
-            return Ok(reader.brackets(self)?);
+            let value = reader.brackets(self)?;
+            statement.recorder.value(For::Value, reader);
+            return Ok(value);
         }
         Ok(None)
     }
