@@ -22,14 +22,14 @@ fn main() {
     divan::main();
 }
 
-fn machine(controller: &str) -> Machine {
+fn machine(controller: &str, jerk_mm_s3: f64) -> Machine {
     let mut text = format!(
         "schema = 1\nname = \"bench\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e9\n"
     );
     for axis in ["X", "Y", "Z"] {
         let _ = writeln!(
             text,
-            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 12000\naccel_mm_s2 = 2000\nmass_kg = 100"
+            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 12000\naccel_mm_s2 = 2000\nmass_kg = 100\njerk_mm_s3 = {jerk_mm_s3:?}"
         );
     }
     match Machine::from_toml("bench.toml", &text) {
@@ -84,15 +84,24 @@ fn moves() -> Vec<Move> {
 /// Moves to profiles.
 #[divan::bench(args = CONTROLLERS)]
 fn whole(bencher: Bencher<'_, '_>, controller: &str) {
-    let machine = machine(controller);
+    plan_all(bencher, &machine(controller, 0.0));
+}
+
+/// The same under limits of jerk.
+#[divan::bench(args = CONTROLLERS)]
+fn whole_with_jerk(bencher: Bencher<'_, '_>, controller: &str) {
+    plan_all(bencher, &machine(controller, 50_000.0));
+}
+
+fn plan_all(bencher: Bencher<'_, '_>, machine: &Machine) {
     let Some(rule) = machine.controller.planner.look_ahead else {
         return;
     };
     let moves = moves();
     bencher.counter(ItemsCount::new(MOVES)).bench_local(|| {
-        let mut planner = PathPlanner::new(&machine, rule);
+        let mut planner = PathPlanner::new(machine, rule);
         for mv in &moves {
-            let element = Element::of(&machine, mv, Overrides::default(), JOINT, mv.line);
+            let element = Element::of(machine, mv, Overrides::default(), JOINT, mv.line);
             if let Some(element) = &element {
                 planner.push(element);
             }
@@ -110,7 +119,7 @@ fn whole(bencher: Bencher<'_, '_>, controller: &str) {
 /// Moves to elements alone.
 #[divan::bench]
 fn elements(bencher: Bencher<'_, '_>) {
-    let machine = machine("grbl");
+    let machine = machine("grbl", 0.0);
     let moves = moves();
     bencher.counter(ItemsCount::new(MOVES)).bench_local(|| {
         for mv in &moves {
@@ -128,7 +137,19 @@ fn elements(bencher: Bencher<'_, '_>) {
 /// Profiles from rest to rest, for comparison.
 #[divan::bench]
 fn exact_stop(bencher: Bencher<'_, '_>) {
-    let machine = machine("grbl");
+    let machine = machine("grbl", 0.0);
+    let moves = moves();
+    bencher.counter(ItemsCount::new(MOVES)).bench_local(|| {
+        for mv in &moves {
+            black_box(plan(&machine, mv, Overrides::default()));
+        }
+    });
+}
+
+/// The same under limits of jerk.
+#[divan::bench]
+fn exact_stop_with_jerk(bencher: Bencher<'_, '_>) {
+    let machine = machine("grbl", 50_000.0);
     let moves = moves();
     bencher.counter(ItemsCount::new(MOVES)).bench_local(|| {
         for mv in &moves {

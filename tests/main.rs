@@ -18,6 +18,8 @@ mod period;
 mod plan;
 mod jerk;
 mod curve;
+mod drives;
+mod jerk_limits;
 mod phases;
 mod over_time;
 mod power;

@@ -3,8 +3,10 @@
 use crate::rig::{any_arc, any_delta, any_feed, any_machine, arc, axis, dwell, machine, straight};
 use gwatt::interpret::Move;
 use gwatt::machine::{ArcRule, Axis, AxisKind, AxisSet, Machine, RapidPath};
-use gwatt::plan::{Caps, Overrides, Plan, Trajectory, plan, plan_with, speed_bound};
+use gwatt::plan::jerk::{JerkLimits, State, position_target};
+use gwatt::plan::{Caps, Overrides, Plan, Profile, Trajectory, plan, plan_with, speed_bound};
 use proptest::prelude::*;
+use proptest::test_runner::TestCaseError;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn planned(machine: &Machine, mv: &Move) -> Plan {
@@ -194,15 +196,104 @@ fn an_unknown_start_is_bounded_in_both_directions() {
 
 #[test]
 fn extreme_numbers_end() {
-    let machine = machine(&[axis(), axis(), axis()]);
-    for length in [1e-300, 1e-160, 1e-9, 1e9, 1e160, 1e300] {
-        for feed in [1e-300, 1.0, 1e300, f64::INFINITY] {
-            let plan = planned(&machine, &straight(&machine, &[length], feed));
-            assert!(plan.duration_s >= 0.0);
-            let turn = arc(&machine, [0, 1], length, [0.0, 3.0], 1.0, feed.min(1e300));
-            assert!(planned(&machine, &turn).duration_s >= 0.0);
+    let jerky = |jerk_mm_s3| Axis {
+        jerk_mm_s3,
+        ..axis()
+    };
+    let axes = [0.0, 1e-300, 5e4, 1e300].map(jerky);
+    for machine in axes.map(|axis| machine(&[axis, axis, axis])) {
+        for length in [1e-300, 1e-160, 1e-9, 1e9, 1e160, 1e300] {
+            for feed in [1e-300, 1.0, 1e300, f64::INFINITY] {
+                let plan = planned(&machine, &straight(&machine, &[length], feed));
+                assert!(plan.duration_s >= 0.0);
+                let turn = arc(&machine, [0, 1], length, [0.0, 3.0], 1.0, feed.min(1e300));
+                assert!(planned(&machine, &turn).duration_s >= 0.0);
+            }
         }
     }
+}
+
+/// The jerk of a profile at an instant.
+fn jerk_at(profile: &Profile, t: f64) -> f64 {
+    let mut end = 0.0;
+    let phase = profile.phases.iter().find(|phase| {
+        end += phase.duration_s;
+        t < end
+    });
+    phase.map_or(0.0, |phase| phase.jerk_at(1.0, 0.0))
+}
+
+/// Speed and acceleration do not jump, begin and end at 0, and keep a limit.
+fn runs_smoothly(profile: &Profile, accel: f64) -> Result<(), TestCaseError> {
+    let (mut v, mut a) = (0.0, 0.0);
+    let slack = 1e-9 * profile.top_speed_mm_s();
+    for phase in &profile.phases {
+        prop_assert!((phase.velocity_mm_s - v).abs() <= slack);
+        prop_assert!((phase.accel_mm_s2 - a).abs() <= 1e-9 * accel);
+        prop_assert!(phase.accel_mm_s2.abs() <= accel * (1.0 + 1e-12));
+        let end = phase.state_at(phase.duration_s);
+        (v, a) = (phase.end_velocity_mm_s, phase.end_accel_mm_s2());
+        prop_assert!((end.velocity_mm_s - v).abs() <= slack);
+    }
+    prop_assert!(v == 0.0 && a.abs() <= 1e-9 * accel);
+    Ok(())
+}
+
+/// 100 mm with 200 mm/s, 2 m/s² and 40 m/s³: ramps of 0.15 s over
+/// 15 mm, 70 mm of cruise.
+#[test]
+fn a_jerk_limit_makes_an_s_curve() {
+    let slow = Axis {
+        rapid_mm_s: 200.0,
+        accel_mm_s2: 2000.0,
+        jerk_mm_s3: 40e3,
+        ..axis()
+    };
+    let machine = machine(&[
+        slow,
+        Axis {
+            jerk_mm_s3: 50e3,
+            ..slow
+        },
+    ]);
+    let plan = planned(&machine, &straight(&machine, &[100.0], f64::INFINITY));
+    close(plan.duration_s, 0.65);
+    close(plan.top_speed_mm_s, 200.0);
+    // 3-4-5: X permits 40/0.6, Y 50/0.8, speeds and accelerations 1/0.8.
+    let mv = straight(&machine, &[60.0, 80.0], f64::INFINITY);
+    let Trajectory::Path(profile) = planned(&machine, &mv).trajectory else {
+        panic!("a path")
+    };
+    close(profile.phases[0].jerk_at(1.0, 0.0), 62.5e3);
+    close(profile.phases[1].accel_mm_s2, 2500.0);
+    // Independent: each for itself.
+    let mut machine = machine;
+    machine.path.rapid = RapidPath::Independent;
+    let Trajectory::Axes(axes) = planned(&machine, &mv).trajectory else {
+        panic!("axes")
+    };
+    close(axes[0].1.duration_s(), 60.0 / 200.0 + 0.15);
+    close(axes[1].1.duration_s(), 80.0 / 200.0 + 0.1 + 0.04);
+}
+
+/// Of J = 50 m/s³ J/√2 is along the tangent; turning takes half of it at
+/// v³ = J·r²/(2·√2), and J/√2 = 3·a·v/r is left for the acceleration.
+#[test]
+fn an_arc_shares_the_jerk() {
+    let jerky = Axis {
+        jerk_mm_s3: 50e3,
+        ..axis()
+    };
+    let machine = machine(&[jerky, axis()]);
+    let plan = planned(&machine, &arc(&machine, [0, 1], 5.0, [0.0, 3.0], 0.0, 1e6));
+    let part = 50e3 / 2.0_f64.sqrt();
+    let v = libm::cbrt(0.5 * part * 25.0);
+    close(plan.speed_limit_mm_s, v);
+    close(plan.accel_mm_s2, part * 5.0 / (3.0 * v));
+    let Trajectory::Path(profile) = &plan.trajectory else {
+        panic!("a path")
+    };
+    close(profile.phases[0].jerk_at(1.0, 0.0), 0.5 * part);
 }
 
 proptest! {
@@ -218,12 +309,47 @@ proptest! {
         prop_assert!((profile.length_mm() / mv.length_mm - 1.0).abs() < 1e-12);
         prop_assert!(plan.top_speed_mm_s <= feed);
         let (v, a, l) = (plan.speed_limit_mm_s, plan.accel_mm_s2, mv.length_mm);
-        let expected = if v * v < a * l { l / v + v / a } else { 2.0 * (l / a).sqrt() };
-        prop_assert!((plan.duration_s / expected - 1.0).abs() < 1e-12);
+        let trapezoid = if v * v < a * l { l / v + v / a } else { 2.0 * (l / a).sqrt() };
+        prop_assert!(plan.duration_s >= trapezoid * (1.0 - 1e-12));
+        let mut limited = false;
         for (i, axis) in machine.axes.iter().flatten().enumerate() {
             let u = (mv.end[i] / mv.length_mm).abs();
             prop_assert!(plan.top_speed_mm_s * u <= axis.rapid_mm_s * (1.0 + 1e-12));
             prop_assert!(plan.accel_mm_s2 * u <= axis.accel_mm_s2 * (1.0 + 1e-12));
+            if axis.jerk_mm_s3 > 0.0 && u > 0.0 {
+                limited = true;
+                let jerks = profile.phases.iter().map(|phase| phase.jerk_at(1.0, 0.0).abs());
+                let jerk = u * jerks.fold(0.0, f64::max);
+                prop_assert!(jerk <= axis.jerk_mm_s3 * (1.0 + 1e-12));
+            }
+        }
+        prop_assert!(limited || plan.duration_s <= trapezoid * (1.0 + 1e-12));
+        if limited {
+            runs_smoothly(profile, plan.accel_mm_s2)?;
+            // No other profile under the same limits is faster.
+            let jerk = profile.phases[0].jerk_at(1.0, 0.0);
+            let limits = JerkLimits::symmetric(v, a, jerk);
+            let end = State { position_mm: l, ..State::default() };
+            let best = position_target(State::default(), end, &limits).expect("a profile");
+            prop_assert!((plan.duration_s / best.duration_s() - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn independent_plans_keep_all_limits(machine in any_machine(), delta in any_delta()) {
+        let mut machine = machine;
+        machine.path.rapid = RapidPath::Independent;
+        let plan = planned(&machine, &straight(&machine, &delta, f64::INFINITY));
+        let Trajectory::Axes(axes) = &plan.trajectory else { panic!("axes") };
+        for (index, profile) in axes {
+            let Some(axis) = machine.axes[*index] else { panic!("an axis") };
+            prop_assert!((profile.length_mm() / delta[*index].abs() - 1.0).abs() < 1e-9);
+            prop_assert!(profile.top_speed_mm_s() <= axis.rapid_mm_s);
+            if axis.jerk_mm_s3 > 0.0 {
+                runs_smoothly(profile, axis.accel_mm_s2)?;
+                let jerks = profile.phases.iter().map(|phase| phase.jerk_at(1.0, 0.0).abs());
+                prop_assert_eq!(jerks.fold(0.0, f64::max), axis.jerk_mm_s3);
+            }
         }
     }
 
@@ -242,15 +368,21 @@ proptest! {
             let (sin, cos) = libm::sincos(angles[0] + turn * state.position_mm);
             let w = turn * state.velocity_mm_s;
             let alpha = turn * state.accel_mm_s2;
+            let rate = turn * jerk_at(profile, t);
+            let (along, across) = (rate - w * w * w, 3.0 * w * alpha);
             let motion = [
-                (-sin * w, -sin * alpha - cos * w * w),
-                (cos * w, cos * alpha - sin * w * w),
+                (-sin * w, -sin * alpha - cos * w * w, -sin * along - cos * across),
+                (cos * w, cos * alpha - sin * w * w, cos * along - sin * across),
             ];
-            for (n, (v, a)) in plane.into_iter().zip(motion) {
+            for (n, (v, a, jerk)) in plane.into_iter().zip(motion) {
                 let (v, a) = (v * radius, a * radius);
                 let Some(axis) = machine.axes[n] else { panic!("an axis") };
                 prop_assert!(v.abs() <= axis.rapid_mm_s * (1.0 + 1e-9));
                 prop_assert!(a.abs() <= axis.accel_mm_s2 * (1.0 + 1e-9));
+                if axis.jerk_mm_s3 > 0.0 {
+                    let jerk = jerk * radius;
+                    prop_assert!(jerk.abs() <= axis.jerk_mm_s3 * (1.0 + 1e-9), "{jerk}");
+                }
                 prop_assert!(v <= bound.positive[n] * (1.0 + 1e-9) + 1e-9);
                 prop_assert!(-v <= bound.negative[n] * (1.0 + 1e-9) + 1e-9);
             }

@@ -308,10 +308,16 @@ proptest! {
         let mv = straight(&machine, &delta, feed);
         let plan = plan(&machine, &mv, Overrides::default());
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL);
-        let sampled = sample(&machine, &mv, &plan, 100);
         let scale = gross_w(&machine, plan.top_speed_mm_s);
-        peaks_agree(found.peak_w, sampled.peak_w, scale)?;
-        peaks_agree(found.regen_w, sampled.regen_w, scale)?;
+        let agree = |sampled: &Sampled| {
+            peaks_agree(found.peak_w, sampled.peak_w, scale)?;
+            peaks_agree(found.regen_w, sampled.regen_w, scale)
+        };
+        // Few samples may miss the highest of several peaks.
+        let sampled = sample(&machine, &mv, &plan, 100);
+        if agree(&sampled).is_err() {
+            agree(&sample(&machine, &mv, &plan, 20_000))?;
+        }
         let scale = found.energy_j.abs() + found.peak_w * plan.duration_s;
         prop_assert!((found.energy_j - sampled.energy_j).abs() <= 1e-4 * scale);
     }

@@ -33,8 +33,6 @@ pub struct Machine {
     pub presets: Vec<Preset>,
     /// Margin, overrides and floors.
     pub limits: Limits,
-    /// Fields that were read but are not checked against yet, as `[table] field`.
-    pub unchecked: Vec<String>,
 }
 
 /// A converter (power supply) and the axes it feeds.

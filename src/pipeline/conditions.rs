@@ -19,6 +19,26 @@ fn spindle_condition(spindle: &Spindle) -> &'static str {
     }
 }
 
+/// How limits of jerk count.
+fn jerk_condition(machine: &Machine, summary: &Summary) -> Option<&'static str> {
+    let mut axes = machine.axes.iter().flatten();
+    let limited = axes.any(|axis| axis.jerk_mm_s3 > 0.0);
+    limited.then_some(if summary.ahead {
+        "limits of jerk: speed follows S-curves; joints that limit the speed are passed \
+         without acceleration along the path, and what a corner itself does to an axis is not limited"
+    } else {
+        "limits of jerk: speed follows S-curves, from rest to rest"
+    })
+}
+
+/// How curves of force count.
+fn curve_condition(machine: &Machine) -> Option<&'static str> {
+    (!machine.force_curves.is_empty()).then_some(
+        "force curves: straight moves from rest to rest follow them; with look-ahead or limits of \
+         jerk the lowest acceleration up to the move's speed counts, on arcs up to the rapid speed",
+    )
+}
+
 /// What the figures rest on, in plain sentences.
 pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
     let percent = |factor: f64| factor * 100.0;
@@ -101,8 +121,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
             );
         }
     }
-    if !machine.unchecked.is_empty() {
-        conditions.push(format!("not checked yet: {}", machine.unchecked.join(", ")));
-    }
+    conditions.extend(jerk_condition(machine, summary).map(str::to_owned));
+    conditions.extend(curve_condition(machine).map(str::to_owned));
     conditions
 }

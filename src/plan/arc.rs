@@ -6,8 +6,25 @@
 //! With θ along the arc the plane axes have the tangents `τ = σ·(−sin θ, cos θ)`
 //! (σ the sense of the sweep). Of a path of length L the plane sees the share
 //! `ρ = r·|sweep|/L`; the rest belongs to the axes that follow in proportion.
+//!
+//! With v, a and j along the arc, of the third derivative of the position
+//!
+//! ```text
+//! j − v³/r²   is along the tangent,   3·a·v/r   along the normal.
+//! ```
+//!
+//! Each gets 1/√2 of the smallest jerk of the plane's axes, as acceleration is
+//! shared, so that no axis exceeds its own at any angle; of the part along the
+//! tangent turning (v³/r²) takes half at most, which limits the speed. The
+//! acceleration is limited by the second at the largest speed that axes and
+//! turning permit, whatever F asks for.
+//!
+//! Where drives have curves of force the lowest acceleration that they leave at
+//! any speed is the limit of the axis.
 
+use super::drive::{self, Heading};
 use super::limits::{self, PathLimits};
+use super::s_curve::cbrt_of_square;
 use super::trajectory::Caps;
 use crate::interpret::{Arc, Move};
 use crate::machine::{ArcRule, AxisKind, Machine};
@@ -99,25 +116,29 @@ pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
 pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> PathLimits {
     let share = plane_share(mv, arc);
     let ranges = tangent_ranges(arc);
-    let mut limits = PathLimits {
-        speed_mm_s: f64::INFINITY,
-        accel_mm_s2: f64::INFINITY,
-    };
+    let mut limits = PathLimits::NONE;
+    let mut plane_jerk = f64::INFINITY;
     let raised = mv.rapid_factor.max(1.0);
     let mut plane_accel = f64::INFINITY;
     let mut linear_accel = f64::INFINITY;
     for (axis, limit) in limits::moving(machine, mv) {
-        let accel = limits::accel(mv, axis, caps);
+        let mut accel = limits::accel(mv, axis, caps);
+        if !machine.force_curves.is_empty() {
+            // Whatever F asks for.
+            let speed = limit.rapid_mm_s * raised;
+            accel = accel.min(drive::lowest(machine, axis, speed, Heading::Both));
+        }
         if limit.kind == AxisKind::Linear {
             linear_accel = linear_accel.min(accel);
         }
-        match arc.plane.iter().position(|&plane| plane == axis) {
-            Some(i) => {
-                plane_accel = plane_accel.min(accel);
-                let speed = limit.rapid_mm_s * raised / (share * ranges[i].largest());
-                limits.speed_mm_s = limits.speed_mm_s.min(speed);
-            }
-            None => limits.take(mv, axis, limit.rapid_mm_s * raised, accel),
+        let jerk = limits::jerk(limit);
+        if let Some(i) = arc.plane.iter().position(|&plane| plane == axis) {
+            plane_accel = plane_accel.min(accel);
+            plane_jerk = plane_jerk.min(jerk);
+            let speed = limit.rapid_mm_s * raised / (share * ranges[i].largest());
+            limits.speed_mm_s = limits.speed_mm_s.min(speed);
+        } else {
+            limits.take(mv, axis, limit.rapid_mm_s * raised, accel, jerk);
         }
     }
     let radius = arc.radius_mm;
@@ -128,9 +149,29 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         }
         ArcRule::LinuxCnc => linuxcnc(plane_accel, radius, share, limits.speed_mm_s),
     };
-    PathLimits {
+    let mut limits = PathLimits {
         speed_mm_s: limits.speed_mm_s.min(turning),
         accel_mm_s2: limits.accel_mm_s2.min(speeding_up),
+        jerk_mm_s3: limits.jerk_mm_s3,
+    };
+    if plane_jerk < f64::INFINITY {
+        limits.share_jerk(plane_jerk, radius, share);
+    }
+    limits
+}
+
+impl PathLimits {
+    /// Shares the jerk of the plane's axes, see above. Along the path the limits
+    /// are larger than in the plane, by 1/`share`, which is left aside.
+    fn share_jerk(&mut self, jerk: f64, radius: f64, share: f64) {
+        let part = jerk * FRAC_1_SQRT_2;
+        let turning = cbrt_of_square((0.5 * part).sqrt() * radius) / share;
+        self.speed_mm_s = self.speed_mm_s.min(turning);
+        let v = self.speed_mm_s * share;
+        let turn = v / radius;
+        let left = part - v * turn * turn;
+        self.accel_mm_s2 = self.accel_mm_s2.min(part / (3.0 * turn));
+        self.jerk_mm_s3 = self.jerk_mm_s3.min(left);
     }
 }
 

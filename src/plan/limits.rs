@@ -2,20 +2,22 @@
 //!
 //! Input: machine, move, overrides and caps. Output: [`PathLimits`]. On a
 //! straight path with direction `u` (change of an axis per unit of path)
-//! `v ≤ v_n/|u_n|` and `a ≤ a_n/|u_n|` for each axis n.
+//! `v ≤ v_n/|u_n|`, `a ≤ a_n/|u_n|` and `j ≤ j_n/|u_n|` for each axis n.
 
 use super::arc;
 use super::trajectory::{Caps, Overrides};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{Axis, Machine};
 
-/// Speed in mm/s and acceleration in mm/s² that a path permits.
+/// Speed in mm/s, acceleration in mm/s² and jerk in mm/s³ that a path permits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PathLimits {
     /// Along the path.
     pub speed_mm_s: f64,
     /// Along the path.
     pub accel_mm_s2: f64,
+    /// Along the path; infinite: no limit.
+    pub jerk_mm_s3: f64,
 }
 
 impl PathLimits {
@@ -36,6 +38,7 @@ impl PathLimits {
         Self {
             speed_mm_s: lower(speed, feed),
             accel_mm_s2: lower(accel, path_accel),
+            jerk_mm_s3: axes.jerk_mm_s3,
         }
     }
 
@@ -53,12 +56,14 @@ impl PathLimits {
         } else {
             f64::INFINITY
         };
-        let rapid = machine.axes[axis].as_ref().map_or(f64::MAX, |limit| {
+        let own = machine.axes[axis].as_ref();
+        let rapid = own.map_or(f64::MAX, |limit| {
             limit.rapid_mm_s * rapid_factor(mv, overrides, caps)
         });
         Self {
             speed_mm_s: rapid.min(capped),
             accel_mm_s2: accel(mv, axis, caps).min(f64::MAX),
+            jerk_mm_s3: own.map_or(f64::INFINITY, jerk),
         }
     }
 
@@ -80,6 +85,16 @@ fn lower(limit: f64, other: f64) -> f64 {
 #[inline]
 pub(super) fn accel(mv: &Move, axis: usize, caps: &Caps) -> f64 {
     caps.accel_mm_s2.as_ref().unwrap_or(&mv.accel_mm_s2)[axis] * caps.accel_factor
+}
+
+/// Jerk limit of an axis in mm/s³; infinite where it has none.
+#[inline]
+pub(super) fn jerk(axis: &Axis) -> f64 {
+    if axis.jerk_mm_s3 > 0.0 {
+        axis.jerk_mm_s3
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Share of the rapid speed that a rapid runs at; feeds are capped by the
@@ -112,26 +127,32 @@ pub(super) fn straight(
     caps: &Caps,
 ) -> PathLimits {
     let factor = rapid_factor(mv, overrides, caps);
-    let mut limits = PathLimits {
-        speed_mm_s: f64::INFINITY,
-        accel_mm_s2: f64::INFINITY,
-    };
+    let mut limits = PathLimits::NONE;
     for (axis, limit) in moving(machine, mv) {
-        limits.take(mv, axis, limit.rapid_mm_s * factor, accel(mv, axis, caps));
+        let accel = accel(mv, axis, caps);
+        limits.take(mv, axis, limit.rapid_mm_s * factor, accel, jerk(limit));
     }
     limits
 }
 
 impl PathLimits {
+    /// No limit.
+    pub const NONE: Self = Self {
+        speed_mm_s: f64::INFINITY,
+        accel_mm_s2: f64::INFINITY,
+        jerk_mm_s3: f64::INFINITY,
+    };
+
     /// Lowers the limits to what an axis permits that moves in proportion to
     /// the path.
     #[inline]
-    pub fn take(&mut self, mv: &Move, axis: usize, speed: f64, accel: f64) {
+    pub fn take(&mut self, mv: &Move, axis: usize, speed: f64, accel: f64, jerk: f64) {
         let distance = (mv.end[axis] - mv.start[axis]).abs();
         if distance > 0.0 {
             let path_per_axis = mv.length_mm / distance;
             self.speed_mm_s = lower(self.speed_mm_s, speed * path_per_axis);
             self.accel_mm_s2 = lower(self.accel_mm_s2, accel * path_per_axis);
+            self.jerk_mm_s3 = lower(self.jerk_mm_s3, jerk * path_per_axis);
         }
     }
 }

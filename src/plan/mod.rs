@@ -1,17 +1,19 @@
 //! Moves to profiles: how speed runs along each move.
 //!
 //! Every block ends at rest (exact stop): a trapezoid or a triangle under the
-//! limits that feed, axes and arcs set.
+//! limits that feed, axes and arcs set, or an S-curve where axes limit their jerk.
 
 mod arc;
 mod bound;
 pub mod curve;
+mod drive;
 pub mod jerk;
 mod limits;
 pub mod lookahead;
 pub mod period;
 mod power_law;
 mod profile;
+mod s_curve;
 mod slope;
 mod spindle;
 mod track;
@@ -20,9 +22,10 @@ mod trajectory;
 pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
+pub use s_curve::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{
-    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, is_independent, path_figures,
-    plan, plan_with,
+    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, driven_accel, is_independent,
+    path_figures, plan, plan_with,
 };

@@ -14,6 +14,9 @@ use super::power_law::PowerLaw;
 use super::slope;
 use arrayvec::ArrayVec;
 
+/// Steps at most in the search for an instant.
+const STEPS: u32 = 100;
+
 /// What a phase keeps constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
@@ -90,6 +93,48 @@ impl Phase {
         }
     }
 
+    /// When the phase is at a path position, s after its beginning; the path must
+    /// run forwards all along.
+    #[must_use]
+    pub fn time_at(&self, position_mm: f64) -> f64 {
+        let (v, a, distance) = (
+            self.velocity_mm_s,
+            self.accel_mm_s2,
+            position_mm - self.position_mm,
+        );
+        if distance <= 0.0 {
+            return 0.0;
+        }
+        // x = v·t + a·t²/2 without cancellation.
+        let square = v * v + 2.0 * a * distance;
+        let steady = 2.0 * distance / (v + square.max(0.0).sqrt());
+        if self.kind == PhaseKind::ConstantAcceleration {
+            return steady.min(self.duration_s);
+        }
+        let (mut low, mut high) = (0.0, self.duration_s);
+        let mut t = if steady < high { steady } else { 0.5 * high };
+        for _ in 0..STEPS {
+            let state = self.state_at(t);
+            let beyond = state.position_mm - position_mm;
+            if beyond > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let step = beyond / state.velocity_mm_s;
+            if step.abs() <= f64::EPSILON * t || high - low <= f64::EPSILON * high {
+                break;
+            }
+            let newton = t - step;
+            t = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        t
+    }
+
     /// What the phase does between two instants, s after its beginning.
     #[must_use]
     pub fn between(&self, from_s: f64, to_s: f64) -> Self {
@@ -117,19 +162,33 @@ impl Phase {
             parts.push(*self);
             return parts;
         };
-        let (v, a) = (self.velocity_mm_s, self.accel_mm_s2);
+        let (v, a, end) = (self.velocity_mm_s, self.accel_mm_s2, self.duration_s);
         // v + a·t + j·t²/2 = 0 without cancellation.
         let root = -a - (a * a - 2.0 * j * v).sqrt().copysign(a);
-        let mut instants = [-a / j, root / j, 2.0 * v / root];
-        instants.sort_unstable_by(f64::total_cmp);
+        let stops = [root / j, 2.0 * v / root];
         let mut from = 0.0;
-        for instant in instants {
-            if instant > from && instant < self.duration_s {
-                parts.push(self.between(from, instant));
-                from = instant;
+        let mut speed = v;
+        let top = -a / j;
+        for to in [if top > 0.0 && top < end { top } else { end }, end] {
+            let last = to >= end;
+            // A phase that ends at rest does not turn back by rounding.
+            let reached = if last {
+                self.end_velocity_mm_s
+            } else {
+                self.state_at(to).velocity_mm_s
+            };
+            if speed * reached < 0.0
+                && let Some(stop) = stops.into_iter().find(|stop| *stop > from && *stop < to)
+            {
+                parts.push(self.between(from, stop));
+                from = stop;
             }
+            parts.push(self.between(from, to));
+            if last {
+                break;
+            }
+            (from, speed) = (to, reached);
         }
-        parts.push(self.between(from, self.duration_s));
         parts
     }
 

@@ -5,8 +5,10 @@
 //! for moves from an unknown start.
 
 use super::bound::{SpeedBound, speed_bound};
+use super::drive;
 use super::limits::{self, PathLimits};
 use super::profile::{Outline, Phase, PhaseKind, Profile};
+use super::s_curve::{SCurve, Steepness};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidPath};
 
@@ -184,6 +186,9 @@ pub fn plan_with(machine: &Machine, mv: &Move, overrides: Overrides, caps: Caps)
     if is_independent(machine, mv) {
         return independent(machine, mv, overrides, &caps, limits);
     }
+    if !machine.force_curves.is_empty() && mv.arc.is_none() {
+        return limits.plan(drive::path(machine, mv, &limits));
+    }
     PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
 }
 
@@ -196,16 +201,19 @@ pub struct PathFigures {
     pub speed_limit_mm_s: f64,
     pub accel_mm_s2: f64,
     pub top_speed_mm_s: f64,
+    /// Path jerk in mm/s³; infinite: no limit.
+    pub jerk_mm_s3: f64,
 }
 
 /// The figures of [`plan`] for a move on one path, at a fraction of its cost;
-/// `None` for all others.
+/// `None` for all others, and where drives have curves of force.
 #[must_use]
 #[inline]
 pub fn path_figures(machine: &Machine, mv: &Move, overrides: Overrides) -> Option<PathFigures> {
     let on_path = mv.kind != MoveKind::Dwell
         && mv.unknown_start.is_empty()
         && mv.length_mm > 0.0
+        && machine.force_curves.is_empty()
         && !is_independent(machine, mv);
     if !on_path {
         return None;
@@ -219,27 +227,87 @@ pub fn path_figures(machine: &Machine, mv: &Move, overrides: Overrides) -> Optio
 impl PathFigures {
     #[inline]
     fn new(length: f64, limits: PathLimits) -> Self {
+        if limits.jerk_mm_s3 < f64::INFINITY {
+            return Self::smooth(length, limits);
+        }
         let outline = Outline::new(length, limits.speed_mm_s, limits.accel_mm_s2);
         Self {
             duration_s: outline.duration_s(),
             speed_limit_mm_s: limits.speed_mm_s,
             accel_mm_s2: limits.accel_mm_s2,
             top_speed_mm_s: outline.top_speed,
+            jerk_mm_s3: limits.jerk_mm_s3,
+        }
+    }
+
+    fn smooth(length: f64, limits: PathLimits) -> Self {
+        let curve = limits.s_curve(length);
+        Self {
+            duration_s: curve.duration_s(),
+            speed_limit_mm_s: limits.speed_mm_s,
+            accel_mm_s2: limits.accel_mm_s2,
+            top_speed_mm_s: curve.top,
+            jerk_mm_s3: limits.jerk_mm_s3,
         }
     }
 
     /// The whole plan of the path, `length` mm long.
     #[must_use]
     pub fn plan(self, length: f64) -> Plan {
-        let profile = Profile::trapezoid(length, self.speed_limit_mm_s, self.accel_mm_s2);
+        let limits = PathLimits {
+            speed_mm_s: self.speed_limit_mm_s,
+            accel_mm_s2: self.accel_mm_s2,
+            jerk_mm_s3: self.jerk_mm_s3,
+        };
         Plan {
-            trajectory: Trajectory::Path(profile),
+            trajectory: Trajectory::Path(limits.profile(length)),
             duration_s: self.duration_s,
             speed_limit_mm_s: self.speed_limit_mm_s,
             accel_mm_s2: self.accel_mm_s2,
             top_speed_mm_s: self.top_speed_mm_s,
         }
     }
+}
+
+impl PathLimits {
+    /// A plan under these limits.
+    fn plan(&self, profile: Profile) -> Plan {
+        Plan {
+            duration_s: profile.duration_s(),
+            speed_limit_mm_s: self.speed_mm_s,
+            accel_mm_s2: self.accel_mm_s2,
+            top_speed_mm_s: profile.top_speed_mm_s(),
+            trajectory: Trajectory::Path(profile),
+        }
+    }
+
+    /// The fastest profile from rest to rest under these limits.
+    #[inline]
+    pub(super) fn profile(&self, length: f64) -> Profile {
+        if self.jerk_mm_s3 < f64::INFINITY {
+            self.s_curve(length).profile()
+        } else {
+            Profile::trapezoid(length, self.speed_mm_s, self.accel_mm_s2)
+        }
+    }
+
+    fn s_curve(&self, length: f64) -> SCurve {
+        let steepness = Steepness {
+            accel_mm_s2: self.accel_mm_s2,
+            jerk_mm_s3: self.jerk_mm_s3,
+        };
+        SCurve::from_rest(length, self.speed_mm_s, steepness)
+    }
+}
+
+/// The lowest acceleration along a straight path, in mm/s², that the drives leave
+/// at any speed up to `speed_mm_s`; infinite where none has a curve of force.
+#[must_use]
+pub fn driven_accel(machine: &Machine, mv: &Move, speed_mm_s: f64) -> f64 {
+    if machine.force_curves.is_empty() {
+        return f64::INFINITY;
+    }
+    drive::lowest_on_path(machine, mv, speed_mm_s)
 }
 
 /// Whether each axis of a move runs for itself.
@@ -271,7 +339,12 @@ fn independent(
         let distance = (mv.end[axis] - mv.start[axis]).abs();
         let limits = PathLimits::of_rapid_axis(machine, mv, axis, overrides, caps);
         if distance > 0.0 {
-            let profile = Profile::trapezoid(distance, limits.speed_mm_s, limits.accel_mm_s2);
+            let profile = if machine.force_curves.is_empty() {
+                limits.profile(distance)
+            } else {
+                let heading = (mv.end[axis] - mv.start[axis]).signum();
+                drive::axis(machine, axis, distance, heading, &limits)
+            };
             plan.duration_s = plan.duration_s.max(profile.duration_s());
             plan.top_speed_mm_s = plan.top_speed_mm_s.max(profile.top_speed_mm_s());
             axes.push((axis, profile));
@@ -291,6 +364,11 @@ fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> P
     };
     let limits = PathLimits::of(machine, mv, overrides, caps);
     let mut plan = if mv.length_mm > 0.0 && limits.permit_motion() {
+        let mut limits = limits;
+        if mv.arc.is_none() {
+            let driven = driven_accel(machine, mv, limits.speed_mm_s);
+            limits.accel_mm_s2 = limits.accel_mm_s2.min(driven);
+        }
         PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
     } else {
         Plan::rest(0.0)

@@ -355,7 +355,7 @@ impl Ahead {
             return true;
         };
         // Half of the acceleration, since the blends differ as well.
-        let reached2 = reach2 + planned.accel_mm_s2 * planned.length_mm;
+        let reached2 = planned.reached2(reach2);
         self.reach2 = (reached2 < end2).then_some(reached2);
         false
     }

@@ -18,7 +18,7 @@ use super::search::Search;
 use super::straight;
 use crate::interpret::Move;
 use crate::machine::AxisSet;
-use crate::plan::{Blend, Phase, Profile};
+use crate::plan::{Blend, Phase, PhaseKind, Profile};
 use arrayvec::ArrayVec;
 use std::f64::consts::PI;
 
@@ -131,6 +131,14 @@ pub(super) fn pieces(phase: &Phase, cuts: &[f64]) -> ArrayVec<Phase, 5> {
     for cut in cuts {
         let distance = cut - rest.position_mm;
         if distance <= 0.0 || distance >= rest.length_mm() {
+            continue;
+        }
+        if rest.kind != PhaseKind::ConstantAcceleration {
+            let t = rest.time_at(*cut);
+            if t > 0.0 && t < rest.duration_s {
+                pieces.push(rest.between(0.0, t));
+                rest = rest.between(t, rest.duration_s);
+            }
             continue;
         }
         // distance = v·t + a·t²/2, without cancellation.

@@ -9,7 +9,7 @@ use super::piece::straight_line;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::lookahead::{Piece, Planned};
-use crate::plan::{Blend, Phase, PhaseKind, Plan, Profile, State, Trajectory};
+use crate::plan::{Blend, Phase, Plan, Profile, State, Trajectory};
 use std::f64::consts::FRAC_PI_2;
 
 /// Instants at which the axes of one arc may turn back that are looked at.
@@ -283,7 +283,7 @@ fn along(mv: &Move, profile: &Profile) -> Vec<Phase> {
     for phase in &profile.phases {
         let steps = phase.length_mm() / (FRAC_PI_2 * mm_per_rad);
         let few = steps < QUADRANTS;
-        if phase.kind != PhaseKind::ConstantAcceleration || !few {
+        if !few {
             cut.push(*phase);
             continue;
         }

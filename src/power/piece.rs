@@ -59,6 +59,7 @@ fn below_floor(
         speed_limit_mm_s: top_speed_mm_s,
         accel_mm_s2: planned.largest_accel_mm_s2() + curvature * top_speed_mm_s * top_speed_mm_s,
         top_speed_mm_s,
+        jerk_mm_s3: f64::INFINITY,
     };
     model.below_floor(mv, &figures, want)
 }
@@ -247,6 +248,7 @@ mod tests {
                     top: v0.max(v1) * v0.max(v1),
                 },
                 accel_mm_s2: accel_mm_s2.abs(),
+                section: None,
                 certain: true,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);

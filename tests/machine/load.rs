@@ -132,7 +132,6 @@ fn defaults() {
     assert_eq!(machine.path.mode, None);
     assert_eq!(machine.path.rapid, RapidPath::Linear);
     assert!(machine.spindle.is_none() && machine.loads.is_empty() && machine.presets.is_empty());
-    assert!(machine.unchecked.is_empty());
 }
 
 #[test]
@@ -166,17 +165,4 @@ fn loads_limits_and_converters() {
     assert_eq!(machine.limits.rapid_override_max, 0.5);
     assert_eq!(machine.limits.spindle_override_max, 1.0);
     assert_eq!(machine.limits.min_feed_mm_s, 1.0);
-}
-
-#[test]
-fn what_is_not_checked_yet_is_named() {
-    let (vmc, _) = Machine::load("vmc").unwrap();
-    assert_eq!(vmc.unchecked, <[&str; 0]>::default());
-    let jerk = machine(&edited(
-        "mass_kg = 900",
-        "mass_kg = 900\njerk_mm_s3 = 60000",
-    ));
-    assert_eq!(jerk.unchecked, ["axes.X.jerk_mm_s3"]);
-    let none = machine(&edited("mass_kg = 900", "mass_kg = 900\njerk_mm_s3 = 0"));
-    assert!(none.unchecked.is_empty());
 }

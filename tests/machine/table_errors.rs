@@ -256,6 +256,16 @@ fn curves_of_axes() {
       | force_curve = [{ speed_mm_min = 0, force_n = 9 }]
       |                ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
     ");
+    assert_snapshot!(axis("coulomb_n = 700\ngravity_n = -300\nforce_curve = [\n{ speed_mm_min = 0, force_n = 9000 },\n{ speed_mm_min = 40000, force_n = 100 }]"), @r"
+    line 17, error machine-curve: nothing is left to accelerate with at 36000 mm/min: friction and weight take 1000.0 N of 990.0 N
+      | { speed_mm_min = 40000, force_n = 100 }]
+      | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(axis("force_curve = [{ speed_mm_min = 0, force_n = 9000 }, { speed_mm_min = 20000, force_n = 9000 }]"), @r"
+    line 13, error machine-curve: the curve ends at 20000 mm/min, below the rapid speed of 36000 mm/min / give a point at the rapid speed or beyond
+      | force_curve = [{ speed_mm_min = 0, force_n = 9000 }, { speed_mm_min = 20000, force_n = 9000 }]
+      |                                                      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
     let points: Vec<String> = (0..17)
         .map(|i| format!("{{ speed_mm_min = {i}, force_n = 9 }}"))
         .collect();

@@ -7,8 +7,7 @@ use super::machine_file::{
 };
 use super::value::{At, Num};
 use super::{
-    axis, converter, drive_curve, plausible, preset, profile, response, spindle, tool, unchecked,
-    word,
+    axis, converter, drive_curve, plausible, preset, profile, response, spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
@@ -56,7 +55,8 @@ pub(crate) fn machine(
     for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
         axes[id as usize] = axis::axis(findings, id, table);
         axis_set.insert(id as usize);
-        force_curves.extend(drive_curve::force(findings, id, &table.value).map(|c| (id, c)));
+        let curve = drive_curve::force(findings, id, &table.value, axes[id as usize].as_ref());
+        force_curves.extend(curve.map(|curve| (id, curve)));
         response::take(findings, id, &table.value, &mut responses);
         complete &= axes[id as usize].is_some();
     }
@@ -99,7 +99,6 @@ pub(crate) fn machine(
         loads,
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
-        unchecked: unchecked::list(file),
     };
     // With an axis left out the machine would look weaker than it is.
     complete.then_some(machine)

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::findings::Findings;
 use super::machine_file::{AxisTable, ForcePointTable, TorquePointTable};
 use super::value::At;
-use crate::machine::axis::{AxisId, AxisKind};
+use crate::machine::axis::{Axis, AxisId, AxisKind};
 use crate::machine::model::ForcePoint;
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
 
@@ -60,11 +60,13 @@ pub(crate) fn points(
     fits.then(|| curve.into_iter().map(|(v, t, _)| (v, t)).collect())
 }
 
-/// The force curve of an axis at the load, if one is given.
+/// The force curve of an axis at the load, if one is given; `axis` is what the
+/// table made otherwise.
 pub(crate) fn force(
     findings: &mut Findings<'_>,
     id: AxisId,
     table: &AxisTable,
+    axis: Option<&Axis>,
 ) -> Option<Vec<ForcePoint>> {
     let kind = super::axis::kind(id, table);
     let letter = id.letter() as char;
@@ -113,5 +115,64 @@ pub(crate) fn force(
         speed_mm_s: speed * speed_factor,
         force_n: force * force_factor,
     };
-    Some(list.into_iter().map(point).collect())
+    let curve: Vec<ForcePoint> = list.into_iter().map(point).collect();
+    let force = table.force_curve.iter().flatten().map(|at| &at.span);
+    let torque = table.torque_curve.iter().flatten().map(|at| &at.span);
+    if let Some(axis) = axis {
+        drives(findings, axis, &curve, force.chain(torque));
+    }
+    Some(curve)
+}
+
+/// A drive must be able to speed up, in both directions, at every speed up to
+/// the rapid speed; `spans` are those of the points.
+fn drives<'a>(
+    findings: &mut Findings<'_>,
+    axis: &Axis,
+    curve: &[ForcePoint],
+    spans: impl Iterator<Item = &'a Range<usize>>,
+) {
+    let (unit, force) = match axis.kind {
+        AxisKind::Linear => ("mm/min", "N"),
+        AxisKind::Rotary => ("degrees/min", "N·m"),
+    };
+    let per_minute = |speed_mm_s: f64| speed_mm_s * SECONDS_PER_MINUTE;
+    let rapid = axis.rapid_mm_s;
+    let mut before: Option<&ForcePoint> = None;
+    let mut last_span = None;
+    for (point, span) in curve.iter().zip(spans) {
+        last_span = Some(span);
+        let (mut speed, mut own) = (point.speed_mm_s, point.force_n);
+        if let Some(before) = before.filter(|_| speed > rapid) {
+            let share = (rapid - before.speed_mm_s) / (speed - before.speed_mm_s);
+            own = before.force_n + share * (own - before.force_n);
+            speed = rapid;
+        }
+        let friction = axis.coulomb_n + axis.viscous_n_s_m * speed * axis.si_per_unit;
+        let needed = friction + axis.gravity_n.abs();
+        if own <= needed {
+            let message = format!(
+                "nothing is left to accelerate with at {:.0} {unit}: friction and weight take {needed:.1} {force} of {own:.1} {force}",
+                per_minute(speed)
+            );
+            findings.error("machine-curve", span, message, None);
+            return;
+        }
+        if point.speed_mm_s >= rapid {
+            return;
+        }
+        before = Some(point);
+    }
+    // Motor data and rapid speed may differ by rounding.
+    if let (Some(last), Some(span)) = (before, last_span)
+        && last.speed_mm_s < rapid * (1.0 - 1e-6)
+    {
+        let message = format!(
+            "the curve ends at {:.0} {unit}, below the rapid speed of {:.0} {unit}",
+            per_minute(last.speed_mm_s),
+            per_minute(rapid)
+        );
+        let help = Some("give a point at the rapid speed or beyond".to_owned());
+        findings.error("machine-curve", span, message, help);
+    }
 }

@@ -204,15 +204,18 @@ pub(crate) struct AxisTable {
     pub(crate) gear_ratio: Option<Positive>,
     /// Mechanical by electrical power, 0 to 1; default 1.
     pub(crate) efficiency: Option<Share>,
-    /// Linear: jerk limit in mm/s³; 0: none.
+    /// Linear: jerk limit in mm/s³: speed follows S-curves; 0: none.
     pub(crate) jerk_mm_s3: Option<NotNegative>,
-    /// Rotary: jerk limit in degrees/s³; 0: none.
+    /// Rotary: jerk limit in degrees/s³: speed follows S-curves; 0: none.
     pub(crate) jerk_deg_s3: Option<NotNegative>,
     /// Linear: largest force of the drive over the speed, straight between the
-    /// points, the first at speed 0.
+    /// points, the first at speed 0, the last at the rapid speed or beyond. What
+    /// friction and weight leave of it limits the acceleration at each speed.
     pub(crate) force_curve: Option<Vec<At<ForcePointTable>>>,
     /// Largest torque of the motor (of the table without `gear_ratio`) over its
-    /// speed, straight between the points, the first at speed 0.
+    /// speed, straight between the points, the first at speed 0, the last at the
+    /// rapid speed or beyond. What friction and weight leave of it limits the
+    /// acceleration at each speed.
     pub(crate) torque_curve: Option<Vec<At<TorquePointTable>>>,
     /// How far real acceleration exceeds the command when driving; default 1.
     pub(crate) servo_factor_motor: Option<AtLeastOne>,

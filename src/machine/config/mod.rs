@@ -27,7 +27,6 @@ mod schema;
 mod spindle;
 mod structure;
 mod tool;
-mod unchecked;
 mod value;
 mod word;
 

@@ -11,6 +11,7 @@
 //!     ╱ (R) ╲       R/sin θ − R: the tolerance, so R = s·p/(1 − s).
 //! ```
 
+use super::super::limits;
 use super::vector::{Vector, add, angle, cross, dot, length, scale, sub, unit};
 use crate::machine::{AxisValues, Machine};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -33,6 +34,7 @@ const ARCS_ANGLE_MIN: f64 = PI / 12.0;
 pub(super) struct Axes {
     exists: [bool; 3],
     pub speed: Vector,
+    pub jerk: Vector,
 }
 
 impl Axes {
@@ -41,6 +43,7 @@ impl Axes {
         Self {
             exists: [0, 1, 2].map(|i| axis(i).is_some()),
             speed: [0, 1, 2].map(|i| axis(i).map_or(0.0, |axis| axis.rapid_mm_s)),
+            jerk: [0, 1, 2].map(|i| axis(i).map_or(f64::INFINITY, limits::jerk)),
         }
     }
 

@@ -100,6 +100,8 @@ impl<T: Copy> Iterator for Chords<'_, T> {
         chord.curve = None;
         chord.curve_speed_mm_s = f64::INFINITY;
         chord.length_mm = self.arc.length_mm * share * stretch;
+        // What the arc leaves is less than what its axes permit.
+        chord.jerk_mm_s3 = self.arc.jerk_mm_s3 * stretch;
         chord.accel_mm_s2 = straight_accel(&chord).min(chord.path_accel_mm_s2);
         let at = |k: f64| self.arc.length_mm * (k * share);
         Some((chord, [at(i), at(i + 1.0)]))

@@ -4,6 +4,7 @@
 //! direction at both ends, per unit of path, and the limits along the path.
 
 use super::super::arc;
+use super::super::drive::{self, Heading};
 use super::super::limits::{self, PathLimits};
 use super::super::trajectory::{Caps, Overrides};
 use crate::interpret::{Arc, Move, MoveKind};
@@ -58,9 +59,16 @@ pub struct Element<T> {
     /// Acceleration along the path that the axes permit, mm/s². Of an arc by
     /// the controller's rule.
     pub accel_mm_s2: f64,
+    /// The lowest acceleration along the path that the drives leave at any speed
+    /// up to the element's, mm/s²; infinite without curves of force. It may grow
+    /// as F falls, so that it is no part of `accel_mm_s2`.
+    pub drive_accel_mm_s2: f64,
     /// Acceleration along the path that program and controller permit whatever
     /// the direction, mm/s²; infinite where only the axes have limits.
     pub path_accel_mm_s2: f64,
+    /// Jerk along the path that the axes permit, mm/s³; infinite: no limit. Of
+    /// an arc by the rule that shares it.
+    pub jerk_mm_s3: f64,
     /// Speed that curvature permits, mm/s; infinite on a straight path.
     pub curve_speed_mm_s: f64,
     /// Acceleration limits of the axes, mm/s².
@@ -104,7 +112,9 @@ impl<T> Element<T> {
             feed_mm_s,
             speed_mm_s: limits.speed_mm_s,
             accel_mm_s2: limits.accel_mm_s2.min(mv.path_accel_mm_s2),
+            drive_accel_mm_s2: f64::INFINITY,
             path_accel_mm_s2: mv.path_accel_mm_s2,
+            jerk_mm_s3: limits.jerk_mm_s3,
             curve_speed_mm_s: f64::INFINITY,
             axis_accel_mm_s2: mv.accel_mm_s2,
             start: [0.0; AXES],
@@ -120,8 +130,30 @@ impl<T> Element<T> {
         if let Some(arc) = &mv.arc {
             element.bend(machine, mv, arc);
         }
+        if !machine.force_curves.is_empty() {
+            element.drive(machine, mv);
+        }
         let moves = element.top_mm_s() > 0.0 && element.accel_mm_s2 > 0.0;
         moves.then_some(element)
+    }
+
+    /// Takes in what the drives leave. The limits of the axes hold at any speed.
+    fn drive(&mut self, machine: &Machine, mv: &Move) {
+        let top = self.top_mm_s();
+        if mv.arc.is_none() {
+            self.drive_accel_mm_s2 = drive::lowest_on_path(machine, mv, top);
+        }
+        for (axis, accel) in self.axis_accel_mm_s2.iter_mut().enumerate() {
+            let speed = limits::moving(machine, mv)
+                .find(|(own, _)| *own == axis)
+                .map_or(0.0, |(_, own)| own.rapid_mm_s * mv.rapid_factor.max(1.0));
+            *accel = accel.min(drive::lowest(machine, axis, speed, Heading::Both));
+        }
+        if let Some(curve) = &mut self.curve {
+            let accels = curve.plane.into_iter();
+            let accels = accels.filter_map(|axis| self.axis_accel_mm_s2.get(axis));
+            curve.accel_mm_s2 = accels.copied().fold(f64::INFINITY, f64::min);
+        }
     }
 
     fn bend(&mut self, machine: &Machine, mv: &Move, of: &Arc) {

@@ -103,12 +103,14 @@ impl<T: Copy> Joiner<T> {
             let accels = axes.accel(&element.axis_accel_mm_s2);
             element.speed_mm_s = f64::INFINITY;
             element.accel_mm_s2 = element.path_accel_mm_s2;
+            element.jerk_mm_s3 = f64::INFINITY;
             element.start = [0.0; AXES];
             for (i, change) in along.into_iter().enumerate() {
                 element.start[i] = change;
                 if change != 0.0 {
                     element.speed_mm_s = element.speed_mm_s.min(axes.speed[i] / change.abs());
                     element.accel_mm_s2 = element.accel_mm_s2.min(accels[i] / change.abs());
+                    element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerk[i] / change.abs());
                 }
             }
             element.end = element.start;

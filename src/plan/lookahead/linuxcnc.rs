@@ -332,6 +332,8 @@ impl<T: Copy> LinuxCnc<T> {
         let accel = fit.accel * TANGENTIAL_SHARE;
         let mut node = Node::new(length_mm, top2, accel, entry2, load);
         node.block = false;
+        let jerks = [&before, &*next].map(|of| of.element.jerk_mm_s3);
+        node.jerk = jerks[0].min(jerks[1]);
         window.push(node);
         next.entry2 = top2;
     }
@@ -366,6 +368,9 @@ impl<T: Copy> LinuxCnc<T> {
         if !last {
             max_speed = max_speed.min(of.length_mm / (self.cycle_s * CYCLES_MIN));
         }
+        if of.element.jerk_mm_s3 < f64::INFINITY {
+            max_speed = max_speed.min(of.element.curve_speed_mm_s);
+        }
         let top = of.element.feed_mm_s.min(max_speed);
         let top2 = top * top;
         let mut entry2 = of.entry2.min(top2);
@@ -386,6 +391,7 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let parabolic = matches!(of.element.joint, Joint::Blend { .. });
+        node.jerk = of.element.jerk_mm_s3;
         node.tail2 = half * of.length_mm * if parabolic && !last { 0.5 } else { 1.0 };
         window.push(node);
     }

@@ -12,6 +12,7 @@ mod join;
 mod linuxcnc;
 mod planner;
 mod ramp;
+mod runs;
 mod vector;
 mod window;
 

@@ -3,6 +3,8 @@
 //! ```text
 //! elements ─chords→ ─corner or blend→ nodes ─window→ speeds ─→ profiles
 //! ```
+//!
+//! Where an axis of the machine limits its jerk, `runs` is the window.
 
 use super::blend::Axes;
 use super::chord::Chords;
@@ -12,7 +14,7 @@ use super::linuxcnc::LinuxCnc;
 use super::ramp::Speeds2;
 use super::window::{Node, Window};
 use crate::machine::{CornerRule, LookAhead, Machine};
-use crate::plan::Profile;
+use crate::plan::{Profile, Section};
 
 /// A piece of path that a controller lays round a corner: a circle in space,
 /// begun by a straight rest of the element before where that was too short to
@@ -65,8 +67,10 @@ pub struct Planned<T> {
     pub length_mm: f64,
     /// Its speeds, squared.
     pub speeds2: Speeds2,
-    /// Its acceleration, mm/s².
+    /// Its acceleration, mm/s²; on an S-curve a bound of it.
     pub accel_mm_s2: f64,
+    /// Its part of an S-curve, where jerk is limited: how it runs.
+    pub section: Option<Section>,
     /// False where the controller may do otherwise than planned: the robust
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
@@ -79,6 +83,9 @@ impl<T> Planned<T> {
     #[inline]
     pub fn top_speed_mm_s(&self) -> f64 {
         let Speeds2 { start, end, top } = self.speeds2;
+        if self.section.is_some() {
+            return top.sqrt();
+        }
         let reached = 0.5 * (start + end) + self.accel_mm_s2 * self.length_mm;
         top.min(reached).max(start).max(end).sqrt()
     }
@@ -87,6 +94,9 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn largest_accel_mm_s2(&self) -> f64 {
+        if self.section.is_some() {
+            return self.accel_mm_s2;
+        }
         let needed = 0.5 * (self.speeds2.start - self.speeds2.end).abs() / self.length_mm;
         self.accel_mm_s2.max(needed)
     }
@@ -95,6 +105,9 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn duration_s(&self) -> f64 {
+        if let Some(section) = &self.section {
+            return section.duration_s();
+        }
         self.speeds2.duration_s(self.length_mm, self.accel_mm_s2)
     }
 
@@ -102,7 +115,25 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn profile(&self) -> Profile {
+        if let Some(section) = &self.section {
+            return section.profile();
+        }
         Profile::between(self.length_mm, self.speeds2, self.accel_mm_s2)
+    }
+}
+
+impl<T> Planned<T> {
+    /// Speed, squared, that is reached at its end at least from another one at
+    /// its start, with half of the limits, mm²/s².
+    #[must_use]
+    pub fn reached2(&self, start2: f64) -> f64 {
+        match &self.section {
+            Some(section) => {
+                let speed = section.reached(start2.sqrt(), self.length_mm);
+                speed * speed
+            }
+            None => start2 + self.accel_mm_s2 * self.length_mm,
+        }
     }
 }
 
@@ -135,7 +166,7 @@ enum Rule<T> {
 /// What changes with the limits of one element: a clone taken before it, given
 /// the changed element and those behind it, plans them anew. From the first
 /// piece on that begins as before at a joint that the change did not reach, all
-/// is as it was.
+/// is as it was; under limits of jerk that is a joint that limits the speed.
 #[derive(Debug, Clone)]
 pub struct PathPlanner<T> {
     look_ahead: LookAhead,
@@ -160,10 +191,19 @@ impl<T: Copy> PathPlanner<T> {
             }
             _ => Rule::Corner(None),
         };
+        let mut window = Window::new(look_ahead.blocks, look_ahead.min_cruise_ratio > 0.0);
+        if machine
+            .axes
+            .iter()
+            .flatten()
+            .any(|axis| axis.jerk_mm_s3 > 0.0)
+        {
+            window = window.with_jerk();
+        }
         Self {
             look_ahead,
             rule,
-            window: Window::new(look_ahead.blocks, look_ahead.min_cruise_ratio > 0.0),
+            window,
         }
     }
 
@@ -171,10 +211,13 @@ impl<T: Copy> PathPlanner<T> {
     #[inline]
     pub fn push(&mut self, element: &Element<T>) {
         let mut limited;
-        let element = if element.path_accel_mm_s2 > self.look_ahead.path_accel_mm_s2 {
+        let path = self.look_ahead.path_accel_mm_s2;
+        let driven = element.drive_accel_mm_s2 < element.accel_mm_s2;
+        let element = if element.path_accel_mm_s2 > path || driven {
             limited = *element;
-            limited.path_accel_mm_s2 = self.look_ahead.path_accel_mm_s2;
-            limited.accel_mm_s2 = limited.accel_mm_s2.min(limited.path_accel_mm_s2);
+            limited.path_accel_mm_s2 = limited.path_accel_mm_s2.min(path);
+            let most = limited.path_accel_mm_s2.min(limited.drive_accel_mm_s2);
+            limited.accel_mm_s2 = limited.accel_mm_s2.min(most);
             &limited
         } else {
             element
@@ -221,6 +264,7 @@ impl<T: Copy> PathPlanner<T> {
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
         node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
         node.step2 = corner::start2(rule, element);
+        node.jerk = element.jerk_mm_s3;
         self.window.push(node);
         match before {
             Some(before) => *before = *element,
@@ -260,6 +304,7 @@ impl<T: Copy> PathPlanner<T> {
                 top: span.top2,
             },
             accel_mm_s2: span.accel,
+            section: span.section,
             certain: span.certain && span.payload.certain,
         })
     }

@@ -25,6 +25,9 @@ mod tests;
 
 use std::collections::VecDeque;
 
+use super::super::s_curve::{Section, Steepness};
+use super::runs::Runs;
+
 /// Elements that are not final, at most; beyond it the older half is released
 /// as if the path ended here, and marked as not certain.
 pub(super) const OPEN_MAX: usize = 1 << 14;
@@ -43,6 +46,8 @@ pub(super) struct Node<P> {
     pub top2: f64,
     /// Acceleration along it.
     pub accel: f64,
+    /// Jerk along it; infinite: no limit.
+    pub jerk: f64,
     /// Acceleration of the smoothed pass; see `cruise`.
     pub smooth_accel: f64,
     /// Largest squared speed at its start.
@@ -78,6 +83,7 @@ impl<P> Node<P> {
             length,
             top2: lower(top2, UNLIMITED),
             accel,
+            jerk: f64::INFINITY,
             smooth_accel: accel,
             entry2,
             tail2: 2.0 * accel * length,
@@ -98,6 +104,15 @@ impl<P> Node<P> {
         2.0 * self.accel * self.length
     }
 
+    /// The limits of its ramps.
+    #[inline]
+    pub fn steepness(&self) -> Steepness {
+        Steepness {
+            accel_mm_s2: self.accel,
+            jerk_mm_s3: self.jerk,
+        }
+    }
+
     #[inline]
     fn smooth2(&self) -> f64 {
         2.0 * self.smooth_accel * self.length
@@ -114,6 +129,8 @@ pub(super) struct Span<P> {
     pub accel: f64,
     /// False where the count limit cut the look-ahead short.
     pub certain: bool,
+    /// Its part of an S-curve, where jerk is limited.
+    pub section: Option<Section>,
     pub payload: P,
 }
 
@@ -134,6 +151,8 @@ pub(super) struct Window<P> {
     /// Open elements at which a first backward pass runs, and at most.
     open_min: usize,
     open_max: usize,
+    /// Takes the place of all this where jerk is limited.
+    runs: Option<Box<Runs<P>>>,
 }
 
 impl<P> Window<P> {
@@ -147,17 +166,31 @@ impl<P> Window<P> {
             smooth,
             open_min: OPEN_MIN,
             open_max: OPEN_MAX,
+            runs: None,
         }
+    }
+
+    /// The same where elements limit their jerk; how that goes together with
+    /// smoothed hills is not known.
+    pub fn with_jerk(mut self) -> Self {
+        self.runs = Some(Box::new(Runs::new(self.blocks, !self.smooth)));
+        self
     }
 
     /// Largest speed of the last element, squared; infinite without one.
     pub fn last_top2(&self) -> f64 {
+        if let Some(runs) = &self.runs {
+            return runs.last_top2();
+        }
         self.nodes.back().map_or(f64::INFINITY, |node| node.top2)
     }
 
     /// Adds an element.
     #[inline]
     pub fn push(&mut self, mut node: Node<P>) {
+        if let Some(runs) = &mut self.runs {
+            return runs.push(node);
+        }
         if let Some(last) = self.nodes.back() {
             // What cannot be reached from before is no limit that matters.
             node.entry2 = lower(node.entry2, last.entry2.max(last.step2) + last.ramp2());
@@ -184,6 +217,9 @@ impl<P> Window<P> {
 
     /// The path stops behind the last element: all are final.
     pub fn stop(&mut self) {
+        if let Some(runs) = &mut self.runs {
+            return runs.stop();
+        }
         if self.ready == self.nodes.len() {
             return;
         }
@@ -194,6 +230,9 @@ impl<P> Window<P> {
 
     /// Looks for elements that are final.
     pub fn settle(&mut self) {
+        if let Some(runs) = &mut self.runs {
+            return runs.settle();
+        }
         let anchor = self.backward(false);
         self.ready = self.ready.max(anchor);
         if let Some(blocks) = self.blocks
@@ -295,6 +334,9 @@ impl<P> Window<P> {
     /// The next element in order, once it is final.
     #[inline]
     pub fn pop(&mut self) -> Option<Span<P>> {
+        if let Some(runs) = &mut self.runs {
+            return runs.pop();
+        }
         if self.ready == 0 {
             return None;
         }
@@ -323,6 +365,7 @@ impl<P> Window<P> {
             length: node.length,
             accel: node.accel,
             certain: !node.forced,
+            section: None,
             payload: node.payload,
         })
     }

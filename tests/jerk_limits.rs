@@ -1,0 +1,319 @@
+//! Limits of jerk and curves of force from outside: what the commands say of
+//! programs on such machines.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// A control that takes corners at a step of speed of 5 mm/s, arcs as arcs.
+const AHEAD: &str = "\n[planner.look_ahead]\n[planner.look_ahead.speed_step]\n\
+                     step_mm_s = { X = 5, Y = 5, Z = 5 }\n";
+
+/// A folder with a machine, and gwatt run in it.
+struct Shop(TempDir);
+
+impl Shop {
+    /// A mill without a margin that draws 100 W at rest; `axis` are further lines
+    /// of each axis, `rest` comes before them.
+    fn new(controller: &str, axis: &str, rest: &str) -> Self {
+        let shop = Self(tempfile::tempdir().unwrap());
+        let iso = include_str!("../machine-configs/controllers/iso.toml");
+        shop.put("ahead.toml", &format!("{iso}{AHEAD}"));
+        let mut text = format!(
+            "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\n\
+             base_load_w = 100\n{rest}\n[limits]\nmargin = 0\n"
+        );
+        for letter in ["X", "Y", "Z"] {
+            let _ = write!(
+                text,
+                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\n\
+                 mass_kg = 200\ncoulomb_n = 100\nefficiency = 0.8\n{axis}\n"
+            );
+        }
+        shop.put("mill.toml", &text);
+        shop
+    }
+
+    fn put(&self, name: &str, text: &str) {
+        fs::write(self.0.path().join(name), text).unwrap();
+    }
+
+    fn get(&self, name: &str) -> String {
+        fs::read_to_string(self.0.path().join(name)).unwrap()
+    }
+
+    /// Exit code, standard output and standard error.
+    fn run(&self, arguments: &str) -> (i32, String, String) {
+        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+            .args(arguments.split(' '))
+            .args(["-m", "mill.toml"])
+            .current_dir(self.0.path())
+            .output()
+            .unwrap();
+        (
+            output.status.code().unwrap(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    }
+
+    /// The report of a program, by lines of JSON.
+    fn report(&self, program: &str) -> serde_json::Value {
+        self.put("a.ngc", program);
+        let (code, _, told) = self.run("report a.ngc --json a.json");
+        assert_eq!(code, 0, "{told}");
+        serde_json::from_str(&self.get("a.json")).unwrap()
+    }
+
+    fn duration_s(&self, program: &str) -> f64 {
+        self.report(program)["duration_s"].as_f64().unwrap()
+    }
+}
+
+fn close(a: f64, b: f64) {
+    assert!((a - b).abs() <= 1e-6 * b.abs(), "{a} is not {b}");
+}
+
+const JERK: &str = "jerk_mm_s3 = 30000";
+const STRONG: &str = "peak_power_w = 1e6\nregen_power_w = 1e6";
+const THERE_AND_BACK: &str = "G21 G90 G94\nG0 X400\nG0 X0\nG0 X400 Y30\nG0 X0\nM30\n";
+
+/// 500 mm/s after 1/6 + 0.1 s over 66.67 mm; 266.67 mm of cruise.
+#[test]
+fn a_rapid_is_an_s_curve() {
+    let shop = Shop::new("iso", JERK, STRONG);
+    let report = shop.report("G21 G90\nG0 X400\nM30\n");
+    close(
+        report["duration_s"].as_f64().unwrap(),
+        0.8 + 1.0 / 6.0 + 0.1,
+    );
+    // P = (v − j·τ²/2)·(m·j·τ + Fc), largest at τ* before the end of the ramp.
+    let (v, j, m, d) = (0.5, 30.0, 200.0, 100.0);
+    let tau = f64::min(
+        (f64::sqrt(d * d + 6.0 * m * m * j * v) - d) / (3.0 * m * j),
+        0.1,
+    );
+    let peak = (v - 0.5 * j * tau * tau) * (m * j * tau + d) / 0.8 + 100.0;
+    close(report["peak_w"].as_f64().unwrap(), peak);
+    let conditions = report["conditions"].to_string();
+    assert!(
+        conditions.contains("speed follows S-curves, from rest to rest"),
+        "{conditions}"
+    );
+    let (_, out, _) = shop.run("moves a.ngc");
+    let row: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
+    close(row["seconds"].as_f64().unwrap(), 0.8 + 1.0 / 6.0 + 0.1);
+    let plain = Shop::new("iso", "jerk_mm_s3 = 0", STRONG).report("G21 G90\nG0 X400\nM30\n");
+    close(plain["duration_s"].as_f64().unwrap(), 0.8 + 1.0 / 6.0);
+    assert!(!plain["conditions"].to_string().contains("jerk"));
+}
+
+#[test]
+fn rapids_are_limited_under_limits_of_jerk() {
+    let curve = "force_curve = [{ speed_mm_min = 0, force_n = 650 }, \
+                 { speed_mm_min = 12000, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]";
+    for (axis, most) in [(JERK, 350.0), (curve, 250.0)] {
+        let weak = format!("peak_power_w = {most}\nregen_power_w = 1000");
+        let shop = Shop::new("iso", axis, &weak);
+        shop.put("a.ngc", THERE_AND_BACK);
+        let (code, out, told) = shop.run("limit a.ngc --json a.json");
+        assert_eq!(code, 0, "{told}");
+        assert!(out.contains("G1"), "{out}");
+        let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
+        let after = report["peak_after_w"].as_f64().unwrap();
+        assert!(
+            after <= most * (1.0 + 1e-9) && after > 0.9 * most,
+            "{after}"
+        );
+        shop.put("b.ngc", &out);
+        let (code, ..) = shop.run("check b.ngc");
+        assert_eq!(code, 0);
+        let (code, again, _) = shop.run("limit b.ngc");
+        assert_eq!((code, again), (0, out));
+    }
+}
+
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    text.lines()
+        .filter_map(|line| line.strip_prefix("before,"))
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect()
+}
+
+/// A line in many blocks runs as one, with one S-curve over all of them.
+#[test]
+fn joints_that_limit_nothing_leave_no_trace() {
+    let shop = Shop::new("ahead.toml", JERK, STRONG);
+    let one = shop.duration_s("G21 G90 G94 G64\nG1 X100 F9000\nM30\n");
+    // 150 mm/s without reaching the acceleration: 2·√(150/30000) s.
+    let ramp_s = 2.0 * f64::sqrt(150.0 / 30e3);
+    close(one, 100.0 / 150.0 + ramp_s);
+    let mut many = "G21 G90 G94 G64 F9000\n".to_owned();
+    for i in 1..=1000 {
+        let _ = writeln!(many, "G1 X{}", 0.1 * f64::from(i));
+    }
+    let report = shop.report(&format!("{many}M30\n"));
+    close(report["duration_s"].as_f64().unwrap(), one);
+    assert_eq!(report["certificate"], "planned");
+    let conditions = report["conditions"].to_string();
+    assert!(
+        conditions.contains("passed without acceleration along the path"),
+        "{conditions}"
+    );
+    // The series: acceleration never jumps.
+    let (code, _, told) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
+    assert_eq!(code, 0, "{told}");
+    let rows = rows(&shop.get("a.csv"));
+    close(rows.last().unwrap()[0], one);
+    for pair in rows.windows(2) {
+        let jerk = (pair[1][3] - pair[0][3]).abs();
+        assert!(
+            jerk <= 30_000.0 * (pair[1][0] - pair[0][0]) + 1e-3,
+            "{pair:?}"
+        );
+    }
+}
+
+/// Rounded corners, arcs and steps of feed, through every planner.
+fn pocket() -> String {
+    let mut text = "G21 G90 G94 G17\nG0 X0 Y0 Z5\nG64\nG1 Z-1 F600\n".to_owned();
+    for i in 0..6 {
+        let r = 10.0 + 4.0 * f64::from(i);
+        let _ = writeln!(
+            text,
+            "G1 X{r} Y0 F{}\nG3 X0 Y{r} I{} J0\nG1 X-{r}\nG1 Y-{r} F9000\nG1 X{r} Y-{r}\nG2 X{r} Y0 I0 J{}",
+            6000 + 900 * i,
+            -r,
+            0.5 * r,
+        );
+    }
+    text.push_str("G0 Z5\nM30\n");
+    text
+}
+
+#[test]
+fn programs_are_limited_under_look_ahead_too() {
+    for controller in ["ahead.toml", "grbl", "linuxcnc", "iso"] {
+        for axis in [
+            JERK,
+            "force_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
+            "jerk_mm_s3 = 80000\nforce_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
+        ] {
+            let shop = Shop::new(controller, axis, "peak_power_w = 200\nregen_power_w = 1000");
+            let free = Shop::new(controller, axis, STRONG);
+            let plain = Shop::new(controller, "", STRONG);
+            let program = pocket();
+            let program = if controller == "grbl" {
+                program.replace("G64\n", "")
+            } else {
+                program
+            };
+            let [slow, fast] = [&free, &plain].map(|shop| shop.duration_s(&program));
+            assert!(slow > fast, "{controller} {axis}: {slow} {fast}");
+            shop.put("a.ngc", &program);
+            let (code, out, told) = shop.run("limit a.ngc --allow feed --json a.json");
+            assert_eq!(code, 0, "{controller} {axis}: {told}");
+            shop.put("b.ngc", &out);
+            let (code, told, _) = shop.run("check b.ngc");
+            assert_eq!(code, 0, "{controller} {axis}: {told}");
+            let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
+            let after = report["peak_after_w"].as_f64().unwrap();
+            assert!(after <= 200.0 * (1.0 + 1e-9), "{after}");
+        }
+    }
+}
+
+/// The series of speeds and powers adds up to the report, on arcs and rounded
+/// corners as well.
+#[test]
+fn a_series_adds_up_to_the_report() {
+    for controller in ["ahead.toml", "linuxcnc", "iso"] {
+        let shop = Shop::new(controller, JERK, STRONG);
+        let program = pocket();
+        let program = if controller == "iso" {
+            program.replace("G64", "G61")
+        } else {
+            program
+        };
+        let report = shop.report(&program);
+        let (code, _, told) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
+        assert_eq!(code, 0, "{told}");
+        let rows = rows(&shop.get("a.csv"));
+        let bus = rows[0].len() - 2;
+        let close = |found: f64, key: &str, share: f64| {
+            let told = report[key].as_f64().unwrap();
+            assert!(
+                (found - told).abs() <= share * told,
+                "{controller} {key}: {found} is not {told}"
+            );
+        };
+        close(rows.last().unwrap()[0], "duration_s", 1e-9);
+        let peak = rows.iter().map(|row| row[bus]).fold(0.0, f64::max);
+        close(peak, "peak_w", 1e-3);
+        let mut energy = 0.0;
+        for pair in rows.windows(2) {
+            let dt = pair[1][0] - pair[0][0];
+            energy += 0.5 * dt * (pair[0][bus] + pair[1][bus]);
+            for axis in 0..3 {
+                let (v, a) = (2 + 4 * axis, 3 + 4 * axis);
+                if controller == "linuxcnc" {
+                    // Overlapping ramps stand for their speeds alone.
+                    continue;
+                }
+                assert!(pair[0][a].abs() <= 3000.0 * (1.0 + 1e-6), "{}", pair[0][a]);
+                let change = 0.5 * dt * (pair[0][a] + pair[1][a]);
+                let off = (pair[1][v] - pair[0][v] - change).abs();
+                // A corner is a step of 5 mm/s at most.
+                assert!(off < 5.01, "{controller}: speed jumps by {off} mm/s");
+            }
+        }
+        close(energy, "energy_j", 1e-3);
+    }
+}
+
+/// Without losses but Coulomb friction, with equal masses and what is fed back
+/// credited, the energy of all moves is that of friction: 100 N by the way of
+/// each axis.
+#[test]
+fn the_energy_balance_closes() {
+    let mut text = "G21 G90 G94\nG64\n".to_owned();
+    let (mut last, mut way_mm) = ([0.0_f64; 2], 0.0);
+    for i in 0..400 {
+        let t = 0.05 * f64::from(i);
+        // Smooth lines in small steps, and a corner now and then.
+        let corner = if i % 50 == 0 { 3.0 } else { 0.0 };
+        let point = [40.0 * libm::sin(t) + corner, 25.0 * libm::cos(0.7 * t)];
+        let point = point.map(|value| (value * 1e4).round() / 1e4);
+        let _ = writeln!(
+            text,
+            "G1 X{} Y{} F{}",
+            point[0],
+            point[1],
+            4000 + 100 * (i / 37)
+        );
+        way_mm += (point[0] - last[0]).abs() + (point[1] - last[1]).abs();
+        last = point;
+    }
+    text.push_str("M30\n");
+    let ratings = "peak_power_w = 1e6\nregen_power_w = 1e6\ncredit_regen = true";
+    for controller in ["ahead.toml", "grbl", "iso"] {
+        for axis in [JERK, "jerk_mm_s3 = 2000", "jerk_mm_s3 = 5e5"] {
+            let shop = Shop::new(controller, axis, ratings);
+            let machine = shop.get("mill.toml").replace("efficiency = 0.8\n", "");
+            shop.put("mill.toml", &machine.replace("base_load_w = 100\n", ""));
+            let text = if controller == "ahead.toml" {
+                text.clone()
+            } else {
+                text.replace("G64\n", "")
+            };
+            let energy = shop.report(&text)["energy_j"].as_f64().unwrap();
+            let friction = 0.1 * way_mm;
+            assert!(
+                (energy / friction - 1.0).abs() < 1e-9,
+                "{controller}: {energy} {friction}"
+            );
+        }
+    }
+}
