@@ -58,12 +58,14 @@ impl<'m> Rewriter<'m> {
     /// Begins a program.
     #[must_use]
     pub fn new(machine: &'m Machine) -> Self {
+        let motion = if machine.controller.language.rapid_at_power_on {
+            Motion::Rapid
+        } else {
+            Motion::None
+        };
         Self {
             machine,
-            written: Written {
-                motion: Motion::None,
-                feed: None,
-            },
+            written: Written { motion, feed: None },
             turned: Vec::new(),
             line_end: b"\n".to_vec(),
             complete: true,

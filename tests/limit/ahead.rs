@@ -207,6 +207,18 @@ fn both_certificates_can_be_asked_for() {
     }
 }
 
+/// grbl has G0 in force at power-on: nothing is put back before the first block,
+/// least of all before a `%`, where a program begins.
+#[test]
+fn nothing_is_written_before_the_program() {
+    let rig = Rig {
+        peak_w: 300.0,
+        ..GRBL
+    };
+    let text = rig.fits("%\nG0 X60 Y8\nG0 Y3\nG1 X8 F50\n%\n");
+    assert!(text.starts_with("%\nG1 X60 Y8 F"), "{text}");
+}
+
 #[test]
 fn a_thread_between_feeds_and_its_neighbours_get_the_robust_bound() {
     let rows = report(
