@@ -9,6 +9,9 @@ use crate::power::Assessment;
 pub(super) const SPINDLE_HELP: &str = "a lower S, or a drive that runs up and brakes more slowly \
      (`peak_power_w`, `regen_power_w` or `accel_time_s` in [spindle]); gwatt writes no S";
 
+/// What helps where a move is not run by itself.
+const NEIGHBOURS_HELP: &str = "lower feed or acceleration here and in the neighbouring blocks";
+
 /// Gives advice for moves that do not fit.
 pub(super) struct Adviser<'m> {
     machine: &'m Machine,
@@ -39,7 +42,7 @@ impl<'m> Adviser<'m> {
             return SPINDLE_HELP.to_owned();
         }
         if assessment.blended && !assessment.ahead {
-            return "lower feed or acceleration here and in the neighbouring blocks".to_owned();
+            return NEIGHBOURS_HELP.to_owned();
         }
         if interpreter.compensates() {
             return "lower the feed by hand: `limit` changes nothing under cutter compensation"
@@ -85,11 +88,16 @@ impl<'m> Adviser<'m> {
                 (knob, least.fold(f64::INFINITY, f64::min))
             }),
         ];
-        for (knob, value) in settings.into_iter().flatten() {
+        // An infinite value leaves the axes that move here as they are.
+        let settings = settings.into_iter().flatten();
+        for (knob, value) in settings.filter(|(_, value)| value.is_finite()) {
             words.push(format!(
                 "{} {value}",
                 super::describe::knob_name(self.machine, knob)
             ));
+        }
+        if words.is_empty() {
+            return NEIGHBOURS_HELP.to_owned();
         }
         let option = if mv.kind != MoveKind::Rapid && change.feed.is_some() {
             " (limit --allow feed)"

@@ -49,7 +49,7 @@ pub(crate) use ahead::{Role, joint, role};
 pub use assess::Assessor;
 pub use assessment::{Assessment, Certificate};
 pub use axis::electrical_w;
-pub use bus::{SpindleEvent, SpindleShare};
+pub use bus::SpindleShare;
 pub use demand::{Demand, Want};
 pub(crate) use effect::{Effect, Switched};
 pub use model::PowerModel;

@@ -288,14 +288,6 @@ impl SpindleState {
         }
     }
 
-    /// The run that it is on.
-    pub fn trace(&self) -> Option<&SpindleTrace> {
-        match &self.course {
-            Course::Run(trace, _) => Some(trace),
-            _ => None,
-        }
-    }
-
     /// The start and the target of the run that it is on, 1/min.
     pub fn run_rpm(&self) -> Option<[f64; 2]> {
         match &self.course {

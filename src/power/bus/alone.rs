@@ -137,7 +137,6 @@ impl SpindleBus<'_> {
             self.beside.get_or_insert_default().push(beside);
         }
         self.states.iter_mut().for_each(SpindleState::settle);
-        self.clock_s += duration_s;
         if duration_s > 0.0 {
             let demand = self.alone(Some(mv), extremes);
             self.row(mv.line, Some(mv), demand, span, duration_s, sink);

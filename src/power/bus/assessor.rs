@@ -1,6 +1,6 @@
 //! What judging moves has to do with the spindle.
 
-use super::{SpindleBus, SpindleEvent};
+use super::SpindleBus;
 use crate::interpret::{Move, Start};
 use crate::power::{Assessment, Assessor};
 
@@ -25,20 +25,6 @@ impl Assessor<'_> {
                 .filter(|watch| watch.follows_spindle())
                 .map(|_| Vec::new());
         }
-    }
-
-    /// Keeps the runs of the spindle from now on, for [`Self::spindle_events`].
-    pub fn record_spindle(&mut self) {
-        if let Some(bus) = &mut self.bus {
-            bus.record();
-        }
-    }
-
-    /// The runs of the spindle that began since the last call. Under G96 the
-    /// feeds that it follows are none.
-    pub fn spindle_events(&mut self) -> Vec<SpindleEvent> {
-        let bus = self.bus.as_mut();
-        bus.map(|bus| bus.events()).unwrap_or_default()
     }
 
     /// Takes the next move where the machine has a spindle.

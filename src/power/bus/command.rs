@@ -138,7 +138,6 @@ impl SpindleBus<'_> {
             let target = self.target(self.overrides[side].spindle);
             self.states[side].command(&self.motor, target);
         }
-        self.note_run();
         // Whether a word that stops it is waited for, no profile says.
         let blocks = self.spindle.wait == SpindleWait::Blocks && self.direction == 0.0;
         let unknown = blocks || self.spindle.wait == SpindleWait::Unknown;

@@ -114,7 +114,6 @@ impl SpindleBus<'_> {
     /// Lets the time of a move pass.
     pub(super) fn move_on(&mut self, mv: &Move, judged: &Assessment, followed: bool) {
         self.handed += 1;
-        self.clock_s += judged.duration_s;
         // A move that follows the surface has left the spindle where it ends.
         if !followed {
             self.states[0].pass(self.time_of(mv, judged));

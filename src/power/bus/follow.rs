@@ -71,7 +71,6 @@ impl SpindleBus<'_> {
         }
         self.states[0].wander(&self.motor, speeds.range, speeds.end);
         self.states[1].command(&self.motor, nominal.end);
-        self.note_run();
         let span = self.states[1].span(&self.motor, assessment.duration_s);
         self.states[1].pass([assessment.duration_s; 2]);
         Some(Followed {

@@ -27,7 +27,6 @@ use crate::power::demand::Want;
 use crate::power::model::PowerModel;
 use crate::power::overlap;
 use crate::power::spindle_state::{SpindleMotor, SpindleState, Window};
-use crate::power::spindle_trace::SpindleTrace;
 use crate::power::surface_speed::Surface;
 use crate::power::watch::Beside;
 
@@ -48,15 +47,6 @@ pub struct SpindleShare {
     pub runs: bool,
     /// How many commands it has got so far.
     pub command: u32,
-}
-
-/// A run of the spindle in the time of the program, at 100 %.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpindleEvent {
-    /// When its command comes, s from the beginning of the program.
-    pub time_s: f64,
-    /// The run, and the holding behind it, until the next event.
-    pub trace: SpindleTrace,
 }
 
 impl SpindleShare {
@@ -96,10 +86,6 @@ pub(super) struct SpindleBus<'m> {
     asked: Option<u64>,
     /// Commands so far.
     commands: u32,
-    /// Time of the program so far, s.
-    clock_s: f64,
-    /// Runs that nobody has taken yet, where they are wanted.
-    events: Option<Vec<SpindleEvent>>,
     /// What it does during the moves handed on, where that is watched over time.
     pub(super) beside: Option<Vec<Beside>>,
     last: Option<Move>,
@@ -140,8 +126,6 @@ impl<'m> SpindleBus<'m> {
             cutting: CuttingPower::new(machine),
             asked: None,
             commands: 0,
-            clock_s: 0.0,
-            events: None,
             beside: None,
             last: None,
             reserve_w: [0.0; 2],
@@ -163,26 +147,6 @@ impl<'m> SpindleBus<'m> {
             energy: want.energy,
             floor_w: want.floor_w - self.reserve_w[0],
             regen_floor_w: want.regen_floor_w - self.reserve_w[1],
-        }
-    }
-
-    /// Keeps the runs from now on.
-    pub fn record(&mut self) {
-        self.events = Some(Vec::new());
-    }
-
-    /// The runs since the last call, in order of time.
-    pub fn events(&mut self) -> Vec<SpindleEvent> {
-        self.events.as_mut().map(std::mem::take).unwrap_or_default()
-    }
-
-    /// Keeps the run that has just begun.
-    fn note_run(&mut self) {
-        if let (Some(events), Some(trace)) = (&mut self.events, self.states[1].trace()) {
-            events.push(SpindleEvent {
-                time_s: self.clock_s,
-                trace: trace.clone(),
-            });
         }
     }
 
