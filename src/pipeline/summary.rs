@@ -44,7 +44,7 @@ pub struct Unfit {
 pub struct Summary {
     /// Number of lines read.
     pub lines: u64,
-    /// Number of moves, dwells included.
+    /// Number of moves, dwells and runs of the spindle that do not fit included.
     pub moves: u64,
     /// Cycle time in s.
     pub duration_s: f64,

@@ -173,6 +173,7 @@ impl<'m, 'r> Tally<'m, 'r> {
     ) {
         let overload = assessment.demand.load_ratio;
         self.summary.unfit_count += 1;
+        self.summary.moves += u64::from(mv.kind == MoveKind::Spindle);
         if mv.run > 1 && self.join_run(mv, assessment) {
             return;
         }

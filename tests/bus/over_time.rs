@@ -84,6 +84,20 @@ fn a_run_beside_moves_that_are_planned_together() {
     assert!(overload.value < 4.0, "{overload:?}");
 }
 
+/// A run that does not fit is among the moves that it is counted with.
+#[test]
+fn runs_that_do_not_fit_are_counted_as_moves() {
+    let machine = machine(
+        "iso",
+        "",
+        "wait = true",
+        "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 95000\n",
+    );
+    let (_, summary) = run(&machine, "M8\nM3 S3000\nG1 X5 F60\n", &Options::default());
+    // The wait for the run, and the feed, which fits.
+    assert_eq!((summary.unfit_count, summary.moves), (1, 2));
+}
+
 /// Loads that are switched and the base load of the spindle's drive count once.
 #[test]
 fn loads_beside_the_spindle() {
