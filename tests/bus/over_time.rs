@@ -94,8 +94,8 @@ fn runs_that_do_not_fit_are_counted_as_moves() {
         "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 95000\n",
     );
     let (_, summary) = run(&machine, "M8\nM3 S3000\nG1 X5 F60\n", &Options::default());
-    // The wait for the run, and the feed, which fits.
-    assert_eq!((summary.unfit_count, summary.moves), (1, 2));
+    // The run, the wait for it, and the feed, which fits.
+    assert_eq!((summary.unfit_count, summary.moves), (2, 3));
 }
 
 /// Loads that are switched and the base load of the spindle's drive count once.
