@@ -5,11 +5,11 @@ mod over_time;
 use std::fmt::Write as _;
 use std::io::Cursor;
 
+use crate::rows::Rows;
 use gwatt::interpret::{MoveKind, Reading, Start};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{
-    Law, LimitOptions, LimitSummary, Options, Restart, Row, RowSink, Strategy, Summary, analyze,
-    limit,
+    Law, LimitOptions, LimitSummary, Options, Row, Strategy, Summary, analyze, limit,
 };
 use gwatt::plan::SpindleDrive;
 use gwatt::plan::period::{Motion, Ramp};
@@ -46,23 +46,6 @@ fn machine(controller: &str, converter: &str, spindle: &str, rest: &str) -> Mach
 
 fn iso(spindle: &str) -> Machine {
     machine("iso", "", spindle, "")
-}
-
-#[derive(Default)]
-struct Rows(Vec<Row>);
-
-impl RowSink for Rows {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.0.push(row.clone());
-        Ok(())
-    }
-}
-
-impl Restart for Rows {
-    fn restart(&mut self) -> std::io::Result<()> {
-        self.0.clear();
-        Ok(())
-    }
 }
 
 fn run(machine: &Machine, program: &str, options: &Options) -> (Vec<Row>, Summary) {

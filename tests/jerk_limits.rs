@@ -2,74 +2,31 @@
 //! programs on such machines.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::process::Command;
 
-use tempfile::TempDir;
+use crate::shop::Shop;
 
 /// A control that takes corners at a step of speed of 5 mm/s, arcs as arcs.
 const AHEAD: &str = "\n[planner.look_ahead]\n[planner.look_ahead.speed_step]\n\
                      step_mm_s = { X = 5, Y = 5, Z = 5 }\n";
 
-/// A folder with a machine, and gwatt run in it.
-struct Shop(TempDir);
+/// A mill with further lines for each axis, and `rest` in its converter.
+fn mill(controller: &str, axis: &str, rest: &str) -> Shop {
+    let shop = Shop::mill(controller, rest, "", axis);
+    let iso = include_str!("../machine-configs/controllers/iso.toml");
+    shop.put("ahead.toml", &format!("{iso}{AHEAD}"));
+    shop
+}
 
-impl Shop {
-    /// A mill without a margin that draws 100 W at rest; `axis` are further lines
-    /// of each axis, `rest` comes before them.
-    fn new(controller: &str, axis: &str, rest: &str) -> Self {
-        let shop = Self(tempfile::tempdir().unwrap());
-        let iso = include_str!("../machine-configs/controllers/iso.toml");
-        shop.put("ahead.toml", &format!("{iso}{AHEAD}"));
-        let mut text = format!(
-            "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\n\
-             base_load_w = 100\n{rest}\n[limits]\nmargin = 0\n"
-        );
-        for letter in ["X", "Y", "Z"] {
-            let _ = write!(
-                text,
-                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\n\
-                 mass_kg = 200\ncoulomb_n = 100\nefficiency = 0.8\n{axis}\n"
-            );
-        }
-        shop.put("mill.toml", &text);
-        shop
-    }
+/// The report of a program.
+fn reported(shop: &Shop, program: &str) -> serde_json::Value {
+    shop.put("a.ngc", program);
+    let (code, _, told) = shop.run("report a.ngc --json a.json");
+    assert_eq!(code, 0, "{told}");
+    serde_json::from_str(&shop.get("a.json")).unwrap()
+}
 
-    fn put(&self, name: &str, text: &str) {
-        fs::write(self.0.path().join(name), text).unwrap();
-    }
-
-    fn get(&self, name: &str) -> String {
-        fs::read_to_string(self.0.path().join(name)).unwrap()
-    }
-
-    /// Exit code, standard output and standard error.
-    fn run(&self, arguments: &str) -> (i32, String, String) {
-        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
-            .args(arguments.split(' '))
-            .args(["-m", "mill.toml"])
-            .current_dir(self.0.path())
-            .output()
-            .unwrap();
-        (
-            output.status.code().unwrap(),
-            String::from_utf8(output.stdout).unwrap(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
-    }
-
-    /// The report of a program, by lines of JSON.
-    fn report(&self, program: &str) -> serde_json::Value {
-        self.put("a.ngc", program);
-        let (code, _, told) = self.run("report a.ngc --json a.json");
-        assert_eq!(code, 0, "{told}");
-        serde_json::from_str(&self.get("a.json")).unwrap()
-    }
-
-    fn duration_s(&self, program: &str) -> f64 {
-        self.report(program)["duration_s"].as_f64().unwrap()
-    }
+fn duration_s(shop: &Shop, program: &str) -> f64 {
+    reported(shop, program)["duration_s"].as_f64().unwrap()
 }
 
 fn close(a: f64, b: f64) {
@@ -83,8 +40,8 @@ const THERE_AND_BACK: &str = "G21 G90 G94\nG0 X400\nG0 X0\nG0 X400 Y30\nG0 X0\nM
 /// 500 mm/s after 1/6 + 0.1 s over 66.67 mm; 266.67 mm of cruise.
 #[test]
 fn a_rapid_is_an_s_curve() {
-    let shop = Shop::new("iso", JERK, STRONG);
-    let report = shop.report("G21 G90\nG0 X400\nM30\n");
+    let shop = mill("iso", JERK, STRONG);
+    let report = reported(&shop, "G21 G90\nG0 X400\nM30\n");
     close(
         report["duration_s"].as_f64().unwrap(),
         0.8 + 1.0 / 6.0 + 0.1,
@@ -105,7 +62,10 @@ fn a_rapid_is_an_s_curve() {
     let (_, out, _) = shop.run("moves a.ngc");
     let row: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
     close(row["seconds"].as_f64().unwrap(), 0.8 + 1.0 / 6.0 + 0.1);
-    let plain = Shop::new("iso", "jerk_mm_s3 = 0", STRONG).report("G21 G90\nG0 X400\nM30\n");
+    let plain = reported(
+        &mill("iso", "jerk_mm_s3 = 0", STRONG),
+        "G21 G90\nG0 X400\nM30\n",
+    );
     close(plain["duration_s"].as_f64().unwrap(), 0.8 + 1.0 / 6.0);
     assert!(!plain["conditions"].to_string().contains("jerk"));
 }
@@ -116,7 +76,7 @@ fn rapids_are_limited_under_limits_of_jerk() {
                  { speed_mm_min = 12000, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]";
     for (axis, most) in [(JERK, 350.0), (curve, 250.0)] {
         let weak = format!("peak_power_w = {most}\nregen_power_w = 1000");
-        let shop = Shop::new("iso", axis, &weak);
+        let shop = mill("iso", axis, &weak);
         shop.put("a.ngc", THERE_AND_BACK);
         let (code, out, told) = shop.run("limit a.ngc --json a.json");
         assert_eq!(code, 0, "{told}");
@@ -145,8 +105,8 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 /// A line in many blocks runs as one, with one S-curve over all of them.
 #[test]
 fn joints_that_limit_nothing_leave_no_trace() {
-    let shop = Shop::new("ahead.toml", JERK, STRONG);
-    let one = shop.duration_s("G21 G90 G94 G64\nG1 X100 F9000\nM30\n");
+    let shop = mill("ahead.toml", JERK, STRONG);
+    let one = duration_s(&shop, "G21 G90 G94 G64\nG1 X100 F9000\nM30\n");
     // 150 mm/s without reaching the acceleration: 2·√(150/30000) s.
     let ramp_s = 2.0 * f64::sqrt(150.0 / 30e3);
     close(one, 100.0 / 150.0 + ramp_s);
@@ -154,7 +114,7 @@ fn joints_that_limit_nothing_leave_no_trace() {
     for i in 1..=1000 {
         let _ = writeln!(many, "G1 X{}", 0.1 * f64::from(i));
     }
-    let report = shop.report(&format!("{many}M30\n"));
+    let report = reported(&shop, &format!("{many}M30\n"));
     close(report["duration_s"].as_f64().unwrap(), one);
     assert_eq!(report["certificate"], "planned");
     let conditions = report["conditions"].to_string();
@@ -201,16 +161,16 @@ fn programs_are_limited_under_look_ahead_too() {
             "force_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
             "jerk_mm_s3 = 80000\nforce_curve = [{ speed_mm_min = 0, force_n = 650 }, { speed_mm_min = 30000, force_n = 300 }]",
         ] {
-            let shop = Shop::new(controller, axis, "peak_power_w = 200\nregen_power_w = 1000");
-            let free = Shop::new(controller, axis, STRONG);
-            let plain = Shop::new(controller, "", STRONG);
+            let shop = mill(controller, axis, "peak_power_w = 200\nregen_power_w = 1000");
+            let free = mill(controller, axis, STRONG);
+            let plain = mill(controller, "", STRONG);
             let program = pocket();
             let program = if controller == "grbl" {
                 program.replace("G64\n", "")
             } else {
                 program
             };
-            let [slow, fast] = [&free, &plain].map(|shop| shop.duration_s(&program));
+            let [slow, fast] = [&free, &plain].map(|shop| duration_s(&shop, &program));
             assert!(slow > fast, "{controller} {axis}: {slow} {fast}");
             shop.put("a.ngc", &program);
             let (code, out, told) = shop.run("limit a.ngc --allow feed --json a.json");
@@ -230,14 +190,14 @@ fn programs_are_limited_under_look_ahead_too() {
 #[test]
 fn a_series_adds_up_to_the_report() {
     for controller in ["ahead.toml", "linuxcnc", "iso"] {
-        let shop = Shop::new(controller, JERK, STRONG);
+        let shop = mill(controller, JERK, STRONG);
         let program = pocket();
         let program = if controller == "iso" {
             program.replace("G64", "G61")
         } else {
             program
         };
-        let report = shop.report(&program);
+        let report = reported(&shop, &program);
         let (code, _, told) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
         assert_eq!(code, 0, "{told}");
         let rows = rows(&shop.get("a.csv"));
@@ -300,7 +260,7 @@ fn the_energy_balance_closes() {
     let ratings = "peak_power_w = 1e6\nregen_power_w = 1e6\ncredit_regen = true";
     for controller in ["ahead.toml", "grbl", "iso"] {
         for axis in [JERK, "jerk_mm_s3 = 2000", "jerk_mm_s3 = 5e5"] {
-            let shop = Shop::new(controller, axis, ratings);
+            let shop = mill(controller, axis, ratings);
             let machine = shop.get("mill.toml").replace("efficiency = 0.8\n", "");
             shop.put("mill.toml", &machine.replace("base_load_w = 100\n", ""));
             let text = if controller == "ahead.toml" {
@@ -308,7 +268,7 @@ fn the_energy_balance_closes() {
             } else {
                 text.replace("G64\n", "")
             };
-            let energy = shop.report(&text)["energy_j"].as_f64().unwrap();
+            let energy = reported(&shop, &text)["energy_j"].as_f64().unwrap();
             let friction = 0.1 * way_mm;
             assert!(
                 (energy / friction - 1.0).abs() < 1e-9,

@@ -25,6 +25,8 @@ mod over_time;
 mod power;
 mod trace;
 mod rig;
+mod rows;
+mod shop;
 mod identify;
 mod tune;
 mod contour;

@@ -1,60 +1,12 @@
 //! Limits over time and series from outside: what the commands say and write.
 
-use std::fmt::Write as _;
-use std::fs;
 use std::process::Command;
 
-use tempfile::TempDir;
+use crate::shop::Shop;
 
-/// A folder with a machine, and gwatt run in it.
-struct Shop(TempDir);
-
-impl Shop {
-    /// A mill without a margin that draws 100 W at rest; `ratings` are further
-    /// lines of its converter, `rest` comes first.
-    fn new(controller: &str, rest: &str, ratings: &str) -> Self {
-        let shop = Self(tempfile::tempdir().unwrap());
-        let mut text = format!(
-            "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\n\
-             base_load_w = 100\n{ratings}\n[limits]\nmargin = 0\n{rest}\n"
-        );
-        for axis in ["X", "Y", "Z"] {
-            let _ = write!(
-                text,
-                "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\n\
-                 mass_kg = 200\ncoulomb_n = 100\nefficiency = 0.8\n"
-            );
-        }
-        shop.put("mill.toml", &text);
-        shop
-    }
-
-    fn put(&self, name: &str, text: &str) {
-        fs::write(self.0.path().join(name), text).unwrap();
-    }
-
-    fn get(&self, name: &str) -> String {
-        fs::read_to_string(self.0.path().join(name)).unwrap()
-    }
-
-    fn has(&self, name: &str) -> bool {
-        self.0.path().join(name).exists()
-    }
-
-    /// Exit code, standard output and standard error.
-    fn run(&self, arguments: &str) -> (i32, String, String) {
-        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
-            .args(arguments.split(' '))
-            .args(["-m", "mill.toml"])
-            .current_dir(self.0.path())
-            .output()
-            .unwrap();
-        (
-            output.status.code().unwrap(),
-            String::from_utf8(output.stdout).unwrap(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
-    }
+/// A mill whose converter has `ratings`; `rest` comes behind it.
+fn mill(controller: &str, rest: &str, ratings: &str) -> Shop {
+    Shop::mill(controller, ratings, rest, "")
 }
 
 /// X alone to 0.5 m/s at 3 m/s²: 0.167 s, F = 700 N, 437.5 W and the base load.
@@ -65,7 +17,7 @@ fn an_overload_is_told_and_lowered_away() {
     // Above 300 W, of 537.5 W: 0.0905 s of each ramp, four of them in 5 s.
     let ratings = "peak_power_w = 1000\ncontinuous_power_w = 300\n\
                    overload = [{ power_w = 1000, seconds = 0.2, every_s = 10 }]";
-    let shop = Shop::new("iso", "", ratings);
+    let shop = mill("iso", "", ratings);
     shop.put("a.ngc", THERE_AND_BACK);
     let (code, told, _) = shop.run("check a.ngc");
     assert_eq!(code, 1);
@@ -126,7 +78,7 @@ fn an_overload_is_told_and_lowered_away() {
 
 #[test]
 fn what_cannot_be_lowered_is_refused_with_the_reason() {
-    let shop = Shop::new("iso", "", "peak_power_w = 1000\ncontinuous_power_w = 90");
+    let shop = mill("iso", "", "peak_power_w = 1000\ncontinuous_power_w = 90");
     shop.put("a.ngc", THERE_AND_BACK);
     let (code, _, told) = shop.run("limit a.ngc -o b.ngc");
     assert_eq!(code, 1);
@@ -142,7 +94,7 @@ fn a_capacitor_carries_peaks_only_where_it_may() {
     // 1 mF gives 11.8 J.
     let bus = "peak_power_w = 300\nregen_power_w = 1000\ncapacitance_f = 1e-3\n\
                bus_nominal_v = 600\nbus_min_v = 580";
-    let strict = Shop::new("iso", "", bus);
+    let strict = mill("iso", "", bus);
     strict.put("a.ngc", THERE_AND_BACK);
     let (code, told, _) = strict.run("check a.ngc");
     assert_eq!(code, 1);
@@ -150,7 +102,7 @@ fn a_capacitor_carries_peaks_only_where_it_may() {
         told.contains("lowest bus voltage  582 V, at least 580 V"),
         "{told}"
     );
-    let credited = Shop::new("iso", "", &format!("{bus}\ncredit_capacitance = true"));
+    let credited = mill("iso", "", &format!("{bus}\ncredit_capacitance = true"));
     credited.put("a.ngc", THERE_AND_BACK);
     let (code, told, _) = credited.run("check a.ngc");
     assert_eq!(code, 0, "{told}");
@@ -159,7 +111,7 @@ fn a_capacitor_carries_peaks_only_where_it_may() {
     assert_eq!(credited.get("b.ngc"), THERE_AND_BACK);
     // Half the capacitance is not enough: lowered, but not to 300 W.
     let half = bus.replace("1e-3", "5e-4");
-    let half = Shop::new("iso", "", &format!("{half}\ncredit_capacitance = true"));
+    let half = mill("iso", "", &format!("{half}\ncredit_capacitance = true"));
     half.put("a.ngc", THERE_AND_BACK);
     assert_eq!(half.run("check a.ngc").0, 1);
     let (code, _, told) = half.run("limit a.ngc -o b.ngc");
@@ -194,7 +146,7 @@ fn rows(text: &str, program: &str) -> Vec<Vec<f64>> {
 fn a_series_adds_up_to_the_report() {
     for (controller, program) in [("linuxcnc", ROUND), ("iso", THERE_AND_BACK)] {
         let ratings = "peak_power_w = 2000\ncontinuous_power_w = 2000";
-        let shop = Shop::new(controller, "", ratings);
+        let shop = mill(controller, "", ratings);
         shop.put("a.ngc", program);
         let (code, _, told) =
             shop.run("report a.ngc --json a.json --series a.csv --step-ms 0.2 --limited a.ngc");
@@ -254,7 +206,7 @@ fn a_series_adds_up_to_the_report() {
 
 #[test]
 fn a_series_shows_the_limited_program_too() {
-    let shop = Shop::new("iso", "", "peak_power_w = 350\nregen_power_w = 1000");
+    let shop = mill("iso", "", "peak_power_w = 350\nregen_power_w = 1000");
     shop.put("a.ngc", THERE_AND_BACK);
     let (code, out, _) = shop.run("report a.ngc --series a.csv --step-ms 5");
     assert_eq!((code, out.as_str()), (0, ""));
@@ -270,7 +222,7 @@ fn a_series_shows_the_limited_program_too() {
     shop.run("report a.ngc --series b.csv --step-ms 5");
     assert_eq!(series, shop.get("b.csv"));
     // What cannot be limited is shown as it is.
-    let shop = Shop::new("iso", "", "peak_power_w = 350");
+    let shop = mill("iso", "", "peak_power_w = 350");
     shop.put("a.ngc", "G21 G90 G94\nG1 X100 F20000\nM30\n");
     let (code, _, told) = shop.run("report a.ngc --series a.csv");
     assert_eq!(code, 0);
@@ -283,7 +235,7 @@ fn a_series_shows_the_limited_program_too() {
 
 #[test]
 fn a_series_is_whole_or_not_there() {
-    let shop = Shop::new("iso", "", "peak_power_w = 1000");
+    let shop = mill("iso", "", "peak_power_w = 1000");
     shop.put("a.ngc", "G21\nG0 X1\nG0 Q7\n");
     let (code, ..) = shop.run("report a.ngc --series a.csv");
     assert_eq!(code, 2);
@@ -310,7 +262,7 @@ fn a_series_is_whole_or_not_there() {
 /// fit.
 #[test]
 fn machines_are_compared_by_their_limits_over_time_too() {
-    let shop = Shop::new("iso", "", "peak_power_w = 1000");
+    let shop = mill("iso", "", "peak_power_w = 1000");
     shop.put("a.ngc", THERE_AND_BACK);
     let text = shop.get("mill.toml");
     let weaker = "peak_power_w = 1000\ncontinuous_power_w = 90";

@@ -2,8 +2,9 @@
 //! that fit under it.
 
 use super::{RIG, Rig, Run};
+use crate::rows::Rows;
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Row, RowSink, analyze, motion};
+use gwatt::pipeline::{Certificate, Row, analyze, motion};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -15,16 +16,6 @@ const GRBL: Rig = Rig {
     controller: "grbl",
     ..RIG
 };
-
-#[derive(Default)]
-struct Rows(Vec<Row>);
-
-impl RowSink for Rows {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.0.push(row.clone());
-        Ok(())
-    }
-}
 
 /// Rows of a program, dwells left aside.
 fn rows(machine: &Machine, how: Run, program: &str) -> Vec<Row> {

@@ -1,24 +1,8 @@
 //! The rows of `limit` are those of `report`, with what became of each move.
 
 use super::RIG;
-use gwatt::pipeline::{Law, LimitOptions, Restart, Row, RowSink, Strategy, analyze, limit};
-
-#[derive(Default)]
-struct Rows(Vec<Row>);
-
-impl RowSink for Rows {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.0.push(row.clone());
-        Ok(())
-    }
-}
-
-impl Restart for Rows {
-    fn restart(&mut self) -> std::io::Result<()> {
-        self.0.clear();
-        Ok(())
-    }
-}
+use crate::rows::Rows;
+use gwatt::pipeline::{Law, LimitOptions, Strategy, analyze, limit};
 
 #[test]
 fn peaks_are_exact_in_every_row() {

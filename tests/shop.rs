@@ -1,0 +1,59 @@
+//! A folder with a machine, and gwatt run in it.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// See the module.
+pub struct Shop(pub TempDir);
+
+impl Shop {
+    /// A mill, `mill.toml`, without a margin that draws 100 W at rest.
+    /// `converter` are further lines of its converter, `axis` of each axis;
+    /// `rest` comes between them.
+    pub fn mill(controller: &str, converter: &str, rest: &str, axis: &str) -> Self {
+        let shop = Self(tempfile::tempdir().unwrap());
+        let mut text = format!(
+            "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\n\
+             base_load_w = 100\n{converter}\n[limits]\nmargin = 0\n{rest}\n"
+        );
+        for letter in ["X", "Y", "Z"] {
+            let _ = write!(
+                text,
+                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\n\
+                 mass_kg = 200\ncoulomb_n = 100\nefficiency = 0.8\n{axis}\n"
+            );
+        }
+        shop.put("mill.toml", &text);
+        shop
+    }
+
+    pub fn put(&self, name: &str, text: &str) {
+        fs::write(self.0.path().join(name), text).unwrap();
+    }
+
+    pub fn get(&self, name: &str) -> String {
+        fs::read_to_string(self.0.path().join(name)).unwrap()
+    }
+
+    pub fn has(&self, name: &str) -> bool {
+        self.0.path().join(name).exists()
+    }
+
+    /// Exit code, standard output and standard error, on the mill.
+    pub fn run(&self, arguments: &str) -> (i32, String, String) {
+        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+            .args(arguments.split(' '))
+            .args(["-m", "mill.toml"])
+            .current_dir(self.0.path())
+            .output()
+            .unwrap();
+        (
+            output.status.code().unwrap(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    }
+}
