@@ -170,7 +170,7 @@ fn programs_are_limited_under_look_ahead_too() {
             } else {
                 program
             };
-            let [slow, fast] = [&free, &plain].map(|shop| duration_s(&shop, &program));
+            let [slow, fast] = [&free, &plain].map(|shop| duration_s(shop, &program));
             assert!(slow > fast, "{controller} {axis}: {slow} {fast}");
             shop.put("a.ngc", &program);
             let (code, out, told) = shop.run("limit a.ngc --allow feed --json a.json");
