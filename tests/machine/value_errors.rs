@@ -209,6 +209,12 @@ fn table_for_number() {
 }
 
 #[test]
+fn list_for_a_point_of_a_curve() {
+    let curve = "mass_kg = 900\nforce_curve = [[0, 100]]";
+    assert_snapshot!(findings(&edited("mass_kg = 900", curve)), @"");
+}
+
+#[test]
 fn number_for_table() {
     assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"iso\"\nconverter = 3\naxes = 4\n"), @r"
     line 4, error machine-type: `converter` must be a table, not a number

@@ -57,6 +57,22 @@ pub(crate) fn wrong_type(expected: &str, found: &DeValue<'_>) -> Option<String> 
     }
 }
 
+/// How to write a table, or a list of tables, that `schema` describes.
+pub(crate) fn example(schema: &Value) -> Option<String> {
+    let is_list = schema["type"] == "array";
+    let table = if is_list { &schema["items"] } else { schema };
+    let required = table["required"].as_array()?.iter();
+    let keys: Vec<String> = required
+        .filter_map(|key| Some(format!("{} = …", key.as_str()?)))
+        .collect();
+    let entry = format!("{{ {} }}", keys.join(", "));
+    match (keys.is_empty(), is_list) {
+        (true, _) => None,
+        (false, true) => Some(format!("write it as [{entry}, …]")),
+        (false, false) => Some(format!("write it as {entry}")),
+    }
+}
+
 /// What a number out of range was probably meant to be.
 pub(crate) fn out_of_range(name: &str, number: f64) -> Option<String> {
     let percent = || format!("in percent? {number} % is {}", number / 100.0);

@@ -99,12 +99,18 @@ impl<'a, 'f> Structure<'a, 'f> {
             (Some("string"), DeValue::String(text)) => self.word(text, &span, schema, name),
             (Some("boolean"), DeValue::Boolean(_)) => true,
             (expected, found) => {
+                let expected = expected.unwrap_or("");
+                let entry = if path.ends_with(name) {
+                    ""
+                } else {
+                    "an entry of "
+                };
                 let message = format!(
-                    "`{name}` must be {}, not {}",
-                    hints::type_name(expected.unwrap_or("")),
-                    hints::found_name(expected.unwrap_or(""), found)
+                    "{entry}`{name}` must be {}, not {}",
+                    hints::type_name(expected),
+                    hints::found_name(expected, found)
                 );
-                let help = hints::wrong_type(expected.unwrap_or(""), found);
+                let help = hints::wrong_type(expected, found).or_else(|| hints::example(schema));
                 self.findings.error("machine-type", &span, message, help);
                 false
             }

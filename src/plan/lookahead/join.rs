@@ -1,8 +1,9 @@
-//! Lines that become one: the naive CAM detector of `LinuxCNC` (G64 Q).
+//! Lines that become one: the naive CAM detector of `LinuxCNC` (G64 P Q).
 //!
 //! Input: elements in order. Output: the same, with runs of feeds put together
 //! as long as all their corners stay within Q of the straight line from the
-//! start of the first to the end of the last.
+//! start of the first to the end of the last. An arc of the XY plane that bulges
+//! less than Q is two chords, which meet at its middle.
 
 use arrayvec::ArrayVec;
 
@@ -10,6 +11,7 @@ use super::blend::Axes;
 use super::element::{Element, Joint};
 use super::vector::{Vector, add, dot, length, scale, sub, unit};
 use crate::machine::AXES;
+use std::f64::consts::PI;
 
 /// Points that are put together, at most: one more ends the line.
 const POINTS_MAX: usize = 101;
@@ -21,8 +23,8 @@ pub(super) struct Joined<T> {
     pub element: Element<T>,
     /// The tag of the first.
     pub first: T,
-    /// It is more than one element.
-    pub several: bool,
+    /// It is not the element's own path: several elements, or a chord.
+    pub is_line: bool,
 }
 
 /// Feeds that may still be put together.
@@ -32,6 +34,8 @@ pub(super) struct Joiner<T> {
     last: Option<(T, Element<T>)>,
     /// Ends of the elements held, from the start of the first.
     points: ArrayVec<Vector, POINTS_MAX>,
+    /// A chord of an arc is among them.
+    has_chord: bool,
 }
 
 impl<T: Copy> Joiner<T> {
@@ -39,12 +43,25 @@ impl<T: Copy> Joiner<T> {
         Self {
             last: None,
             points: ArrayVec::new(),
+            has_chord: false,
         }
     }
 
     /// Adds an element; gives what is complete before it, and the element
     /// itself where nothing can be joined to it.
     pub fn push(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
+        let Some(chords) = chords(element, axes) else {
+            return self.link(element, axes);
+        };
+        // Chords are always held back, so that each completes one line at most.
+        chords.map(|chord| {
+            let [before, _] = self.link(&chord, axes);
+            self.has_chord = true;
+            before
+        })
+    }
+
+    fn link(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
         let change = &element.start;
         let travel = scale([change[0], change[1], change[2]], element.length_mm);
         let joins = joins(element);
@@ -68,7 +85,7 @@ impl<T: Copy> Joiner<T> {
         let alone = Joined {
             element: *element,
             first: element.tag,
-            several: false,
+            is_line: false,
         };
         [before, Some(alone)]
     }
@@ -96,38 +113,81 @@ impl<T: Copy> Joiner<T> {
         let (first, mut element) = self.last.take()?;
         let end = self.points.last().copied()?;
         let several = self.points.len() > 1;
+        let is_line = std::mem::take(&mut self.has_chord) || several;
         self.points.clear();
         if several {
-            element.length_mm = length(end);
-            let along = unit(end)?;
-            let accels = axes.accel(&element.axis_accel_mm_s2);
-            element.speed_mm_s = f64::INFINITY;
-            element.accel_mm_s2 = element.path_accel_mm_s2;
-            element.jerk_mm_s3 = f64::INFINITY;
-            element.start = [0.0; AXES];
-            for (i, change) in along.into_iter().enumerate() {
-                element.start[i] = change;
-                if change != 0.0 {
-                    element.speed_mm_s = element.speed_mm_s.min(axes.speed[i] / change.abs());
-                    element.accel_mm_s2 = element.accel_mm_s2.min(accels[i] / change.abs());
-                    element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerk[i] / change.abs());
-                }
-            }
-            element.end = element.start;
+            element = straight(&element, end, axes)?;
         }
         Some(Joined {
             element,
             first,
-            several,
+            is_line,
         })
     }
+}
+
+/// An element as a straight line with the limits of its direction; `None` if it
+/// has no length.
+fn straight<T: Copy>(of: &Element<T>, travel: Vector, axes: &Axes) -> Option<Element<T>> {
+    let along = unit(travel)?;
+    let accels = axes.accel(&of.axis_accel_mm_s2);
+    let mut element = Element {
+        length_mm: length(travel),
+        speed_mm_s: f64::INFINITY,
+        accel_mm_s2: of.path_accel_mm_s2,
+        jerk_mm_s3: f64::INFINITY,
+        curve_speed_mm_s: f64::INFINITY,
+        curve: None,
+        start: [0.0; AXES],
+        ..*of
+    };
+    for (i, change) in along.into_iter().enumerate() {
+        element.start[i] = change;
+        if change != 0.0 {
+            element.speed_mm_s = element.speed_mm_s.min(axes.speed[i] / change.abs());
+            element.accel_mm_s2 = element.accel_mm_s2.min(accels[i] / change.abs());
+            element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerk[i] / change.abs());
+        }
+    }
+    element.end = element.start;
+    Some(element)
+}
+
+/// The two chords of an arc that bulges so little that the detector takes it for
+/// lines.
+fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Element<T>; 2]> {
+    let curve = element.curve.as_ref()?;
+    let Joint::Blend { join_mm, .. } = element.joint else {
+        return None;
+    };
+    let half_rad = 0.5 * curve.sweep_rad;
+    let bulge_mm = curve.radius_mm * (1.0 - libm::cos(half_rad));
+    let flat = curve.plane == [0, 1] && half_rad.abs() <= PI && keeps_to_xyz(element);
+    if !flat || bulge_mm >= join_mm {
+        return None;
+    }
+    let tangent = unit([element.start[0], element.start[1], 0.0])?;
+    let outward = scale([tangent[1], -tangent[0], 0.0], curve.sweep_rad.signum());
+    let rise_mm = element.start[2] * element.length_mm;
+    // Where the arc has turned by an angle, from its start.
+    let at = |turned_rad: f64| {
+        let (sin, cos) = libm::sincos(turned_rad.abs());
+        let flat = add(scale(outward, cos - 1.0), scale(tangent, sin));
+        let rise = rise_mm * turned_rad / curve.sweep_rad;
+        add(scale(flat, curve.radius_mm), [0.0, 0.0, rise])
+    };
+    let (middle, end) = (at(half_rad), at(curve.sweep_rad));
+    let first = straight(element, middle, axes)?;
+    Some([first, straight(element, sub(end, middle), axes)?])
+}
+
+/// Whether axes other than X, Y and Z stand.
+fn keeps_to_xyz<T>(element: &Element<T>) -> bool {
+    element.start.iter().skip(3).all(|change| *change == 0.0)
 }
 
 /// Whether an element is a straight feed of X, Y and Z under G64 with Q.
 fn joins<T>(element: &Element<T>) -> bool {
     let joined = matches!(element.joint, Joint::Blend { join_mm, .. } if join_mm > 0.0);
-    joined
-        && !element.rapid
-        && element.curve.is_none()
-        && element.start.iter().skip(3).all(|change| *change == 0.0)
+    joined && !element.rapid && element.curve.is_none() && keeps_to_xyz(element)
 }

@@ -38,7 +38,8 @@ struct Pending<T> {
     element: Element<T>,
     /// Of several elements that became one line: the first.
     first: T,
-    several: bool,
+    /// It is a line in place of the element's path.
+    is_line: bool,
     /// What the blend before it took, mm of path.
     from_mm: f64,
     /// And what is left, mm.
@@ -49,16 +50,27 @@ struct Pending<T> {
     /// Share of the acceleration given up to the kinks before and behind.
     kink_before: f64,
     kink_behind: f64,
-    /// A parabolic blend before it, which is not modelled exactly.
+    /// A parabolic blend before or behind it: its path is known within the
+    /// tolerance only.
     parabolic: bool,
+    /// What it runs while the element before it brakes.
+    lead: Option<Lead>,
     /// Largest speed at its start, squared.
     entry2: f64,
+}
+
+/// The start of an element in a parabolic blend: from rest, in the time in which
+/// the element before it comes to rest.
+#[derive(Debug, Clone, Copy)]
+struct Lead {
+    accel: f64,
+    length_mm: f64,
 }
 
 enum Way {
     Stop,
     Pass(f64),
-    Parabolic(f64),
+    Parabolic,
     Blend(Fit),
 }
 
@@ -69,7 +81,7 @@ impl<T: Copy> Pending<T> {
         Self {
             element: *element,
             first: joined.first,
-            several: joined.several,
+            is_line: joined.is_line,
             from_mm: 0.0,
             length_mm: element.length_mm,
             sweep_rad: element.curve.map_or(0.0, |curve| curve.sweep_rad.abs()),
@@ -77,6 +89,7 @@ impl<T: Copy> Pending<T> {
             kink_before: 0.0,
             kink_behind: 0.0,
             parabolic: false,
+            lead: None,
             entry2: 0.0,
         }
     }
@@ -91,6 +104,11 @@ impl<T: Copy> Pending<T> {
             Some(curve) => curve.accel_mm_s2.min(self.element.path_accel_mm_s2),
             None => self.element.accel_mm_s2,
         }
+    }
+
+    /// The share of its acceleration that a parabolic blend leaves.
+    fn unbent_share(&self) -> f64 {
+        0.5 * (1.0 - self.kink_before.max(self.kink_behind))
     }
 
     /// Gives up `mm` of path at the start or at the end.
@@ -146,19 +164,52 @@ impl<T: Copy> Pending<T> {
         })
     }
 
-    /// What is left of it.
-    fn piece(&self) -> Piece {
+    /// Of what is left of it, a piece.
+    fn piece(&self, from_mm: f64, to_mm: f64) -> Piece {
         let change = &self.element.start;
-        if self.several {
+        if self.is_line {
             Piece::Joined {
                 direction: [change[0], change[1], change[2]],
             }
         } else {
             Piece::Along {
-                from_mm: self.from_mm,
-                to_mm: self.from_mm + self.length_mm,
+                from_mm: self.from_mm + from_mm,
+                to_mm: self.from_mm + to_mm,
             }
         }
+    }
+
+    /// The speed of an arc and the acceleration along it, of those that it has
+    /// without its curvature.
+    fn turning(&self, max_speed: f64, accel: f64) -> (f64, f64) {
+        let Some(curve) = &self.element.curve else {
+            return (max_speed, accel);
+        };
+        let radius = curve.radius_mm + curve.rise_mm * curve.rise_mm / curve.radius_mm;
+        let turning2 = NORMAL_SHARE * accel * radius;
+        if max_speed * max_speed > turning2 {
+            return (turning2.sqrt(), accel * TANGENTIAL_SHARE);
+        }
+        let normal = max_speed * max_speed / (radius * accel);
+        (max_speed, accel * (1.0 - normal * normal).sqrt())
+    }
+
+    /// Unit direction in which the planner expects an end to pull. An arc pulls in
+    /// its plane; at its start it turns towards the centre, by what half of the
+    /// speed asked for needs.
+    fn pull(&self, at_end: bool) -> Option<Vector> {
+        let side = self.side(at_end)?;
+        let Some(circle) = &side.circle else {
+            return Some(side.tangent);
+        };
+        let across = dot(side.tangent, circle.normal);
+        let flat = unit(sub(side.tangent, scale(circle.normal, across)))?;
+        if at_end {
+            return Some(flat);
+        }
+        let half = 0.5 * self.element.feed_mm_s.min(self.element.speed_mm_s);
+        let inward = scale(unit(circle.center)?, half * half / circle.radius);
+        unit(add(scale(flat, self.unbent_share() * self.accel()), inward))
     }
 
     /// Whether axes other than X, Y and Z move.
@@ -202,10 +253,10 @@ impl<T: Copy> LinuxCnc<T> {
                 next.entry2 = speed * speed;
                 self.hand_over(&before, window, false);
             }
-            Way::Parabolic(speed) => {
+            Way::Parabolic => {
                 before.parabolic = true;
                 next.parabolic = true;
-                next.entry2 = speed * speed;
+                next.lead = Overlap::of(&before, &next, true).lead();
                 self.hand_over(&before, window, false);
             }
             Way::Blend(fit) => self.round(before, &mut next, &fit, window),
@@ -231,18 +282,10 @@ impl<T: Copy> LinuxCnc<T> {
         }
         let blends = matches!(joint, Joint::Blend { .. });
         let (Some(first), Some(second)) = (before.side(true), next.side(false)) else {
-            return if blends {
-                parabolic(before, next)
-            } else {
-                Way::Stop
-            };
+            return if blends { Way::Parabolic } else { Way::Stop };
         };
         if before.rotates() || next.rotates() {
-            return if blends {
-                parabolic(before, next)
-            } else {
-                Way::Stop
-            };
+            return if blends { Way::Parabolic } else { Way::Stop };
         }
         let sum = add(first.tangent, second.tangent);
         if dot(sum, sum) < REVERSAL2 {
@@ -271,10 +314,10 @@ impl<T: Copy> LinuxCnc<T> {
         let kink_speed = v * self.kink_ratio / share;
         let fit = fit([&first, &second], &self.axes, accel);
         let blend_speed = fit.as_ref().map_or(0.0, |fit| fit.speed);
-        let overlap = 0.5 * overlap(before, next).along;
+        let overlap = 0.5 * Overlap::of(before, next, false).along;
         if overlap >= kink_speed && overlap >= blend_speed {
             (before.kink_behind, next.kink_before) = kept;
-            return parabolic(before, next);
+            return Way::Parabolic;
         }
         match fit {
             Some(fit) if blend_speed > kink_speed => {
@@ -322,6 +365,7 @@ impl<T: Copy> LinuxCnc<T> {
             next: Some(next.first),
             piece,
             certain: true,
+            meanwhile: false,
         };
         let top2 = top * top;
         let before2 = window.last_top2();
@@ -340,29 +384,18 @@ impl<T: Copy> LinuxCnc<T> {
 
     /// Puts an element into the window as it is now.
     fn hand_over(&self, of: &Pending<T>, window: &mut Window<Load<T>>, last: bool) {
-        let mut accel = of.accel() * (1.0 - of.kink_before.max(of.kink_behind));
         let unblended = last && matches!(of.element.joint, Joint::Blend { .. });
-        if of.parabolic || unblended {
-            accel *= 0.5;
-        }
+        let share = if of.parabolic || unblended { 0.5 } else { 1.0 };
+        let mut accel = of.accel() * (1.0 - of.kink_before.max(of.kink_behind)) * share;
         let mut max_speed = of.max_speed.min(of.length_mm / self.cycle_s);
         // What a queue's last element may be entered with.
         let mut half = accel;
-        if let Some(curve) = &of.element.curve {
+        if of.element.curve.is_some() {
             half *= TANGENTIAL_SHARE;
             if last {
                 accel = half;
             } else {
-                let radius = curve.radius_mm + curve.rise_mm * curve.rise_mm / curve.radius_mm;
-                let turning2 = NORMAL_SHARE * accel * radius;
-                let share = if max_speed * max_speed > turning2 {
-                    max_speed = turning2.sqrt();
-                    TANGENTIAL_SHARE
-                } else {
-                    let normal = max_speed * max_speed / (radius * accel);
-                    (1.0 - normal * normal).sqrt()
-                };
-                accel *= share;
+                (max_speed, accel) = of.turning(max_speed, accel);
             }
         }
         if !last {
@@ -377,22 +410,37 @@ impl<T: Copy> LinuxCnc<T> {
         if last {
             entry2 = entry2.min(accel * of.length_mm);
         }
-        let entry2 = if entry2 > 0.0 {
+        entry2 = if entry2 > 0.0 {
             entry2.min(window.last_top2())
         } else {
             0.0
         };
-        let load = Load {
+        let mut load = Load {
             tag: of.element.tag,
             first: of.first,
             next: None,
-            piece: of.piece(),
+            piece: of.piece(0.0, of.length_mm),
             certain: !of.parabolic,
+            meanwhile: false,
         };
-        let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
+        let mut length_mm = of.length_mm;
+        if let Some(lead) = &of.lead {
+            let speed2 = 2.0 * lead.accel * lead.length_mm;
+            load.piece = of.piece(0.0, lead.length_mm);
+            load.meanwhile = true;
+            let mut node = Node::new(lead.length_mm, speed2, lead.accel, 0.0, load.clone());
+            node.jerk = of.element.jerk_mm_s3;
+            node.block = false;
+            window.push(node);
+            length_mm -= lead.length_mm;
+            load.piece = of.piece(lead.length_mm, of.length_mm);
+            load.meanwhile = false;
+            entry2 = top2.min(speed2);
+        }
+        let mut node = Node::new(length_mm, top2, accel, entry2, load);
         let parabolic = matches!(of.element.joint, Joint::Blend { .. });
         node.jerk = of.element.jerk_mm_s3;
-        node.tail2 = half * of.length_mm * if parabolic && !last { 0.5 } else { 1.0 };
+        node.tail2 = half * length_mm * if parabolic && !last { 0.5 } else { 1.0 };
         window.push(node);
     }
 }
@@ -406,58 +454,66 @@ fn share_of(accel: Vector, limits: Vector) -> f64 {
         .fold(0.0, |share, (a, limit)| share.max(a.abs() / limit))
 }
 
-/// What a parabolic blend comes to.
+/// What a parabolic blend comes to: the next element begins while the last one
+/// still brakes, both with half of their acceleration.
 struct Overlap {
-    /// Speed of the element before when the next one begins.
-    speed: f64,
-    /// Accelerations of both.
-    accels: [f64; 2],
+    /// Speeds of the element before when the next one begins, and of the next
+    /// one when the one before it has come to rest.
+    speeds: [f64; 2],
+    /// Acceleration of the one before.
+    accel: f64,
     /// Speed along the mean direction.
     along: f64,
 }
 
-/// A parabolic blend: the next element begins while the last one still
-/// brakes, both with half of their acceleration.
-fn overlap<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Overlap {
-    let accel = |of: &Pending<T>| {
-        let share = 1.0 - of.kink_before.max(of.kink_behind);
-        let bent = if of.element.curve.is_some() {
-            TANGENTIAL_SHARE
-        } else {
-            1.0
-        };
-        0.5 * of.accel() * share * bent
-    };
-    let accels = [accel(before), accel(next)];
-    let reach = |of: &Pending<T>, a: f64| (a * of.length_mm).sqrt().min(of.target_speed());
-    let [v0, v1] = [reach(before, accels[0]), reach(next, accels[1])];
-    // As long as the longer ramp takes, if the elements are long enough.
-    let longest_s = (v0 / accels[0]).max(v1 / accels[1]);
-    let blend_s = longest_s.min((before.length_mm / v0).min(next.length_mm / v1));
-    let mut speeds = [v0.min(blend_s * accels[0]), v1.min(blend_s * accels[1])];
-    let mut along = 0.0;
-    if let (Some(first), Some(second)) = (before.side(true), next.side(false)) {
-        let theta = 0.5 * angle_between(first.tangent, second.tangent);
-        if first.tolerance_mm > 0.0 && libm::cos(theta) > 1e-3 {
-            let most = 2.0 * (accels[0] * first.tolerance_mm / libm::cos(theta)).sqrt();
-            speeds = speeds.map(|speed| speed.min(most));
+impl Overlap {
+    /// As it is expected where it is chosen, or as it comes: there the turning
+    /// of arcs has to do with half of the acceleration as well.
+    fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>, chosen: bool) -> Self {
+        let [(v0, a0), (v1, a1)] = [before, next].map(|of| {
+            let share = of.unbent_share();
+            let (speed, accel) = if chosen {
+                of.turning(of.max_speed, share * of.accel())
+            } else {
+                let (speed, accel) = of.turning(of.max_speed, of.accel());
+                (speed, share * accel)
+            };
+            let peak = (accel * of.length_mm).sqrt();
+            (peak.min(speed).min(of.element.feed_mm_s), accel)
+        });
+        let accels = [a0, a1];
+        // As long as the longer ramp takes, if the elements are long enough.
+        let longest_s = (v0 / accels[0]).max(v1 / accels[1]);
+        let blend_s = longest_s.min((before.length_mm / v0).min(next.length_mm / v1));
+        let mut speeds = [v0.min(blend_s * accels[0]), v1.min(blend_s * accels[1])];
+        let mut along = 0.0;
+        if let (Some(first), Some(second)) = (before.pull(true), next.pull(false)) {
+            let theta = 0.5 * angle_between(first, second);
+            let tolerance_mm = match before.element.joint {
+                Joint::Blend { tolerance_mm, .. } => tolerance_mm,
+                _ => 0.0,
+            };
+            if tolerance_mm > 0.0 && libm::cos(theta) > 1e-3 {
+                let most = 2.0 * (accels[0] * tolerance_mm / libm::cos(theta)).sqrt();
+                speeds = speeds.map(|speed| speed.min(most));
+            }
+            along = 0.5 * libm::sin(theta) * (speeds[0] + speeds[1]);
         }
-        along = 0.5 * libm::sin(theta) * (speeds[0] + speeds[1]);
+        Self {
+            speeds,
+            accel: accels[0],
+            along,
+        }
     }
-    Overlap {
-        speed: speeds[0],
-        accels,
-        along,
-    }
-}
 
-/// A parabolic blend as a joint that takes as long: with the top speed v on
-/// both sides, passing at w = x·v instead of stopping saves
-/// `Σ(w/a − w²/(2·a·v))`, the blend saves its own duration.
-fn parabolic<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Way {
-    let Overlap { speed, accels, .. } = overlap(before, next);
-    let top = before.target_speed().min(next.target_speed());
-    let ramps = 1.0 / accels[0] + 1.0 / accels[1];
-    let saved = speed / (accels[0] * ramps * top);
-    Way::Parabolic(top * (1.0 - (1.0 - 2.0 * saved).max(0.0).sqrt()))
+    /// What the next element runs meanwhile.
+    fn lead(&self) -> Option<Lead> {
+        let [before, next] = self.speeds;
+        let lasts_s = before / self.accel;
+        let lead = Lead {
+            accel: next / lasts_s,
+            length_mm: 0.5 * next * lasts_s,
+        };
+        (lead.accel > 0.0 && lead.length_mm > 0.0).then_some(lead)
+    }
 }

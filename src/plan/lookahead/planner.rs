@@ -75,6 +75,9 @@ pub struct Planned<T> {
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
     pub certain: bool,
+    /// It runs while the piece before it comes to rest, so that it takes no time
+    /// of its own.
+    pub meanwhile: bool,
 }
 
 impl<T> Planned<T> {
@@ -105,6 +108,9 @@ impl<T> Planned<T> {
     #[must_use]
     #[inline]
     pub fn duration_s(&self) -> f64 {
+        if self.meanwhile {
+            return 0.0;
+        }
         if let Some(section) = &self.section {
             return section.duration_s();
         }
@@ -145,6 +151,7 @@ pub(super) struct Load<T> {
     pub next: Option<T>,
     pub piece: Piece,
     pub certain: bool,
+    pub meanwhile: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -260,6 +267,7 @@ impl<T: Copy> PathPlanner<T> {
                 to_mm: at[1],
             },
             certain: true,
+            meanwhile: false,
         };
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
         node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
@@ -306,6 +314,7 @@ impl<T: Copy> PathPlanner<T> {
             accel_mm_s2: span.accel,
             section: span.section,
             certain: span.certain && span.payload.certain,
+            meanwhile: span.payload.meanwhile,
         })
     }
 }
