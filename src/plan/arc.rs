@@ -30,9 +30,10 @@ use crate::interpret::{Arc, Move};
 use crate::machine::{ArcRule, AxisKind, Machine};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Share of the acceleration limit that `LinuxCNC` 2.9 gives to turning: √3/2,
-/// which leaves one half for speeding up.
-const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
+/// Share of the acceleration limit that `LinuxCNC` 2.9 gives to turning: √3/2.
+pub(super) const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
+/// Share that it leaves for speeding up.
+pub(super) const LINUXCNC_TANGENTIAL_SHARE: f64 = 0.5;
 
 /// Smallest and largest tangent component of one axis over a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,14 +98,24 @@ pub(super) fn plane_share(mv: &Move, arc: &Arc) -> f64 {
     arc.radius_mm * arc.sweep_rad.abs() / mv.length_mm
 }
 
+/// The largest part of the speed in the plane that each of its axes has to keep
+/// up with.
+fn largest_parts(machine: &Machine, arc: &Arc) -> [f64; 2] {
+    match machine.controller.planner.arc_rule {
+        ArcRule::Shared => tangent_ranges(arc).map(TangentRange::largest),
+        // Whatever directions the arc meets.
+        ArcRule::LinuxCnc => [1.0; 2],
+    }
+}
+
 /// Path speed that the axes' own speeds permit.
 pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
     let share = plane_share(mv, arc);
-    let ranges = tangent_ranges(arc);
+    let parts = largest_parts(machine, arc);
     let raised = mv.rapid_factor.max(1.0);
     let per_axis = limits::moving(machine, mv).map(|(axis, limit)| {
         let part = match arc.plane.iter().position(|&plane| plane == axis) {
-            Some(i) => share * ranges[i].largest(),
+            Some(i) => share * parts[i],
             None => (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm,
         };
         limit.rapid_mm_s * raised / part
@@ -115,7 +126,7 @@ pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
 /// What the axes and the arc rule permit.
 pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> PathLimits {
     let share = plane_share(mv, arc);
-    let ranges = tangent_ranges(arc);
+    let parts = largest_parts(machine, arc);
     let mut limits = PathLimits::NONE;
     let mut plane_jerk = f64::INFINITY;
     let raised = mv.rapid_factor.max(1.0);
@@ -135,7 +146,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         if let Some(i) = arc.plane.iter().position(|&plane| plane == axis) {
             plane_accel = plane_accel.min(accel);
             plane_jerk = plane_jerk.min(jerk);
-            let speed = limit.rapid_mm_s * raised / (share * ranges[i].largest());
+            let speed = limit.rapid_mm_s * raised / (share * parts[i]);
             limits.speed_mm_s = limits.speed_mm_s.min(speed);
         } else {
             limits.take(mv, axis, limit.rapid_mm_s * raised, accel, jerk);
@@ -147,7 +158,14 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
             let half = linear_accel.min(plane_accel) * FRAC_1_SQRT_2;
             ((half * radius).sqrt() / share, half)
         }
-        ArcRule::LinuxCnc => linuxcnc(plane_accel, radius, share, limits.speed_mm_s),
+        ArcRule::LinuxCnc => {
+            let rise_mm = mv.length_mm * (1.0 - share * share).max(0.0).sqrt();
+            let turning = (LINUXCNC_NORMAL_SHARE * plane_accel * radius).sqrt() / share;
+            let accel = limits.accel_mm_s2.min(plane_accel / share);
+            let speed = limits.speed_mm_s.min(turning);
+            let (cut, along) = linuxcnc(speed, accel, radius + rise_mm * rise_mm / radius);
+            (turning.min(cut), along)
+        }
     };
     let mut limits = PathLimits {
         speed_mm_s: limits.speed_mm_s.min(turning),
@@ -175,11 +193,18 @@ impl PathLimits {
     }
 }
 
-/// `LinuxCNC` 2.9: path speed for turning, and tangential acceleration at the
-/// largest speed that axes and turning permit, whatever F asks for.
-fn linuxcnc(a: f64, radius: f64, share: f64, axis_speed: f64) -> (f64, f64) {
-    let turning = (LINUXCNC_NORMAL_SHARE * a * radius).sqrt() / share;
-    let v = axis_speed.min(turning) * share;
-    let normal_share = (v * v / (radius * a)).min(LINUXCNC_NORMAL_SHARE);
-    (turning, a * (1.0 - normal_share * normal_share).sqrt())
+/// `LinuxCNC` 2.9: an arc's speed and its acceleration along the path, of those
+/// that it has without its curvature. Of the speed counts the largest that axes
+/// and turning permit, whatever F asks for.
+///
+/// `radius_mm` is `r + h²/r` for a helix that rises by h in all: measured, though
+/// the radius of its curvature has h per radian. Steep helices so exceed the axes'
+/// accelerations, up to `√(1 + 3/4)` times in the plane.
+pub(super) fn linuxcnc(speed: f64, accel: f64, radius_mm: f64) -> (f64, f64) {
+    let normal_share = speed * speed / (radius_mm * accel);
+    if normal_share > LINUXCNC_NORMAL_SHARE {
+        let turning = (LINUXCNC_NORMAL_SHARE * accel * radius_mm).sqrt();
+        return (turning, accel * LINUXCNC_TANGENTIAL_SHARE);
+    }
+    (speed, accel * (1.0 - normal_share * normal_share).sqrt())
 }

@@ -11,15 +11,12 @@
 //!     ╱ (R) ╲       R/sin θ − R: the tolerance, so R = s·p/(1 − s).
 //! ```
 
+use super::super::arc::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
 use super::super::limits;
 use super::vector::{Vector, add, angle, cross, dot, length, scale, sub, unit};
 use crate::machine::{AxisValues, Machine};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Share of the acceleration for turning, √3/2.
-pub(super) const NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
-/// Share that it leaves for speeding up.
-pub(super) const TANGENTIAL_SHARE: f64 = 0.5;
 /// Share of an element that one blend may take.
 const LENGTH_SHARE: f64 = 0.5;
 /// Share of an element that the tolerance may be.

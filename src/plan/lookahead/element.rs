@@ -39,7 +39,8 @@ pub struct Curve {
     pub sweep_rad: f64,
     /// How far it moves across the plane in all, mm.
     pub rise_mm: f64,
-    /// The smaller acceleration limit of the plane's axes, mm/s².
+    /// Acceleration along the path at which the plane and the axes across it stay
+    /// within the smaller limit of the plane's axes and their own, mm/s².
     pub accel_mm_s2: f64,
 }
 
@@ -149,11 +150,27 @@ impl<T> Element<T> {
                 .map_or(0.0, |(_, own)| own.rapid_mm_s * mv.rapid_factor.max(1.0));
             *accel = accel.min(drive::lowest(machine, axis, speed, Heading::Both));
         }
-        if let Some(curve) = &mut self.curve {
-            let accels = curve.plane.into_iter();
-            let accels = accels.filter_map(|axis| self.axis_accel_mm_s2.get(axis));
-            curve.accel_mm_s2 = accels.copied().fold(f64::INFINITY, f64::min);
+        if let Some(Curve { plane, .. }) = self.curve {
+            let accel_mm_s2 = self.accel_along(plane);
+            if let Some(curve) = &mut self.curve {
+                curve.accel_mm_s2 = accel_mm_s2;
+            }
         }
+    }
+
+    /// See [`Curve::accel_mm_s2`].
+    fn accel_along(&self, plane: [usize; 2]) -> f64 {
+        let (mut in_plane, mut share2, mut along) = (f64::INFINITY, 0.0, f64::INFINITY);
+        let axes = self.axis_accel_mm_s2.iter().zip(&self.start).enumerate();
+        for (axis, (accel, change)) in axes {
+            if plane.contains(&axis) {
+                in_plane = accel.min(in_plane);
+                share2 += change * change;
+            } else if *change != 0.0 {
+                along = along.min(accel / change.abs());
+            }
+        }
+        along.min(in_plane / share2.sqrt())
     }
 
     fn bend(&mut self, machine: &Machine, mv: &Move, of: &Arc) {
@@ -171,10 +188,6 @@ impl<T> Element<T> {
                 }
             }
         }
-        let accel = of
-            .plane
-            .into_iter()
-            .filter_map(|axis| mv.accel_mm_s2.get(axis));
         self.speed_mm_s = arc::axis_speed(machine, mv, of);
         self.curve_speed_mm_s = arc::limits(machine, mv, of, &Caps::default()).speed_mm_s;
         self.curve = Some(Curve {
@@ -182,7 +195,7 @@ impl<T> Element<T> {
             radius_mm: of.radius_mm,
             sweep_rad: of.sweep_rad,
             rise_mm: self.length_mm * (1.0 - share * share).max(0.0).sqrt(),
-            accel_mm_s2: accel.copied().fold(f64::INFINITY, f64::min),
+            accel_mm_s2: self.accel_along(of.plane),
         });
     }
 

@@ -9,7 +9,8 @@
 //! cycle, takes no more than `kink_ratio` of an axis' acceleration; both
 //! elements give that share up. Facts from `tp.c`, `tc.c` and measurements.
 
-use super::blend::{Axes, Circle, Fit, NORMAL_SHARE, Side, TANGENTIAL_SHARE, angle_between, fit};
+use super::super::arc::{self, LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE};
+use super::blend::{Axes, Circle, Fit, Side, angle_between, fit};
 use super::element::{Element, Joint};
 use super::join::{Joined, Joiner};
 use super::planner::{Blend, Load, Piece};
@@ -53,18 +54,10 @@ struct Pending<T> {
     /// A parabolic blend before or behind it: its path is known within the
     /// tolerance only.
     parabolic: bool,
-    /// What it runs while the element before it brakes.
-    lead: Option<Lead>,
+    /// The element before it, where it begins while that brakes.
+    braking: Option<Braking>,
     /// Largest speed at its start, squared.
     entry2: f64,
-}
-
-/// The start of an element in a parabolic blend: from rest, in the time in which
-/// the element before it comes to rest.
-#[derive(Debug, Clone, Copy)]
-struct Lead {
-    accel: f64,
-    length_mm: f64,
 }
 
 enum Way {
@@ -89,7 +82,7 @@ impl<T: Copy> Pending<T> {
             kink_before: 0.0,
             kink_behind: 0.0,
             parabolic: false,
-            lead: None,
+            braking: None,
             entry2: 0.0,
         }
     }
@@ -164,8 +157,8 @@ impl<T: Copy> Pending<T> {
         })
     }
 
-    /// Of what is left of it, a piece.
-    fn piece(&self, from_mm: f64, to_mm: f64) -> Piece {
+    /// What is left of it.
+    fn piece(&self) -> Piece {
         let change = &self.element.start;
         if self.is_line {
             Piece::Joined {
@@ -173,8 +166,8 @@ impl<T: Copy> Pending<T> {
             }
         } else {
             Piece::Along {
-                from_mm: self.from_mm + from_mm,
-                to_mm: self.from_mm + to_mm,
+                from_mm: self.from_mm,
+                to_mm: self.from_mm + self.length_mm,
             }
         }
     }
@@ -185,13 +178,8 @@ impl<T: Copy> Pending<T> {
         let Some(curve) = &self.element.curve else {
             return (max_speed, accel);
         };
-        let radius = curve.radius_mm + curve.rise_mm * curve.rise_mm / curve.radius_mm;
-        let turning2 = NORMAL_SHARE * accel * radius;
-        if max_speed * max_speed > turning2 {
-            return (turning2.sqrt(), accel * TANGENTIAL_SHARE);
-        }
-        let normal = max_speed * max_speed / (radius * accel);
-        (max_speed, accel * (1.0 - normal * normal).sqrt())
+        let radius_mm = curve.radius_mm + curve.rise_mm * curve.rise_mm / curve.radius_mm;
+        arc::linuxcnc(max_speed, accel, radius_mm)
     }
 
     /// Unit direction in which the planner expects an end to pull. An arc pulls in
@@ -210,6 +198,44 @@ impl<T: Copy> Pending<T> {
         let half = 0.5 * self.element.feed_mm_s.min(self.element.speed_mm_s);
         let inward = scale(unit(circle.center)?, half * half / circle.radius);
         unit(add(scale(flat, self.unbent_share() * self.accel()), inward))
+    }
+
+    /// The speed that the tolerance permits in a parabolic blend, and the sine of
+    /// half the angle inside its corner.
+    fn tolerated(&self, next: &Self, accel: f64) -> (f64, f64) {
+        let (Some(first), Some(second)) = (self.pull(true), next.pull(false)) else {
+            return (f64::INFINITY, 0.0);
+        };
+        let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
+        let most = match self.element.joint {
+            Joint::Blend { tolerance_mm, .. } if tolerance_mm > 0.0 && cos > 1e-3 => {
+                2.0 * (accel * tolerance_mm / cos).sqrt()
+            }
+            _ => f64::INFINITY,
+        };
+        (most, sin)
+    }
+
+    /// The speed along the mean direction that the planner expects of a parabolic
+    /// blend when it chooses one.
+    fn overlap(&self, next: &Self) -> f64 {
+        let ramps = [self, next].map(|of| {
+            let (speed, accel) = of.turning(of.max_speed, of.accel());
+            Ramp::new(&of.element, of.length_mm, speed, of.unbent_share() * accel)
+        });
+        let (most, sin) = self.tolerated(next, ramps[0].accel);
+        let [first, second] = Ramp::overlap([&ramps[0], &ramps[1]]);
+        0.5 * sin * (first.min(most) + second.min(most))
+    }
+
+    /// How long it runs while the element before it brakes, s.
+    fn overlap_s(&self) -> f64 {
+        let Some(braking) = &self.braking else {
+            return 0.0;
+        };
+        let accel = self.unbent_share() * self.accel();
+        let (speed, accel) = self.turning(self.max_speed, accel);
+        braking.lasts_s(&Ramp::new(&self.element, self.length_mm, speed, accel))
     }
 
     /// Whether axes other than X, Y and Z move.
@@ -256,7 +282,7 @@ impl<T: Copy> LinuxCnc<T> {
             Way::Parabolic => {
                 before.parabolic = true;
                 next.parabolic = true;
-                next.lead = Overlap::of(&before, &next, true).lead();
+                next.braking = Some(Braking::of(&before, &next));
                 self.hand_over(&before, window, false);
             }
             Way::Blend(fit) => self.round(before, &mut next, &fit, window),
@@ -314,7 +340,7 @@ impl<T: Copy> LinuxCnc<T> {
         let kink_speed = v * self.kink_ratio / share;
         let fit = fit([&first, &second], &self.axes, accel);
         let blend_speed = fit.as_ref().map_or(0.0, |fit| fit.speed);
-        let overlap = 0.5 * Overlap::of(before, next, false).along;
+        let overlap = 0.5 * before.overlap(next);
         if overlap >= kink_speed && overlap >= blend_speed {
             (before.kink_behind, next.kink_before) = kept;
             return Way::Parabolic;
@@ -365,7 +391,7 @@ impl<T: Copy> LinuxCnc<T> {
             next: Some(next.first),
             piece,
             certain: true,
-            meanwhile: false,
+            overlap_s: 0.0,
         };
         let top2 = top * top;
         let before2 = window.last_top2();
@@ -410,37 +436,23 @@ impl<T: Copy> LinuxCnc<T> {
         if last {
             entry2 = entry2.min(accel * of.length_mm);
         }
-        entry2 = if entry2 > 0.0 {
+        let entry2 = if entry2 > 0.0 {
             entry2.min(window.last_top2())
         } else {
             0.0
         };
-        let mut load = Load {
+        let load = Load {
             tag: of.element.tag,
             first: of.first,
             next: None,
-            piece: of.piece(0.0, of.length_mm),
+            piece: of.piece(),
             certain: !of.parabolic,
-            meanwhile: false,
+            overlap_s: of.overlap_s(),
         };
-        let mut length_mm = of.length_mm;
-        if let Some(lead) = &of.lead {
-            let speed2 = 2.0 * lead.accel * lead.length_mm;
-            load.piece = of.piece(0.0, lead.length_mm);
-            load.meanwhile = true;
-            let mut node = Node::new(lead.length_mm, speed2, lead.accel, 0.0, load.clone());
-            node.jerk = of.element.jerk_mm_s3;
-            node.block = false;
-            window.push(node);
-            length_mm -= lead.length_mm;
-            load.piece = of.piece(lead.length_mm, of.length_mm);
-            load.meanwhile = false;
-            entry2 = top2.min(speed2);
-        }
-        let mut node = Node::new(length_mm, top2, accel, entry2, load);
+        let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let parabolic = matches!(of.element.joint, Joint::Blend { .. });
         node.jerk = of.element.jerk_mm_s3;
-        node.tail2 = half * length_mm * if parabolic && !last { 0.5 } else { 1.0 };
+        node.tail2 = half * of.length_mm * if parabolic && !last { 0.5 } else { 1.0 };
         window.push(node);
     }
 }
@@ -454,66 +466,58 @@ fn share_of(accel: Vector, limits: Vector) -> f64 {
         .fold(0.0, |share, (a, limit)| share.max(a.abs() / limit))
 }
 
-/// What a parabolic blend comes to: the next element begins while the last one
-/// still brakes, both with half of their acceleration.
-struct Overlap {
-    /// Speeds of the element before when the next one begins, and of the next
-    /// one when the one before it has come to rest.
-    speeds: [f64; 2],
-    /// Acceleration of the one before.
+/// One side of a parabolic blend, where the next element begins while the last
+/// one still brakes, both with half of their acceleration.
+#[derive(Debug, Clone, Copy)]
+struct Ramp {
     accel: f64,
-    /// Speed along the mean direction.
-    along: f64,
+    length_mm: f64,
+    /// The most that it gets to from rest.
+    speed: f64,
 }
 
-impl Overlap {
-    /// As it is expected where it is chosen, or as it comes: there the turning
-    /// of arcs has to do with half of the acceleration as well.
-    fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>, chosen: bool) -> Self {
-        let [(v0, a0), (v1, a1)] = [before, next].map(|of| {
-            let share = of.unbent_share();
-            let (speed, accel) = if chosen {
-                of.turning(of.max_speed, share * of.accel())
-            } else {
-                let (speed, accel) = of.turning(of.max_speed, of.accel());
-                (speed, share * accel)
-            };
-            let peak = (accel * of.length_mm).sqrt();
-            (peak.min(speed).min(of.element.feed_mm_s), accel)
-        });
-        let accels = [a0, a1];
-        // As long as the longer ramp takes, if the elements are long enough.
-        let longest_s = (v0 / accels[0]).max(v1 / accels[1]);
-        let blend_s = longest_s.min((before.length_mm / v0).min(next.length_mm / v1));
-        let mut speeds = [v0.min(blend_s * accels[0]), v1.min(blend_s * accels[1])];
-        let mut along = 0.0;
-        if let (Some(first), Some(second)) = (before.pull(true), next.pull(false)) {
-            let theta = 0.5 * angle_between(first, second);
-            let tolerance_mm = match before.element.joint {
-                Joint::Blend { tolerance_mm, .. } => tolerance_mm,
-                _ => 0.0,
-            };
-            if tolerance_mm > 0.0 && libm::cos(theta) > 1e-3 {
-                let most = 2.0 * (accels[0] * tolerance_mm / libm::cos(theta)).sqrt();
-                speeds = speeds.map(|speed| speed.min(most));
-            }
-            along = 0.5 * libm::sin(theta) * (speeds[0] + speeds[1]);
-        }
+impl Ramp {
+    fn new(of: &Element<impl Copy>, length_mm: f64, max_speed: f64, accel: f64) -> Self {
+        let peak = (accel * length_mm).sqrt();
         Self {
-            speeds,
-            accel: accels[0],
-            along,
+            accel,
+            length_mm,
+            speed: peak.min(max_speed).min(of.feed_mm_s),
         }
     }
 
-    /// What the next element runs meanwhile.
-    fn lead(&self) -> Option<Lead> {
-        let [before, next] = self.speeds;
-        let lasts_s = before / self.accel;
-        let lead = Lead {
-            accel: next / lasts_s,
-            length_mm: 0.5 * next * lasts_s,
-        };
-        (lead.accel > 0.0 && lead.length_mm > 0.0).then_some(lead)
+    /// The speeds from which the first brakes while the next one begins, and to
+    /// which that gets meanwhile: as long as the longer ramp takes, if both are
+    /// long enough.
+    fn overlap(sides: [&Self; 2]) -> [f64; 2] {
+        let longest_s = sides.map(|side| side.speed / side.accel);
+        let most_s = sides.map(|side| side.length_mm / side.speed);
+        let lasts_s = longest_s[0].max(longest_s[1]).min(most_s[0].min(most_s[1]));
+        sides.map(|side| side.speed.min(lasts_s * side.accel))
+    }
+}
+
+/// An element that brakes while the next one begins.
+#[derive(Debug, Clone, Copy)]
+struct Braking {
+    ramp: Ramp,
+    /// The speed that the tolerance permits.
+    most: f64,
+}
+
+impl Braking {
+    fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Self {
+        let accel = before.unbent_share() * before.accel();
+        let (speed, accel) = before.turning(before.max_speed, accel);
+        Self {
+            ramp: Ramp::new(&before.element, before.length_mm, speed, accel),
+            most: before.tolerated(next, accel).0,
+        }
+    }
+
+    /// How long it still brakes when the next one begins, s.
+    fn lasts_s(&self, next: &Ramp) -> f64 {
+        let [brakes_from, _] = Ramp::overlap([&self.ramp, next]);
+        brakes_from.min(self.most) / self.ramp.accel
     }
 }

@@ -75,9 +75,8 @@ pub struct Planned<T> {
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
     pub certain: bool,
-    /// It runs while the piece before it comes to rest, so that it takes no time
-    /// of its own.
-    pub meanwhile: bool,
+    /// How long it runs already while the piece before it comes to rest, s.
+    pub overlap_s: f64,
 }
 
 impl<T> Planned<T> {
@@ -104,17 +103,15 @@ impl<T> Planned<T> {
         self.accel_mm_s2.max(needed)
     }
 
-    /// How long it takes, s.
+    /// How much time it adds, s: its own less what the piece before it has brought.
     #[must_use]
     #[inline]
     pub fn duration_s(&self) -> f64 {
-        if self.meanwhile {
-            return 0.0;
-        }
-        if let Some(section) = &self.section {
-            return section.duration_s();
-        }
-        self.speeds2.duration_s(self.length_mm, self.accel_mm_s2)
+        let own_s = match &self.section {
+            Some(section) => section.duration_s(),
+            None => self.speeds2.duration_s(self.length_mm, self.accel_mm_s2),
+        };
+        (own_s - self.overlap_s).max(0.0)
     }
 
     /// How it runs.
@@ -151,7 +148,7 @@ pub(super) struct Load<T> {
     pub next: Option<T>,
     pub piece: Piece,
     pub certain: bool,
-    pub meanwhile: bool,
+    pub overlap_s: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -267,7 +264,7 @@ impl<T: Copy> PathPlanner<T> {
                 to_mm: at[1],
             },
             certain: true,
-            meanwhile: false,
+            overlap_s: 0.0,
         };
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
         node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
@@ -314,7 +311,7 @@ impl<T: Copy> PathPlanner<T> {
             accel_mm_s2: span.accel,
             section: span.section,
             certain: span.certain && span.payload.certain,
-            meanwhile: span.payload.meanwhile,
+            overlap_s: span.payload.overlap_s,
         })
     }
 }
