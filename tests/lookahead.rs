@@ -189,10 +189,5 @@ pub(crate) fn plan_elements(
 
 /// How long pieces and dwells last together, s.
 pub(crate) fn total_s(planned: &Run) -> f64 {
-    planned
-        .0
-        .iter()
-        .map(|piece| piece.profile().duration_s())
-        .sum::<f64>()
-        + planned.1
+    planned.0.iter().map(Planned::duration_s).sum::<f64>() + planned.1
 }

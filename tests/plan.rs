@@ -378,7 +378,7 @@ proptest! {
                 let (v, a) = (v * radius, a * radius);
                 let Some(axis) = machine.axes[n] else { panic!("an axis") };
                 prop_assert!(v.abs() <= axis.rapid_mm_s * (1.0 + 1e-9));
-                prop_assert!(a.abs() <= axis.accel_mm_s2 * (1.0 + 1e-9));
+                prop_assert!(a.abs() <= axis.accel_mm_s2 * (1.0 + bound.excess + 1e-9));
                 if axis.jerk_mm_s3 > 0.0 {
                     let jerk = jerk * radius;
                     prop_assert!(jerk.abs() <= axis.jerk_mm_s3 * (1.0 + 1e-9), "{jerk}");

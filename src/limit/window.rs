@@ -284,6 +284,7 @@ fn scale(bound: &SpeedBound, factor: f64) -> SpeedBound {
     SpeedBound {
         positive: bound.positive.map(|speed| speed * factor),
         negative: bound.negative.map(|speed| speed * factor),
+        ..*bound
     }
 }
 

@@ -35,6 +35,9 @@ pub(super) const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
 /// Share that it leaves for speeding up.
 pub(super) const LINUXCNC_TANGENTIAL_SHARE: f64 = 0.5;
 
+/// √(1 + 3/4) − 1: all of an axis' acceleration along a helix, and √3/2 across.
+const LINUXCNC_HELIX_EXCESS: f64 = 0.322_875_655_532_295_3;
+
 /// Smallest and largest tangent component of one axis over a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TangentRange {
@@ -190,6 +193,15 @@ impl PathLimits {
         let left = part - v * turn * turn;
         self.accel_mm_s2 = self.accel_mm_s2.min(part / (3.0 * turn));
         self.jerk_mm_s3 = self.jerk_mm_s3.min(left);
+    }
+}
+
+/// See [`super::SpeedBound::excess`].
+pub(super) fn excess(machine: &Machine, mv: &Move) -> f64 {
+    let steep = |arc: &Arc| plane_share(mv, arc) < 1.0 - 1e-12;
+    match machine.controller.planner.arc_rule {
+        ArcRule::LinuxCnc if mv.arc.as_ref().is_some_and(steep) => LINUXCNC_HELIX_EXCESS,
+        _ => 0.0,
     }
 }
 

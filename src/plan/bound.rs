@@ -5,7 +5,7 @@
 //! not lowered where a short move never reaches its speed, since blending may
 //! carry the speed through.
 
-use super::arc::{axis_speed, plane_share, tangent_ranges};
+use super::arc::{axis_speed, excess, plane_share, tangent_ranges};
 use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
 use super::trajectory::{Caps, Overrides};
 use crate::interpret::{FeedMode, Move, MoveKind};
@@ -18,6 +18,9 @@ pub struct SpeedBound {
     pub positive: AxisValues,
     /// In − direction.
     pub negative: AxisValues,
+    /// The share by which the controller may exceed the axes' accelerations; 0 but
+    /// for rules that do.
+    pub excess: f64,
 }
 
 impl SpeedBound {
@@ -27,6 +30,7 @@ impl SpeedBound {
             self.positive[axis] = self.positive[axis].max(other.positive[axis]);
             self.negative[axis] = self.negative[axis].max(other.negative[axis]);
         }
+        self.excess = self.excess.max(other.excess);
     }
 
     /// Raises the bound in the direction of a signed speed.
@@ -49,6 +53,7 @@ pub fn speed_bound(machine: &Machine, mv: &Move, overrides: Overrides, caps: Cap
     if !mv.unknown_start.is_empty() {
         return unknown(machine, mv, overrides, &caps);
     }
+    bound.excess = excess(machine, mv);
     if mv.length_mm > 0.0 {
         let v = PathLimits::of(machine, mv, overrides, &caps).speed_mm_s;
         along(machine, mv, v, overrides, &caps, &mut bound);
@@ -66,7 +71,10 @@ pub fn blended_bound(machine: &Machine, mv: &Move, overrides: Overrides) -> Spee
     if mv.arc.is_none() || !mv.unknown_start.is_empty() || mv.length_mm <= 0.0 {
         return speed_bound(machine, mv, overrides, caps);
     }
-    let mut bound = SpeedBound::default();
+    let mut bound = SpeedBound {
+        excess: excess(machine, mv),
+        ..SpeedBound::default()
+    };
     let v = blended_speed(machine, mv, overrides);
     along(machine, mv, v, overrides, &caps, &mut bound);
     bound

@@ -250,6 +250,7 @@ mod tests {
                 accel_mm_s2: accel_mm_s2.abs(),
                 section: None,
                 certain: true,
+                overlap_s: 0.0,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);
             let (mut peaks, mut energy_j) = ([0.0_f64; 2], 0.0);

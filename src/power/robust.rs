@@ -80,7 +80,7 @@ impl PowerModel {
             let power = &self.axes[axis];
             let speeds =
                 parts.map(|part| larger(part.bound.positive[axis], part.bound.negative[axis]));
-            let accels = parts.map(|part| part.accel_mm_s2[axis]);
+            let accels = parts.map(|part| part.accel_mm_s2[axis] * (1.0 + part.bound.excess));
             let [v, accel] =
                 [speeds, accels].map(|[a, b, c]| larger(larger(a, b), c) * power.si_per_unit);
             if v == 0.0 {
@@ -150,7 +150,7 @@ impl PowerModel {
         for axis in active.iter() {
             let power = &self.axes[axis];
             let unit = power.si_per_unit;
-            let accel = accel_mm_s2[axis] * unit;
+            let accel = accel_mm_s2[axis] * (1.0 + bound.excess) * unit;
             let directions = [
                 (bound.positive[axis] * unit, power.gravity),
                 (bound.negative[axis] * unit, -power.gravity),

@@ -115,3 +115,106 @@ fn a_blend_that_is_not_modelled_exactly_is_not_certain() {
     let (pieces, _) = planned("G64 P0.05\nG1 X20 F3000\nG3 X20 Y0 Z-5 I-10 J0\nM2\n");
     assert!(pieces.iter().all(|piece| !piece.certain));
 }
+
+#[test]
+fn an_arc_that_bulges_less_than_the_tolerance_is_chords() {
+    // A quarter of a circle of 0.5 mm bulges by 0.146 mm: both its chords and the
+    // line from its start to its end keep within 0.3 mm.
+    let program = |p: f64| format!("G64 P{p}\nG0 X5\nG3 X5.5 Y0.5 I0 J0.5 F5000\nG0 X9\nM2\n");
+    let (pieces, _) = planned(&program(0.3));
+    let Piece::Joined { direction } = pieces[1].piece else {
+        panic!("{:?}", pieces[1]);
+    };
+    assert_close(direction[0], 0.5_f64.sqrt());
+    assert_close(direction[1], 0.5_f64.sqrt());
+    assert_close(pieces[1].length_mm, 0.5_f64.sqrt());
+    // As an arc it is not faster than √(0.866·a·r).
+    let (arc, _) = planned(&program(0.146));
+    assert!(matches!(arc[1].piece, Piece::Along { .. }));
+    assert!(pieces[1].top_speed_mm_s() > arc[1].top_speed_mm_s());
+}
+
+#[test]
+fn helices_accelerate_as_recorded() {
+    // Accelerations along the path, mm/s², that LinuxCNC 2.9.0~pre1 has put out.
+    let recorded = [
+        (
+            "G2 X-7.351523 Y-5.763047 Z5.000000 I-4.776682 J-1.477601",
+            956.2,
+        ),
+        (
+            "G3 X-8.973273 Y-6.804149 Z2.000000 I-0.955336 J-0.295520",
+            1281.7,
+        ),
+        (
+            "G3 X-29.042888 Y17.023337 Z-18.000000 I-38.213460 J-11.820808",
+            680.0,
+        ),
+        (
+            "G2 X-29.042888 Y17.023337 Z-48.000000 I-4.776682 J-1.477601",
+            1382.0,
+        ),
+        (
+            "G2 X-25.023172 Y-9.573481 Z-68.000000 I-85.980284 J-26.596819",
+            1057.6,
+        ),
+        (
+            "G3 X-25.682228 Y-8.913901 Z-63.000000 I-0.955336 J-0.295520",
+            509.3,
+        ),
+        (
+            "G3 X-45.705819 Y20.354501 Z-63.000000 I-57.320189 J-17.731212",
+            745.4,
+        ),
+        (
+            "G3 X-47.769332 Y22.358615 Z-43.000000 I-2.866009 J-0.886561",
+            965.7,
+        ),
+    ];
+    let mut program = String::from("G61.1\nG1 X0.001 F9000\n");
+    for (line, _) in recorded {
+        program += line;
+        program.push('\n');
+    }
+    let (pieces, _) = planned(&(program + "G1 X0\nM2\n"));
+    for ((line, accel), piece) in recorded.iter().zip(&pieces[1..]) {
+        let planned = piece.accel_mm_s2;
+        assert!(
+            (planned - accel).abs() < 0.5,
+            "{line}: {planned}, not {accel}"
+        );
+    }
+}
+
+#[test]
+fn programs_last_as_recorded() {
+    // As LinuxCNC 2.9.0~pre1 runs them, s.
+    let overlapping_ramps = "G64\nG1 X20 F3000\nG3 X24 Y4 I0 J4\nG18 G2 X34 Z10 I10 K0\n\
+        G1 X50 Z14\nM2\n";
+    let off_the_plane = "G64 P0.05\nG1 X20 F3000\nG3 X20 Y0 Z-5 I-10 J0\nG1 Y10\nM2\n";
+    let slower_behind_a_blend = "G64 P0.05\nG1 X20 F3000\nG1 X20.8 Y0.6 F9000\n\
+        G1 X25 Y2 F200\nM2\n";
+    for (program, recorded_s) in [
+        (overlapping_ramps, 1.920),
+        (off_the_plane, 2.036),
+        (slower_behind_a_blend, 1.690),
+    ] {
+        let planned_s = total_s(&planned(program));
+        let off = planned_s / recorded_s - 1.0;
+        assert!(off.abs() < 2e-3, "{program}{planned_s} s, not {recorded_s}");
+    }
+}
+
+#[test]
+fn a_lower_feed_behind_a_blend_is_seen_too_late() {
+    // The blend is planned for the speeds that the machine permits: the last line
+    // is entered far above its F of 3.3 mm/s and brakes with all it has.
+    let program = "G64 P0.05\nG1 X20 F3000\nG1 X20.8 Y0.6 F9000\nG1 X25 Y2 F200\nM2\n";
+    let (pieces, _) = planned(program);
+    let last = pieces.last().unwrap();
+    let profile = last.profile();
+    assert!(last.speeds2.start.sqrt() > 20.0);
+    assert_close(profile.phases[0].accel_mm_s2, -last.accel_mm_s2);
+    assert_close(profile.phases[1].velocity_mm_s, 200.0 / 60.0);
+    assert_close(profile.length_mm(), last.length_mm);
+}

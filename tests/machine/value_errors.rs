@@ -211,13 +211,17 @@ fn table_for_number() {
 #[test]
 fn list_for_a_point_of_a_curve() {
     let curve = "mass_kg = 900\nforce_curve = [[0, 100]]";
-    assert_snapshot!(findings(&edited("mass_kg = 900", curve)), @"");
+    assert_snapshot!(findings(&edited("mass_kg = 900", curve)), @r"
+    line 13, error machine-type: an entry of `force_curve` must be a table, not a list / write it as { speed_mm_min = …, force_n = … }
+      | force_curve = [[0, 100]]
+      |                ^^^^^^^^
+    ");
 }
 
 #[test]
 fn number_for_table() {
     assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"iso\"\nconverter = 3\naxes = 4\n"), @r"
-    line 4, error machine-type: `converter` must be a table, not a number
+    line 4, error machine-type: `converter` must be a table, not a number / write it as { peak_power_w = … }
       | converter = 3
       |             ^
     line 5, error machine-type: `axes` must be a table, not a number

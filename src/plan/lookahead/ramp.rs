@@ -9,7 +9,8 @@ pub struct Speeds2 {
     pub start: f64,
     /// At its end.
     pub end: f64,
-    /// The largest inside; not below the others.
+    /// The one to cruise at; not below the end's. Above it at the start, the
+    /// element brakes to it first.
     pub top: f64,
 }
 
@@ -23,12 +24,12 @@ impl Speeds2 {
         }
         let top2 = top.min(0.5 * (start + end) + accel * length);
         let v = top2.sqrt();
-        let up_mm = 0.5 * (top2 - start) / accel;
+        let up_mm = 0.5 * (top2 - start).abs() / accel;
         let down_mm = 0.5 * (top2 - end) / accel;
         let cruise_mm = length - up_mm - down_mm;
         let mut duration_s = 0.0;
-        if v > v0 {
-            duration_s += (v - v0) / accel;
+        if v != v0 {
+            duration_s += (v - v0).abs() / accel;
         }
         if cruise_mm > 1e-12 * length {
             duration_s += cruise_mm / v;
@@ -61,13 +62,14 @@ impl Profile {
         }
         let top2 = top.min(0.5 * (start + end) + accel * length);
         let v = top2.sqrt();
-        let up_mm = 0.5 * (top2 - start) / accel;
+        let up_mm = 0.5 * (top2 - start).abs() / accel;
         let down_mm = 0.5 * (top2 - end) / accel;
         let cruise_mm = length - up_mm - down_mm;
-        if v > v0 {
+        if v != v0 {
+            let a = if v > v0 { accel } else { -accel };
             profile
                 .phases
-                .push(phase((v - v0) / accel, 0.0, v0, v, accel));
+                .push(phase((v - v0).abs() / accel, 0.0, v0, v, a));
         }
         // Less than rounding makes of it is no cruise.
         if cruise_mm > 1e-12 * length {
@@ -103,7 +105,14 @@ mod tests {
     fn durations_are_those_of_the_profiles() {
         let squares = [0.0, 1.0, 30.0, 900.0, 2500.0];
         for (start, end) in squares.iter().flat_map(|a| squares.map(|b| (*a, b))) {
-            for (top, length) in [(2500.0, 0.01), (2500.0, 3.0), (1e4, 3.0), (1e4, 700.0)] {
+            for (top, length) in [
+                (2500.0, 0.01),
+                (2500.0, 3.0),
+                (1e4, 3.0),
+                (1e4, 700.0),
+                (16.0, 20.0),
+            ] {
+                let top = f64::max(top, end);
                 let speeds2 = Speeds2 { start, end, top };
                 let profile = Profile::between(length, speeds2, 100.0);
                 let duration_s = speeds2.duration_s(length, 100.0);

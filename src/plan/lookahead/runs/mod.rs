@@ -111,8 +111,6 @@ pub(super) struct Runs<P> {
     open: usize,
     /// Speed at which the first run really starts.
     now: f64,
-    /// Largest speed of the last element, squared.
-    last_top2: f64,
     /// The controller's own look-ahead.
     blocks: Option<usize>,
     /// Whether the controller's rules are known to go together with limits of
@@ -134,7 +132,6 @@ impl<P> Runs<P> {
             settle_at: OPEN_MIN,
             open: 0,
             now: 0.0,
-            last_top2: f64::INFINITY,
             blocks,
             certain,
             open_min: OPEN_MIN,
@@ -142,15 +139,9 @@ impl<P> Runs<P> {
         }
     }
 
-    /// Largest speed of the last element, squared; infinite without one.
-    pub fn last_top2(&self) -> f64 {
-        self.last_top2
-    }
-
     /// Adds an element.
     #[inline]
     pub fn push(&mut self, node: Node<P>) {
-        self.last_top2 = node.top2;
         let Some(blocks) = self.blocks else {
             return self.take(node);
         };

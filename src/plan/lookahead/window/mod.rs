@@ -60,6 +60,8 @@ pub(super) struct Node<P> {
     /// False for a blend, which enters the controller's queue together with
     /// the block behind it.
     pub block: bool,
+    /// It may be entered faster than its own speed, to which it then brakes.
+    pub overruns: bool,
     /// What the caller wants back.
     pub payload: P,
     /// Planned speed at its start, squared.
@@ -89,6 +91,7 @@ impl<P> Node<P> {
             tail2: 2.0 * accel * length,
             step2: 0.0,
             block: true,
+            overruns: false,
             payload,
             e2: 0.0,
             sum: 0.0,
@@ -124,6 +127,7 @@ impl<P> Node<P> {
 pub(super) struct Span<P> {
     pub start2: f64,
     pub end2: f64,
+    /// Below the one at its start where it brakes to it first.
     pub top2: f64,
     pub length: f64,
     pub accel: f64,
@@ -175,14 +179,6 @@ impl<P> Window<P> {
     pub fn with_jerk(mut self) -> Self {
         self.runs = Some(Box::new(Runs::new(self.blocks, !self.smooth)));
         self
-    }
-
-    /// Largest speed of the last element, squared; infinite without one.
-    pub fn last_top2(&self) -> f64 {
-        if let Some(runs) = &self.runs {
-            return runs.last_top2();
-        }
-        self.nodes.back().map_or(f64::INFINITY, |node| node.top2)
     }
 
     /// Adds an element.
@@ -340,12 +336,12 @@ impl<P> Window<P> {
         if self.ready == 0 {
             return None;
         }
-        let end2 = match self.nodes.get(1) {
+        let (end2, next_top2) = match self.nodes.get(1) {
             Some(next) => {
                 let cap2 = lower(next.e2, self.rest2(1));
-                lower(cap2, next.hill2)
+                (lower(cap2, next.hill2), next.top2)
             }
-            None => 0.0,
+            None => (0.0, 0.0),
         };
         let node = self.nodes.pop_front()?;
         self.ready -= 1;
@@ -353,15 +349,22 @@ impl<P> Window<P> {
             .now2
             .max(if self.now2 == 0.0 { node.step2 } else { 0.0 });
         let end2 = lower(end2, start2 + node.ramp2());
-        let end2 = lower(
-            end2,
-            lower(node.hill2, node.top2).max(start2 - node.ramp2()),
-        );
+        let mut top2 = lower(node.top2, node.hill2);
+        let slowed2 = start2 - node.ramp2();
+        let end2 = if node.overruns {
+            lower(end2, lower(top2, next_top2).max(slowed2))
+        } else {
+            lower(end2, top2.max(slowed2))
+        };
+        top2 = top2.max(end2);
+        if !node.overruns {
+            top2 = top2.max(start2);
+        }
         self.now2 = end2;
         Some(Span {
             start2,
             end2,
-            top2: lower(node.top2, node.hill2).max(start2).max(end2),
+            top2,
             length: node.length,
             accel: node.accel,
             certain: !node.forced,
