@@ -207,13 +207,18 @@ fn programs_last_as_recorded() {
 
 #[test]
 fn a_lower_feed_behind_a_blend_is_seen_too_late() {
-    // The blend is planned for the speeds that the machine permits: the last line
-    // is entered far above its F of 3.3 mm/s and brakes with all it has.
+    // The blend is planned for the speeds that the machine permits, and brakes with
+    // what it has: recorded were 31.4 mm/s at its start, and in the last line a
+    // brake to its F of 3.3 mm/s.
     let program = "G64 P0.05\nG1 X20 F3000\nG1 X20.8 Y0.6 F9000\nG1 X25 Y2 F200\nM2\n";
     let (pieces, _) = planned(program);
-    let last = pieces.last().unwrap();
+    let [.., blend, last] = pieces.as_slice() else {
+        panic!("{pieces:?}")
+    };
+    assert!((blend.speeds2.start.sqrt() - 31.4).abs() < 0.5, "{blend:?}");
+    assert_close(blend.speeds2.end, last.speeds2.start);
     let profile = last.profile();
-    assert!(last.speeds2.start.sqrt() > 20.0);
+    assert!(last.speeds2.start.sqrt() > 5.0, "{last:?}");
     assert_close(profile.phases[0].accel_mm_s2, -last.accel_mm_s2);
     assert_close(profile.phases[1].velocity_mm_s, 200.0 / 60.0);
     assert_close(profile.length_mm(), last.length_mm);
