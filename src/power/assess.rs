@@ -6,7 +6,7 @@
 
 use super::ahead::Ahead;
 use super::assessment::{Assessment, Certificate};
-use super::bus::{SpindleBus, SpindleShare};
+use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::eye::Eye;
@@ -102,10 +102,14 @@ impl<'m> Assessor<'m> {
         self
     }
 
-    /// Keeps the motion at 100 % until it is taken with [`Self::motions`].
+    /// Keeps the motion at 100 % until it is taken with [`Self::motions`], and the
+    /// spindle with [`Self::turnings`].
     #[must_use]
     pub fn showing(mut self) -> Self {
         self.eye.motions = Some(Vec::new());
+        if let Some(bus) = &mut self.bus {
+            bus.shown = Some(Shown::default());
+        }
         self
     }
 
