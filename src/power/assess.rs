@@ -260,7 +260,9 @@ impl<'m> Assessor<'m> {
             if self.held.is_some() {
                 self.release(None, mv.kind == MoveKind::Dwell, sink);
             }
-            self.eye.alone(self.machine, &self.model, mv, self.largest);
+            let figures = figures.as_ref();
+            self.eye
+                .alone_as(self.machine, &self.model, mv, self.largest, figures);
             sink(mv, &assessment, text);
             return;
         }
