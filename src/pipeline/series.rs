@@ -120,7 +120,7 @@ impl Stretch<'_> {
     /// The spindle's own time at an instant of the motion.
     fn turned_s(&self, t: f64) -> f64 {
         let since_s = self.spindle.map_or(0.0, |(_, since_s)| since_s);
-        since_s + (t - self.from_s)
+        since_s + (t - self.from_s) * self.motion.adds
     }
 
     /// From its beginning to its end, the instants at which something may jump.
@@ -135,7 +135,8 @@ impl Stretch<'_> {
             for pair in switches.windows(2) {
                 let inside = f64::midpoint(pair[0], pair[1]);
                 let turned = [pair[0], pair[1]].map(|t| self.turned_s(t));
-                let own_s = |turned_s: f64| pair[0] + (turned_s - turned[0]);
+                let adds = self.motion.adds;
+                let own_s = |turned_s: f64| pair[0] + (turned_s - turned[0]) / adds;
                 let at = |turned_s: f64| self.motion.x_mm(own_s(turned_s), inside, x_mm);
                 let found = turning.switches_s(turned, at);
                 own.extend(found.into_iter().map(own_s));
@@ -181,9 +182,14 @@ impl Sampler<'_> {
         {
             let lasts_s = motion.duration_s();
             let left_s = turning.duration_s - turned_s;
-            let ends = lasts_s - self.moved_s <= left_s + apart_s;
-            let to_s = if ends { lasts_s } else { self.moved_s + left_s };
-            let moved_s = to_s - self.moved_s;
+            let adds = motion.adds;
+            let ends = (lasts_s - self.moved_s) * adds <= left_s + apart_s;
+            let to_s = if ends {
+                lasts_s
+            } else {
+                self.moved_s + left_s / adds
+            };
+            let moved_s = (to_s - self.moved_s) * adds;
             self.take(&motion, to_s, Some((turning, turned_s)))?;
             turned_s += moved_s;
             if !ends {

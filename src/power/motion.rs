@@ -18,6 +18,9 @@ const QUADRANTS: f64 = 4096.0;
 pub struct Motion {
     /// The move that it belongs to.
     pub mv: Move,
+    /// Share of its time that it adds to what came before: less than 1 where it
+    /// begins while the motion before it comes to rest.
+    pub adds: f64,
     pub(super) course: Course,
 }
 
@@ -50,20 +53,31 @@ impl Motion {
             Trajectory::Rest if plan.duration_s.is_finite() => Course::Rest(plan.duration_s),
             Trajectory::Rest | Trajectory::Unknown(_) => return None,
         };
-        let mv = mv.clone();
-        Some(Self { mv, course })
+        Some(Self {
+            mv: mv.clone(),
+            adds: 1.0,
+            course,
+        })
     }
 
     /// The axes stand, in the place of `mv`.
     pub(super) fn rest(mv: Move, duration_s: f64) -> Self {
-        let course = Course::Rest(duration_s);
-        Self { mv, course }
+        Self {
+            mv,
+            adds: 1.0,
+            course: Course::Rest(duration_s),
+        }
     }
 
     /// The motion of a piece of a plan, which belongs to `mv`.
     #[must_use]
     pub(super) fn of_piece(mv: &Move, planned: &Planned<u64>) -> Self {
         let mut profile = planned.profile();
+        let adds = if planned.overlap_s > 0.0 {
+            planned.duration_s() / (planned.duration_s() + planned.overlap_s)
+        } else {
+            1.0
+        };
         match &planned.piece {
             Piece::Along { from_mm, .. } => {
                 for phase in &mut profile.phases {
@@ -71,11 +85,13 @@ impl Motion {
                 }
                 Self {
                     mv: mv.clone(),
+                    adds,
                     course: Course::Path(along(mv, &profile)),
                 }
             }
             Piece::Joined { direction } => Self {
                 mv: straight_line(mv, direction, planned.length_mm),
+                adds,
                 course: Course::Line(profile.phases.to_vec()),
             },
             Piece::Blend(blend) => {
@@ -84,6 +100,7 @@ impl Motion {
                 let phases = phases.flat_map(|phase| pieces(phase, &cuts));
                 Self {
                     mv: straight_line(mv, &blend.tangent, 1.0),
+                    adds,
                     course: Course::Blend(*blend, phases.collect()),
                 }
             }

@@ -154,7 +154,7 @@ fn a_series_adds_up_to_the_report() {
                 M5\nG4 P4\nT2 M6\nM4 S1000\nG0 X100\nG1 X0 Y0 F3000\nG4 P0.7\nM5\nG1 X50\nG0 X800 M9\nG4 P1\n";
     let lathe = "G18 G61.1 G8\nG0 X50\nG96 D3000 S100 M3\nG4 P5\nG1 X20 F1800\nG1 X50\nM5\nG4 P1\n";
     let taps = "G17 G61.1\nM3 S600\nG4 P2\nG33.1 Z-20 K1\nG0 X100\nM5\nG1 X0 F9000\n";
-    let rounded = "G17 G64\nM3 S2500\nG0 X200\nG1 X300 F6000\nG1 X400 F9000\nG1 X500 Y1 F6000\nG4 P2\nM5\nG0 X0\nG4 P2\n";
+    let rounded = "G17\nM3 S2500\nG0 X200\nG1 X300 F6000\nG1 X400 F9000\nG1 X500 Y1 F6000\nG4 P2\nM5\nG0 X0\nG4 P2\n";
     let spindle = "friction_nm = 4\nbase_rpm = 1200\nbase_load_w = 30\nefficiency = 0.9";
     let mut compared = 0;
     for jerk_time_s in ["0.0", "0.2"] {
@@ -166,7 +166,7 @@ fn a_series_adds_up_to_the_report() {
                 ("iso", mill),
                 ("linuxcnc", lathe),
                 ("linuxcnc", taps),
-                ("linuxcnc", rounded),
+                ("grbl", rounded),
             ] {
                 let spindle = format!("{spindle}\njerk_time_s = {jerk_time_s}");
                 let machine = machine(controller, credit, &spindle, tools);
