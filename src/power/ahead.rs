@@ -407,7 +407,7 @@ impl Ahead {
             if planned && open.certain && certain(before) && certain(next) {
                 open.assessment.blended = !open.alone;
                 if open.assessment.ahead {
-                    eye.kept(&open.mv, &mut open.kept);
+                    eye.kept(model, &open.mv, &mut open.kept);
                 } else {
                     eye.alone(machine, model, &open.mv, self.largest.overrides);
                 }

@@ -6,7 +6,7 @@
 
 use super::ahead::Ahead;
 use super::assessment::{Assessment, Certificate};
-use super::bus::{SpindleBus, SpindleShare};
+use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::eye::Eye;
@@ -102,10 +102,14 @@ impl<'m> Assessor<'m> {
         self
     }
 
-    /// Keeps the motion at 100 % until it is taken with [`Self::motions`].
+    /// Keeps the motion at 100 % until it is taken with [`Self::motions`], and the
+    /// spindle with [`Self::turnings`].
     #[must_use]
     pub fn showing(mut self) -> Self {
         self.eye.motions = Some(Vec::new());
+        if let Some(bus) = &mut self.bus {
+            bus.shown = Some(Shown::default());
+        }
         self
     }
 
@@ -256,7 +260,9 @@ impl<'m> Assessor<'m> {
             if self.held.is_some() {
                 self.release(None, mv.kind == MoveKind::Dwell, sink);
             }
-            self.eye.alone(self.machine, &self.model, mv, self.largest);
+            let figures = figures.as_ref();
+            self.eye
+                .alone_as(self.machine, &self.model, mv, self.largest, figures);
             sink(mv, &assessment, text);
             return;
         }
