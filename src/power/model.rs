@@ -170,6 +170,21 @@ impl PowerModel {
         let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
         converter.ceiling.below_floor(mv, figures, idle_w, want)
     }
+
+    /// The same for a straight path, closer and at a higher cost.
+    pub(super) fn straight_below_floor(
+        &self,
+        mv: &Move,
+        figures: &PathFigures,
+        want: Want,
+    ) -> Option<Demand> {
+        let [converter] = self.converters.as_slice() else {
+            return None;
+        };
+        let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
+        let extremes = [figures.top_speed_mm_s, figures.accel_mm_s2];
+        straight::below_floor(self, converter, mv, extremes, idle_w, want)
+    }
 }
 
 impl ConverterPower {

@@ -24,8 +24,10 @@ pub(super) fn piece_demand(
         Piece::Blend(blend) => Some(1.0 / blend.radius_mm),
         Piece::Joined { .. } => None,
     };
-    let quick = curvature.and_then(|curvature| below_floor(model, mv, planned, curvature, want));
-    if let Some(demand) = quick {
+    if !want.energy
+        && let Some(curvature) = curvature
+        && let Some(demand) = below_floor(model, mv, planned, curvature, want)
+    {
         return demand;
     }
     let mut profile = planned.profile();
@@ -61,7 +63,11 @@ fn below_floor(
         top_speed_mm_s,
         jerk_mm_s3: f64::INFINITY,
     };
-    model.below_floor(mv, &figures, want)
+    let demand = model.below_floor(mv, &figures, want);
+    if demand.is_some() || curvature > 0.0 || mv.arc.is_some() {
+        return demand;
+    }
+    model.straight_below_floor(mv, &figures, want)
 }
 
 impl PowerModel {

@@ -12,7 +12,7 @@
 use super::super::arc::{self, LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE};
 use super::blend::{Axes, Circle, Fit, Side, angle_between, fit};
 use super::element::{Element, Joint};
-use super::join::{Joined, Joiner};
+use super::join::Joiner;
 use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
 use super::window::{Node, Window};
@@ -29,7 +29,9 @@ pub(super) struct LinuxCnc<T> {
     cycle_s: f64,
     kink_ratio: f64,
     gap_cycles: f64,
-    pending: Option<Pending<T>>,
+    pending: Option<Box<Pending<T>>>,
+    /// Room for the next one.
+    spare: Option<Box<Pending<T>>>,
     joiner: Joiner<T>,
 }
 
@@ -68,23 +70,36 @@ enum Way {
 }
 
 impl<T: Copy> Pending<T> {
-    fn new(joined: &Joined<T>, cycle_s: f64) -> Self {
-        let element = &joined.element;
-        let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
+    fn new(element: &Element<T>, first: T) -> Self {
         Self {
             element: *element,
-            first: joined.first,
-            is_line: joined.is_line,
+            first,
+            is_line: false,
             from_mm: 0.0,
-            length_mm: element.length_mm,
-            sweep_rad: element.curve.map_or(0.0, |curve| curve.sweep_rad.abs()),
-            max_speed: max_speed.min(element.length_mm / cycle_s),
+            length_mm: 0.0,
+            sweep_rad: 0.0,
+            max_speed: 0.0,
             kink_before: 0.0,
             kink_behind: 0.0,
             parabolic: false,
             braking: None,
             entry2: 0.0,
         }
+    }
+
+    /// Nothing has changed it yet.
+    fn begin(&mut self, is_line: bool, cycle_s: f64) {
+        let element = &self.element;
+        let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
+        self.is_line = is_line;
+        self.from_mm = 0.0;
+        self.length_mm = element.length_mm;
+        self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
+        self.max_speed = max_speed.min(element.length_mm / cycle_s);
+        (self.kink_before, self.kink_behind) = (0.0, 0.0);
+        self.parabolic = false;
+        self.braking = None;
+        self.entry2 = 0.0;
     }
 
     fn target_speed(&self) -> f64 {
@@ -253,19 +268,37 @@ impl<T: Copy> LinuxCnc<T> {
             kink_ratio,
             gap_cycles,
             pending: None,
+            spare: None,
             joiner: Joiner::new(),
         }
     }
 
     /// Adds an element.
     pub fn push(&mut self, element: &Element<T>, window: &mut Window<Load<T>>) {
+        if self.joiner.passes(element) {
+            return self.enqueue(element, element.tag, false, window);
+        }
         for joined in self.joiner.push(element, &self.axes).into_iter().flatten() {
-            self.enqueue(&joined, window);
+            self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
     }
 
-    fn enqueue(&mut self, joined: &Joined<T>, window: &mut Window<Load<T>>) {
-        let mut next = Pending::new(joined, self.cycle_s);
+    fn enqueue(
+        &mut self,
+        element: &Element<T>,
+        first: T,
+        is_line: bool,
+        window: &mut Window<Load<T>>,
+    ) {
+        let mut next = match self.spare.take() {
+            Some(mut next) => {
+                next.element = *element;
+                next.first = first;
+                next
+            }
+            None => Box::new(Pending::new(element, first)),
+        };
+        next.begin(is_line, self.cycle_s);
         let Some(mut before) = self.pending.take() else {
             self.pending = Some(next);
             return;
@@ -285,18 +318,20 @@ impl<T: Copy> LinuxCnc<T> {
                 next.braking = Some(Braking::of(&before, &next));
                 self.hand_over(&before, window, false);
             }
-            Way::Blend(fit) => self.round(before, &mut next, &fit, window),
+            Way::Blend(fit) => self.round(&mut before, &mut next, &fit, window),
         }
         self.pending = Some(next);
+        self.spare = Some(before);
     }
 
     /// Nothing comes behind the last element.
     pub fn stop(&mut self, window: &mut Window<Load<T>>) {
         if let Some(joined) = self.joiner.flush(&self.axes) {
-            self.enqueue(&joined, window);
+            self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
         if let Some(last) = self.pending.take() {
             self.hand_over(&last, window, true);
+            self.spare = Some(last);
         }
     }
 
@@ -357,7 +392,7 @@ impl<T: Copy> LinuxCnc<T> {
     /// Lays a blend between two elements.
     fn round(
         &mut self,
-        mut before: Pending<T>,
+        before: &mut Pending<T>,
         next: &mut Pending<T>,
         fit: &Fit,
         window: &mut Window<Load<T>>,
@@ -370,7 +405,7 @@ impl<T: Copy> LinuxCnc<T> {
         let (lead_mm, entry2) = if consumed {
             (before.length_mm.max(0.0), Some(before.entry2))
         } else {
-            self.hand_over(&before, window, false);
+            self.hand_over(before, window, false);
             (0.0, None)
         };
         let length_mm = lead_mm + fit.radius * fit.sweep;
@@ -402,7 +437,7 @@ impl<T: Copy> LinuxCnc<T> {
         let accel = fit.accel * TANGENTIAL_SHARE;
         let mut node = Node::new(length_mm, top2, accel, entry2, load);
         node.block = false;
-        let jerks = [&before, &*next].map(|of| of.element.jerk_mm_s3);
+        let jerks = [&*before, &*next].map(|of| of.element.jerk_mm_s3);
         node.jerk = jerks[0].min(jerks[1]);
         window.push(node);
         next.entry2 = top2;

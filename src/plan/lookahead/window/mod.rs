@@ -155,7 +155,7 @@ pub(super) struct Window<P> {
     runs: Option<Box<Runs<P>>>,
 }
 
-impl<P> Window<P> {
+impl<P: Copy> Window<P> {
     pub fn new(blocks: Option<u32>, smooth: bool) -> Self {
         Self {
             nodes: VecDeque::with_capacity(128),
@@ -193,11 +193,14 @@ impl<P> Window<P> {
         }
         if let Some(last) = self.nodes.back() {
             // What cannot be reached from before is no limit that matters.
-            node.entry2 = lower(node.entry2, last.entry2.max(last.step2) + last.ramp2());
-            node.sum = last.sum + last.ramp2();
+            let ramp2 = last.ramp2();
+            node.entry2 = lower(node.entry2, higher(last.entry2, last.step2) + ramp2);
+            node.sum = last.sum + ramp2;
             node.run = last.run;
-            let reach = last.smooth_entry2.max(last.step2) + last.smooth2();
-            node.smooth_entry2 = lower(node.entry2, reach);
+            if self.smooth {
+                let reach = higher(last.smooth_entry2, last.step2) + last.smooth2();
+                node.smooth_entry2 = lower(node.entry2, reach);
+            }
             if node.entry2 == 0.0 {
                 node.sum = 0.0;
                 node.run = last.run.wrapping_add(1);
@@ -331,6 +334,12 @@ impl<P> Window<P> {
         boundary.unwrap_or(0)
     }
 
+    /// Whether an element may be final; a quick answer.
+    #[inline]
+    pub fn is_ready(&self) -> bool {
+        self.ready > 0 || self.runs.is_some()
+    }
+
     /// The next element in order, once it is final.
     #[inline]
     pub fn pop(&mut self) -> Option<Span<P>> {
@@ -347,27 +356,29 @@ impl<P> Window<P> {
             }
             None => 0.0,
         };
-        let node = self.nodes.pop_front()?;
-        self.ready -= 1;
-        let start2 = self
-            .now2
-            .max(if self.now2 == 0.0 { node.step2 } else { 0.0 });
-        let end2 = lower(end2, start2 + node.ramp2());
-        let end2 = lower(
-            end2,
-            lower(node.hill2, node.top2).max(start2 - node.ramp2()),
-        );
-        self.now2 = end2;
-        Some(Span {
+        let node = self.nodes.front()?;
+        let start2 = if self.now2 == 0.0 {
+            node.step2
+        } else {
+            self.now2
+        };
+        let (ramp2, top2) = (node.ramp2(), lower(node.hill2, node.top2));
+        let end2 = lower(end2, start2 + ramp2);
+        let end2 = lower(end2, higher(top2, start2 - ramp2));
+        let span = Span {
             start2,
             end2,
-            top2: lower(node.top2, node.hill2).max(start2).max(end2),
+            top2: higher(higher(top2, start2), end2),
             length: node.length,
             accel: node.accel,
             certain: !node.forced,
             section: None,
             payload: node.payload,
-        })
+        };
+        self.nodes.pop_front();
+        self.ready -= 1;
+        self.now2 = end2;
+        Some(span)
     }
 
     /// Speed, squared, from which the controller can stop within the blocks
@@ -396,4 +407,10 @@ impl<P> Window<P> {
 #[inline]
 pub(super) fn lower(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
+}
+
+/// The higher of two numbers.
+#[inline]
+fn higher(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }
