@@ -15,7 +15,7 @@
 //! [`stretch`](super::stretch).
 
 use super::axis::{AxisPower, Side};
-use super::demand::{Demand, Totals, Want};
+use super::demand::{Totals, Want};
 use super::interval::{Interval, Ramp};
 use super::model::{ConverterPower, PowerModel};
 use super::stretch::{Course, Follower, Stretch};
@@ -106,21 +106,19 @@ pub(super) fn totals(
 /// What rounding may make of a bound, as a share.
 const ROUNDING: f64 = 1e-9;
 
-/// A bound of the demand of a straight path at a speed of at most `v` (mm/s) and
-/// accelerations of size `a` (mm/s²) at most, if it stays below what is of
-/// interest.
+/// Upper bounds of what a straight path draws and feeds back, W, at a speed of at
+/// most `v` (mm/s) and accelerations of size `a` (mm/s²) at most.
 ///
 /// Closer than the [`ceiling`](super::ceiling), since it knows the direction:
 /// each axis draws most at `v` while it speeds up, and feeds back most at `v`
 /// while it brakes.
-pub(super) fn below_floor(
+pub(super) fn bound_w(
     model: &PowerModel,
     converter: &ConverterPower,
     mv: &Move,
     [v, a]: [f64; 2],
     idle_w: f64,
-    want: Want,
-) -> Option<Demand> {
+) -> [f64; 2] {
     let per_length = 1.0 / mv.length_mm;
     let (mut drawn_w, mut fed_back_w) = (idle_w, 0.0);
     for axis in AxisSet(mv.moving.0 & converter.axes.0).iter() {
@@ -138,8 +136,7 @@ pub(super) fn below_floor(
         let least = power.coulomb * power.friction_factor(Side::Regen) + gravity;
         fed_back_w += (speed * (brake - least)).max(0.0) * power.efficiency;
     }
-    let [peak_w, regen_w] = [drawn_w, fed_back_w].map(|power_w| power_w * (1.0 + ROUNDING));
-    Demand::below_floor(peak_w, regen_w, want)
+    [drawn_w, fed_back_w].map(|power_w| power_w * (1.0 + ROUNDING))
 }
 
 /// Whether a phase has one acceleration.

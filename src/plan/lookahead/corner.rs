@@ -28,9 +28,11 @@ pub(super) struct Before {
     pub joint: Joint,
     /// Speed that feed, axes and curvature permit, mm/s.
     pub top_mm_s: f64,
-    /// Direction at the joint, and how many axes it needs.
+    /// Direction at the joint, how many axes it needs, and whether X, Y and Z
+    /// make a unit of it.
     end: AxisValues,
     span: usize,
+    is_unit: bool,
     /// Length by acceleration, mm²/s².
     ramp2: f64,
     /// Squared speed at which it could begin from rest.
@@ -48,6 +50,7 @@ pub(super) struct After<'e, T> {
     /// Speed that feed, axes and curvature permit, mm/s.
     pub top_mm_s: f64,
     span: usize,
+    is_unit: bool,
     /// Squared speed at which motion may begin from rest.
     pub rest2: f64,
     /// Of interest to [`CornerRule::SpeedStep`] alone.
@@ -79,6 +82,7 @@ impl<'e, T> After<'e, T> {
             element,
             top_mm_s,
             span,
+            is_unit: is_unit(&element.start),
             rest2,
             prints,
         }
@@ -96,6 +100,10 @@ impl<'e, T> After<'e, T> {
                 Some(_) => span(&element.end),
                 None => self.span,
             },
+            is_unit: match element.curve {
+                Some(_) => is_unit(&element.end),
+                None => self.is_unit,
+            },
             ramp2: element.length_mm * element.accel_mm_s2,
             rest2: self.rest2,
             prints: self.prints,
@@ -112,6 +120,12 @@ fn span(direction: &AxisValues) -> usize {
     } else {
         AXES
     }
+}
+
+/// Whether X, Y and Z make a unit.
+#[inline]
+fn is_unit(direction: &AxisValues) -> bool {
+    (dot(direction, direction, LINEAR) - 1.0).abs() <= UNIT
 }
 
 /// The largest squared speed at the joint of two elements, but not above
@@ -140,6 +154,7 @@ pub(super) fn speed2<T>(
                     CornerAngle::AllAxes => span,
                     CornerAngle::Linear => LINEAR,
                 },
+                are_units: before.is_unit && after.is_unit,
                 before,
                 after: after.element,
             };
@@ -198,6 +213,8 @@ struct Corner<'a, T> {
     small_block_mm: f64,
     /// The first axes make the angle.
     axes: usize,
+    /// X, Y and Z of both directions make units.
+    are_units: bool,
     before: &'a Before,
     after: &'a Element<T>,
 }
@@ -212,21 +229,17 @@ impl<T> Corner<'_, T> {
     #[inline]
     fn permits(&self, most2: f64) -> bool {
         let (u, w) = (&self.before.end, &self.after.start);
-        if self.axes != LINEAR {
-            return false;
-        }
-        let is_unit = |a: &AxisValues| (dot(a, a, LINEAR) - 1.0).abs() <= UNIT;
-        if !is_unit(u) || !is_unit(w) {
+        if self.axes != LINEAR || !self.are_units {
             return false;
         }
         let mut accel = self.after.accel_mm_s2;
         if self.per_axis {
             for axis in 0..LINEAR {
                 let limit = self.after.axis_accel_mm_s2[axis];
-                // An axis that moves in neither of them does not count.
-                let moves = u[axis].to_bits() | w[axis].to_bits();
-                if limit < accel && moves << 1 != 0 {
-                    accel = limit;
+                if limit > 0.0 {
+                    accel = if limit < accel { limit } else { accel };
+                } else if u[axis] != 0.0 || w[axis] != 0.0 {
+                    return false;
                 }
             }
         }
@@ -348,4 +361,91 @@ fn step<T>(
         }
     }
     v * v
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{After, Corner, Element, Joint, LINEAR};
+    use crate::machine::{CornerAngle, CornerRule};
+
+    /// A small generator, so that failures can be repeated (xorshift64*).
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 ^= self.0 >> 12;
+            self.0 ^= self.0 << 25;
+            self.0 ^= self.0 >> 27;
+            (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        /// Between 1 and 10 to the power of so much.
+        fn scale(&mut self, decades: f64) -> f64 {
+            libm::pow(10.0, decades * self.next())
+        }
+    }
+
+    fn element(direction: [f64; 3], length_mm: f64, limits: [f64; 3]) -> Element<()> {
+        let mut element = Element::blank(());
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        for axis in 0..LINEAR {
+            element.start[axis] = direction[axis] / length;
+            element.axis_accel_mm_s2[axis] = limits[axis];
+        }
+        element.end = element.start;
+        element.length_mm = length_mm;
+        element.accel_mm_s2 = limits.into_iter().fold(f64::INFINITY, f64::min) * 1.5;
+        element.joint = Joint::Exact;
+        element
+    }
+
+    #[test]
+    fn the_quick_answer_never_permits_more_than_the_rule() {
+        let mut random = Random(11);
+        let (mut permitted, mut refused, mut wrong) = (0, 0, 0);
+        for case in 0..100_000 {
+            let mut direction = || [(); 3].map(|()| 2.0 * random.next() - 1.0);
+            let (first, by) = (direction(), direction());
+            // From reversals over right angles to the straight.
+            let bend = 1e-5 * random.scale(6.0);
+            let second = [0, 1, 2].map(|i| first[i] + bend * by[i]);
+            let limits = [(); 3].map(|()| 100.0 * random.scale(2.0));
+            let length_mm = 0.01 * random.scale(3.0);
+            let rule = CornerRule::JunctionDeviation {
+                deviation_mm: 0.01,
+                angle: CornerAngle::AllAxes,
+                per_axis: case % 2 == 0,
+                small_block_mm: if case % 3 == 0 { 1.0 } else { 0.0 },
+            };
+            let before = element(first, 1.0, limits);
+            let before = After::new(&rule, &before).before();
+            let after = element(second, length_mm, limits);
+            let corner = Corner {
+                deviation_mm: 0.01,
+                per_axis: case % 2 == 0,
+                small_block_mm: if case % 3 == 0 { 1.0 } else { 0.0 },
+                axes: LINEAR,
+                are_units: true,
+                before: &before,
+                after: &after,
+            };
+            let v2 = corner.speed2();
+            // Close to the rule's own figure, and at any other.
+            let most2 = match case % 4 {
+                0 => v2 * (1.0 - 1e-9),
+                1 => v2 * (1.0 + 1e-9),
+                2 => v2 * random.scale(1.0),
+                _ => v2 / random.scale(1.0),
+            };
+            let permits = most2.is_finite() && corner.permits(most2);
+            permitted += usize::from(permits);
+            refused += usize::from(!permits);
+            wrong += usize::from(permits && v2 < most2);
+        }
+        assert_eq!(wrong, 0);
+        assert!(
+            permitted > 10_000 && refused > 10_000,
+            "{permitted} {refused}"
+        );
+    }
 }

@@ -231,7 +231,11 @@ impl<T: Copy> PathPlanner<T> {
         }
         let chords = self.look_ahead.chords.as_ref();
         match chords.and_then(|rule| Chords::of(rule, element)) {
-            Some(chords) => chords.for_each(|(chord, at)| self.push_corner(&chord, at)),
+            Some(mut chords) => {
+                while let Some(at) = chords.advance() {
+                    self.push_corner(&chords.chord, at);
+                }
+            }
             None => self.push_corner(element, [0.0, element.length_mm]),
         }
     }
@@ -292,9 +296,14 @@ impl<T: Copy> PathPlanner<T> {
     /// The next piece, once it is final.
     #[inline]
     pub fn pop(&mut self) -> Option<Planned<T>> {
-        if !self.window.is_ready() {
-            return None;
+        if self.window.is_ready() {
+            self.pop_ready()
+        } else {
+            None
         }
+    }
+
+    fn pop_ready(&mut self) -> Option<Planned<T>> {
         let span = self.window.pop()?;
         Some(Planned {
             tag: span.payload.tag,

@@ -3,9 +3,10 @@
 use super::Ahead;
 use crate::interpret::Move;
 use crate::plan::lookahead::{Piece, Planned};
+use crate::power::demand::Demand;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
-use crate::power::piece::piece_demand;
+use crate::power::piece::{is_quiet, piece_demand};
 
 impl Ahead {
     /// Counts a piece of path.
@@ -28,14 +29,13 @@ impl Ahead {
         let Some(open) = self.open.get_mut(index) else {
             return;
         };
-        if peaks {
-            eye.keep(model, &open.mv, planned, &mut open.kept);
-        }
-        if times {
-            eye.show_piece(&open.mv, planned);
-        }
-        if open.mv.length_mm <= 0.0 {
-            return;
+        if !eye.is_closed() {
+            if peaks {
+                eye.keep(model, &open.mv, planned, &mut open.kept);
+            }
+            if times {
+                eye.show_piece(&open.mv, planned);
+            }
         }
         let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
@@ -44,7 +44,8 @@ impl Ahead {
         if times {
             open.assessment.duration_s += duration_s;
         }
-        if peaks || with_energy {
+        let matters = with_energy || peaks && !is_quiet(model, &open.mv, planned, open.want);
+        if matters {
             let demand = piece_demand(model, &open.mv, planned, open.want);
             if with_energy {
                 open.assessment.demand.energy_j += demand.energy_j;
@@ -92,7 +93,11 @@ impl Ahead {
         if times {
             eye.show_piece(&open.mv, planned);
         }
-        let mut demand = piece_demand(model, &open.mv, planned, open.want);
+        let mut demand = if !open.want.energy && is_quiet(model, &open.mv, planned, open.want) {
+            Demand::NONE
+        } else {
+            piece_demand(model, &open.mv, planned, open.want)
+        };
         let certain = !peaks || self.is_certain(planned, from, to);
         // Half of a blend belongs to what is behind it.
         let halves = if planned.next.is_some() { 0.5 } else { 1.0 };

@@ -64,6 +64,16 @@ struct Side {
     next: u64,
 }
 
+impl Side {
+    /// Describes a move for the planner; false where it has no path.
+    #[inline]
+    fn describe(&mut self, machine: &Machine, mv: &Move, number: u64) -> bool {
+        self.element.tag = number;
+        self.element
+            .describe(machine, mv, self.overrides, joint(mv))
+    }
+}
+
 impl Ahead {
     /// Nothing moves yet. `overrides`: the largest, and 100 % or what is
     /// permitted of it.
@@ -109,15 +119,13 @@ impl Ahead {
             return false;
         }
         let number = self.first + self.open.len() as u64;
-        let joint = joint(mv);
-        for side in [Some(&mut self.largest), self.nominal.as_mut()]
-            .into_iter()
-            .flatten()
+        if !self.largest.describe(machine, mv, number) {
+            return false;
+        }
+        if let Some(nominal) = &mut self.nominal
+            && !nominal.describe(machine, mv, number)
         {
-            side.element.tag = number;
-            if !side.element.describe(machine, mv, side.overrides, joint) {
-                return false;
-            }
+            return false;
         }
         if self.in_doubt {
             self.brake_in_doubt(model, eye);
