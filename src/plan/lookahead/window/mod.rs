@@ -15,7 +15,7 @@
 //! and with it everything before is final: the result is that of the whole
 //! program at once, to the last bit. The pass is run when the elements that are
 //! not final have doubled, so that each costs a few steps however long the
-//! stopping distance is.
+//! stopping distance is; at once where it fits into the last element.
 //!
 //! A controller that sees `n` blocks ahead keeps able to stop within them:
 //! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1).
@@ -35,7 +35,7 @@ pub(super) const OPEN_MAX: usize = 1 << 14;
 /// sums with it stay finite.
 const UNLIMITED: f64 = 1e24;
 /// Elements after which a first backward pass is worth its start.
-const OPEN_MIN: usize = 24;
+const OPEN_MIN: usize = 8;
 
 /// A path element as the passes see it.
 #[derive(Debug, Clone)]
@@ -212,10 +212,33 @@ impl<P: Copy> Window<P> {
         if node.smooth_accel > node.accel {
             node.smooth_accel = node.accel;
         }
+        let entry2 = node.entry2;
+        let stops = node.tail2 >= entry2 && node.ramp2() >= entry2;
         self.nodes.push_back(node);
-        if self.nodes.len() - self.ready >= self.settle_at {
+        if stops && !self.smooth {
+            self.release_before_last();
+        } else if self.nodes.len() - self.ready >= self.settle_at {
             self.settle();
         }
+    }
+
+    /// Makes all elements before the last one final: within that one the motion
+    /// can come to rest from the largest speed at its start. The common case of
+    /// short lines at a feed, and the window stays as small as it can be.
+    #[inline]
+    fn release_before_last(&mut self) {
+        let last = self.nodes.len().saturating_sub(1);
+        let mut e2 = 0.0;
+        for node in self.nodes.range_mut(self.ready.min(last)..).rev() {
+            e2 = if node.entry2 <= e2 + node.ramp2() {
+                node.entry2
+            } else {
+                e2 + node.ramp2()
+            };
+            node.e2 = e2;
+        }
+        self.ready = last;
+        self.settle_at = self.open_min;
     }
 
     /// The path stops behind the last element: all are final.
