@@ -236,6 +236,7 @@ mod tests {
                 accel_mm_s2: accel_mm_s2.abs(),
                 section: None,
                 certain: true,
+                overlap_s: 0.0,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);
             let (mut peaks, mut energy_j) = ([0.0_f64; 2], 0.0);
@@ -297,6 +298,7 @@ mod tests {
                 accel_mm_s2: 200.0 + 1800.0 * random.next(),
                 section: None,
                 certain: true,
+                overlap_s: 0.0,
             };
             let exact = piece_demand(&model, &mv, &planned, Want::PEAKS);
             let extremes = [planned.top_speed_mm_s(), planned.largest_accel_mm_s2()];

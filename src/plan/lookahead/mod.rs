@@ -10,6 +10,7 @@ mod corner;
 mod element;
 mod join;
 mod linuxcnc;
+mod pending;
 mod planner;
 mod ramp;
 mod runs;

@@ -1,0 +1,283 @@
+//! An element of `LinuxCNC`'s queue while a blend may still take a piece of it, and
+//! parabolic blends.
+
+use super::super::arc;
+use super::blend::{Circle, Side, angle_between};
+use super::element::{Element, Joint};
+use super::planner::Piece;
+use super::vector::{Vector, add, cross, dot, scale, sub, unit};
+use crate::machine::AXES;
+
+/// The last element: a blend may still take a piece of it.
+#[derive(Debug, Clone)]
+pub(super) struct Pending<T> {
+    pub element: Element<T>,
+    /// Of several elements that became one line: the first.
+    pub first: T,
+    /// It is a line in place of the element's path.
+    pub is_line: bool,
+    /// What the blend before it took, mm of path.
+    pub from_mm: f64,
+    /// And what is left, mm.
+    pub length_mm: f64,
+    /// Of an arc: what is left of its angle.
+    pub sweep_rad: f64,
+    pub max_speed: f64,
+    /// Share of the acceleration given up to the kinks before and behind.
+    pub kink_before: f64,
+    pub kink_behind: f64,
+    /// A parabolic blend before or behind it: its path is known within the
+    /// tolerance only.
+    pub parabolic: bool,
+    /// The element before it, where it begins while that brakes.
+    pub braking: Option<Braking>,
+    /// Largest speed at its start, squared.
+    pub entry2: f64,
+}
+
+impl<T: Copy> Pending<T> {
+    pub fn new(element: &Element<T>, first: T) -> Self {
+        Self {
+            element: *element,
+            first,
+            is_line: false,
+            from_mm: 0.0,
+            length_mm: 0.0,
+            sweep_rad: 0.0,
+            max_speed: 0.0,
+            kink_before: 0.0,
+            kink_behind: 0.0,
+            parabolic: false,
+            braking: None,
+            entry2: 0.0,
+        }
+    }
+
+    /// Nothing has changed it yet.
+    pub fn begin(&mut self, is_line: bool, cycle_s: f64) {
+        let element = &self.element;
+        let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
+        self.is_line = is_line;
+        self.from_mm = 0.0;
+        self.length_mm = element.length_mm;
+        self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
+        self.max_speed = max_speed.min(element.length_mm / cycle_s);
+        (self.kink_before, self.kink_behind) = (0.0, 0.0);
+        self.parabolic = false;
+        self.braking = None;
+        self.entry2 = 0.0;
+    }
+
+    pub fn target_speed(&self) -> f64 {
+        self.element.feed_mm_s.min(self.max_speed)
+    }
+
+    /// The acceleration before any share is taken off.
+    pub fn accel(&self) -> f64 {
+        match &self.element.curve {
+            Some(curve) => curve.accel_mm_s2.min(self.element.path_accel_mm_s2),
+            None => self.element.accel_mm_s2,
+        }
+    }
+
+    /// The share of its acceleration that a parabolic blend leaves.
+    pub fn unbent_share(&self) -> f64 {
+        0.5 * (1.0 - self.kink_before.max(self.kink_behind))
+    }
+
+    /// Gives up `mm` of path at the start or at the end.
+    pub fn trim(&mut self, by: f64, at_start: bool) {
+        let mm = match &self.element.curve {
+            Some(curve) => by * self.element.length_mm / curve.sweep_rad.abs(),
+            None => by,
+        };
+        self.sweep_rad -= by;
+        self.length_mm -= mm;
+        if at_start {
+            self.from_mm += mm;
+        }
+    }
+
+    pub fn side(&self, at_end: bool) -> Option<Side> {
+        let element = &self.element;
+        let change = if at_end { &element.end } else { &element.start };
+        let along = [change[0], change[1], change[2]];
+        let tolerance_mm = match element.joint {
+            Joint::Blend { tolerance_mm, .. } => tolerance_mm,
+            _ => 0.0,
+        };
+        let circle = match &element.curve {
+            None => None,
+            Some(curve) => {
+                let [first, second] = curve.plane;
+                let mut flat = [0.0; 3];
+                let mut normal = [0.0; 3];
+                *flat.get_mut(first)? = *along.get(first)?;
+                *flat.get_mut(second)? = *along.get(second)?;
+                let third = 3_usize.checked_sub(first + second)?;
+                let right_handed = (second + 3 - first) % 3 == 1;
+                let up = curve.sweep_rad.signum();
+                *normal.get_mut(third)? = if right_handed { up } else { -up };
+                let inward = unit(cross(normal, flat))?;
+                Some(Circle {
+                    center: scale(inward, curve.radius_mm),
+                    radius: curve.radius_mm,
+                    angle: self.sweep_rad,
+                    normal,
+                })
+            }
+        };
+        Some(Side {
+            tangent: unit(along)?,
+            circle,
+            nominal_mm: element.length_mm,
+            length_mm: self.length_mm,
+            max_speed: self.max_speed,
+            asked_speed: element.feed_mm_s,
+            tolerance_mm,
+        })
+    }
+
+    /// What is left of it.
+    pub fn piece(&self) -> Piece {
+        let change = &self.element.start;
+        if self.is_line {
+            Piece::Joined {
+                direction: [change[0], change[1], change[2]],
+            }
+        } else {
+            Piece::Along {
+                from_mm: self.from_mm,
+                to_mm: self.from_mm + self.length_mm,
+            }
+        }
+    }
+
+    /// The speed of an arc and the acceleration along it, of those that it has
+    /// without its curvature.
+    pub fn turning(&self, max_speed: f64, accel: f64) -> (f64, f64) {
+        let Some(curve) = &self.element.curve else {
+            return (max_speed, accel);
+        };
+        let radius_mm = curve.radius_mm + curve.rise_mm * curve.rise_mm / curve.radius_mm;
+        arc::linuxcnc(max_speed, accel, radius_mm)
+    }
+
+    /// Unit direction in which the planner expects an end to pull. An arc pulls in
+    /// its plane; at its start it turns towards the centre, by what half of the
+    /// speed asked for needs.
+    pub fn pull(&self, at_end: bool) -> Option<Vector> {
+        let side = self.side(at_end)?;
+        let Some(circle) = &side.circle else {
+            return Some(side.tangent);
+        };
+        let across = dot(side.tangent, circle.normal);
+        let flat = unit(sub(side.tangent, scale(circle.normal, across)))?;
+        if at_end {
+            return Some(flat);
+        }
+        let half = 0.5 * self.element.feed_mm_s.min(self.element.speed_mm_s);
+        let inward = scale(unit(circle.center)?, half * half / circle.radius);
+        unit(add(scale(flat, self.unbent_share() * self.accel()), inward))
+    }
+
+    /// The speed that the tolerance permits in a parabolic blend, and the sine of
+    /// half the angle inside its corner.
+    pub fn tolerated(&self, next: &Self, accel: f64) -> (f64, f64) {
+        let (Some(first), Some(second)) = (self.pull(true), next.pull(false)) else {
+            return (f64::INFINITY, 0.0);
+        };
+        let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
+        let most = match self.element.joint {
+            Joint::Blend { tolerance_mm, .. } if tolerance_mm > 0.0 && cos > 1e-3 => {
+                2.0 * (accel * tolerance_mm / cos).sqrt()
+            }
+            _ => f64::INFINITY,
+        };
+        (most, sin)
+    }
+
+    /// The speed along the mean direction that the planner expects of a parabolic
+    /// blend when it chooses one.
+    pub fn overlap(&self, next: &Self) -> f64 {
+        let ramps = [self, next].map(|of| {
+            let (speed, accel) = of.turning(of.max_speed, of.accel());
+            Ramp::new(&of.element, of.length_mm, speed, of.unbent_share() * accel)
+        });
+        let (most, sin) = self.tolerated(next, ramps[0].accel);
+        let [first, second] = Ramp::overlap([&ramps[0], &ramps[1]]);
+        0.5 * sin * (first.min(most) + second.min(most))
+    }
+
+    /// How long it runs while the element before it brakes, s.
+    pub fn overlap_s(&self) -> f64 {
+        let Some(braking) = &self.braking else {
+            return 0.0;
+        };
+        let accel = self.unbent_share() * self.accel();
+        let (speed, accel) = self.turning(self.max_speed, accel);
+        braking.lasts_s(&Ramp::new(&self.element, self.length_mm, speed, accel))
+    }
+
+    /// Whether axes other than X, Y and Z move.
+    pub fn rotates(&self) -> bool {
+        let changes = &self.element.start;
+        (3..AXES).any(|axis| changes.get(axis).is_some_and(|change| *change != 0.0))
+    }
+}
+
+/// One side of a parabolic blend, where the next element begins while the last
+/// one still brakes, both with half of their acceleration.
+#[derive(Debug, Clone, Copy)]
+struct Ramp {
+    accel: f64,
+    length_mm: f64,
+    /// The most that it gets to from rest.
+    speed: f64,
+}
+
+impl Ramp {
+    fn new(of: &Element<impl Copy>, length_mm: f64, max_speed: f64, accel: f64) -> Self {
+        let peak = (accel * length_mm).sqrt();
+        Self {
+            accel,
+            length_mm,
+            speed: peak.min(max_speed).min(of.feed_mm_s),
+        }
+    }
+
+    /// The speeds from which the first brakes while the next one begins, and to
+    /// which that gets meanwhile: as long as the longer ramp takes, if both are
+    /// long enough.
+    fn overlap(sides: [&Self; 2]) -> [f64; 2] {
+        let longest_s = sides.map(|side| side.speed / side.accel);
+        let most_s = sides.map(|side| side.length_mm / side.speed);
+        let lasts_s = longest_s[0].max(longest_s[1]).min(most_s[0].min(most_s[1]));
+        sides.map(|side| side.speed.min(lasts_s * side.accel))
+    }
+}
+
+/// An element that brakes while the next one begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Braking {
+    ramp: Ramp,
+    /// The speed that the tolerance permits.
+    most: f64,
+}
+
+impl Braking {
+    pub fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Self {
+        let accel = before.unbent_share() * before.accel();
+        let (speed, accel) = before.turning(before.max_speed, accel);
+        Self {
+            ramp: Ramp::new(&before.element, before.length_mm, speed, accel),
+            most: before.tolerated(next, accel).0,
+        }
+    }
+
+    /// How long it still brakes when the next one begins, s.
+    fn lasts_s(&self, next: &Ramp) -> f64 {
+        let [brakes_from, _] = Ramp::overlap([&self.ramp, next]);
+        brakes_from.min(self.most) / self.ramp.accel
+    }
+}
