@@ -24,6 +24,12 @@ pub(super) struct Eye {
 }
 
 impl Eye {
+    /// Whether nothing is looked at.
+    #[inline]
+    pub fn is_closed(&self) -> bool {
+        self.watch.is_none() && self.motions.is_none()
+    }
+
     /// A move that runs from rest to rest, or rests.
     #[inline]
     pub fn alone(&mut self, machine: &Machine, model: &PowerModel, mv: &Move, largest: Overrides) {
