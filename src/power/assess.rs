@@ -10,7 +10,7 @@ use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::eye::Eye;
-use super::held::{Held, Rider};
+use super::held::{Held, Rider, moves};
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::robust::Part;
@@ -497,9 +497,4 @@ impl<'m> Assessor<'m> {
                 RapidJoint::All => true,
             }
     }
-}
-
-/// Whether any axis moves.
-fn moves(mv: &Move) -> bool {
-    mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
 }

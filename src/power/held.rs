@@ -2,7 +2,7 @@
 
 use super::assessment::Assessment;
 use super::robust::Part;
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::plan::SpeedBound;
 
 /// A move that waits for its successor.
@@ -35,4 +35,9 @@ pub(super) struct Rider {
     pub mv: Move,
     pub text: Vec<u8>,
     pub assessment: Assessment,
+}
+
+/// Whether any axis moves.
+pub(super) fn moves(mv: &Move) -> bool {
+    mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
 }

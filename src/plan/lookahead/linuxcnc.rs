@@ -270,7 +270,8 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let mut entry2 = of.entry2.min(max2);
         if last {
-            entry2 = entry2.min(accel * of.length_mm);
+            // With nothing behind it F counts.
+            entry2 = entry2.min(accel * of.length_mm).min(top2);
         }
         let entry2 = if entry2 > 0.0 {
             entry2.min(self.last_max2)
