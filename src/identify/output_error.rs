@@ -16,8 +16,9 @@
 use nalgebra::DMatrix;
 
 use super::normal::{Normal, Solution};
-use super::parameters::{is_admissible, parameters, probes, with};
-use super::state_space::{Measured, Sampled, Simulation};
+use super::parameters::{is_admissible, parameters, with};
+use super::sensitivity::{differences, gather};
+use super::state_space::Measured;
 use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
@@ -54,6 +55,16 @@ impl Data<'_> {
                 .undisturbed
                 .map(|x| x.get(..cut(x)).unwrap_or_default()),
             ..*self
+        }
+    }
+
+    /// Samples at the beginning for which differences are not known.
+    #[must_use]
+    pub fn skip(&self) -> usize {
+        match self.measured {
+            Measured::Direct => 0,
+            Measured::Velocity => 1,
+            Measured::Position => 2,
         }
     }
 
@@ -146,70 +157,6 @@ fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// One pass over the data: normal equations of the step at these parameters. The
-/// first samples, where a filter has not swung in, are left out.
-fn gather(
-    data: &Data<'_>,
-    transfer: &TransferFunction,
-    delay_is_free: bool,
-    left_out: usize,
-) -> Option<Normal> {
-    let sampled =
-        |transfer: &TransferFunction| Sampled::new(transfer, data.measured, data.period_s);
-    let theta = parameters(transfer, delay_is_free);
-    let probes = probes(transfer, delay_is_free, data.period_s);
-    let base = sampled(transfer)?;
-    let order = base.order();
-    let mut moved = Vec::with_capacity(theta.len());
-    for (index, probe) in probes.iter().enumerate() {
-        let mut theta = theta.clone();
-        *theta.get_mut(index)? += probe;
-        moved.push((
-            Simulation::new(sampled(&with(transfer, &theta))?),
-            1.0 / probe,
-        ));
-    }
-    let mut free = base.free_swing();
-    // How the instruments are driven; in an open loop as the output is.
-    let driven = data.undisturbed.unwrap_or(data.input);
-    let mut instrument = data.undisturbed.map(|_| Simulation::new(base.clone()));
-    let mut simulation = Simulation::new(base);
-    let width = theta.len() + order + 1;
-    let mut normal = Normal::new(width);
-    let mut row = vec![0.0; width + 1];
-    let skip = match data.measured {
-        Measured::Direct => 0,
-        Measured::Velocity => 1,
-        Measured::Position => 2,
-    };
-    for (k, y) in data.output.iter().enumerate().take(data.len()) {
-        let simulated = simulation.step(data.input, k);
-        let base = match &mut instrument {
-            Some(instrument) => instrument.step(driven, k),
-            None => simulated,
-        };
-        let mut slots = row.iter_mut();
-        for ((simulation, per_step), slot) in moved.iter_mut().zip(&mut slots) {
-            *slot = (simulation.step(driven, k) - base) * *per_step;
-        }
-        for (x, slot) in free.next_row().iter().zip(&mut slots) {
-            *slot = *x;
-        }
-        if let Some(slot) = slots.next() {
-            *slot = 1.0;
-        }
-        if let Some(slot) = slots.next() {
-            *slot = y - simulated;
-        }
-        if k >= skip + left_out
-            && let Some((right, columns)) = row.split_last()
-        {
-            normal.add(columns, *right);
-        }
-    }
-    normal.total.is_finite().then_some(normal)
-}
-
 /// The sum of squares that is left when offset and first state fit best.
 fn rest(normal: &Normal, count: usize) -> Option<Solution> {
     (0..4).find_map(|power| {
@@ -242,7 +189,7 @@ pub fn refine(
         undisturbed: undisturbed.as_deref(),
         ..*raw
     };
-    let left_out = whitening.len();
+    let left_out = whitening.len() + data.skip();
     // The search goes down on squares; instruments come at its end.
     let open = Data {
         undisturbed: None,
@@ -302,13 +249,13 @@ pub fn refine(
     let sought = sought(&transfer, data.period_s);
     let mut estimate = finish(transfer, &normal, [count, sought], power)?;
     estimate.steps = steps;
-    if left_out > 0 {
+    if !whitening.is_empty() {
         // Offset and first state of the signals as they are.
         let open = Data {
             undisturbed: None,
             ..*raw
         };
-        let normal = gather(&open, &estimate.transfer, delay_is_free, 0)?;
+        let normal = gather(&open, &estimate.transfer, delay_is_free, raw.skip())?;
         (estimate.state, estimate.offset) = nuisance(&rest(&normal, count)?);
     }
     Some(estimate)
@@ -401,20 +348,9 @@ fn nuisance(solution: &Solution) -> (Vec<f64>, f64) {
 }
 
 /// Differences between measured and simulated output, offset and first state
-/// taken off.
+/// taken off; 0 at the first samples, for which there are no differences.
 #[must_use]
 pub fn residuals(data: &Data<'_>, estimate: &Estimate) -> Option<Vec<f64>> {
-    let sampled = Sampled::new(&estimate.transfer, data.measured, data.period_s)?;
-    let mut free = sampled.free_swing();
-    let mut simulation = Simulation::new(sampled);
-    let pairs = data.output.iter().enumerate().take(data.len());
-    Some(
-        pairs
-            .map(|(k, y)| {
-                let row = free.next_row();
-                let swing: f64 = row.iter().zip(&estimate.state).map(|(a, b)| a * b).sum();
-                y - simulation.step(data.input, k) - swing - estimate.offset
-            })
-            .collect(),
-    )
+    let (transfer, state) = (&estimate.transfer, &estimate.state);
+    differences(data, transfer, data.skip(), state, estimate.offset)
 }
