@@ -317,6 +317,40 @@ fn delay_and_rigid_axis_are_found() {
     assert!((rigid.inertia.unwrap().value - 0.02).abs() < 1e-4);
 }
 
+/// Speeds and positions under a torque: encoders, with noise that is white on what
+/// they measure.
+#[test]
+fn a_torque_with_a_speed_or_a_position_tells_the_axis() {
+    let axis = one_side();
+    let torque = m_sequence(4000);
+    for (measured, name, noise) in [
+        (Measured::Velocity, "velocity_rad_s", 1e-5),
+        (Measured::Position, "position_rad", 1e-9),
+    ] {
+        // Differences that are summed up again.
+        let mut values = simulate(&axis, measured, PERIOD_S, &torque).unwrap();
+        let sums = if measured == Measured::Velocity { 1 } else { 2 };
+        for _ in 0..sums {
+            let mut sum = 0.0;
+            for value in &mut values {
+                sum += *value * PERIOD_S;
+                *value = sum;
+            }
+        }
+        let mut random = Noise::new(11);
+        for value in &mut values {
+            *value += noise * random.normal();
+        }
+        let table = table(&["torque_nm", name], &[&torque, &values]);
+        let found = flexible::identify(&table, &choice(Method::Iv)).unwrap();
+        let errors = errors(&axis, &found);
+        for (error, std) in &errors {
+            assert!(error.abs() < 5.0 * std, "{name}: {errors:?}");
+        }
+        assert!(errors[0].0.abs() < 1e-3, "{name}: {errors:?}");
+    }
+}
+
 #[test]
 fn without_noise_every_method_is_exact_or_near() {
     let axis = one_side();

@@ -22,9 +22,16 @@ use super::state_space::Measured;
 use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
+/// The longest delay that is looked for, and a little.
+const LEAD_IN: usize = 16;
 /// An improvement of the sum of squares below this share of one row's ends the
 /// search: far below what noise decides.
 const ENOUGH: f64 = 1e-3;
+
+/// So near to the criterion that is to be beaten, a fit is given this many times
+/// the steps.
+const NEAR: f64 = 20.0;
+const LONGER: usize = 4;
 
 /// What is fitted.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +46,8 @@ pub struct Data<'a> {
     pub period_s: f64,
     /// What was measured.
     pub measured: Measured,
+    /// True for commands as input.
+    pub from_command: bool,
     /// True for positions as input and output: most of what they are is slow.
     pub positions: bool,
 }
@@ -58,10 +67,12 @@ impl Data<'_> {
         }
     }
 
-    /// Samples at the beginning for which differences are not known.
+    /// Samples at the beginning that do not count. Before the first one a force
+    /// was nil; where a command stood is not known, and comes late.
     #[must_use]
     pub fn skip(&self) -> usize {
         match self.measured {
+            _ if self.from_command => LEAD_IN,
             Measured::Direct => 0,
             Measured::Velocity => 1,
             Measured::Position => 2,
@@ -202,7 +213,13 @@ pub fn refine(
     let mut damping = 1e-4;
     let power: f64 = raw.output.iter().map(|y| y * y).sum();
     let mut steps = 0;
-    for round in 0..effort.steps {
+    let free = |transfer: &TransferFunction| count + sought(transfer, data.period_s);
+    for round in 0..LONGER * effort.steps {
+        // What is missing, in units of the criterion: what is near is worth more.
+        let missing = criterion(least, power, normal.rows, free(&transfer)) - effort.to_beat;
+        if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
+            break;
+        }
         steps = round + 1;
         let Some(step) = normal.solve_from(0, damping) else {
             damping *= 10.0;
@@ -226,12 +243,11 @@ pub fn refine(
                 if gained <= ENOUGH * least / normal.rows as f64 || least <= ROUNDING * power {
                     break;
                 }
-                // What is missing, in units of the criterion, against what the
-                // step brought.
-                let free = count + sought(&transfer, data.period_s);
-                let missing = criterion(least, power, normal.rows, free) - effort.to_beat;
+                // Against what the step brought.
                 let brought = normal.rows as f64 * gained / least;
-                if round >= 7 && missing > 20.0 && brought < 0.2 * missing {
+                let missing = missing - brought;
+                let is_slow = |share: f64| missing > NEAR && brought < share * missing;
+                if (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2)) {
                     break;
                 }
             }
@@ -348,9 +364,11 @@ fn nuisance(solution: &Solution) -> (Vec<f64>, f64) {
 }
 
 /// Differences between measured and simulated output, offset and first state
-/// taken off; 0 at the first samples, for which there are no differences.
+/// taken off, behind the samples that do not count.
 #[must_use]
 pub fn residuals(data: &Data<'_>, estimate: &Estimate) -> Option<Vec<f64>> {
     let (transfer, state) = (&estimate.transfer, &estimate.state);
-    differences(data, transfer, data.skip(), state, estimate.offset)
+    let mut left = differences(data, transfer, data.skip(), state, estimate.offset)?;
+    left.drain(..data.skip().min(left.len()));
+    Some(left)
 }

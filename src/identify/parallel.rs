@@ -331,12 +331,7 @@ fn respond(responses: &[[f64; 2]; 3], run: [f64; 3]) -> [f64; 2] {
 fn matrix_product(x: [f64; 4], y: [f64; 4]) -> [f64; 4] {
     let [a, b, c, d] = x;
     let [e, f, g, h] = y;
-    [
-        a * e + b * g,
-        a * f + b * h,
-        c * e + d * g,
-        c * f + d * h,
-    ]
+    [a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h]
 }
 
 /// `Φ` over a share of a period, and the responses to 1, τ and τ²/2, where τ

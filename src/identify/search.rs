@@ -31,6 +31,8 @@ const ABOVE: [f64; 3] = [1.5, 2.5, 4.0];
 /// digit is not worth minutes.
 const STEPS_MAX: usize = 500;
 const STEPS_LAST: usize = 120;
+/// Rounds of model and noise.
+const ROUNDS_OF_NOISE: usize = 4;
 /// Steps from model to model at most.
 const ROUNDS_MAX: usize = 12;
 /// Order of the filter that makes noise white, at most.
@@ -70,9 +72,11 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     let mut taps: Vec<f64> = Vec::new();
     let mut best: Option<(Estimate, bool)> = None;
     // Noise that is not white shows only behind a model, and the model only
-    // when the noise is known: three rounds settle both.
-    for _ in 0..3 {
-        let found = ladder(&short, &response, given, &taps)?;
+    // when the noise is known: a few rounds settle both, each from where the one
+    // before came to.
+    for _ in 0..ROUNDS_OF_NOISE {
+        let before = best.as_ref().map(|(best, _)| &best.transfer);
+        let found = ladder(&short, &response, given, &taps, before)?;
         let left = residuals(&short, &found.0)?;
         let exact = found.0.rest <= 1e-12 * found.0.power;
         let next = if exact || Whiteness::of(filtered(&left, &taps).as_slice(), LAGS).is_white() {
@@ -137,8 +141,10 @@ fn ladder(
     response: &FrequencyResponse,
     given: Given,
     taps: &[f64],
+    before: Option<&TransferFunction>,
 ) -> Option<(Estimate, bool)> {
-    let starts = starts(data, response, given);
+    let mut starts = starts(data, response, given);
+    starts.extend(before.cloned());
     let mut best: Option<Estimate> = None;
     for start in starts {
         let effort = Effort {
@@ -154,6 +160,7 @@ fn ladder(
     let mut best = best?;
     let mut is_restarted = false;
     let mut left = STEPS_MAX;
+    let mut tried = vec![best.transfer.clone()];
     for _ in 0..ROUNDS_MAX {
         let mut top: Option<Estimate> = None;
         let next = if is_restarted {
@@ -165,6 +172,10 @@ fn ladder(
             if left == 0 {
                 break;
             }
+            if tried.iter().any(|other| are_alike(other, &start)) {
+                continue;
+            }
+            tried.push(start.clone());
             let effort = Effort {
                 steps: SEARCH_STEPS,
                 to_beat: top.as_ref().unwrap_or(&best).criterion(),
@@ -185,6 +196,7 @@ fn ladder(
         left = left.max(STEPS_LAST);
         let before = best.criterion();
         if let Some(top) = top.filter(|top| is_better(top, Some(&best))) {
+            tried.push(top.transfer.clone());
             best = top;
         }
         if best.criterion() < before - WORTH {
@@ -201,6 +213,42 @@ fn ladder(
     Some(any_delay(data, best, taps))
 }
 
+/// True for models of one shape from which a fit comes to the same end.
+fn are_alike(a: &TransferFunction, b: &TransferFunction) -> bool {
+    const NEAR: f64 = 0.01;
+    let factors = |x: &TransferFunction| -> Vec<Factor> {
+        let all = x.zeros.iter().chain(&x.poles);
+        all.copied().collect()
+    };
+    let same = |a: &Factor, b: &Factor| match (*a, *b) {
+        (
+            Factor::Pair {
+                omega_rad_s,
+                damping,
+            },
+            Factor::Pair {
+                omega_rad_s: other,
+                damping: than,
+            },
+        ) => {
+            (omega_rad_s / other - 1.0).abs() < NEAR
+                && (damping - than).abs() < NEAR * damping.abs().max(0.02)
+        }
+        (
+            Factor::Real { time_constant_s },
+            Factor::Real {
+                time_constant_s: other,
+            },
+        ) => (time_constant_s / other - 1.0).abs() < 10.0 * NEAR,
+        _ => false,
+    };
+    let (left, right) = (factors(a), factors(b));
+    a.delay_s == b.delay_s
+        && a.zeros.len() == b.zeros.len()
+        && left.len() == right.len()
+        && left.iter().zip(&right).all(|(a, b)| same(a, b))
+}
+
 /// Models that differ from one by a zero, a pair of zeros, a mode, or a period
 /// of delay.
 fn neighbours(
@@ -212,6 +260,9 @@ fn neighbours(
     let far_zero = far_zero(period_s);
     let lean = lean(from);
     let mut out = reflected(from, given, period_s);
+    if given.order.is_none() {
+        out.extend(cancelled(from));
+    }
     if given.order.is_none() && lean.order() < from.order() {
         // Fast poles and zeros may have stood for a delay.
         let later = if given.delay_s.is_none() { 2 } else { 0 };
@@ -263,6 +314,25 @@ fn neighbours(
     }
     if let Some(zeros) = given.zeros {
         out.retain(|model| model.zero_count() == zeros);
+    }
+    out
+}
+
+/// Without a pole and a zero that stand for nothing beside one another.
+fn cancelled(from: &TransferFunction) -> Vec<TransferFunction> {
+    const NEAR: f64 = 0.05;
+    let mut out = Vec::new();
+    for (index, pole) in from.poles.iter().enumerate() {
+        let is_near = |zero: &Factor| {
+            let apart = libm::log(zero.corner_rad_s() / pole.corner_rad_s());
+            zero.degree() == pole.degree() && apart.abs() < NEAR
+        };
+        if let Some(at) = from.zeros.iter().position(is_near) {
+            let mut less = from.clone();
+            less.poles.remove(index);
+            less.zeros.remove(at);
+            out.push(less);
+        }
     }
     out
 }
@@ -346,6 +416,7 @@ fn restarts(
                     omega_rad_s: above * omega,
                     damping: 0.05,
                 }));
+                starts.push(stiff.clone());
                 stiff.zeros.push(far_zero(period_s));
                 starts.push(stiff);
             }
