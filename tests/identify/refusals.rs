@@ -34,7 +34,9 @@ fn bad_recordings_are_refused_with_what_to_do() {
         assert!(message.contains(what), "{what}: {message}");
         assert!(message.contains("help: "), "{message}");
     };
-    said("", "fewer than two columns");
+    said("", "the recording is empty");
+    said("time_s\n0\n", "fewer than two columns");
+    said(&good.replace(',', ";"), "not separated by commas");
     said(&good.replace("time_s", "seconds"), "no column time_s");
     said(&good.replace("force_n", "force"), "unit of column force");
     said(
