@@ -2,14 +2,16 @@
 
 use super::arx;
 use super::column::{Kind, Quantity};
+use super::data::Data;
 use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
+use super::neighbours::Given;
 use super::noise::Whiteness;
-use super::output_error::{Data, residuals};
+use super::output_error::residuals;
 use super::parameters::parameters;
 use super::quality;
 use super::recording::Recording;
 use super::rigid::Figure;
-use super::search::{Given, LAGS, filtered};
+use super::search::{LAGS, filtered};
 use super::spectrum::FrequencyResponse;
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};

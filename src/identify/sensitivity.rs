@@ -4,8 +4,8 @@
 //! Rows are made in stretches, column by column, so that the processor can work
 //! on several at once.
 
+use super::data::Data;
 use super::normal::Normal;
-use super::output_error::Data;
 use super::parallel::{Parallel, Section, TAPS};
 use super::parameters::{parameters, probes, with};
 use super::state_space::Measured;

@@ -8,7 +8,7 @@ use gwatt::identify::tune::of_recording;
 use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
 
 use super::pair;
-use crate::identify::{Noise, PERIOD_S, choice, m_sequence, random, table};
+use crate::identify::{Noise, PERIOD_S, choice, m_sequence, table};
 
 /// A command that is held between samples, and one that the drive joins by
 /// straight lines a period later: both give the zero of the load.
@@ -69,32 +69,4 @@ fn commands_may_be_held_or_run_on() {
         let late = found.delay_s + poles_s - early_s - lag_s - late_s;
         assert!(late.abs() < 5e-5, "{late}");
     }
-}
-
-/// A recording that begins in the middle of a motion, far from zero, with noise
-/// that decides nothing: the dead time is not taken for poles.
-#[test]
-fn dead_time_is_told_from_poles() {
-    let truth = TransferFunction {
-        gain: 1.0,
-        zeros: vec![pair(40.0, 0.03)],
-        poles: vec![pair(45.0, 0.4), pair(90.0, 0.5)],
-        delay_s: 3.0 * PERIOD_S,
-    };
-    let command: Vec<f64> = random(8_200, 60.0).iter().map(|x| 0.1 + 1e-3 * x).collect();
-    let load = simulate(&truth, Measured::Direct, PERIOD_S, &command).unwrap();
-    let mut noise = Noise::new(7);
-    let load: Vec<f64> = load[200..]
-        .iter()
-        .map(|x| x + 1e-6 * noise.normal())
-        .collect();
-    let recording = table(
-        &["position_command_m", "position_m"],
-        &[&command[200..], &load],
-    );
-    let found = of_recording(&recording, 'X', &choice(Method::Iv)).unwrap();
-    // A held command is half a period late.
-    assert!((found.delay_s - 3.5 * PERIOD_S).abs() < 1e-9, "{found:?}");
-    assert_eq!(found.poles.len(), 2);
-    assert_eq!(found.zeros.len(), 1);
 }

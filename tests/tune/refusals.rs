@@ -49,7 +49,7 @@ fn filters_that_cannot_be_had_are_refused() {
     // So slow that its poles are 1 to the last digit.
     assert_eq!(
         of(Wish {
-            bandwidth_hz: Some(1e-12),
+            bandwidth_hz: Some(1e-15),
             ..base
         }),
         "the filter of axis X would not be stable"
