@@ -1,6 +1,7 @@
 //! The spindle on the same bus as the axes.
 
 mod over_time;
+mod series;
 
 use std::fmt::Write as _;
 use std::io::Cursor;

@@ -16,8 +16,11 @@ A series has a row every --step-ms and at every instant at which an acceleration
 changes; where something jumps, two rows with the same time. First the program
 as it is, then as `gwatt limit` writes it: `before` and `after` in the column
 `program`. It shows the motion as planned at 100 % override, without servo
-factors; regen_w is what is fed back. With --limited the program in that file is
-shown as `after`.";
+factors, and the spindle where the machine has one: its drive's base load is in
+spindle_power_w, cutting in cutting_power_w. Axes stand while they wait for the
+spindle; stops of unknown length take no time. bus_w is what the converters
+deliver, regen_w what is fed back. With --limited the program in that file is shown
+as `after`.";
 
 /// Arguments of `report`.
 #[derive(Debug, Args)]
@@ -34,7 +37,8 @@ pub struct ReportArgs {
     /// Write JSON here
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write speed, acceleration, force and power over time here, as CSV
+    /// Write speed, acceleration, force and power of axes and spindle over time
+    /// here, as CSV
     #[arg(long, value_name = "CSV")]
     pub series: Option<PathBuf>,
     /// Step of the series in ms

@@ -1,15 +1,18 @@
-//! The planned motion of a program, instant by instant.
+//! The planned motion of a program and its spindle, instant by instant.
 //!
 //! Input: a program and a step. Output: an [`Instant`] at each step, at each
 //! switching instant, and on both sides of each jump.
 
+use std::collections::VecDeque;
 use std::io::{self, Read, Seek};
 
 use super::front::Front;
 use super::{Failure, Options};
 use crate::interpret::Step;
 use crate::machine::Machine;
-use crate::power::{Assessor, AxisInstant, Instant, Motion, PowerModel, Want};
+use crate::power::{
+    Assessor, AxisInstant, Instant, Motion, PowerModel, SpindleInstant, Turning, Want,
+};
 
 /// Rows that a series may have.
 const ROWS_MAX: f64 = 2e8;
@@ -17,6 +20,9 @@ const ROWS_MAX: f64 = 2e8;
 const NEAR: f64 = 1e-6;
 /// Share by which rounding alone may make two states differ.
 const ROUNDING: f64 = 1e-9;
+/// Rounding of times between the motion and the spindle, as a share and in s.
+const APART: f64 = 1e-12;
+const APART_S: f64 = 1e-9;
 
 /// Takes the rows of a series one by one.
 pub trait SeriesSink {
@@ -30,7 +36,8 @@ pub trait SeriesSink {
 
 /// Reads a program and hands over its planned motion at 100 % override, a row
 /// every `step_s` and at every switching instant; where something jumps, two rows
-/// with the same time.
+/// with the same time. Where the machine has a spindle, the axes stand while the
+/// program waits for it.
 ///
 /// Rests that never end and moves from an unknown start have no place in time and
 /// are left out.
@@ -60,6 +67,9 @@ pub fn series<R: Read + Seek + Send>(
         rows: 0,
         now: Instant::default(),
         last: None,
+        motions: VecDeque::new(),
+        moved_s: 0.0,
+        x_mm: 0.0,
         sink,
     };
     while let Some(line) = front.next_line()? {
@@ -68,11 +78,11 @@ pub fn series<R: Read + Seek + Send>(
                 Step::Move(mv) => assessor.push(mv, b"", &mut |_, _, _| {}),
                 Step::Action(action) => assessor.act(action, &mut |_, _, _| {}),
             }
-            sampler.take_all(assessor.motions())?;
+            sampler.take_all(&mut assessor)?;
         }
     }
     assessor.finish(&mut |_, _, _| {});
-    sampler.take_all(assessor.motions())?;
+    sampler.take_all(&mut assessor)?;
     front.finish().map(|_| ())
 }
 
@@ -80,7 +90,7 @@ pub fn series<R: Read + Seek + Send>(
 struct Sampler<'a> {
     model: PowerModel,
     step_s: f64,
-    /// When the motion begins that comes next.
+    /// When the stretch begins that comes next.
     start_s: f64,
     /// Number of the next step.
     next: u64,
@@ -88,50 +98,169 @@ struct Sampler<'a> {
     now: Instant,
     /// The last row: its time, and what it showed.
     last: Option<(f64, Instant)>,
+    /// Motion whose spindle is not known yet.
+    motions: VecDeque<Motion>,
+    /// How far the first of them is through, s.
+    moved_s: f64,
+    /// Where X was when it began.
+    x_mm: f64,
     sink: &'a mut dyn SeriesSink,
 }
 
+/// A stretch of time in a motion, and what the spindle does from when on.
+#[derive(Clone, Copy)]
+struct Stretch<'t> {
+    motion: &'t Motion,
+    from_s: f64,
+    to_s: f64,
+    spindle: Option<(&'t Turning, f64)>,
+}
+
+impl Stretch<'_> {
+    /// The spindle's own time at an instant of the motion.
+    fn turned_s(&self, t: f64) -> f64 {
+        let since_s = self.spindle.map_or(0.0, |(_, since_s)| since_s);
+        since_s + (t - self.from_s) * self.motion.adds
+    }
+
+    /// From its beginning to its end, the instants at which something may jump.
+    fn switches_s(&self, x_mm: f64) -> Vec<f64> {
+        let (from, to) = (self.from_s, self.to_s);
+        let mut switches = self.motion.switches_s();
+        if let Some((turning, _)) = self.spindle {
+            switches.retain(|t| *t > from && *t < to);
+            switches.extend([from, to]);
+            switches.sort_by(f64::total_cmp);
+            let mut own = Vec::new();
+            for pair in switches.windows(2) {
+                let inside = f64::midpoint(pair[0], pair[1]);
+                let turned = [pair[0], pair[1]].map(|t| self.turned_s(t));
+                let adds = self.motion.adds;
+                let own_s = |turned_s: f64| pair[0] + (turned_s - turned[0]) / adds;
+                let at = |turned_s: f64| self.motion.x_mm(own_s(turned_s), inside, x_mm);
+                let found = turning.switches_s(turned, at);
+                own.extend(found.into_iter().map(own_s));
+            }
+            switches.extend(own.iter().filter(|t| **t > from && **t < to));
+            switches.sort_by(f64::total_cmp);
+            switches.dedup();
+        }
+        switches
+    }
+}
+
 impl Sampler<'_> {
-    fn take_all(&mut self, motions: impl Iterator<Item = Motion>) -> Result<(), Failure> {
-        for motion in motions {
-            self.take(&motion)?;
+    fn take_all(&mut self, assessor: &mut Assessor<'_>) -> Result<(), Failure> {
+        self.motions.extend(assessor.motions());
+        let Some(turnings) = assessor.turnings() else {
+            while let Some(motion) = self.motions.pop_front() {
+                let to_s = motion.duration_s();
+                self.take(&motion, to_s, None)?;
+            }
+            return Ok(());
+        };
+        for turning in turnings {
+            self.turn(&turning)?;
         }
         Ok(())
     }
 
-    fn take(&mut self, motion: &Motion) -> Result<(), Failure> {
-        let switches = motion.switches_s();
-        let lasts_s = switches.last().copied().unwrap_or(0.0);
+    /// A stretch of the spindle, with the motion beside it.
+    fn turn(&mut self, turning: &Turning) -> Result<(), Failure> {
+        if let Some(rest) = &turning.rest {
+            return self.stretch(Stretch {
+                motion: rest,
+                from_s: 0.0,
+                to_s: turning.duration_s,
+                spindle: Some((turning, 0.0)),
+            });
+        }
+        let apart_s = APART_S + APART * turning.duration_s;
+        let mut turned_s = 0.0;
+        while turning.duration_s - turned_s > apart_s
+            && let Some(motion) = self.motions.pop_front()
+        {
+            let lasts_s = motion.duration_s();
+            let left_s = turning.duration_s - turned_s;
+            let adds = motion.adds;
+            let ends = (lasts_s - self.moved_s) * adds <= left_s + apart_s;
+            let to_s = if ends {
+                lasts_s
+            } else {
+                self.moved_s + left_s / adds
+            };
+            let moved_s = (to_s - self.moved_s) * adds;
+            self.take(&motion, to_s, Some((turning, turned_s)))?;
+            turned_s += moved_s;
+            if !ends {
+                self.moved_s = to_s;
+                self.motions.push_front(motion);
+            }
+        }
+        Ok(())
+    }
+
+    /// A motion up to an instant of it.
+    fn take(
+        &mut self,
+        motion: &Motion,
+        to_s: f64,
+        spindle: Option<(&Turning, f64)>,
+    ) -> Result<(), Failure> {
+        let from_s = std::mem::take(&mut self.moved_s);
+        self.stretch(Stretch {
+            motion,
+            from_s,
+            to_s,
+            spindle,
+        })?;
+        let lasts_s = motion.duration_s();
+        if to_s >= lasts_s {
+            self.x_mm = motion.x_mm(lasts_s, lasts_s, self.x_mm);
+        }
+        Ok(())
+    }
+
+    fn stretch(&mut self, stretch: Stretch<'_>) -> Result<(), Failure> {
+        let lasts_s = stretch.to_s - stretch.from_s;
         let rows = self.rows as f64 + lasts_s / self.step_s;
         if rows > ROWS_MAX {
             return Err(Failure::Unsuitable(format!(
                 "the series has more than {ROWS_MAX} rows: a longer --step-ms is needed"
             )));
         }
-        for pair in switches.windows(2) {
+        // The time of the motion's beginning.
+        let start_s = self.start_s - stretch.from_s;
+        for pair in stretch.switches_s(self.x_mm).windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let inside = 0.5 * (from + to);
-            self.row(motion, from, inside)?;
+            self.row(&stretch, from, inside)?;
             loop {
                 // Not summed up: the rounding of a million sums would show.
-                let t = self.next as f64 * self.step_s - self.start_s;
+                let t = self.next as f64 * self.step_s - start_s;
                 if t >= to - NEAR * self.step_s {
                     break;
                 }
                 if t > from + NEAR * self.step_s {
-                    self.row(motion, t, inside)?;
+                    self.row(&stretch, t, inside)?;
                 }
                 self.next += 1;
             }
-            self.row(motion, to, inside)?;
+            self.row(&stretch, to, inside)?;
         }
         self.start_s += lasts_s;
         Ok(())
     }
 
-    fn row(&mut self, motion: &Motion, t: f64, inside: f64) -> Result<(), Failure> {
+    fn row(&mut self, stretch: &Stretch<'_>, t: f64, inside: f64) -> Result<(), Failure> {
+        let motion = stretch.motion;
         motion.at(&self.model, t, inside, &mut self.now);
-        let time_s = self.start_s + t;
+        if let Some((turning, _)) = stretch.spindle {
+            let x_mm = [t, inside].map(|t| motion.x_mm(t, inside, self.x_mm));
+            let turned = [t, inside].map(|t| stretch.turned_s(t));
+            turning.add(&self.model, turned, x_mm, &mut self.now);
+        }
+        let time_s = self.start_s + (t - stretch.from_s);
         match &mut self.last {
             Some((last_s, last)) if *last_s == time_s && alike(last, &self.now) => return Ok(()),
             Some((last_s, last)) => {
@@ -159,8 +288,19 @@ fn alike(a: &Instant, b: &Instant) -> bool {
             axis.power_w,
         ]
     };
+    let turning = |spindle: &SpindleInstant| {
+        [
+            spindle.speed_rpm,
+            spindle.accel_rpm_s,
+            spindle.torque_nm,
+            spindle.power_w,
+            spindle.cutting_w,
+        ]
+    };
+    let spindle = turning(&a.spindle).into_iter().zip(turning(&b.spindle));
     let axes = a.axes.iter().zip(&b.axes);
-    let mut pairs = axes.flat_map(|(a, b)| fields(a).into_iter().zip(fields(b)));
+    let axes = axes.flat_map(|(a, b)| fields(a).into_iter().zip(fields(b)));
+    let mut pairs = axes.chain(spindle);
     let powers = |a: &Vec<f64>, b: &Vec<f64>| a.iter().zip(b).all(|(a, b)| near(*a, *b));
     pairs.all(|(a, b)| near(a, b)) && powers(&a.bus_w, &b.bus_w) && powers(&a.regen_w, &b.regen_w)
 }

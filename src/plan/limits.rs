@@ -77,7 +77,7 @@ impl PathLimits {
 /// The lower of two limits; one that is not a number (an override of 0 on an
 /// infinite feed) counts as none. `f64::min` is several instructions more.
 #[inline]
-fn lower(limit: f64, other: f64) -> f64 {
+pub(super) fn lower(limit: f64, other: f64) -> f64 {
     if other < limit { other } else { limit }
 }
 

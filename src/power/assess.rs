@@ -6,7 +6,7 @@
 
 use super::ahead::Ahead;
 use super::assessment::{Assessment, Certificate};
-use super::bus::{SpindleBus, SpindleShare};
+use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::eye::Eye;
@@ -102,10 +102,14 @@ impl<'m> Assessor<'m> {
         self
     }
 
-    /// Keeps the motion at 100 % until it is taken with [`Self::motions`].
+    /// Keeps the motion at 100 % until it is taken with [`Self::motions`], and the
+    /// spindle with [`Self::turnings`].
     #[must_use]
     pub fn showing(mut self) -> Self {
         self.eye.motions = Some(Vec::new());
+        if let Some(bus) = &mut self.bus {
+            bus.shown = Some(Shown::default());
+        }
         self
     }
 
@@ -167,40 +171,49 @@ impl<'m> Assessor<'m> {
 
     /// A move that the controller plans together with others, or that follows
     /// such.
+    #[inline]
     fn push_ahead(
         &mut self,
         mv: &Move,
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let Some(mut ahead) = self.ahead.take() else {
+        let (machine, model, eye) = (self.machine, &self.model, &mut self.eye);
+        let Some(ahead) = &mut self.ahead else {
             return;
         };
-        let mut eye = std::mem::take(&mut self.eye);
-        let alone = || Assessment {
+        if !ahead.push_path(machine, model, eye, mv, text, self.want) {
+            return self.push_between(mv, text, sink);
+        }
+        ahead.hand_on(machine, model, eye, sink);
+    }
+
+    /// The same for a dwell, and for a move that has no path.
+    #[inline(never)]
+    fn push_between(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let alone = Assessment {
             blended: false,
             ..self.alone(mv, path_figures(self.machine, mv, self.largest).as_ref())
         };
+        let (machine, model, eye) = (self.machine, &self.model, &mut self.eye);
+        let Some(ahead) = &mut self.ahead else {
+            return;
+        };
         if mv.kind == MoveKind::Dwell {
-            ahead.stop(&self.model, &mut eye);
-            ahead.hand_on(self.machine, &self.model, &mut eye, sink);
-            eye.alone(self.machine, &self.model, mv, self.largest);
-            eye.show(self.machine, mv, self.nominal);
-            sink(mv, &alone(), text);
+            ahead.stop(model, eye);
+            ahead.hand_on(machine, model, eye, sink);
+            eye.alone(machine, model, mv, self.largest);
+            eye.show(machine, mv, self.nominal);
+            sink(mv, &alone, text);
         } else {
-            ahead.push(
-                self.machine,
-                &self.model,
-                &mut eye,
-                mv,
-                text,
-                alone,
-                self.want,
-            );
-            ahead.hand_on(self.machine, &self.model, &mut eye, sink);
+            ahead.push_other(machine, model, eye, mv, text, alone, self.want);
+            ahead.hand_on(machine, model, eye, sink);
         }
-        self.eye = eye;
-        self.ahead = Some(ahead);
     }
 
     /// Takes the next move with the text of its line, and hands on what can be
@@ -256,7 +269,9 @@ impl<'m> Assessor<'m> {
             if self.held.is_some() {
                 self.release(None, mv.kind == MoveKind::Dwell, sink);
             }
-            self.eye.alone(self.machine, &self.model, mv, self.largest);
+            let figures = figures.as_ref();
+            self.eye
+                .alone_as(self.machine, &self.model, mv, self.largest, figures);
             sink(mv, &assessment, text);
             return;
         }

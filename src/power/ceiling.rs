@@ -11,10 +11,8 @@
 //! acceleration in, since `Σ m·τ·ν ≤ max m` too.
 
 use super::axis::{AxisPower, Side};
-use super::demand::{Demand, Want};
 use crate::interpret::Move;
 use crate::machine::AxisSet;
-use crate::plan::PathFigures;
 
 /// X, Y and Z: the axes whose directions make a unit vector.
 const XYZ: u16 = 0b111;
@@ -52,21 +50,16 @@ impl Ceiling {
         ceiling
     }
 
-    /// A demand at the bound, if it stays below what is of interest; for a
-    /// move from a known start.
+    /// The bound of what a move from a known start draws and feeds back, W, at a
+    /// speed and an acceleration (mm/s, mm/s²) of at most these; nothing where
+    /// other axes move too.
     #[inline]
-    pub fn below_floor(
-        &self,
-        mv: &Move,
-        figures: &PathFigures,
-        idle_w: f64,
-        want: Want,
-    ) -> Option<Demand> {
-        if want.energy || mv.moving.0 & !XYZ != 0 {
+    pub fn of(&self, mv: &Move, v: f64, a: f64, idle_w: f64) -> Option<[f64; 2]> {
+        if mv.moving.0 & !XYZ != 0 {
             return None;
         }
-        let v = figures.top_speed_mm_s * self.si_per_unit;
-        let mut a = figures.accel_mm_s2 * self.si_per_unit;
+        let v = v * self.si_per_unit;
+        let mut a = a * self.si_per_unit;
         if let Some(arc) = &mv.arc {
             a += v * v / (arc.radius_mm * self.si_per_unit);
         }
@@ -74,6 +67,6 @@ impl Ceiling {
         let mechanical = v * force;
         // F² of each axis is at most that of all, whose sum is bounded too.
         let drawn_w = idle_w + mechanical * self.inverse_efficiency + self.copper * force * force;
-        Demand::below_floor(drawn_w, mechanical, want)
+        Some([drawn_w, mechanical])
     }
 }

@@ -13,6 +13,12 @@ pub struct Want {
 }
 
 impl Want {
+    /// Whether peaks that are no larger, drawn and fed back, are of no interest.
+    #[inline]
+    pub(super) fn passes(&self, [peak_w, regen_w]: [f64; 2]) -> bool {
+        peak_w <= self.floor_w && regen_w <= self.regen_floor_w
+    }
+
     /// Exact peaks, no energy.
     pub const PEAKS: Self = Self {
         energy: false,
@@ -80,7 +86,7 @@ impl Demand {
     /// reaches what is of interest.
     #[inline]
     pub(super) fn below_floor(peak_w: f64, regen_w: f64, want: Want) -> Option<Self> {
-        (peak_w <= want.floor_w && regen_w <= want.regen_floor_w).then_some(Self {
+        want.passes([peak_w, regen_w]).then_some(Self {
             peak_w,
             regen_w,
             beside: [peak_w, regen_w],

@@ -11,7 +11,9 @@ use super::watch::{Beside, Kept, Span, Watch};
 use crate::interpret::Move;
 use crate::machine::Machine;
 use crate::plan::lookahead::Planned;
-use crate::plan::{Overrides, SpeedBound, blended_bound, blended_speed, is_independent, plan};
+use crate::plan::{
+    Overrides, PathFigures, Plan, SpeedBound, blended_bound, blended_speed, is_independent, plan,
+};
 
 /// See the module.
 #[derive(Debug, Default)]
@@ -22,11 +24,37 @@ pub(super) struct Eye {
 }
 
 impl Eye {
+    /// Whether nothing is looked at.
+    #[inline]
+    pub fn is_closed(&self) -> bool {
+        self.watch.is_none() && self.motions.is_none()
+    }
+
     /// A move that runs from rest to rest, or rests.
     #[inline]
     pub fn alone(&mut self, machine: &Machine, model: &PowerModel, mv: &Move, largest: Overrides) {
         if self.watch.is_some() {
-            self.watch_alone(machine, model, mv, largest);
+            let plan = plan(machine, mv, largest);
+            self.watch_alone(machine, model, mv, largest, &plan);
+        }
+    }
+
+    /// The same of a move whose figures are known, where it runs on one path.
+    #[inline]
+    pub fn alone_as(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        mv: &Move,
+        largest: Overrides,
+        figures: Option<&PathFigures>,
+    ) {
+        let Some(figures) = figures else {
+            return self.alone(machine, model, mv, largest);
+        };
+        if self.watch.is_some() {
+            let plan = figures.plan(mv.length_mm);
+            self.watch_alone(machine, model, mv, largest, &plan);
         }
     }
 
@@ -75,11 +103,11 @@ impl Eye {
         model: &PowerModel,
         mv: &Move,
         largest: Overrides,
+        plan: &Plan,
     ) {
         let Some(watch) = &mut self.watch else { return };
-        let plan = plan(machine, mv, largest);
         if mv.unknown_start.is_empty() {
-            watch.plan(model, mv, &plan);
+            watch.plan(model, mv, plan);
         } else {
             let bound = blended_bound(machine, mv, largest);
             let part = part(mv, &bound);
@@ -97,9 +125,9 @@ impl Eye {
 
     /// A move that runs as planned: its pieces.
     #[inline]
-    pub fn kept(&mut self, mv: &Move, kept: &mut Kept) {
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
         if let Some(watch) = &mut self.watch {
-            watch.kept(mv, kept);
+            watch.kept(model, mv, kept);
         }
     }
 

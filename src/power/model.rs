@@ -164,11 +164,47 @@ impl PowerModel {
         figures: &PathFigures,
         want: Want,
     ) -> Option<Demand> {
+        let [peak_w, regen_w] = self.ceiling_w(mv, figures.top_speed_mm_s, figures.accel_mm_s2)?;
+        if want.energy {
+            return None;
+        }
+        Demand::below_floor(peak_w, regen_w, want)
+    }
+
+    /// Whether a path needs no closer look: at a speed and an acceleration (mm/s,
+    /// mm/s²) of at most these its peaks are of no interest.
+    #[inline]
+    pub(super) fn is_below_floor(&self, mv: &Move, [v, a]: [f64; 2], want: Want) -> bool {
+        self.ceiling_w(mv, v, a)
+            .is_some_and(|peaks_w| want.passes(peaks_w))
+    }
+
+    /// The same for a straight path, closer and at a higher cost; false for an arc.
+    pub(super) fn is_straight_below_floor(
+        &self,
+        mv: &Move,
+        extremes: [f64; 2],
+        want: Want,
+    ) -> bool {
+        let [converter] = self.converters.as_slice() else {
+            return false;
+        };
+        if mv.arc.is_some() || want.floor_w == f64::NEG_INFINITY {
+            return false;
+        }
+        let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
+        want.passes(straight::bound_w(self, converter, mv, extremes, idle_w))
+    }
+
+    /// Upper bounds of the power that a path draws and feeds back, W, if there is
+    /// one quickly.
+    #[inline]
+    fn ceiling_w(&self, mv: &Move, v: f64, a: f64) -> Option<[f64; 2]> {
         let [converter] = self.converters.as_slice() else {
             return None;
         };
         let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
-        converter.ceiling.below_floor(mv, figures, idle_w, want)
+        converter.ceiling.of(mv, v, a, idle_w)
     }
 }
 

@@ -10,7 +10,7 @@ use super::model::PowerModel;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::lookahead::{Piece, Planned};
-use crate::plan::{Blend, PathFigures, Plan, Profile, Trajectory};
+use crate::plan::{Blend, Plan, Profile, Trajectory};
 
 /// What a piece asks for, at the speed of its profile.
 pub(super) fn piece_demand(
@@ -19,15 +19,6 @@ pub(super) fn piece_demand(
     planned: &Planned<u64>,
     want: Want,
 ) -> Demand {
-    let curvature = match &planned.piece {
-        Piece::Along { .. } => Some(0.0),
-        Piece::Blend(blend) => Some(1.0 / blend.radius_mm),
-        Piece::Joined { .. } => None,
-    };
-    let quick = curvature.and_then(|curvature| below_floor(model, mv, planned, curvature, want));
-    if let Some(demand) = quick {
-        return demand;
-    }
     let mut profile = planned.profile();
     match &planned.piece {
         Piece::Along { from_mm, .. } => {
@@ -44,24 +35,18 @@ pub(super) fn piece_demand(
     }
 }
 
-/// A quick bound, if it stays below what is of interest; `curvature` in 1/mm.
+/// Whether a quick bound shows that the peaks of a piece are of no interest.
 #[inline]
-fn below_floor(
-    model: &PowerModel,
-    mv: &Move,
-    planned: &Planned<u64>,
-    curvature: f64,
-    want: Want,
-) -> Option<Demand> {
-    let top_speed_mm_s = planned.top_speed_mm_s();
-    let figures = PathFigures {
-        duration_s: 0.0,
-        speed_limit_mm_s: top_speed_mm_s,
-        accel_mm_s2: planned.largest_accel_mm_s2() + curvature * top_speed_mm_s * top_speed_mm_s,
-        top_speed_mm_s,
-        jerk_mm_s3: f64::INFINITY,
+pub(super) fn is_quiet(model: &PowerModel, mv: &Move, planned: &Planned<u64>, want: Want) -> bool {
+    let curvature = match &planned.piece {
+        Piece::Along { .. } => 0.0,
+        Piece::Blend(blend) => 1.0 / blend.radius_mm,
+        Piece::Joined { .. } => return false,
     };
-    model.below_floor(mv, &figures, want)
+    let v = planned.top_speed_mm_s();
+    let a = planned.largest_accel_mm_s2();
+    let quiet = model.is_below_floor(mv, [v, a + curvature * v * v], want);
+    quiet || curvature == 0.0 && model.is_straight_below_floor(mv, [v, a], want)
 }
 
 impl PowerModel {
@@ -116,9 +101,10 @@ pub(super) fn straight_line(mv: &Move, direction: &[f64; 3], length_mm: f64) -> 
 
 #[cfg(test)]
 mod tests {
+    use super::super::straight;
     use super::piece_demand;
     use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
-    use crate::machine::Machine;
+    use crate::machine::{AxisSet, Machine};
     use crate::plan::Blend;
     use crate::plan::lookahead::{Piece, Planned, Speeds2};
     use crate::power::{PowerModel, Want};
@@ -274,5 +260,59 @@ mod tests {
                 demand.energy_j
             );
         }
+    }
+
+    #[test]
+    fn the_closer_bound_of_a_line_is_a_bound() {
+        let machine = machine();
+        let mut model = PowerModel::new(&machine);
+        let mut mv = any_move(&machine);
+        let mut random = Random(5);
+        let (mut closest, mut bounded) = (f64::INFINITY, 0);
+        for case in 0..400 {
+            // Losses that grow with the speed and with the force.
+            let curved = case % 3 == 1 || case % 4 == 2;
+            model.converters[0].curved = AxisSet(if curved { 0b111 } else { 0 });
+            for axis in &mut model.axes[..3] {
+                axis.viscous = if case % 3 == 1 { 40.0 } else { 0.0 };
+                axis.copper = if case % 4 == 2 { 2e-4 } else { 0.0 };
+            }
+            let [direction, _] = random.frame(false);
+            mv = super::straight_line(&mv, &direction, 0.1 + 20.0 * random.next());
+            let (v0, v1) = (90.0 * random.next(), 90.0 * random.next());
+            let top = v0.max(v1) * (1.0 + random.next());
+            let planned = Planned {
+                tag: 0,
+                first: 0,
+                next: None,
+                piece: Piece::Along {
+                    from_mm: 0.0,
+                    to_mm: mv.length_mm,
+                },
+                length_mm: mv.length_mm,
+                speeds2: Speeds2 {
+                    start: v0 * v0,
+                    end: v1 * v1,
+                    top: top * top,
+                },
+                accel_mm_s2: 200.0 + 1800.0 * random.next(),
+                section: None,
+                certain: true,
+                overlap_s: 0.0,
+            };
+            let exact = piece_demand(&model, &mv, &planned, Want::PEAKS);
+            let extremes = [planned.top_speed_mm_s(), planned.largest_accel_mm_s2()];
+            let [peak_w, regen_w] =
+                straight::bound_w(&model, &model.converters[0], &mv, extremes, 0.0);
+            assert!(exact.peak_w <= peak_w, "{case}: {} {peak_w}", exact.peak_w);
+            assert!(
+                exact.regen_w <= regen_w,
+                "{case}: {} {regen_w}",
+                exact.regen_w
+            );
+            closest = closest.min(peak_w / exact.peak_w);
+            bounded += usize::from(peak_w < 1.5 * exact.peak_w);
+        }
+        assert!(closest < 1.0 + 1e-6 && bounded > 100, "{closest} {bounded}");
     }
 }

@@ -104,7 +104,11 @@ impl SpindlePower {
     #[must_use]
     pub fn torque_nm(&self, motion: Motion) -> f64 {
         let Motion { speed, accel } = motion;
-        let turns = if speed == 0.0 { accel } else { speed };
+        self.torque_turning_nm(accel, if speed == 0.0 { accel } else { speed })
+    }
+
+    /// The same where it turns in the direction of a speed.
+    pub(super) fn torque_turning_nm(&self, accel: f64, turns: f64) -> f64 {
         let side = if turns == 0.0 { 0.0 } else { turns.signum() };
         (self.inertia * accel + self.friction * side) / RAD_S_PER_RPM
     }
@@ -112,8 +116,13 @@ impl SpindlePower {
     /// Electrical power in W.
     #[must_use]
     pub fn electrical_w(&self, motion: Motion) -> f64 {
-        let p = motion.speed * RAD_S_PER_RPM * self.torque_nm(motion);
-        self.base_load_w + self.converted(p)
+        self.base_load_w + self.turned_w(motion.speed, self.torque_nm(motion))
+    }
+
+    /// Electrical power at a speed in 1/min and a torque in N·m, without the base
+    /// load, W.
+    pub(super) fn turned_w(&self, speed: f64, torque_nm: f64) -> f64 {
+        self.converted(speed * RAD_S_PER_RPM * torque_nm)
     }
 
     /// What a ramp in 1/min draws and feeds back, phase by phase.

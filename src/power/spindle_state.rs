@@ -288,11 +288,16 @@ impl SpindleState {
         }
     }
 
-    /// The start and the target of the run that it is on, 1/min.
-    pub fn run_rpm(&self) -> Option<[f64; 2]> {
+    /// The run that it is on, and the shortest time since its command, s.
+    pub fn run(&self) -> Option<(&SpindleTrace, f64)> {
         match &self.course {
-            Course::Run(trace, _) => Some(trace.speeds_rpm()),
+            Course::Run(trace, [since_s, _]) => Some((trace, *since_s)),
             _ => None,
         }
+    }
+
+    /// The start and the target of the run that it is on, 1/min.
+    pub fn run_rpm(&self) -> Option<[f64; 2]> {
+        self.run().map(|(trace, _)| trace.speeds_rpm())
     }
 }

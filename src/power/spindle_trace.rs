@@ -119,6 +119,19 @@ impl SpindleTrace {
         }
     }
 
+    /// The same at two instants, by the law that holds at the second.
+    pub(super) fn at_both(&self, [t, inside]: [f64; 2]) -> [Motion; 2] {
+        let mut start = 0.0;
+        for phase in &self.phases {
+            if inside < start + phase.duration_s {
+                return [t, inside].map(|t| phase.at((t - start).max(0.0)));
+            }
+            start += phase.duration_s;
+        }
+        let speed = self.end_rpm;
+        [Motion { speed, accel: 0.0 }; 2]
+    }
+
     /// What holds the speed at the end, W.
     #[must_use]
     pub fn holding_w(&self) -> f64 {

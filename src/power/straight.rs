@@ -103,6 +103,42 @@ pub(super) fn totals(
     totals
 }
 
+/// What rounding may make of a bound, as a share.
+const ROUNDING: f64 = 1e-9;
+
+/// Upper bounds of what a straight path draws and feeds back, W, at a speed of at
+/// most `v` (mm/s) and accelerations of size `a` (mm/s²) at most.
+///
+/// Closer than the [`ceiling`](super::ceiling), since it knows the direction:
+/// each axis draws most at `v` while it speeds up, and feeds back most at `v`
+/// while it brakes.
+pub(super) fn bound_w(
+    model: &PowerModel,
+    converter: &ConverterPower,
+    mv: &Move,
+    [v, a]: [f64; 2],
+    idle_w: f64,
+) -> [f64; 2] {
+    let per_length = 1.0 / mv.length_mm;
+    let (mut drawn_w, mut fed_back_w) = (idle_w, 0.0);
+    for axis in AxisSet(mv.moving.0 & converter.axes.0).iter() {
+        let power = &model.axes[axis];
+        let direction = (mv.end[axis] - mv.start[axis]) * power.si_per_unit * per_length;
+        let inertia = power.mass * (direction * a).abs();
+        let gravity = power.gravity * direction.signum();
+        let speed = direction.abs() * v;
+        let drive = inertia * power.accel_factor(Side::Motor, true);
+        let brake = inertia * power.accel_factor(Side::Regen, false);
+        let drag = power.coulomb + power.viscous * speed;
+        drawn_w += (speed * (drive + drag + gravity)).max(0.0) * power.inverse_efficiency;
+        let force = drive.max(brake) + drag + gravity.abs();
+        drawn_w += power.copper * force * force;
+        let least = power.coulomb * power.friction_factor(Side::Regen) + gravity;
+        fed_back_w += (speed * (brake - least)).max(0.0) * power.efficiency;
+    }
+    [drawn_w, fed_back_w].map(|power_w| power_w * (1.0 + ROUNDING))
+}
+
 /// Whether a phase has one acceleration.
 #[inline]
 fn is_steady(phase: &Phase) -> bool {

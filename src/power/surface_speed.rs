@@ -12,6 +12,7 @@ use super::quadrature::integral;
 use super::spindle::SpindlePower;
 use super::spindle_state::SpindleMotor;
 use crate::interpret::{Move, MoveKind};
+use crate::plan::period::Motion;
 use crate::plan::{Plan, Profile, Trajectory};
 use crate::units::SECONDS_PER_MINUTE;
 use std::f64::consts::TAU;
@@ -53,6 +54,25 @@ impl Surface {
             self.clamp_rpm
         };
         self.sign * n
+    }
+
+    /// Speed and acceleration with X at `x_mm`, moving at `velocity_mm_s`, by the
+    /// law that holds at `inside_mm`.
+    pub fn motion(&self, x_mm: f64, inside_mm: f64, velocity_mm_s: f64) -> Motion {
+        let side = (inside_mm - self.center_mm).signum();
+        let r = side * (x_mm - self.center_mm);
+        if self.beyond_clamp_mm(inside_mm) <= 0.0 {
+            let speed = self.sign * self.clamp_rpm;
+            return Motion { speed, accel: 0.0 };
+        }
+        let speed = self.sign * self.speed_mm_s * SECONDS_PER_MINUTE / (TAU * r);
+        let accel = -speed * side * velocity_mm_s / r;
+        Motion { speed, accel }
+    }
+
+    /// How far X is from where the clamp begins: below 0 the clamp holds.
+    pub fn beyond_clamp_mm(&self, x_mm: f64) -> f64 {
+        (x_mm - self.center_mm).abs() - self.clamp_radius_mm()
     }
 
     /// Where the clamp begins.

@@ -7,11 +7,21 @@ use crate::machine::{ALL_AXES, AxisKind, Machine};
 use crate::pipeline::SeriesSink;
 use crate::power::Instant;
 
+/// The columns of the spindle.
+const SPINDLE: [&str; 5] = [
+    "spindle_speed_rpm",
+    "spindle_accel_rpm_s",
+    "spindle_torque_nm",
+    "spindle_power_w",
+    "cutting_power_w",
+];
+
 /// Writes the rows of a series below a header.
 #[derive(Debug)]
 pub struct SeriesRows<W: Write> {
     out: csv::Writer<W>,
     axes: Vec<usize>,
+    spindle: bool,
     /// Whether each converter has columns of its own.
     several: bool,
     program: &'static str,
@@ -44,6 +54,10 @@ impl<W: Write> SeriesRows<W> {
                 format!("{name}_power_w"),
             ]);
         }
+        let spindle = machine.spindle.is_some();
+        if spindle {
+            header.extend(SPINDLE.map(str::to_owned));
+        }
         header.extend(["bus_w".to_owned(), "regen_w".into()]);
         let several = machine.converters.len() > 1;
         if several {
@@ -60,6 +74,7 @@ impl<W: Write> SeriesRows<W> {
         Ok(Self {
             out,
             axes,
+            spindle,
             several,
             program,
             values: Vec::new(),
@@ -91,6 +106,17 @@ impl<W: Write> SeriesSink for SeriesRows<W> {
             };
             self.values
                 .extend([own.velocity_mm_s, own.accel_mm_s2, own.force_n, own.power_w].map(Figure));
+        }
+        if self.spindle {
+            let own = &instant.spindle;
+            let values = [
+                own.speed_rpm,
+                own.accel_rpm_s,
+                own.torque_nm,
+                own.power_w,
+                own.cutting_w,
+            ];
+            self.values.extend(values.map(Figure));
         }
         let sums = [&instant.bus_w, &instant.regen_w].map(|powers| powers.iter().sum());
         self.values.extend(sums.map(Figure));

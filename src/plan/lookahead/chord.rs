@@ -36,75 +36,85 @@ impl ChordRule {
 
 /// The chords of an arc.
 #[derive(Debug, Clone)]
-pub(super) struct Chords<'e, T> {
-    arc: &'e Element<T>,
+pub(super) struct Chords<T> {
+    /// The last one that was given.
+    pub chord: Element<T>,
+    arc_mm: f64,
     curve: Curve,
     count: u32,
     next: u32,
     /// In-plane directions of the start: along the path and to its side.
     along: [f64; 2],
+    step_rad: f64,
+    /// Length of a chord's share in the plane, and of the chord, by that of the
+    /// arc's piece.
+    shorter: f64,
+    stretch: f64,
 }
 
-impl<'e, T: Copy> Chords<'e, T> {
+impl<T: Copy> Chords<T> {
     /// The chords of an element that is an arc.
-    pub fn of(rule: &ChordRule, arc: &'e Element<T>) -> Option<Self> {
+    pub fn of(rule: &ChordRule, arc: &Element<T>) -> Option<Self> {
         let curve = arc.curve?;
         let along = curve
             .plane
             .map(|axis| arc.start.get(axis).copied().unwrap_or(0.0));
-        Some(Self {
-            arc,
-            curve,
-            count: rule.count(&curve, arc.feed_mm_s.min(arc.speed_mm_s)),
-            next: 0,
-            along,
-        })
-    }
-}
-
-impl<T: Copy> Iterator for Chords<'_, T> {
-    /// A chord, and where it begins and ends on the arc, mm.
-    type Item = (Element<T>, [f64; 2]);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.next == self.count {
-            return None;
-        }
-        let i = f64::from(self.next);
-        self.next += 1;
-        let share = 1.0 / f64::from(self.count);
-        let step_rad = self.curve.sweep_rad * share;
-        // The chord is shorter than its piece of the arc, and points to where
-        // the tangent of its middle does.
+        let count = rule.count(&curve, arc.feed_mm_s.min(arc.speed_mm_s));
+        let step_rad = curve.sweep_rad * (1.0 / f64::from(count));
+        // A chord is shorter than its piece of the arc.
         let half = 0.5 * step_rad.abs();
         let shorter = if half > 0.0 {
             libm::sin(half) / half
         } else {
             1.0
         };
-        let (sin, cos) = libm::sincos((i + 0.5) * step_rad);
-        let [x, y] = self.along;
-        let flat = [x * cos - y * sin, x * sin + y * cos];
+        let [x, y] = along;
         let flat2 = (x * x + y * y).min(1.0);
         // Axes across the plane keep their travel: the direction turns a little.
         let stretch = (flat2 * shorter * shorter + (1.0 - flat2)).sqrt();
-        let mut chord = *self.arc;
-        let mut direction = chord.start.map(|change| change / stretch);
-        for (axis, change) in self.curve.plane.into_iter().zip(flat) {
-            if let Some(value) = direction.get_mut(axis) {
-                *value = change * shorter / stretch;
-            }
-        }
-        chord.start = direction;
-        chord.end = direction;
+        let mut chord = *arc;
+        chord.start = chord.start.map(|change| change / stretch);
+        chord.end = chord.start;
         chord.curve = None;
         chord.curve_speed_mm_s = f64::INFINITY;
-        chord.length_mm = self.arc.length_mm * share * stretch;
+        chord.length_mm = arc.length_mm * (1.0 / f64::from(count)) * stretch;
         // What the arc leaves is less than what its axes permit.
-        chord.jerk_mm_s3 = self.arc.jerk_mm_s3 * stretch;
-        chord.accel_mm_s2 = straight_accel(&chord).min(chord.path_accel_mm_s2);
-        let at = |k: f64| self.arc.length_mm * (k * share);
-        Some((chord, [at(i), at(i + 1.0)]))
+        chord.jerk_mm_s3 = arc.jerk_mm_s3 * stretch;
+        Some(Self {
+            chord,
+            arc_mm: arc.length_mm,
+            curve,
+            count,
+            next: 0,
+            along,
+            step_rad,
+            shorter,
+            stretch,
+        })
+    }
+
+    /// Makes `chord` the next one; gives where it begins and ends on the arc, mm.
+    pub fn advance(&mut self) -> Option<[f64; 2]> {
+        if self.next == self.count {
+            return None;
+        }
+        let i = f64::from(self.next);
+        self.next += 1;
+        // It points to where the tangent of its middle does.
+        let (sin, cos) = libm::sincos((i + 0.5) * self.step_rad);
+        let [x, y] = self.along;
+        let flat = [x * cos - y * sin, x * sin + y * cos];
+        let chord = &mut self.chord;
+        for (axis, change) in self.curve.plane.into_iter().zip(flat) {
+            let change = change * self.shorter / self.stretch;
+            if let (Some(start), Some(end)) = (chord.start.get_mut(axis), chord.end.get_mut(axis)) {
+                (*start, *end) = (change, change);
+            }
+        }
+        chord.accel_mm_s2 = straight_accel(chord).min(chord.path_accel_mm_s2);
+        let share = 1.0 / f64::from(self.count);
+        let at = |k: f64| self.arc_mm * (k * share);
+        Some([at(i), at(i + 1.0)])
     }
 }
 

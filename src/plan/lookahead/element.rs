@@ -5,7 +5,7 @@
 
 use super::super::arc;
 use super::super::drive::{self, Heading};
-use super::super::limits::{self, PathLimits};
+use super::super::limits::{self, PathLimits, lower};
 use super::super::trajectory::{Caps, Overrides};
 use crate::interpret::{Arc, Move, MoveKind};
 use crate::machine::{AXES, AxisValues, Machine};
@@ -94,48 +94,80 @@ impl<T> Element<T> {
         joint: Joint,
         tag: T,
     ) -> Option<Self> {
-        if mv.kind == MoveKind::Dwell || mv.length_mm <= 0.0 || !mv.unknown_start.is_empty() {
-            return None;
+        let mut element = Self::blank(tag);
+        element
+            .describe(machine, mv, overrides, joint)
+            .then_some(element)
+    }
+
+    /// An element of nothing yet.
+    pub(crate) fn blank(tag: T) -> Self {
+        Self {
+            tag,
+            rapid: false,
+            length_mm: 0.0,
+            feed_mm_s: f64::INFINITY,
+            speed_mm_s: f64::INFINITY,
+            accel_mm_s2: f64::INFINITY,
+            drive_accel_mm_s2: f64::INFINITY,
+            path_accel_mm_s2: f64::INFINITY,
+            jerk_mm_s3: f64::INFINITY,
+            curve_speed_mm_s: f64::INFINITY,
+            axis_accel_mm_s2: [0.0; AXES],
+            start: [0.0; AXES],
+            end: [0.0; AXES],
+            curve: None,
+            joint: Joint::Stop,
         }
+    }
+
+    /// Makes it the element of another move, in place: it is large. False where
+    /// [`Self::of`] gives none; it is then not to be used.
+    #[inline]
+    pub(crate) fn describe(
+        &mut self,
+        machine: &Machine,
+        mv: &Move,
+        overrides: Overrides,
+        joint: Joint,
+    ) -> bool {
+        if mv.kind == MoveKind::Dwell || mv.length_mm <= 0.0 || !mv.unknown_start.is_empty() {
+            return false;
+        }
+        self.rapid = mv.kind == MoveKind::Rapid;
+        self.length_mm = mv.length_mm;
+        self.feed_mm_s = match mv.kind {
+            MoveKind::Rapid => f64::INFINITY,
+            kind => mv.feed_mm_s * limits::feed_factor(kind, overrides),
+        };
+        self.drive_accel_mm_s2 = f64::INFINITY;
+        self.path_accel_mm_s2 = mv.path_accel_mm_s2;
+        self.curve_speed_mm_s = f64::INFINITY;
+        self.axis_accel_mm_s2 = mv.accel_mm_s2;
+        self.start = [0.0; AXES];
+        for axis in mv.moving.iter() {
+            if let Some(change) = self.start.get_mut(axis) {
+                *change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            }
+        }
+        self.end = self.start;
+        self.curve = None;
+        self.joint = joint;
         let caps = Caps::default();
         let limits = match &mv.arc {
             Some(_) => PathLimits::of(machine, mv, overrides, &caps),
             None => limits::straight(machine, mv, overrides, &caps),
         };
-        let feed_mm_s = match mv.kind {
-            MoveKind::Rapid => f64::INFINITY,
-            kind => mv.feed_mm_s * limits::feed_factor(kind, overrides),
-        };
-        let mut element = Self {
-            tag,
-            rapid: mv.kind == MoveKind::Rapid,
-            length_mm: mv.length_mm,
-            feed_mm_s,
-            speed_mm_s: limits.speed_mm_s,
-            accel_mm_s2: limits.accel_mm_s2.min(mv.path_accel_mm_s2),
-            drive_accel_mm_s2: f64::INFINITY,
-            path_accel_mm_s2: mv.path_accel_mm_s2,
-            jerk_mm_s3: limits.jerk_mm_s3,
-            curve_speed_mm_s: f64::INFINITY,
-            axis_accel_mm_s2: mv.accel_mm_s2,
-            start: [0.0; AXES],
-            end: [0.0; AXES],
-            curve: None,
-            joint,
-        };
-        for axis in mv.moving.iter() {
-            let change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
-            element.start[axis] = change;
-            element.end[axis] = change;
-        }
+        self.speed_mm_s = limits.speed_mm_s;
+        self.accel_mm_s2 = limits.accel_mm_s2.min(mv.path_accel_mm_s2);
+        self.jerk_mm_s3 = limits.jerk_mm_s3;
         if let Some(arc) = &mv.arc {
-            element.bend(machine, mv, arc);
+            self.bend(machine, mv, arc);
         }
         if !machine.force_curves.is_empty() {
-            element.drive(machine, mv);
+            self.drive(machine, mv);
         }
-        let moves = element.top_mm_s() > 0.0 && element.accel_mm_s2 > 0.0;
-        moves.then_some(element)
+        self.top_mm_s() > 0.0 && self.accel_mm_s2 > 0.0
     }
 
     /// Takes in what the drives leave. The limits of the axes hold at any speed.
@@ -201,9 +233,9 @@ impl<T> Element<T> {
 
     /// Speed that feed, axes and curvature permit, mm/s.
     #[must_use]
+    #[inline]
     pub fn top_mm_s(&self) -> f64 {
-        self.feed_mm_s
-            .min(self.speed_mm_s)
-            .min(self.curve_speed_mm_s)
+        let axes = lower(self.speed_mm_s, self.curve_speed_mm_s);
+        lower(axes, self.feed_mm_s)
     }
 }

@@ -47,6 +47,13 @@ impl<T: Copy> Joiner<T> {
         }
     }
 
+    /// Whether an element goes through as it is: none is held, and nothing can be
+    /// joined to it.
+    pub fn passes(&self, element: &Element<T>) -> bool {
+        let may_join = matches!(element.joint, Joint::Blend { join_mm, .. } if join_mm > 0.0);
+        self.last.is_none() && (!may_join || element.curve.is_none() && !joins(element))
+    }
+
     /// Adds an element; gives what is complete before it, and the element
     /// itself where nothing can be joined to it.
     pub fn push(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {

@@ -12,7 +12,7 @@
 use super::super::arc::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
 use super::blend::{Axes, Fit, fit};
 use super::element::{Element, Joint};
-use super::join::{Joined, Joiner};
+use super::join::Joiner;
 use super::pending::{Braking, Pending};
 use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, dot, scale, sub};
@@ -29,7 +29,9 @@ pub(super) struct LinuxCnc<T> {
     cycle_s: f64,
     kink_ratio: f64,
     gap_cycles: f64,
-    pending: Option<Pending<T>>,
+    pending: Option<Box<Pending<T>>>,
+    /// Room for the next one.
+    spare: Option<Box<Pending<T>>>,
     joiner: Joiner<T>,
     /// Largest speed of the last node, squared, whatever F asks for.
     last_max2: f64,
@@ -50,6 +52,7 @@ impl<T: Copy> LinuxCnc<T> {
             kink_ratio,
             gap_cycles,
             pending: None,
+            spare: None,
             joiner: Joiner::new(),
             last_max2: f64::INFINITY,
         }
@@ -57,13 +60,30 @@ impl<T: Copy> LinuxCnc<T> {
 
     /// Adds an element.
     pub fn push(&mut self, element: &Element<T>, window: &mut Window<Load<T>>) {
+        if self.joiner.passes(element) {
+            return self.enqueue(element, element.tag, false, window);
+        }
         for joined in self.joiner.push(element, &self.axes).into_iter().flatten() {
-            self.enqueue(&joined, window);
+            self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
     }
 
-    fn enqueue(&mut self, joined: &Joined<T>, window: &mut Window<Load<T>>) {
-        let mut next = Pending::new(joined, self.cycle_s);
+    fn enqueue(
+        &mut self,
+        element: &Element<T>,
+        first: T,
+        is_line: bool,
+        window: &mut Window<Load<T>>,
+    ) {
+        let mut next = match self.spare.take() {
+            Some(mut next) => {
+                next.element = *element;
+                next.first = first;
+                next
+            }
+            None => Box::new(Pending::new(element, first)),
+        };
+        next.begin(is_line, self.cycle_s);
         let Some(mut before) = self.pending.take() else {
             self.pending = Some(next);
             return;
@@ -83,18 +103,20 @@ impl<T: Copy> LinuxCnc<T> {
                 next.braking = Some(Braking::of(&before, &next));
                 self.hand_over(&before, window, false);
             }
-            Way::Blend(fit) => self.round(before, &mut next, &fit, window),
+            Way::Blend(fit) => self.round(&mut before, &mut next, &fit, window),
         }
         self.pending = Some(next);
+        self.spare = Some(before);
     }
 
     /// Nothing comes behind the last element.
     pub fn stop(&mut self, window: &mut Window<Load<T>>) {
         if let Some(joined) = self.joiner.flush(&self.axes) {
-            self.enqueue(&joined, window);
+            self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
         if let Some(last) = self.pending.take() {
             self.hand_over(&last, window, true);
+            self.spare = Some(last);
         }
     }
 
@@ -155,7 +177,7 @@ impl<T: Copy> LinuxCnc<T> {
     /// Lays a blend between two elements.
     fn round(
         &mut self,
-        mut before: Pending<T>,
+        before: &mut Pending<T>,
         next: &mut Pending<T>,
         fit: &Fit,
         window: &mut Window<Load<T>>,
@@ -168,7 +190,7 @@ impl<T: Copy> LinuxCnc<T> {
         let (lead_mm, entry2) = if consumed {
             (before.length_mm.max(0.0), Some(before.entry2))
         } else {
-            self.hand_over(&before, window, false);
+            self.hand_over(before, window, false);
             (0.0, None)
         };
         let length_mm = lead_mm + fit.radius * fit.sweep;

@@ -7,7 +7,6 @@
 use super::super::arc;
 use super::blend::{Circle, Side, angle_between};
 use super::element::{Element, Joint};
-use super::join::Joined;
 use super::planner::Piece;
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
 use crate::machine::AXES;
@@ -40,23 +39,36 @@ pub(super) struct Pending<T> {
 }
 
 impl<T: Copy> Pending<T> {
-    pub fn new(joined: &Joined<T>, cycle_s: f64) -> Self {
-        let element = &joined.element;
-        let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
+    pub fn new(element: &Element<T>, first: T) -> Self {
         Self {
             element: *element,
-            first: joined.first,
-            is_line: joined.is_line,
+            first,
+            is_line: false,
             from_mm: 0.0,
-            length_mm: element.length_mm,
-            sweep_rad: element.curve.map_or(0.0, |curve| curve.sweep_rad.abs()),
-            max_speed: max_speed.min(element.length_mm / cycle_s),
+            length_mm: 0.0,
+            sweep_rad: 0.0,
+            max_speed: 0.0,
             kink_before: 0.0,
             kink_behind: 0.0,
             parabolic: false,
             braking: None,
             entry2: 0.0,
         }
+    }
+
+    /// Nothing has changed it yet.
+    pub fn begin(&mut self, is_line: bool, cycle_s: f64) {
+        let element = &self.element;
+        let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
+        self.is_line = is_line;
+        self.from_mm = 0.0;
+        self.length_mm = element.length_mm;
+        self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
+        self.max_speed = max_speed.min(element.length_mm / cycle_s);
+        (self.kink_before, self.kink_behind) = (0.0, 0.0);
+        self.parabolic = false;
+        self.braking = None;
+        self.entry2 = 0.0;
     }
 
     pub fn target_speed(&self) -> f64 {

@@ -8,7 +8,7 @@
 
 use super::blend::Axes;
 use super::chord::Chords;
-use super::corner;
+use super::corner::{self, After, Before};
 use super::element::{Element, Joint};
 use super::linuxcnc::LinuxCnc;
 use super::ramp::Speeds2;
@@ -85,7 +85,7 @@ impl<T> Planned<T> {
     #[inline]
     pub fn top_speed_mm_s(&self) -> f64 {
         let Speeds2 { start, end, top } = self.speeds2;
-        if self.section.is_some() {
+        if self.section.is_some() || self.speeds2.are_one() {
             return top.sqrt();
         }
         let reached = 0.5 * (start + end) + self.accel_mm_s2 * self.length_mm;
@@ -98,6 +98,9 @@ impl<T> Planned<T> {
     pub fn largest_accel_mm_s2(&self) -> f64 {
         if self.section.is_some() {
             return self.accel_mm_s2;
+        }
+        if self.speeds2.are_one() {
+            return 0.0;
         }
         let needed = 0.5 * (self.speeds2.start - self.speeds2.end).abs() / self.length_mm;
         self.accel_mm_s2.max(needed)
@@ -141,7 +144,7 @@ impl<T> Planned<T> {
 }
 
 /// What travels through the window with a node.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Load<T> {
     pub tag: T,
     pub first: T,
@@ -152,12 +155,8 @@ pub(super) struct Load<T> {
 }
 
 #[derive(Debug, Clone)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "one for each planner, and the large one is the common case"
-)]
 enum Rule<T> {
-    Corner(Option<Element<T>>),
+    Corner(Option<Before>),
     LinuxCnc(Box<LinuxCnc<T>>),
 }
 
@@ -232,7 +231,11 @@ impl<T: Copy> PathPlanner<T> {
         }
         let chords = self.look_ahead.chords.as_ref();
         match chords.and_then(|rule| Chords::of(rule, element)) {
-            Some(chords) => chords.for_each(|(chord, at)| self.push_corner(&chord, at)),
+            Some(mut chords) => {
+                while let Some(at) = chords.advance() {
+                    self.push_corner(&chords.chord, at);
+                }
+            }
             None => self.push_corner(element, [0.0, element.length_mm]),
         }
     }
@@ -242,13 +245,13 @@ impl<T: Copy> PathPlanner<T> {
             return;
         };
         let rule = &self.look_ahead.corner;
-        let top = element.top_mm_s();
-        let top2 = top * top;
+        let after = After::new(rule, element);
+        let top2 = after.top_mm_s * after.top_mm_s;
         let entry2 = match before {
             Some(before) if before.joint != Joint::Stop => {
-                let before_top = before.top_mm_s();
-                let own2 = top2.min(before_top * before_top);
-                corner::speed2(rule, before, element).min(own2)
+                let before2 = before.top_mm_s * before.top_mm_s;
+                let most2 = if before2 < top2 { before2 } else { top2 };
+                corner::speed2(rule, before, &after, most2)
             }
             _ => 0.0,
         };
@@ -268,13 +271,10 @@ impl<T: Copy> PathPlanner<T> {
         };
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
         node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
-        node.step2 = corner::start2(rule, element);
+        node.step2 = after.rest2;
         node.jerk = element.jerk_mm_s3;
         self.window.push(node);
-        match before {
-            Some(before) => *before = *element,
-            None => *before = Some(*element),
-        }
+        *before = Some(after.before());
     }
 
     /// The motion stops behind the last element: a dwell, a tool change, the
@@ -296,6 +296,14 @@ impl<T: Copy> PathPlanner<T> {
     /// The next piece, once it is final.
     #[inline]
     pub fn pop(&mut self) -> Option<Planned<T>> {
+        if self.window.is_ready() {
+            self.pop_ready()
+        } else {
+            None
+        }
+    }
+
+    fn pop_ready(&mut self) -> Option<Planned<T>> {
         let span = self.window.pop()?;
         Some(Planned {
             tag: span.payload.tag,

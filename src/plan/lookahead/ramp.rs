@@ -15,9 +15,19 @@ pub struct Speeds2 {
 }
 
 impl Speeds2 {
+    /// Whether the speed is one and the same all along.
+    #[inline]
+    pub(super) fn are_one(&self) -> bool {
+        self.start == self.top && self.end == self.top
+    }
+
     /// Duration of [`Profile::between`] in s, to the same bit.
+    #[inline]
     pub(super) fn duration_s(&self, length: f64, accel: f64) -> f64 {
         let Self { start, end, top } = *self;
+        if self.are_one() {
+            return length / top.sqrt();
+        }
         let (v0, v1) = (start.sqrt(), end.sqrt());
         if 0.5 * (start - end).abs() / length >= accel {
             return 2.0 * length / (v0 + v1);

@@ -136,6 +136,9 @@ impl SpindleBus<'_> {
             };
             self.beside.get_or_insert_default().push(beside);
         }
+        if self.shown.is_some() {
+            self.show_wait(mv, duration_s);
+        }
         self.states.iter_mut().for_each(SpindleState::settle);
         if duration_s > 0.0 {
             let demand = self.alone(Some(mv), extremes);

@@ -138,6 +138,10 @@ impl SpindleBus<'_> {
             let target = self.target(self.overrides[side].spindle);
             self.states[side].command(&self.motor, target);
         }
+        let nominal = self.target(self.overrides[1].spindle);
+        if let Some(shown) = &mut self.shown {
+            shown.state.command(&self.motor, nominal);
+        }
         // Whether a word that stops it is waited for, no profile says.
         let blocks = self.spindle.wait == SpindleWait::Blocks && self.direction == 0.0;
         let unknown = blocks || self.spindle.wait == SpindleWait::Unknown;

@@ -14,6 +14,10 @@ pub(super) struct Followed {
     pub(super) extremes: [f64; 2],
     /// Energy with and without what is fed back taken off, J.
     pub(super) energy_j: Option<[f64; 2]>,
+    /// At 100 %: what it follows, and the speed at the end in 1/min.
+    pub(super) surface: Option<(Surface, f64)>,
+    /// At 100 %: the speed that it runs to, 1/min.
+    pub(super) target: Option<f64>,
 }
 
 impl SpindleBus<'_> {
@@ -45,6 +49,8 @@ impl SpindleBus<'_> {
             return Some(Followed {
                 extremes,
                 energy_j: None,
+                surface: None,
+                target: None,
             });
         };
         let nominal = sides[1].speeds(mv)?;
@@ -67,6 +73,8 @@ impl SpindleBus<'_> {
             return Some(Followed {
                 extremes,
                 energy_j: Some(energy_j),
+                surface: Some((sides[1], nominal.end)),
+                target: None,
             });
         }
         self.states[0].wander(&self.motor, speeds.range, speeds.end);
@@ -76,6 +84,8 @@ impl SpindleBus<'_> {
         Some(Followed {
             extremes: self.states[0].henceforth(&self.motor),
             energy_j: Some([span.energy_j, span.drawn_j]),
+            surface: None,
+            target: Some(nominal.end),
         })
     }
 }

@@ -3,7 +3,7 @@
 use super::SpindleBus;
 use crate::power::spindle_state::Window;
 use crate::power::spindle_trace::{SpindleSpan, SpindleTrace};
-use crate::power::watch::Level;
+use crate::power::watch::{Level, Steps};
 
 /// Steps of a run are no higher than this share of its largest power.
 const STEP: f64 = 0.002;
@@ -19,7 +19,7 @@ impl SpindleBus<'_> {
         window: &Window<'_>,
         (duration_s, ahead): (f64, bool),
         cutting_w: f64,
-    ) -> Vec<Level> {
+    ) -> Steps {
         let level = |duration_s: f64, largest_w: f64, least_w: f64| {
             let base_w = self.spindle.base_load_w;
             let more_w = base_w + cutting_w;
@@ -38,15 +38,15 @@ impl SpindleBus<'_> {
             }
         };
         match window {
-            Window::Steady(power_w) => vec![level(duration_s, *power_w, *power_w)],
+            Window::Steady(power_w) => Steps::Steady(level(duration_s, *power_w, *power_w)),
             Window::Between([largest_w, least_w]) => {
-                vec![level(duration_s, *largest_w, *least_w)]
+                Steps::Steady(level(duration_s, *largest_w, *least_w))
             }
             Window::Run(trace, from_s) => {
                 let to_s = from_s + duration_s;
                 let whole = trace.over(*from_s, to_s);
                 if ahead || !duration_s.is_finite() {
-                    return vec![level(duration_s, whole.largest_w, whole.least_w)];
+                    return Steps::Steady(level(duration_s, whole.largest_w, whole.least_w));
                 }
                 let most_w = whole.largest_w.abs().max(whole.least_w.abs());
                 let mut levels = Vec::new();
@@ -63,7 +63,7 @@ impl SpindleBus<'_> {
                     );
                     from_s = end_s;
                 }
-                levels
+                Steps::Many(levels)
             }
         }
     }

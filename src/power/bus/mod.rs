@@ -14,10 +14,13 @@ mod command;
 mod figures;
 mod follow;
 mod levels;
+mod show;
 
 use std::collections::VecDeque;
 
 use self::command::Queued;
+pub(super) use self::show::Shown;
+pub use self::show::Turning;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{Machine, Spindle, SpindleWait};
 use crate::plan::{Overrides, plan};
@@ -88,6 +91,8 @@ pub(super) struct SpindleBus<'m> {
     commands: u32,
     /// What it does during the moves handed on, where that is watched over time.
     pub(super) beside: Option<Vec<Beside>>,
+    /// The same at 100 %, where that is wanted.
+    pub(super) shown: Option<Shown>,
     last: Option<Move>,
     /// No more than this is drawn and fed back before the commands that wait
     /// have been looked at, W.
@@ -127,6 +132,7 @@ impl<'m> SpindleBus<'m> {
             asked: None,
             commands: 0,
             beside: None,
+            shown: None,
             last: None,
             reserve_w: [0.0; 2],
         };
@@ -178,6 +184,9 @@ impl<'m> SpindleBus<'m> {
         });
         let covered = followed.as_ref().map(|it| it.extremes).or(tapping);
         let cutting_w = self.cut(mv, &mut judged);
+        if self.shown.is_some() {
+            self.show(mv, &judged, followed.as_ref());
+        }
         let window = self.states[0].window(&self.motor, duration_s);
         let beside = self.beside.is_some().then(|| {
             let covered = covered.map(Window::Between);

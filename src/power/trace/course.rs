@@ -24,6 +24,9 @@ impl Tracer<'_> {
         out: &mut impl FnMut(Slice),
     ) {
         let directions = self.directions(mv);
+        if self.is_line(mv, &directions, profile) {
+            return self.even(&directions, &profile.phases, idle_w, out);
+        }
         for phase in &profile.phases {
             self.straight_phase(&directions, phase, idle_w, out);
         }
@@ -75,11 +78,7 @@ impl Tracer<'_> {
         }
         let stretch = self.stretch(axes, idle_w);
         let base_w = self.base_w(idle_w);
-        let direction = match self.flow {
-            Flow::Drawn => 1.0,
-            Flow::FedBack => -1.0,
-        };
-        stretch.pieces(self.flow.side(), direction, |power, from, to| {
+        stretch.pieces(self.flow.side(), self.flow.sign(), |power, from, to| {
             if to > from {
                 let mut power = *power;
                 power.0[0] += base_w;

@@ -11,9 +11,11 @@
 //! of the phase counts for all of it. So the trace is never too low.
 
 mod course;
+mod line;
 mod slice;
 mod turn;
 
+pub(super) use line::Line;
 pub use slice::Slice;
 
 use super::axis::Side;
@@ -43,6 +45,14 @@ impl Flow {
         match self {
             Self::Drawn => Side::Motor,
             Self::FedBack => Side::Regen,
+        }
+    }
+
+    /// The sign of what is drawn.
+    fn sign(self) -> f64 {
+        match self {
+            Self::Drawn => 1.0,
+            Self::FedBack => -1.0,
         }
     }
 }

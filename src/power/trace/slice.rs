@@ -28,12 +28,48 @@ impl Slice {
     /// Power that changes evenly.
     #[must_use]
     pub fn linear(duration_s: f64, from_w: f64, to_w: f64) -> Self {
+        Self::even(duration_s, from_w, to_w - from_w)
+    }
+
+    /// Power that changes evenly by so much.
+    #[inline]
+    pub(in crate::power) fn even(duration_s: f64, from_w: f64, change_w: f64) -> Self {
         Self {
             duration_s,
             from: 0.0,
             to: 1.0,
-            power: Polynomial([from_w, to_w - from_w, 0.0, 0.0, 0.0]),
+            power: Polynomial([from_w, change_w, 0.0, 0.0, 0.0]),
         }
+    }
+
+    /// The power at both ends, where it changes evenly.
+    #[inline]
+    fn ends_w(&self) -> Option<[f64; 2]> {
+        let [from_w, change_w, rest @ ..] = self.power.0;
+        let value = |z: f64| change_w * z + from_w;
+        (rest == [0.0; 3]).then(|| [value(self.from), value(self.to)])
+    }
+
+    /// The same with so much more power.
+    #[inline]
+    pub(in crate::power) fn raised(&self, by_w: f64) -> Self {
+        let mut raised = *self;
+        raised.power.0[0] += by_w;
+        raised
+    }
+
+    /// Whether it is plain that it is nowhere above a level.
+    #[inline]
+    pub(in crate::power) fn keeps_below(&self, level_w: f64) -> bool {
+        self.ends_w()
+            .is_some_and(|ends| ends[0] <= level_w && ends[1] <= level_w)
+    }
+
+    /// Whether it is plain that it is nowhere below a level.
+    #[inline]
+    pub(in crate::power) fn keeps_above(&self, level_w: f64) -> bool {
+        self.ends_w()
+            .is_some_and(|ends| ends[0] >= level_w && ends[1] >= level_w)
     }
 
     /// Power in W, `t` seconds after the beginning.
@@ -109,17 +145,24 @@ impl Slice {
     /// The integral of the squared power up to values of the variable, from that
     /// of another one: primitive function, in W²·s.
     pub(in crate::power) fn squares(&self) -> Squares {
-        let c = &self.power.0;
+        let [a, b, rest @ ..] = self.power.0;
+        let seconds = self.seconds_by_variable();
+        if rest == [0.0; 3] {
+            let terms = Terms::Even([a * a, a * b, b * b / 3.0]);
+            return Squares { terms, seconds };
+        }
         let mut square = [0.0; 9];
-        for (i, a) in c.iter().enumerate() {
-            for (j, b) in c.iter().enumerate() {
+        for (i, a) in self.power.0.iter().enumerate() {
+            for (j, b) in self.power.0.iter().enumerate() {
                 square[i + j] += a * b;
             }
         }
-        Squares {
-            square,
-            seconds: self.seconds_by_variable(),
-        }
+        let mut degree = 0.0;
+        let terms = Terms::Any(square.map(|c| {
+            degree += 1.0;
+            c / degree
+        }));
+        Squares { terms, seconds }
     }
 
     /// The instant at which `start_j` more than the energy beyond a level has
@@ -149,8 +192,16 @@ impl Slice {
 /// The integral of a squared power.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::power) struct Squares {
-    square: [f64; 9],
+    terms: Terms,
     seconds: f64,
+}
+
+/// Coefficients of the primitive function from degree 1 on.
+#[derive(Debug, Clone, Copy)]
+enum Terms {
+    /// Of a power that changes evenly.
+    Even([f64; 3]),
+    Any([f64; 9]),
 }
 
 impl Squares {
@@ -160,9 +211,10 @@ impl Squares {
     }
 
     fn primitive(&self, z: f64) -> f64 {
-        let terms = self.square.iter().enumerate().rev();
-        let sum = terms.fold(0.0, |sum, (degree, c)| sum * z + c / (degree + 1) as f64);
-        sum * z
+        match &self.terms {
+            Terms::Even([a, b, c]) => ((c * z + b) * z + a) * z,
+            Terms::Any(terms) => terms.iter().rev().fold(0.0, |sum, c| sum * z + c) * z,
+        }
     }
 }
 

@@ -5,10 +5,11 @@
 
 use std::collections::VecDeque;
 
-use super::Track;
 use super::rating::Place;
 use super::span::Span;
+use super::{Kept, Track};
 use crate::interpret::Move;
+use crate::power::model::PowerModel;
 use crate::power::trace::{Flow, Slice};
 
 /// The spindle at a steady power: the most that it may draw and feed back in
@@ -23,11 +24,28 @@ pub(in crate::power) struct Level {
     pub fed_back_w: f64,
 }
 
+/// Levels in the order of time.
+#[derive(Debug, Clone)]
+pub(in crate::power) enum Steps {
+    /// One alone, as most moves have it.
+    Steady(Level),
+    Many(Vec<Level>),
+}
+
+impl Steps {
+    pub fn as_slice(&self) -> &[Level] {
+        match self {
+            Self::Steady(level) => std::slice::from_ref(level),
+            Self::Many(levels) => levels,
+        }
+    }
+}
+
 /// The spindle during one move, or by itself.
 #[derive(Debug, Clone)]
 pub(in crate::power) struct Beside {
     /// In the order of time.
-    pub levels: Vec<Level>,
+    pub levels: Steps,
     /// The place at which the axes wait for it; none while they move.
     pub alone: Option<Box<Move>>,
 }
@@ -39,35 +57,32 @@ pub(super) struct Waiting {
     pub converter: usize,
     pub moves: VecDeque<Waits>,
     /// Room that is used again.
-    pub spare: Vec<Vec<(usize, Slice)>>,
+    pub spare: Vec<Kept>,
 }
 
 /// A move whose spindle is not known yet.
 #[derive(Debug)]
 pub(super) struct Waits {
     pub place: Place,
-    /// With the index of their track.
-    pub slices: Vec<(usize, Slice)>,
+    pub slices: Kept,
     /// Powers by track, for a time that is not known.
     pub lasting: Option<(Vec<[f64; 2]>, Span)>,
 }
 
 impl Waiting {
-    pub fn room(&mut self) -> Vec<(usize, Slice)> {
+    pub fn room(&mut self) -> Kept {
         self.spare.pop().unwrap_or_default()
     }
 
     /// Hands the next move to the tracks, with the spindle in it.
-    pub fn hand_on(&mut self, levels: &[Level], tracks: &mut [Track]) {
+    pub fn hand_on(&mut self, model: &PowerModel, levels: &[Level], tracks: &mut [Track]) {
         let Some(mut waits) = self.moves.pop_front() else {
             return;
         };
         let converter = self.converter;
         for (index, track) in tracks.iter_mut().enumerate() {
             let mut beside = Levels::new(levels, track, converter);
-            for (_, slice) in waits.slices.iter().filter(|(of, _)| *of == index) {
-                beside.add(slice, &mut |slice| track.take(slice, waits.place));
-            }
+            track.take_kept(index, model, &mut waits.slices, &mut beside, waits.place);
             if let Some((powers, span)) = &waits.lasting
                 && let Some(powers) = powers.get(index)
             {
@@ -90,6 +105,15 @@ pub(super) struct Levels<'a> {
 }
 
 impl<'a> Levels<'a> {
+    /// Nothing comes on top.
+    pub fn none() -> Self {
+        Self {
+            left: &[],
+            flow: Flow::Drawn,
+            left_s: 0.0,
+        }
+    }
+
     /// Those that count for a track.
     pub fn new(levels: &'a [Level], track: &Track, converter: usize) -> Self {
         let levels = if track.converter == converter {
@@ -108,6 +132,15 @@ impl<'a> Levels<'a> {
         match self.flow {
             Flow::Drawn => level.drawn_w,
             Flow::FedBack => level.fed_back_w,
+        }
+    }
+
+    /// What comes on top all the time, where that does not change.
+    pub fn steady_w(&self) -> Option<f64> {
+        match self.left {
+            [] => Some(0.0),
+            [level] => Some(self.power_w(level)),
+            _ => None,
         }
     }
 

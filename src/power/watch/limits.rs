@@ -138,6 +138,34 @@ impl Limits {
         }
     }
 
+    /// Whether nothing but stores of energy are limited.
+    #[inline]
+    pub fn only_stores(&self) -> bool {
+        self.overload.is_empty() && self.continuous.is_none()
+    }
+
+    /// Up to this power nothing changes but means and the time, W.
+    #[inline]
+    pub fn calm_w(&self) -> f64 {
+        let bus = self.bus.iter().map(|bus| bus.store.calm_w());
+        let brake = self.brake.iter().map(|(store, ..)| store.calm_w());
+        let overload = self.overload.iter().map(|(overload, ..)| overload.calm_w());
+        bus.chain(brake)
+            .chain(overload)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same as [`Self::take`], of a slice that is nowhere above that power.
+    #[inline]
+    pub fn take_calm(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        for (overload, ..) in &mut self.overload {
+            overload.pass(slice.duration_s);
+        }
+        if let Some((rms, ..)) = &mut self.continuous {
+            rms.take(slice, time_s, place);
+        }
+    }
+
     /// A power that lasts for a time that is not known.
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
         let mut supplied_w = power_w;

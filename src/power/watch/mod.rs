@@ -26,6 +26,7 @@
 //! limit. A move from an unknown start may last for ever.
 
 mod beside;
+mod kept;
 mod limits;
 mod overload;
 mod rating;
@@ -33,7 +34,8 @@ mod rms;
 mod span;
 mod store;
 
-pub(super) use beside::{Beside, Level};
+pub(super) use beside::{Beside, Level, Steps};
+pub(super) use kept::Kept;
 pub use rating::{Measure, Rating};
 pub(super) use span::Span;
 
@@ -42,8 +44,8 @@ use super::robust::Part;
 use super::trace::{Flow, Slice};
 use crate::interpret::Move;
 use crate::machine::Machine;
-use crate::plan::Plan;
 use crate::plan::lookahead::Planned;
+use crate::plan::{Plan, Trajectory};
 use beside::{Levels, Waiting, Waits};
 use limits::Limits;
 use rating::Place;
@@ -54,6 +56,9 @@ pub(super) struct Watch {
     tracks: Vec<Track>,
     /// Where the spindle's converter is watched: moves that wait for it.
     waiting: Option<Waiting>,
+    /// Room for the slices of a move, and for powers by track.
+    kept: Kept,
+    powers: Vec<[f64; 2]>,
 }
 
 /// One converter and one direction of its power.
@@ -64,16 +69,6 @@ struct Track {
     limits: Limits,
     /// Time so far in s.
     time_s: f64,
-}
-
-/// Slices of one move that waits for its neighbours, by track.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Kept(Vec<(usize, Slice)>);
-
-impl Kept {
-    pub fn clear(&mut self) {
-        self.0.clear();
-    }
 }
 
 impl Watch {
@@ -108,7 +103,14 @@ impl Watch {
             converter,
             ..Waiting::default()
         });
-        (!tracks.is_empty()).then(|| Box::new(Self { tracks, waiting }))
+        (!tracks.is_empty()).then(|| {
+            Box::new(Self {
+                tracks,
+                waiting,
+                kept: Kept::default(),
+                powers: Vec::new(),
+            })
+        })
     }
 
     /// Whether it has to be told what the spindle does.
@@ -134,11 +136,12 @@ impl Watch {
             return;
         };
         let Some(mv) = &beside.alone else {
-            waiting.hand_on(&beside.levels, &mut self.tracks);
+            waiting.hand_on(model, beside.levels.as_slice(), &mut self.tracks);
             return;
         };
         let place = Place::of(mv);
-        let duration_s = beside.levels.iter().map(|level| level.duration_s).sum();
+        let levels = beside.levels.as_slice();
+        let duration_s = levels.iter().map(|level| level.duration_s).sum();
         for track in &mut self.tracks {
             let [drawn_w, fed_back_w] = model.resting_w(track.converter, mv);
             let power_w = match track.flow {
@@ -147,7 +150,7 @@ impl Watch {
             };
             if duration_s > 0.0 {
                 let slice = Slice::constant(duration_s, power_w);
-                let mut levels = Levels::new(&beside.levels, track, waiting.converter);
+                let mut levels = Levels::new(levels, track, waiting.converter);
                 levels.add(&slice, &mut |slice| track.take(slice, place));
             }
         }
@@ -156,54 +159,55 @@ impl Watch {
     /// Takes a move that runs as planned.
     pub fn plan(&mut self, model: &PowerModel, mv: &Move, plan: &Plan) {
         let place = Place::of(mv);
-        if let Some(waiting) = &mut self.waiting {
-            let mut slices = waiting.room();
-            let mut lasting = None;
-            if plan.duration_s.is_finite() {
-                for (index, track) in self.tracks.iter().enumerate() {
-                    if let Some(tracer) = model.tracer(track.converter, track.flow) {
-                        tracer.plan(mv, plan, &mut |slice| slices.push((index, slice)));
-                    }
-                }
-            } else {
-                let tracks = self.tracks.iter();
-                let powers = tracks.map(|track| model.resting_w(track.converter, mv));
-                lasting = Some((powers.collect(), Span::ANY));
-            }
-            waiting.moves.push_back(Waits {
-                place,
-                slices,
-                lasting,
-            });
-            return;
+        if !plan.duration_s.is_finite() {
+            // At rest for ever.
+            let tracks = self.tracks.iter();
+            let powers = tracks.map(|track| model.resting_w(track.converter, mv));
+            self.powers.extend(powers);
+            return self.last(Span::ANY, place);
         }
-        for track in &mut self.tracks {
-            if plan.duration_s.is_finite() {
+        if self.waiting.is_none() && mv.arc.is_some() {
+            // Many slices: they are not kept.
+            for track in &mut self.tracks {
                 if let Some(tracer) = model.tracer(track.converter, track.flow) {
                     tracer.plan(mv, plan, &mut |slice| track.take(&slice, place));
                 }
+            }
+            return;
+        }
+        let mut kept = std::mem::take(&mut self.kept);
+        for (index, track) in self.tracks.iter().enumerate() {
+            let Some(tracer) = model.tracer(track.converter, track.flow) else {
+                continue;
+            };
+            if let Trajectory::Path(profile) = &plan.trajectory
+                && track.limits.only_stores()
+                && let Some(line) = tracer.line(mv, profile)
+                && let Some(most_w) = tracer.fed_back_bound_w(&line)
+            {
+                kept.push_line(index, most_w, line);
             } else {
-                // At rest for ever.
-                let powers = model.resting_w(track.converter, mv);
-                track.span(powers, Span::ANY, place);
+                tracer.plan(mv, plan, &mut |slice| kept.push(index, slice));
             }
         }
+        self.kept(model, mv, &mut kept);
+        self.kept = kept;
     }
 
     /// Keeps a piece of a plan for the move that it belongs to.
     pub fn keep(&self, model: &PowerModel, mv: &Move, planned: &Planned<u64>, kept: &mut Kept) {
         for (index, track) in self.tracks.iter().enumerate() {
             if let Some(tracer) = model.tracer(track.converter, track.flow) {
-                tracer.piece(mv, planned, &mut |slice| kept.0.push((index, slice)));
+                tracer.piece(mv, planned, &mut |slice| kept.push(index, slice));
             }
         }
     }
 
     /// Takes what was kept of a move that runs as planned.
-    pub fn kept(&mut self, mv: &Move, kept: &mut Kept) {
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
         let place = Place::of(mv);
         if let Some(waiting) = &mut self.waiting {
-            let slices = std::mem::replace(&mut kept.0, waiting.room());
+            let slices = std::mem::replace(kept, waiting.room());
             waiting.moves.push_back(Waits {
                 place,
                 slices,
@@ -211,11 +215,10 @@ impl Watch {
             });
             return;
         }
-        for (index, slice) in kept.0.drain(..) {
-            if let Some(track) = self.tracks.get_mut(index) {
-                track.take(&slice, place);
-            }
+        for (index, track) in self.tracks.iter_mut().enumerate() {
+            track.take_kept(index, model, kept, &mut Levels::none(), place);
         }
+        kept.clear();
     }
 
     /// Takes a move whose timing is not known: its largest speeds and those of
@@ -230,31 +233,35 @@ impl Watch {
         span: Span,
     ) {
         let place = Place::of(mv);
-        let mut all = Vec::new();
-        for (index, track) in self.tracks.iter_mut().enumerate() {
+        for (index, track) in self.tracks.iter().enumerate() {
             let mut powers = model.robust_powers(track.converter, mv, parts);
             let of_flow = match track.flow {
                 Flow::Drawn => &mut powers[0],
                 Flow::FedBack => &mut powers[1],
             };
-            let own = kept.0.iter().filter(|(track, _)| *track == index);
-            *of_flow = own.fold(*of_flow, |most, (_, slice)| {
+            let own = kept.slices(index).iter();
+            *of_flow = own.fold(*of_flow, |most, slice| {
                 super::demand::larger(most, slice.peak_w())
             });
-            if self.waiting.is_some() {
-                all.push(powers);
-            } else {
-                track.span(powers, span, place);
-            }
+            self.powers.push(powers);
         }
         kept.clear();
+        self.last(span, place);
+    }
+
+    /// The powers by track last for a time that is not known.
+    fn last(&mut self, span: Span, place: Place) {
         if let Some(waiting) = &mut self.waiting {
             let slices = waiting.room();
             waiting.moves.push_back(Waits {
                 place,
                 slices,
-                lasting: Some((all, span)),
+                lasting: Some((std::mem::take(&mut self.powers), span)),
             });
+            return;
+        }
+        for (track, powers) in self.tracks.iter_mut().zip(self.powers.drain(..)) {
+            track.span(powers, span, place);
         }
     }
 

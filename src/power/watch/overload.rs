@@ -40,9 +40,21 @@ impl Overload {
         }
     }
 
+    /// Up to this power nothing counts, W.
+    #[inline]
+    pub fn calm_w(&self) -> f64 {
+        self.above_w * (1.0 + ROUNDING)
+    }
+
+    /// Time passes at no more than that.
+    #[inline]
+    pub fn pass(&mut self, duration_s: f64) {
+        self.clock_s += duration_s;
+    }
+
     pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
         let start_s = self.clock_s;
-        for (part, above) in slice.sides(self.above_w * (1.0 + ROUNDING)) {
+        for (part, above) in slice.sides(self.calm_w()) {
             let from_s = self.clock_s;
             self.clock_s += part.duration_s;
             if above {
@@ -96,7 +108,7 @@ impl Overload {
 
     /// A power that lasts for a time that is not known.
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
-        let below = power_w <= self.above_w * (1.0 + ROUNDING);
+        let below = power_w <= self.calm_w();
         let lasts_s = span.worse_s(!below);
         if below {
             self.clock_s += lasts_s;

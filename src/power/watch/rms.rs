@@ -108,6 +108,9 @@ impl Rms {
     }
 
     pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        if slice.keeps_above(self.floor_w) {
+            return self.add(slice, time_s, place);
+        }
         let mut now_s = time_s;
         for (part, above) in slice.sides(self.floor_w) {
             if above {
@@ -129,6 +132,11 @@ impl Rms {
             return;
         }
         let squares = slice.squares();
+        if slice.duration_s > 0.0 && slice.duration_s < self.cell_s - self.filled_s {
+            self.count(squares.between(slice.from, slice.to), slice.duration_s);
+            self.last = (time_s + slice.duration_s, place);
+            return;
+        }
         let mut done_s = 0.0;
         let mut from = slice.from;
         if slice.is_constant() && slice.duration_s > 3.0 * self.window_s {
@@ -152,11 +160,7 @@ impl Rms {
             } else {
                 slice.to
             };
-            let square = squares.between(from, to);
-            self.cell += square;
-            self.total += square;
-            self.elapsed_s += step_s;
-            self.filled_s += step_s;
+            self.count(squares.between(from, to), step_s);
             done_s += step_s;
             from = to;
             self.last = (time_s + done_s, place);
@@ -166,6 +170,15 @@ impl Rms {
                 break;
             }
         }
+    }
+
+    /// Counts something in the cell that is being filled.
+    #[inline]
+    fn count(&mut self, square: f64, duration_s: f64) {
+        self.cell += square;
+        self.total += square;
+        self.elapsed_s += duration_s;
+        self.filled_s += duration_s;
     }
 
     /// The cell is full.

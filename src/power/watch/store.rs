@@ -34,6 +34,16 @@ impl Store {
         self.taken_w
     }
 
+    /// Up to this power nothing changes, W.
+    #[inline]
+    pub fn calm_w(&self) -> f64 {
+        if self.is_empty() {
+            self.taken_w
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
     /// Takes a slice that begins at `time_s`. `passed` is given the power that
     /// another one must deliver: that of the slice, or L while the store fills or
     /// is not empty.

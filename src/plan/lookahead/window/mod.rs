@@ -15,7 +15,7 @@
 //! and with it everything before is final: the result is that of the whole
 //! program at once, to the last bit. The pass is run when the elements that are
 //! not final have doubled, so that each costs a few steps however long the
-//! stopping distance is.
+//! stopping distance is; at once where it fits into the last element.
 //!
 //! A controller that sees `n` blocks ahead keeps able to stop within them:
 //! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1).
@@ -35,7 +35,7 @@ pub(super) const OPEN_MAX: usize = 1 << 14;
 /// sums with it stay finite.
 const UNLIMITED: f64 = 1e24;
 /// Elements after which a first backward pass is worth its start.
-const OPEN_MIN: usize = 24;
+const OPEN_MIN: usize = 8;
 
 /// A path element as the passes see it.
 #[derive(Debug, Clone)]
@@ -159,7 +159,7 @@ pub(super) struct Window<P> {
     runs: Option<Box<Runs<P>>>,
 }
 
-impl<P> Window<P> {
+impl<P: Copy> Window<P> {
     pub fn new(blocks: Option<u32>, smooth: bool) -> Self {
         Self {
             nodes: VecDeque::with_capacity(128),
@@ -189,11 +189,14 @@ impl<P> Window<P> {
         }
         if let Some(last) = self.nodes.back() {
             // What cannot be reached from before is no limit that matters.
-            node.entry2 = lower(node.entry2, last.entry2.max(last.step2) + last.ramp2());
-            node.sum = last.sum + last.ramp2();
+            let ramp2 = last.ramp2();
+            node.entry2 = lower(node.entry2, higher(last.entry2, last.step2) + ramp2);
+            node.sum = last.sum + ramp2;
             node.run = last.run;
-            let reach = last.smooth_entry2.max(last.step2) + last.smooth2();
-            node.smooth_entry2 = lower(node.entry2, reach);
+            if self.smooth {
+                let reach = higher(last.smooth_entry2, last.step2) + last.smooth2();
+                node.smooth_entry2 = lower(node.entry2, reach);
+            }
             if node.entry2 == 0.0 {
                 node.sum = 0.0;
                 node.run = last.run.wrapping_add(1);
@@ -205,10 +208,33 @@ impl<P> Window<P> {
         if node.smooth_accel > node.accel {
             node.smooth_accel = node.accel;
         }
+        let entry2 = node.entry2;
+        let stops = node.tail2 >= entry2 && node.ramp2() >= entry2;
         self.nodes.push_back(node);
-        if self.nodes.len() - self.ready >= self.settle_at {
+        if stops && !self.smooth {
+            self.release_before_last();
+        } else if self.nodes.len() - self.ready >= self.settle_at {
             self.settle();
         }
+    }
+
+    /// Makes all elements before the last one final: within that one the motion
+    /// can come to rest from the largest speed at its start. The common case of
+    /// short lines at a feed, and the window stays as small as it can be.
+    #[inline]
+    fn release_before_last(&mut self) {
+        let last = self.nodes.len().saturating_sub(1);
+        let mut e2 = 0.0;
+        for node in self.nodes.range_mut(self.ready.min(last)..).rev() {
+            e2 = if node.entry2 <= e2 + node.ramp2() {
+                node.entry2
+            } else {
+                e2 + node.ramp2()
+            };
+            node.e2 = e2;
+        }
+        self.ready = last;
+        self.settle_at = self.open_min;
     }
 
     /// The path stops behind the last element: all are final.
@@ -327,6 +353,12 @@ impl<P> Window<P> {
         boundary.unwrap_or(0)
     }
 
+    /// Whether an element may be final; a quick answer.
+    #[inline]
+    pub fn is_ready(&self) -> bool {
+        self.ready > 0 || self.runs.is_some()
+    }
+
     /// The next element in order, once it is final.
     #[inline]
     pub fn pop(&mut self) -> Option<Span<P>> {
@@ -343,25 +375,25 @@ impl<P> Window<P> {
             }
             None => (0.0, 0.0),
         };
-        let node = self.nodes.pop_front()?;
-        self.ready -= 1;
-        let start2 = self
-            .now2
-            .max(if self.now2 == 0.0 { node.step2 } else { 0.0 });
-        let end2 = lower(end2, start2 + node.ramp2());
-        let mut top2 = lower(node.top2, node.hill2);
-        let slowed2 = start2 - node.ramp2();
-        let end2 = if node.overruns {
-            lower(end2, lower(top2, next_top2).max(slowed2))
+        let node = self.nodes.front()?;
+        let start2 = if self.now2 == 0.0 {
+            node.step2
         } else {
-            lower(end2, top2.max(slowed2))
+            self.now2
         };
-        top2 = top2.max(end2);
+        let (ramp2, mut top2) = (node.ramp2(), lower(node.hill2, node.top2));
+        let end2 = lower(end2, start2 + ramp2);
+        let most2 = if node.overruns {
+            lower(top2, next_top2)
+        } else {
+            top2
+        };
+        let end2 = lower(end2, higher(most2, start2 - ramp2));
+        top2 = higher(top2, end2);
         if !node.overruns {
-            top2 = top2.max(start2);
+            top2 = higher(top2, start2);
         }
-        self.now2 = end2;
-        Some(Span {
+        let span = Span {
             start2,
             end2,
             top2,
@@ -370,7 +402,11 @@ impl<P> Window<P> {
             certain: !node.forced,
             section: None,
             payload: node.payload,
-        })
+        };
+        self.nodes.pop_front();
+        self.ready -= 1;
+        self.now2 = end2;
+        Some(span)
     }
 
     /// Speed, squared, from which the controller can stop within the blocks
@@ -399,4 +435,10 @@ impl<P> Window<P> {
 #[inline]
 pub(super) fn lower(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
+}
+
+/// The higher of two numbers.
+#[inline]
+fn higher(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }

@@ -1,0 +1,171 @@
+//! Pieces of plans, counted for the moves that they belong to.
+
+use super::Ahead;
+use crate::interpret::Move;
+use crate::plan::lookahead::{Piece, Planned};
+use crate::power::demand::Demand;
+use crate::power::eye::Eye;
+use crate::power::model::PowerModel;
+use crate::power::piece::{is_quiet, piece_demand};
+
+impl Ahead {
+    /// Counts a piece of path.
+    #[inline]
+    pub(super) fn take(
+        &mut self,
+        model: &PowerModel,
+        eye: &mut Eye,
+        planned: &Planned<u64>,
+        peaks: bool,
+        times: bool,
+    ) {
+        if planned.next.is_some() || planned.first != planned.tag {
+            return self.take_shared(model, eye, planned, peaks, times);
+        }
+        let Some(index) = planned.tag.checked_sub(self.first) else {
+            return;
+        };
+        let index = index as usize;
+        let Some(open) = self.open.get_mut(index) else {
+            return;
+        };
+        if !eye.is_closed() {
+            if peaks {
+                eye.keep(model, &open.mv, planned, &mut open.kept);
+            }
+            if times {
+                eye.show_piece(&open.mv, planned);
+            }
+        }
+        let duration_s = planned.duration_s();
+        let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
+        open.alone &= rests && is_whole(&open.mv, planned);
+        let with_energy = times && open.want.energy;
+        if times {
+            open.assessment.duration_s += duration_s;
+        }
+        let matters = with_energy || peaks && !is_quiet(model, &open.mv, planned, open.want);
+        if matters {
+            let demand = piece_demand(model, &open.mv, planned, open.want);
+            if with_energy {
+                open.assessment.demand.energy_j += demand.energy_j;
+            }
+            if peaks {
+                open.assessment.demand.include(&demand);
+            }
+        }
+        if peaks {
+            let top_speed_mm_s = planned.top_speed_mm_s();
+            open.assessment.fastest_s += duration_s;
+            open.assessment.top_speed_mm_s = open.assessment.top_speed_mm_s.max(top_speed_mm_s);
+            let doubtful = open.in_doubt || self.reach2.is_some() || !planned.certain;
+            if doubtful {
+                let certain = self.is_certain(planned, index, index);
+                if let Some(open) = self.open.get_mut(index) {
+                    open.certain &= certain;
+                }
+            }
+        }
+    }
+
+    /// Counts a piece of path that belongs to several moves.
+    fn take_shared(
+        &mut self,
+        model: &PowerModel,
+        eye: &mut Eye,
+        planned: &Planned<u64>,
+        peaks: bool,
+        times: bool,
+    ) {
+        let last = planned.next.unwrap_or(planned.tag);
+        let index = |number: u64| number.checked_sub(self.first).map(|index| index as usize);
+        let (Some(from), Some(own), Some(to)) =
+            (index(planned.first), index(planned.tag), index(last))
+        else {
+            return;
+        };
+        let Some(open) = self.open.get_mut(own) else {
+            return;
+        };
+        if peaks {
+            eye.keep(model, &open.mv, planned, &mut open.kept);
+        }
+        if times {
+            eye.show_piece(&open.mv, planned);
+        }
+        let mut demand = if !open.want.energy && is_quiet(model, &open.mv, planned, open.want) {
+            Demand::NONE
+        } else {
+            piece_demand(model, &open.mv, planned, open.want)
+        };
+        let certain = !peaks || self.is_certain(planned, from, to);
+        // Half of a blend belongs to what is behind it.
+        let halves = if planned.next.is_some() { 0.5 } else { 1.0 };
+        let lengths: f64 = (from..=own)
+            .filter_map(|index| self.open.get(index))
+            .map(|open| open.mv.length_mm)
+            .sum();
+        let energy_j = std::mem::take(&mut demand.energy_j);
+        let duration_s = planned.duration_s();
+        let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
+        for index in from..=to {
+            let Some(open) = self.open.get_mut(index) else {
+                continue;
+            };
+            if open.mv.length_mm <= 0.0 {
+                continue;
+            }
+            let share = if index > own {
+                1.0 - halves
+            } else {
+                halves * open.mv.length_mm / lengths
+            };
+            let assessment = &mut open.assessment;
+            open.certain &= certain;
+            open.alone &= from == to && rests && is_whole(&open.mv, planned);
+            if times {
+                assessment.duration_s += share * duration_s;
+                assessment.demand.energy_j += share * energy_j;
+            }
+            if peaks {
+                assessment.fastest_s += share * duration_s;
+                let top_speed_mm_s = planned.top_speed_mm_s();
+                assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(top_speed_mm_s);
+                assessment.demand.include(&demand);
+            }
+        }
+    }
+
+    /// Whether a piece runs as planned whatever happened where the motion was in
+    /// doubt before it.
+    fn is_certain(&mut self, planned: &Planned<u64>, from: usize, to: usize) -> bool {
+        let blend = matches!(planned.piece, Piece::Blend(_));
+        for index in from..=to {
+            if let Some(open) = self.open.get_mut(index)
+                && open.in_doubt
+            {
+                // Behind a stop there is no blend: the line begins at rest.
+                open.in_doubt = blend;
+                self.reach2 = Some(0.0);
+            }
+        }
+        let end2 = planned.speeds2.end;
+        if !planned.certain {
+            self.reach2 = (end2 > 0.0).then_some(0.0);
+            return false;
+        }
+        let Some(reach2) = self.reach2 else {
+            return true;
+        };
+        // Half of the acceleration, since the blends differ as well.
+        let reached2 = planned.reached2(reach2);
+        self.reach2 = (reached2 < end2).then_some(reached2);
+        false
+    }
+}
+
+/// Whether a piece is the whole path of a move.
+fn is_whole(mv: &Move, planned: &Planned<u64>) -> bool {
+    matches!(planned.piece, Piece::Along { from_mm, to_mm }
+        if from_mm == 0.0 && to_mm >= mv.length_mm)
+}

@@ -1,0 +1,239 @@
+//! Moves that a controller plans together: what each of them asks for.
+//!
+//! Input: moves and stops in program order. Output: an [`Assessment`] for each
+//! move, once nothing behind it can change it any more.
+//!
+//! ```text
+//! moves ─→ elements ─PathPlanner→ pieces of path ─PowerModel→ demand of each move
+//! ```
+//!
+//! A piece that the planner is not certain of, and the moves beside it, get the
+//! robust bound; and so does all whose speed depends on what happens there: the
+//! moves before it that may have to brake for it, and those behind it until they
+//! run as fast as planned even from rest.
+
+mod count;
+mod hand_on;
+mod open;
+
+use std::collections::VecDeque;
+
+use super::assessment::Assessment;
+use super::demand::Want;
+use super::eye::Eye;
+use super::model::PowerModel;
+use crate::interpret::Move;
+use crate::machine::{LookAhead, Machine, PathMode};
+use crate::plan::Overrides;
+use crate::plan::lookahead::{Element, PathPlanner};
+use open::Open;
+
+pub(crate) use open::{Role, joint, role};
+
+/// The moves that are planned together.
+#[derive(Debug)]
+pub(super) struct Ahead {
+    /// At the largest overrides: peaks.
+    largest: Side,
+    /// At 100 %: times and energies; where that is the same, nothing.
+    nominal: Option<Side>,
+    /// Moves that are not handed on, by number from `first` on.
+    open: VecDeque<Box<Open>>,
+    first: u64,
+    /// The one that was handed on last, and room that is used again.
+    before: Option<Box<Open>>,
+    #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
+    spare: Vec<Box<Open>>,
+    /// Nothing moves behind the last move.
+    at_rest: bool,
+    /// Something stands behind the last move that may or may not stop it.
+    in_doubt: bool,
+    /// What the motion reaches at least, from rest where it was in doubt last,
+    /// mm²/s²; nothing once that is as fast as planned.
+    reach2: Option<f64>,
+}
+
+/// A planner and how far it has come.
+#[derive(Debug)]
+struct Side {
+    planner: PathPlanner<u64>,
+    overrides: Overrides,
+    /// Of the last move.
+    element: Element<u64>,
+    /// The first move that is not finished.
+    next: u64,
+}
+
+impl Side {
+    /// Describes a move for the planner; false where it has no path.
+    #[inline]
+    fn describe(&mut self, machine: &Machine, mv: &Move, number: u64) -> bool {
+        self.element.tag = number;
+        self.element
+            .describe(machine, mv, self.overrides, joint(mv))
+    }
+}
+
+impl Ahead {
+    /// Nothing moves yet. `overrides`: the largest, and 100 % or what is
+    /// permitted of it.
+    pub fn new(machine: &Machine, rules: LookAhead, overrides: [Overrides; 2]) -> Self {
+        let [largest, nominal] = overrides.map(|overrides| Side {
+            planner: PathPlanner::new(machine, rules),
+            overrides,
+            element: Element::blank(0),
+            next: 0,
+        });
+        let alike = largest.overrides == nominal.overrides;
+        Self {
+            largest,
+            nominal: (!alike).then_some(nominal),
+            open: VecDeque::new(),
+            first: 0,
+            before: None,
+            spare: Vec::new(),
+            at_rest: true,
+            in_doubt: false,
+            reach2: None,
+        }
+    }
+
+    /// Whether a move waits.
+    pub fn is_open(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    /// Adds a move that has a path which the rules speak of; false, and nothing
+    /// done, for all others.
+    #[inline]
+    pub fn push_path(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        eye: &mut Eye,
+        mv: &Move,
+        text: &[u8],
+        want: Want,
+    ) -> bool {
+        if role(machine, mv) != Role::Path {
+            return false;
+        }
+        let number = self.first + self.open.len() as u64;
+        if !self.largest.describe(machine, mv, number) {
+            return false;
+        }
+        if let Some(nominal) = &mut self.nominal
+            && !nominal.describe(machine, mv, number)
+        {
+            return false;
+        }
+        if self.in_doubt {
+            self.brake_in_doubt(model, eye);
+        }
+        let mut open = self.room(mv, text, want);
+        let own = &self.nominal.as_ref().unwrap_or(&self.largest).element;
+        open.assessment.speed_mm_s = own.top_mm_s();
+        open.assessment.accel_mm_s2 = own.accel_mm_s2;
+        open.moves = true;
+        open.in_doubt = std::mem::take(&mut self.in_doubt);
+        open.rests = mv.path_mode == PathMode::ExactStop;
+        self.open.push_back(open);
+        // The planner holds it back, even if it ends at rest.
+        self.at_rest = false;
+        self.largest.planner.push(&self.largest.element);
+        if let Some(side) = &mut self.nominal {
+            side.planner.push(&side.element);
+        }
+        self.pump(model, eye);
+        true
+    }
+
+    /// Adds any other move with what is known of it by itself.
+    #[allow(clippy::too_many_arguments, reason = "what is known of a move")]
+    pub fn push_other(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        eye: &mut Eye,
+        mv: &Move,
+        text: &[u8],
+        assessment: Assessment,
+        want: Want,
+    ) {
+        if role(machine, mv) == Role::Nothing {
+            let mut open = self.room(mv, text, want);
+            open.assessment = assessment;
+            self.open.push_back(open);
+            return self.pump(model, eye);
+        }
+        self.brake_in_doubt(model, eye);
+        let mut open = self.room(mv, text, want);
+        open.assessment = Assessment {
+            blended: true,
+            ahead: true,
+            ..assessment
+        };
+        open.certain = false;
+        self.stop_planners();
+        open.moves = true;
+        open.in_doubt = std::mem::replace(&mut self.in_doubt, true);
+        self.at_rest = false;
+        self.open.push_back(open);
+        self.pump(model, eye);
+        let side = self.nominal.as_ref().unwrap_or(&self.largest);
+        eye.show(machine, mv, side.overrides);
+    }
+
+    /// The motion stops behind the last move.
+    pub fn stop(&mut self, model: &PowerModel, eye: &mut Eye) {
+        self.stop_planners();
+        self.at_rest = true;
+        self.in_doubt = false;
+        self.pump(model, eye);
+    }
+
+    /// Something stands here that may or may not stop the motion.
+    pub fn doubt(&mut self) {
+        let rests = self.at_rest || self.open.back().is_some_and(|last| last.rests);
+        self.in_doubt |= !rests;
+    }
+
+    /// The moves that a stop here would change are in doubt.
+    fn brake_in_doubt(&mut self, model: &PowerModel, eye: &mut Eye) {
+        self.largest.planner.settle();
+        self.pump(model, eye);
+        let finished = self.largest.next.saturating_sub(self.first) as usize;
+        for open in self.open.iter_mut().skip(finished) {
+            open.certain = false;
+        }
+    }
+
+    fn stop_planners(&mut self) {
+        self.largest.planner.stop();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.planner.stop();
+        }
+    }
+
+    /// Takes what the planners have finished.
+    fn pump(&mut self, model: &PowerModel, eye: &mut Eye) {
+        let end = self.first + self.open.len() as u64;
+        let times = self.nominal.is_none();
+        while let Some(planned) = self.largest.planner.pop() {
+            self.largest.next = planned.first;
+            self.take(model, eye, &planned, true, times);
+        }
+        while let Some(nominal) = &mut self.nominal
+            && let Some(planned) = nominal.planner.pop()
+        {
+            nominal.next = planned.first;
+            self.take(model, eye, &planned, false, true);
+        }
+        if self.at_rest {
+            self.largest.next = end;
+            if let Some(nominal) = &mut self.nominal {
+                nominal.next = end;
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! A move that waits for what is planned behind it, and how moves take part.
+
+use super::Ahead;
+use crate::interpret::{Corner, Move, MoveKind};
+use crate::machine::{Machine, PathMode};
+use crate::plan::is_independent;
+use crate::plan::lookahead::Joint;
+use crate::power::assessment::Assessment;
+use crate::power::demand::Want;
+use crate::power::watch::Kept;
+
+/// A move that is not handed on.
+#[derive(Debug)]
+pub(super) struct Open {
+    pub mv: Move,
+    pub text: Vec<u8>,
+    pub assessment: Assessment,
+    pub want: Want,
+    pub certain: bool,
+    /// The speed with which it begins is not certain.
+    pub in_doubt: bool,
+    /// It ends at rest whatever follows.
+    pub rests: bool,
+    /// Some axis moves.
+    pub moves: bool,
+    /// It neither begins nor ends in motion.
+    pub alone: bool,
+    /// Its pieces over time, where they are looked at.
+    pub kept: Kept,
+}
+
+/// How a move takes part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// It has a path that the rules speak of.
+    Path,
+    /// It has none, and is passed.
+    Nothing,
+    /// How it runs together with others is not known.
+    Unknown,
+}
+
+impl Ahead {
+    /// Room for a move, of which no piece is planned yet.
+    #[inline]
+    pub(super) fn room(&mut self, mv: &Move, text: &[u8], want: Want) -> Box<Open> {
+        let Some(mut open) = self.spare.pop() else {
+            return Box::new(Open::new(mv, text, want));
+        };
+        open.mv.clone_from(mv);
+        open.text.clear();
+        open.text.extend_from_slice(text);
+        open.assessment = Assessment::AHEAD;
+        open.want = want;
+        (open.certain, open.alone) = (true, true);
+        (open.in_doubt, open.rests, open.moves) = (false, false, false);
+        open.kept.clear();
+        open
+    }
+}
+
+impl Open {
+    #[cold]
+    fn new(mv: &Move, text: &[u8], want: Want) -> Self {
+        Self {
+            mv: mv.clone(),
+            text: text.to_vec(),
+            assessment: Assessment::AHEAD,
+            want,
+            certain: true,
+            in_doubt: false,
+            rests: false,
+            moves: false,
+            alone: true,
+            kept: Kept::default(),
+        }
+    }
+}
+
+/// How a move takes part in look-ahead.
+pub(crate) fn role(machine: &Machine, mv: &Move) -> Role {
+    let synchronous = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap | MoveKind::Probe);
+    if mv.moving.is_empty() && mv.unknown_start.is_empty() {
+        Role::Nothing
+    } else if synchronous || !mv.unknown_start.is_empty() || is_independent(machine, mv) {
+        Role::Unknown
+    } else {
+        Role::Path
+    }
+}
+
+/// What the planner may do at the end of a move.
+pub(crate) fn joint(mv: &Move) -> Joint {
+    match (mv.path_mode, mv.corner) {
+        (PathMode::ExactStop, _) => Joint::Stop,
+        (PathMode::LookAhead, Corner::Exact) => Joint::Exact,
+        (
+            PathMode::LookAhead,
+            Corner::Round {
+                tolerance_mm,
+                join_mm,
+            },
+        ) => Joint::Blend {
+            tolerance_mm,
+            join_mm,
+        },
+    }
+}

@@ -1,0 +1,161 @@
+//! What is kept of a move until it is its turn.
+
+use super::Track;
+use super::beside::Levels;
+use super::rating::Place;
+use crate::power::model::PowerModel;
+use crate::power::trace::{Line, Slice};
+
+/// One move that waits for its neighbours or for the spindle, by track.
+#[derive(Debug, Clone, Default)]
+pub(in crate::power) struct Kept(Vec<Own>);
+
+/// What one track is to take.
+#[derive(Debug, Clone, Default)]
+struct Own {
+    slices: Vec<Slice>,
+    /// Instead of slices: no more power than this, and what the slices come from.
+    line: Option<(f64, Line)>,
+}
+
+impl Kept {
+    pub fn clear(&mut self) {
+        for own in &mut self.0 {
+            own.slices.clear();
+            own.line = None;
+        }
+    }
+
+    fn own(&mut self, track: usize) -> Option<&mut Own> {
+        if track >= self.0.len() {
+            self.0.resize_with(track + 1, Own::default);
+        }
+        self.0.get_mut(track)
+    }
+
+    #[inline]
+    pub fn push(&mut self, track: usize, slice: Slice) {
+        if let Some(own) = self.own(track) {
+            own.slices.push(slice);
+        }
+    }
+
+    /// A line with no more power than `most_w`, for a track of stores alone.
+    pub fn push_line(&mut self, track: usize, most_w: f64, line: Line) {
+        if let Some(own) = self.own(track) {
+            own.line = Some((most_w, line));
+        }
+    }
+
+    /// The slices of one track.
+    pub fn slices(&self, track: usize) -> &[Slice] {
+        self.0.get(track).map_or(&[], |own| &own.slices)
+    }
+}
+
+impl Track {
+    /// Takes its share of a move, with what comes on top. Where the power changes
+    /// nothing but means, and that is plain, only these are told; of a line that
+    /// is bounded only the time counts then.
+    pub fn take_kept(
+        &mut self,
+        index: usize,
+        model: &PowerModel,
+        kept: &mut Kept,
+        beside: &mut Levels<'_>,
+        place: Place,
+    ) {
+        let Some(Own { slices, line }) = kept.0.get_mut(index) else {
+            return;
+        };
+        let steady = beside
+            .steady_w()
+            .map(|more_w| (more_w, self.limits.calm_w()));
+        if let Some((most_w, line)) = line {
+            if let Some((more_w, calm_w)) = steady
+                && *most_w + more_w <= calm_w
+            {
+                self.time_s = line.durations_s().fold(self.time_s, |time, own| time + own);
+                return;
+            }
+            if let Some(tracer) = model.tracer(self.converter, self.flow) {
+                tracer.line_slices(line, &mut |slice| slices.push(slice));
+            }
+        }
+        if let Some((more_w, calm_w)) = steady {
+            let raised = slices.iter().map(|slice| slice.raised(more_w));
+            if raised.clone().all(|slice| slice.keeps_below(calm_w)) {
+                for slice in raised {
+                    self.limits.take_calm(&slice, self.time_s, place);
+                    self.time_s += slice.duration_s;
+                }
+                return;
+            }
+        }
+        for slice in &*slices {
+            beside.add(slice, &mut |slice| self.take(slice, place));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Machine;
+    use crate::power::trace::Flow;
+    use crate::power::watch::limits::Limits;
+    use crate::power::watch::{Level, Track};
+
+    const MACHINE: &str = "schema = 1\nname = \"test\"\ncontroller = \"iso\"\n[converter]\n\
+        peak_power_w = 3000\ncontinuous_power_w = 1000\nwindow_s = 5\n\
+        overload = [{ power_w = 2000, seconds = 1, every_s = 3 }, { power_w = 3000, seconds = 1, every_s = 2 }]\n\
+        capacitance_f = 0.1\nbus_nominal_v = 500\nbus_min_v = 400\n\
+        [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 2000\nmass_kg = 700\n";
+
+    /// Powers around all limits: what is found is the same, to the last bit.
+    #[test]
+    fn what_changes_nothing_is_passed() {
+        let (machine, _) = Machine::from_toml("test.toml", MACHINE).expect("a machine");
+        let model = PowerModel::new(&machine);
+        let track = || Track {
+            converter: 0,
+            flow: Flow::Drawn,
+            limits: Limits::drawn(&machine.converters[0], 0.0, 3000.0),
+            time_s: 0.0,
+        };
+        let (mut quick, mut general) = (track(), track());
+        let mut seed = 1_u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1 << 24)
+        };
+        for line in 1..=3000 {
+            // Some moves far below the limits, some near, and some above.
+            let most_w = [600.0, 1400.0, 2400.0, 3600.0][(next() * 4.0) as usize];
+            let mut kept = Kept::default();
+            for _ in 0..3 {
+                let [from_w, to_w] = [next(), next()].map(|share| share * most_w);
+                kept.push(0, Slice::linear(1e-3 + 0.2 * next(), from_w, to_w));
+            }
+            let level = Level {
+                duration_s: 1.0,
+                drawn_w: 300.0 * next(),
+                fed_back_w: 0.0,
+            };
+            let levels = [level];
+            let place = Place { line, text: 0 };
+            let mut beside = Levels::new(&levels, &general, 0);
+            for slice in kept.slices(0) {
+                beside.add(slice, &mut |slice| general.take(slice, place));
+            }
+            let mut beside = Levels::new(&levels, &quick, 0);
+            quick.take_kept(0, &model, &mut kept, &mut beside, place);
+            assert_eq!(quick.time_s, general.time_s);
+            assert_eq!(quick.limits.ratings(0), general.limits.ratings(0));
+        }
+        let used = quick.limits.ratings(0);
+        assert!(used.iter().all(|rating| rating.value > 0.0), "{used:?}");
+        let voltage = used.last().expect("a voltage").value;
+        assert!(voltage < 500.0, "{voltage}");
+    }
+}
