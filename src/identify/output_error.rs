@@ -227,6 +227,11 @@ fn sought(transfer: &TransferFunction, period_s: f64) -> usize {
     libm::floor(transfer.delay_s / period_s + 1e-9) as usize + transfer.order() / 2
 }
 
+/// All unknowns; a swing that was over at once is left at nil.
+fn solved(normal: &Normal) -> Option<Solution> {
+    normal.solve().or_else(|| normal.solve_from(0, 1e-12))
+}
+
 /// Steps that bring the products of instruments and differences to zero.
 fn instrumental(
     data: &Data<'_>,
@@ -236,7 +241,7 @@ fn instrumental(
 ) -> Option<(TransferFunction, Normal)> {
     for _ in 0..20 {
         let normal = gather(data, &transfer, delay_is_free, left_out)?;
-        let step = normal.solve()?;
+        let step = solved(&normal)?;
         let mut size = 1.0;
         let next = loop {
             let part: Vec<f64> = step.x.iter().map(|x| x * size).collect();
@@ -282,7 +287,7 @@ fn finish(
     power: f64,
 ) -> Option<Estimate> {
     let left = rest(normal, count)?;
-    let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-12))?;
+    let solution = solved(normal)?;
     let unknowns = count + left.x.len();
     let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
     let (state, offset) = nuisance(&left);
