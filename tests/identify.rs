@@ -317,6 +317,28 @@ fn delay_and_rigid_axis_are_found() {
     assert!((rigid.inertia.unwrap().value - 0.02).abs() < 1e-4);
 }
 
+/// A speed under a torque: its differences are modelled as what they are.
+#[test]
+fn a_torque_with_a_speed_tells_the_axis() {
+    let axis = one_side();
+    let torque = random(8000, 45.0);
+    let mut random = Noise::new(11);
+    let mut sum = 0.0;
+    let speed: Vec<f64> = simulate(&axis, Measured::Velocity, PERIOD_S, &torque)
+        .unwrap()
+        .iter()
+        .map(|difference| {
+            sum += difference * PERIOD_S;
+            sum + 1e-5 * random.normal()
+        })
+        .collect();
+    let table = table(&["torque_nm", "velocity_rad_s"], &[&torque, &speed]);
+    let found = flexible::identify(&table, &choice(Method::Iv)).unwrap();
+    let errors = errors(&axis, &found);
+    assert!(errors[0].0.abs() < 1e-3, "{errors:?}");
+    assert!(errors[2].0.abs() < 1e-2, "{errors:?}");
+}
+
 #[test]
 fn without_noise_every_method_is_exact_or_near() {
     let axis = one_side();

@@ -42,11 +42,12 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
     refuse_clashes(&inputs, &outputs)?;
     let ratio = ratio(args)?;
     let recording = open(&args.recording, letter)?;
+    let name = || args.recording.display().to_string();
     let choice = choice(args, ratio)?;
     let is_flexible =
         args.model == Some(ModelArg::Flexible) || (args.model.is_none() && args.method.is_some());
     let (found, validation) = if is_flexible {
-        let found = flexible::identify(&recording, &choice)?;
+        let found = flexible::identify(&recording, &choice).with_context(name)?;
         let validation = match &args.validate {
             Some(path) => Some(flexible::predict_error(
                 &found,
@@ -61,7 +62,8 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
             FrictionArg::Symmetric => Friction::Symmetric,
             FrictionArg::Directional => Friction::Directional,
         };
-        let found = rigid::fit(&recording, ratio, friction, args.bandwidth_hz)?;
+        let found =
+            rigid::fit(&recording, ratio, friction, args.bandwidth_hz).with_context(name)?;
         let validation = match &args.validate {
             Some(path) => Some(rigid::predict_error(&found, &open(path, letter)?, ratio)?),
             None => None,

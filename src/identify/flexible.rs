@@ -2,14 +2,16 @@
 
 use super::arx;
 use super::column::{Kind, Quantity};
+use super::data::Data;
 use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
+use super::neighbours::Given;
 use super::noise::Whiteness;
-use super::output_error::{Data, residuals};
+use super::output_error::residuals;
 use super::parameters::parameters;
 use super::quality;
 use super::recording::Recording;
 use super::rigid::Figure;
-use super::search::{Given, LAGS, filtered};
+use super::search::{LAGS, filtered};
 use super::spectrum::FrequencyResponse;
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
@@ -279,6 +281,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         undisturbed: undisturbed.as_deref(),
         period_s: prepared.period_s,
         measured: prepared.measured,
+        from_command: !prepared.is_force,
         positions: prepared.positions,
     };
     let find = |choice: &Choice| match choice.method {
@@ -309,14 +312,13 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     let mut transfer = estimate.transfer.clone();
     let fitted_delay_s = transfer.delay_s;
     let left = residuals(data, estimate).unwrap_or_default();
-    let skip = 2.min(left.len());
     let power = |x: &[f64]| -> f64 {
         let n = x.len().max(1) as f64;
         let mean = x.iter().sum::<f64>() / n;
         x.iter().map(|x| (x - mean) * (x - mean)).sum()
     };
-    let rest = power(left.get(skip..).unwrap_or_default());
-    let all = power(prepared.output.get(skip..).unwrap_or_default());
+    let rest = power(&left);
+    let all = power(prepared.output.get(data.skip()..).unwrap_or_default());
     let std = |index: usize| {
         if found.has_errors {
             estimate.std(index).unwrap_or(f64::NAN)
@@ -383,10 +385,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             std: delay_std,
         },
         rel_error: (rest / all).sqrt(),
-        whiteness: Whiteness::of(
-            &filtered(left.get(skip..).unwrap_or_default(), &found.whitening),
-            LAGS,
-        ),
+        whiteness: Whiteness::of(&filtered(&left, &found.whitening), LAGS),
         noise_order: found.whitening.len(),
         response: found.response,
         signals: prepared.names.clone(),
@@ -411,6 +410,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         undisturbed: None,
         period_s: prepared.period_s,
         measured: prepared.measured,
+        from_command: !prepared.is_force,
         positions: prepared.positions,
     };
     let fitted = TransferFunction {
@@ -424,6 +424,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
             "record both at the same rate",
         )
     })?;
-    let norm = |x: &[f64]| x.iter().skip(2).map(|x| x * x).sum::<f64>().sqrt();
-    Ok(norm(&left) / norm(&prepared.output))
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let measured = prepared.output.get(data.skip()..).unwrap_or_default();
+    Ok(norm(&left) / norm(measured))
 }

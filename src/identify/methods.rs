@@ -1,10 +1,12 @@
 //! The methods that estimate a flexible axis.
 
 use super::arx;
+use super::data::Data;
 use super::flexible::{Choice, Prepared};
-use super::output_error::{Data, Effort, Estimate, refine};
+use super::neighbours::ORDER_MAX;
+use super::output_error::{Effort, Estimate, refine};
 use super::response_fit::{self, ResponseFit};
-use super::search::{LAG_MAX, ORDER_MAX, response_of, search};
+use super::search::{LAG_MAX, response_of, search};
 use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;

@@ -27,6 +27,19 @@ pub struct Solution {
     pub rest: f64,
 }
 
+/// The sum of products, in four parts that a processor can work on at once.
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let ((xs, x_rest), (ys, y_rest)) = (x.as_chunks(), y.as_chunks());
+    let mut sums = [0.0; 4];
+    for ([a, b, c, d], [e, f, g, h]) in xs.iter().zip(ys) {
+        let [i, j, k, l] = sums;
+        sums = [i + a * e, j + b * f, k + c * g, l + d * h];
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    let [a, b, c, d] = sums;
+    (a + b) + (c + d) + rest
+}
+
 impl Normal {
     /// For this many unknowns.
     #[must_use]
@@ -53,6 +66,24 @@ impl Normal {
         }
         self.total += right * right;
         self.rows += 1;
+    }
+
+    /// Adds rows by columns: those that are not zero, ascending by their place,
+    /// and the right side, all of one length.
+    pub fn add_columns(&mut self, columns: &[(usize, &[f64])], right: &[f64]) {
+        for (i, x) in columns {
+            let row = self.products.get_mut(i * (i + 1) / 2..).unwrap_or_default();
+            for (j, y) in columns.iter().take_while(|(j, _)| j <= i) {
+                if let Some(slot) = row.get_mut(*j) {
+                    *slot += dot(x, y);
+                }
+            }
+            if let Some(slot) = self.right.get_mut(*i) {
+                *slot += dot(x, right);
+            }
+        }
+        self.total += dot(right, right);
+        self.rows += right.len();
     }
 
     /// Solves for all unknowns.

@@ -15,9 +15,10 @@
 
 use nalgebra::DMatrix;
 
+use super::data::Data;
 use super::normal::{Normal, Solution};
-use super::parameters::{is_admissible, parameters, probes, with};
-use super::state_space::{Measured, Sampled, Simulation};
+use super::parameters::{is_admissible, parameters, with};
+use super::sensitivity::{differences, gather};
 use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
@@ -25,44 +26,10 @@ const STEPS_MAX: usize = 40;
 /// search: far below what noise decides.
 const ENOUGH: f64 = 1e-3;
 
-/// What is fitted.
-#[derive(Debug, Clone, Copy)]
-pub struct Data<'a> {
-    /// Input, held between samples.
-    pub input: &'a [f64],
-    /// Output; differences of it where a speed or position was measured.
-    pub output: &'a [f64],
-    /// What the excitation alone makes of the input, in a closed loop.
-    pub undisturbed: Option<&'a [f64]>,
-    /// Sampling period.
-    pub period_s: f64,
-    /// What was measured.
-    pub measured: Measured,
-    /// True for positions as input and output: most of what they are is slow.
-    pub positions: bool,
-}
-
-impl Data<'_> {
-    /// The first samples only.
-    #[must_use]
-    pub fn head(&self, count: usize) -> Self {
-        let cut = |x: &'_ [f64]| -> usize { count.min(x.len()) };
-        Self {
-            input: self.input.get(..cut(self.input)).unwrap_or_default(),
-            output: self.output.get(..cut(self.output)).unwrap_or_default(),
-            undisturbed: self
-                .undisturbed
-                .map(|x| x.get(..cut(x)).unwrap_or_default()),
-            ..*self
-        }
-    }
-
-    /// Number of samples.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.input.len().min(self.output.len())
-    }
-}
+/// So near to the criterion that is to be beaten, a fit is given this many times
+/// the steps.
+const NEAR: f64 = 20.0;
+const LONGER: usize = 4;
 
 /// A fitted model.
 #[derive(Debug, Clone)]
@@ -146,70 +113,6 @@ fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// One pass over the data: normal equations of the step at these parameters. The
-/// first samples, where a filter has not swung in, are left out.
-fn gather(
-    data: &Data<'_>,
-    transfer: &TransferFunction,
-    delay_is_free: bool,
-    left_out: usize,
-) -> Option<Normal> {
-    let sampled =
-        |transfer: &TransferFunction| Sampled::new(transfer, data.measured, data.period_s);
-    let theta = parameters(transfer, delay_is_free);
-    let probes = probes(transfer, delay_is_free, data.period_s);
-    let base = sampled(transfer)?;
-    let order = base.order();
-    let mut moved = Vec::with_capacity(theta.len());
-    for (index, probe) in probes.iter().enumerate() {
-        let mut theta = theta.clone();
-        *theta.get_mut(index)? += probe;
-        moved.push((
-            Simulation::new(sampled(&with(transfer, &theta))?),
-            1.0 / probe,
-        ));
-    }
-    let mut free = base.free_swing();
-    // How the instruments are driven; in an open loop as the output is.
-    let driven = data.undisturbed.unwrap_or(data.input);
-    let mut instrument = data.undisturbed.map(|_| Simulation::new(base.clone()));
-    let mut simulation = Simulation::new(base);
-    let width = theta.len() + order + 1;
-    let mut normal = Normal::new(width);
-    let mut row = vec![0.0; width + 1];
-    let skip = match data.measured {
-        Measured::Direct => 0,
-        Measured::Velocity => 1,
-        Measured::Position => 2,
-    };
-    for (k, y) in data.output.iter().enumerate().take(data.len()) {
-        let simulated = simulation.step(data.input, k);
-        let base = match &mut instrument {
-            Some(instrument) => instrument.step(driven, k),
-            None => simulated,
-        };
-        let mut slots = row.iter_mut();
-        for ((simulation, per_step), slot) in moved.iter_mut().zip(&mut slots) {
-            *slot = (simulation.step(driven, k) - base) * *per_step;
-        }
-        for (x, slot) in free.next_row().iter().zip(&mut slots) {
-            *slot = *x;
-        }
-        if let Some(slot) = slots.next() {
-            *slot = 1.0;
-        }
-        if let Some(slot) = slots.next() {
-            *slot = y - simulated;
-        }
-        if k >= skip + left_out
-            && let Some((right, columns)) = row.split_last()
-        {
-            normal.add(columns, *right);
-        }
-    }
-    normal.total.is_finite().then_some(normal)
-}
-
 /// The sum of squares that is left when offset and first state fit best.
 fn rest(normal: &Normal, count: usize) -> Option<Solution> {
     (0..4).find_map(|power| {
@@ -242,7 +145,7 @@ pub fn refine(
         undisturbed: undisturbed.as_deref(),
         ..*raw
     };
-    let left_out = whitening.len();
+    let left_out = whitening.len() + data.skip();
     // The search goes down on squares; instruments come at its end.
     let open = Data {
         undisturbed: None,
@@ -255,7 +158,13 @@ pub fn refine(
     let mut damping = 1e-4;
     let power: f64 = raw.output.iter().map(|y| y * y).sum();
     let mut steps = 0;
-    for round in 0..effort.steps {
+    let free = |transfer: &TransferFunction| count + sought(transfer, data.period_s);
+    for round in 0..LONGER * effort.steps {
+        // What is missing, in units of the criterion: what is near is worth more.
+        let missing = criterion(least, power, normal.rows, free(&transfer)) - effort.to_beat;
+        if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
+            break;
+        }
         steps = round + 1;
         let Some(step) = normal.solve_from(0, damping) else {
             damping *= 10.0;
@@ -279,12 +188,11 @@ pub fn refine(
                 if gained <= ENOUGH * least / normal.rows as f64 || least <= ROUNDING * power {
                     break;
                 }
-                // What is missing, in units of the criterion, against what the
-                // step brought.
-                let free = count + sought(&transfer, data.period_s);
-                let missing = criterion(least, power, normal.rows, free) - effort.to_beat;
+                // Against what the step brought.
                 let brought = normal.rows as f64 * gained / least;
-                if round >= 7 && missing > 20.0 && brought < 0.2 * missing {
+                let missing = missing - brought;
+                let is_slow = |share: f64| missing > NEAR && brought < share * missing;
+                if (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2)) {
                     break;
                 }
             }
@@ -302,13 +210,13 @@ pub fn refine(
     let sought = sought(&transfer, data.period_s);
     let mut estimate = finish(transfer, &normal, [count, sought], power)?;
     estimate.steps = steps;
-    if left_out > 0 {
+    if !whitening.is_empty() {
         // Offset and first state of the signals as they are.
         let open = Data {
             undisturbed: None,
             ..*raw
         };
-        let normal = gather(&open, &estimate.transfer, delay_is_free, 0)?;
+        let normal = gather(&open, &estimate.transfer, delay_is_free, raw.skip())?;
         (estimate.state, estimate.offset) = nuisance(&rest(&normal, count)?);
     }
     Some(estimate)
@@ -317,6 +225,11 @@ pub fn refine(
 /// Whole periods of delay and pairs of poles.
 fn sought(transfer: &TransferFunction, period_s: f64) -> usize {
     libm::floor(transfer.delay_s / period_s + 1e-9) as usize + transfer.order() / 2
+}
+
+/// All unknowns; a swing that was over at once is left at nil.
+fn solved(normal: &Normal) -> Option<Solution> {
+    normal.solve().or_else(|| normal.solve_from(0, 1e-12))
 }
 
 /// Steps that bring the products of instruments and differences to zero.
@@ -328,7 +241,7 @@ fn instrumental(
 ) -> Option<(TransferFunction, Normal)> {
     for _ in 0..20 {
         let normal = gather(data, &transfer, delay_is_free, left_out)?;
-        let step = normal.solve()?;
+        let step = solved(&normal)?;
         let mut size = 1.0;
         let next = loop {
             let part: Vec<f64> = step.x.iter().map(|x| x * size).collect();
@@ -374,7 +287,7 @@ fn finish(
     power: f64,
 ) -> Option<Estimate> {
     let left = rest(normal, count)?;
-    let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-12))?;
+    let solution = solved(normal)?;
     let unknowns = count + left.x.len();
     let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
     let (state, offset) = nuisance(&left);
@@ -401,20 +314,11 @@ fn nuisance(solution: &Solution) -> (Vec<f64>, f64) {
 }
 
 /// Differences between measured and simulated output, offset and first state
-/// taken off.
+/// taken off, behind the samples that do not count.
 #[must_use]
 pub fn residuals(data: &Data<'_>, estimate: &Estimate) -> Option<Vec<f64>> {
-    let sampled = Sampled::new(&estimate.transfer, data.measured, data.period_s)?;
-    let mut free = sampled.free_swing();
-    let mut simulation = Simulation::new(sampled);
-    let pairs = data.output.iter().enumerate().take(data.len());
-    Some(
-        pairs
-            .map(|(k, y)| {
-                let row = free.next_row();
-                let swing: f64 = row.iter().zip(&estimate.state).map(|(a, b)| a * b).sum();
-                y - simulation.step(data.input, k) - swing - estimate.offset
-            })
-            .collect(),
-    )
+    let (transfer, state) = (&estimate.transfer, &estimate.state);
+    let mut left = differences(data, transfer, data.skip(), state, estimate.offset)?;
+    left.drain(..data.skip().min(left.len()));
+    Some(left)
 }

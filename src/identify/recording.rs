@@ -50,10 +50,7 @@ impl Recording {
             .from_reader(input);
         let header = text.headers().map_err(|error| broken(&error))?.clone();
         if header.len() < 2 {
-            return Err(Trouble::new(
-                "the recording has fewer than two columns",
-                "separate columns with commas; the first line names them, such as time_s,torque_nm,position_mm",
-            ));
+            return Err(one_column(&header));
         }
         let (columns, ignored) = columns(&header, axis)?;
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
@@ -69,7 +66,7 @@ impl Recording {
                 if !value.is_finite() {
                     return Err(Trouble::new(
                         format!("line {line}: {name} is \"{cell}\", not a number"),
-                        "leave out lines without values, or record again: samples must not be missing",
+                        "cut the recording there, or record again: samples must not be missing",
                     ));
                 }
                 list.push(value);
@@ -130,6 +127,27 @@ impl Recording {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// What is wrong with a header of one column, or none.
+fn one_column(header: &csv::StringRecord) -> Trouble {
+    let name = header.get(0).unwrap_or_default();
+    if name.is_empty() {
+        return Trouble::new(
+            "the recording is empty",
+            "record again; the first line names the columns, such as time_s,torque_nm,position_mm",
+        );
+    }
+    if name.contains(';') || name.contains('\t') {
+        return Trouble::new(
+            "the columns of the recording are not separated by commas",
+            "export it with commas between the columns, and with points in the numbers",
+        );
+    }
+    Trouble::new(
+        "the recording has fewer than two columns",
+        "separate columns with commas; the first line names them, such as time_s,torque_nm,position_mm",
+    )
 }
 
 fn broken(error: &csv::Error) -> Trouble {

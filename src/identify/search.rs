@@ -2,16 +2,15 @@
 //! started from the measured frequency response, and the one that Bayes'
 //! criterion prefers.
 
-use super::mode::with_mode;
+use super::data::Data;
+use super::neighbours::{Given, ORDER_MAX, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
-use super::output_error::{Data, Effort, Estimate, refine, residuals};
+use super::output_error::{Effort, Estimate, refine, residuals};
 use super::response_fit::grow;
 use super::spectrum::{FrequencyResponse, measure};
 use super::subspace::{Subspace, with_poles};
-use super::transfer::{Factor, TransferFunction};
+use super::transfer::TransferFunction;
 
-/// Poles at most.
-pub const ORDER_MAX: usize = 8;
 /// Periods of delay that are tried.
 pub const LAG_MAX: usize = 12;
 /// Samples on which models are compared; the last fit takes all.
@@ -25,29 +24,18 @@ const CLEAR_DELAY: f64 = 10.0;
 const WORTH: f64 = 0.5;
 /// Steps of each fit on the way.
 const SEARCH_STEPS: usize = 20;
-/// How far above the fastest mode another one is looked for at first.
-const ABOVE: [f64; 3] = [1.5, 2.5, 4.0];
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
 const STEPS_MAX: usize = 500;
 const STEPS_LAST: usize = 120;
+/// Rounds of model and noise.
+const ROUNDS_OF_NOISE: usize = 4;
 /// Steps from model to model at most.
 const ROUNDS_MAX: usize = 12;
 /// Order of the filter that makes noise white, at most.
 const WHITENING_MAX: usize = 40;
 /// Lags over which residuals are tested.
 pub const LAGS: usize = 40;
-
-/// What is given instead of searched for.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Given {
-    /// Number of poles.
-    pub order: Option<usize>,
-    /// Number of zeros.
-    pub zeros: Option<usize>,
-    /// Delay, s.
-    pub delay_s: Option<f64>,
-}
 
 /// A model with how it was found.
 #[derive(Debug, Clone)]
@@ -68,25 +56,26 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     let response = response_of(data, instrument, None)?;
     let short = data.head(COMPARED);
     let mut taps: Vec<f64> = Vec::new();
-    let mut best: Option<(Estimate, bool)> = None;
+    let mut best: Option<(Estimate, bool, Vec<f64>)> = None;
     // Noise that is not white shows only behind a model, and the model only
-    // when the noise is known: three rounds settle both.
-    for _ in 0..3 {
-        let found = ladder(&short, &response, given, &taps)?;
-        let left = residuals(&short, &found.0)?;
-        let exact = found.0.rest <= 1e-12 * found.0.power;
-        let next = if exact || Whiteness::of(filtered(&left, &taps).as_slice(), LAGS).is_white() {
-            None
-        } else {
-            Some(whitening(&left, WHITENING_MAX))
+    // when the noise is known: a few rounds settle both, each from where the one
+    // before came to.
+    for _ in 0..ROUNDS_OF_NOISE {
+        let before = best.as_ref().map(|(best, ..)| &best.transfer);
+        let Some((found, delay_is_free)) = ladder(&short, &response, given, &taps, before) else {
+            break;
         };
-        best = Some(found);
+        let left = residuals(&short, &found)?;
+        let exact = found.rest <= 1e-12 * found.power;
+        let is_white = || Whiteness::of(filtered(&left, &taps).as_slice(), LAGS).is_white();
+        let next = (!exact && !is_white()).then(|| whitening(&left, WHITENING_MAX));
+        best = Some((found, delay_is_free, taps));
         match next {
             Some(next) => taps = next,
             None => break,
         }
     }
-    let (short_estimate, delay_is_free) = best?;
+    let (short_estimate, delay_is_free, taps) = best?;
     let estimate = refine(
         data,
         &short_estimate.transfer,
@@ -137,8 +126,10 @@ fn ladder(
     response: &FrequencyResponse,
     given: Given,
     taps: &[f64],
+    before: Option<&TransferFunction>,
 ) -> Option<(Estimate, bool)> {
-    let starts = starts(data, response, given);
+    let mut starts = starts(data, response, given);
+    starts.extend(before.cloned());
     let mut best: Option<Estimate> = None;
     for start in starts {
         let effort = Effort {
@@ -154,6 +145,7 @@ fn ladder(
     let mut best = best?;
     let mut is_restarted = false;
     let mut left = STEPS_MAX;
+    let mut tried = vec![best.transfer.clone()];
     for _ in 0..ROUNDS_MAX {
         let mut top: Option<Estimate> = None;
         let next = if is_restarted {
@@ -165,6 +157,10 @@ fn ladder(
             if left == 0 {
                 break;
             }
+            if tried.iter().any(|other| are_alike(other, &start)) {
+                continue;
+            }
+            tried.push(start.clone());
             let effort = Effort {
                 steps: SEARCH_STEPS,
                 to_beat: top.as_ref().unwrap_or(&best).criterion(),
@@ -185,6 +181,7 @@ fn ladder(
         left = left.max(STEPS_LAST);
         let before = best.criterion();
         if let Some(top) = top.filter(|top| is_better(top, Some(&best))) {
+            tried.push(top.transfer.clone());
             best = top;
         }
         if best.criterion() < before - WORTH {
@@ -199,197 +196,6 @@ fn ladder(
         return Some((best, false));
     }
     Some(any_delay(data, best, taps))
-}
-
-/// Models that differ from one by a zero, a pair of zeros, a mode, or a period
-/// of delay.
-fn neighbours(
-    from: &TransferFunction,
-    response: &FrequencyResponse,
-    given: Given,
-    period_s: f64,
-) -> Vec<TransferFunction> {
-    let far_zero = far_zero(period_s);
-    let lean = lean(from);
-    let mut out = reflected(from, given, period_s);
-    if given.order.is_none() && lean.order() < from.order() {
-        // Fast poles and zeros may have stood for a delay.
-        let later = if given.delay_s.is_none() { 2 } else { 0 };
-        for periods in 0..=later {
-            let mut less = lean.clone();
-            less.delay_s += f64::from(periods) * period_s;
-            if less.zero_count() < less.order() {
-                let mut more = less.clone();
-                more.zeros.push(far_zero);
-                out.push(more);
-            }
-            out.push(less);
-        }
-    }
-    let mut shapes = vec![from.clone()];
-    if from.zero_count() < from.order() {
-        let mut more = from.clone();
-        more.zeros.push(far_zero);
-        shapes.push(more);
-    }
-    for index in 0..from.zeros.len() {
-        let mut less = from.clone();
-        less.zeros.remove(index);
-        shapes.push(less.clone());
-        less.zeros.push(far_zero);
-        shapes.push(less);
-    }
-    out.extend(shapes.iter().skip(1).cloned());
-    if given.delay_s.is_none() {
-        for shape in &shapes {
-            let mut sooner = shape.clone();
-            sooner.delay_s -= period_s;
-            if sooner.delay_s > -0.5 * period_s {
-                sooner.delay_s = sooner.delay_s.max(0.0);
-                out.push(sooner);
-            }
-        }
-        for shape in &shapes {
-            let mut later = shape.clone();
-            later.delay_s += period_s;
-            out.push(later);
-        }
-    }
-    if given.order.is_none() {
-        if from.order() + 2 <= ORDER_MAX {
-            out.extend(with_mode(from, response, period_s));
-        }
-        out.extend(without_mode(from, far_zero));
-    }
-    if let Some(zeros) = given.zeros {
-        out.retain(|model| model.zero_count() == zeros);
-    }
-    out
-}
-
-/// Dampers make a real zero far above the band: seldom seen in the response, but
-/// not nothing.
-fn far_zero(period_s: f64) -> Factor {
-    Factor::Real {
-        time_constant_s: 0.1 * period_s,
-    }
-}
-
-/// Zeros that swing come from what hangs on the load, and that is damped: where
-/// they came out undamped, the same ones damped, with less delay.
-fn reflected(from: &TransferFunction, given: Given, period_s: f64) -> Vec<TransferFunction> {
-    let mut damped = from.clone();
-    let mut is_other = false;
-    for zero in &mut damped.zeros {
-        if zero.oscillates()
-            && let Factor::Pair { damping, .. } = zero
-            && *damping < 0.0
-        {
-            *damping = -*damping;
-            is_other = true;
-        }
-    }
-    if !is_other {
-        return Vec::new();
-    }
-    let sooner = if given.delay_s.is_none() { 3 } else { 1 };
-    (0..sooner)
-        .map(|periods| from.delay_s - f64::from(periods) * period_s)
-        .filter(|delay_s| *delay_s >= 0.0)
-        .map(|delay_s| TransferFunction {
-            delay_s,
-            ..damped.clone()
-        })
-        .collect()
-}
-
-/// What swings of a model: the rest often stands for nothing but noise.
-fn lean(from: &TransferFunction) -> TransferFunction {
-    let swings =
-        |factor: &&Factor| matches!(factor, Factor::Pair { damping, .. } if damping.abs() < 0.7);
-    let poles: Vec<Factor> = from.poles.iter().filter(swings).copied().collect();
-    let order = 2 * poles.len();
-    let mut zeros: Vec<Factor> = from.zeros.iter().filter(swings).copied().collect();
-    zeros.truncate(order / 2);
-    TransferFunction {
-        zeros,
-        poles,
-        ..from.clone()
-    }
-}
-
-/// Where no neighbour is better: the slowest of what swings, with one faster mode
-/// placed anew, by the response or well above. Outside the band of the excitation
-/// a mode may have gone astray.
-fn restarts(
-    from: &TransferFunction,
-    response: &FrequencyResponse,
-    given: Given,
-    period_s: f64,
-) -> Vec<TransferFunction> {
-    if given.order.is_some() || given.zeros.is_some() {
-        return Vec::new();
-    }
-    let lean = lean(from);
-    (1..=lean.poles.len())
-        .flat_map(|count| {
-            let mut slow = lean.clone();
-            for list in [&mut slow.zeros, &mut slow.poles] {
-                list.sort_by(|a, b| a.corner_rad_s().total_cmp(&b.corner_rad_s()));
-                list.truncate(count);
-            }
-            let mut starts = with_mode(&slow, response, period_s);
-            for above in ABOVE {
-                let mut stiff = slow.clone();
-                let fastest = slow.poles.last().map(|pole| pole.corner_rad_s());
-                stiff.poles.extend(fastest.map(|omega| Factor::Pair {
-                    omega_rad_s: above * omega,
-                    damping: 0.05,
-                }));
-                stiff.zeros.push(far_zero(period_s));
-                starts.push(stiff);
-            }
-            starts
-        })
-        .collect()
-}
-
-/// Without one pole, and without none or one of the zeros: the nearest first.
-fn without_mode(from: &TransferFunction, far_zero: Factor) -> Vec<TransferFunction> {
-    let mut out = Vec::new();
-    for (at, pole) in from.poles.iter().enumerate() {
-        let distance = |zero: &Factor| libm::log(zero.corner_rad_s() / pole.corner_rad_s()).abs();
-        let mut less = from.clone();
-        less.poles.remove(at);
-        let mut zeros: Vec<(f64, usize)> = less
-            .zeros
-            .iter()
-            .enumerate()
-            .filter(|(_, zero)| zero.degree() == pole.degree())
-            .map(|(index, zero)| (distance(zero), index))
-            .collect();
-        zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut shapes: Vec<TransferFunction> = zeros
-            .iter()
-            .map(|(_, index)| {
-                let mut lesser = less.clone();
-                lesser.zeros.remove(*index);
-                lesser
-            })
-            .collect();
-        shapes.push(less);
-        for shape in shapes {
-            if shape.zero_count() < shape.order() {
-                let mut more = shape.clone();
-                more.zeros.push(far_zero);
-                out.push(more);
-            }
-            if shape.zero_count() <= shape.order() {
-                out.push(shape);
-            }
-        }
-    }
-    out
 }
 
 /// Models to start from: those that fit the frequency response best, for the

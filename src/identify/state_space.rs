@@ -193,21 +193,6 @@ impl Sampled {
     pub fn order(&self) -> usize {
         self.order
     }
-
-    /// What each state alone, 1 at the first sample, adds to the output as it
-    /// swings freely.
-    #[must_use]
-    pub fn free_swing(&self) -> FreeSwing {
-        FreeSwing {
-            phi: self.phi.clone(),
-            row: self.c.clone(),
-            last: [vec![0.0; self.order], vec![0.0; self.order]],
-            out: vec![0.0; self.order],
-            seen: 0,
-            measured: self.measured,
-            period_s: self.period_s,
-        }
-    }
 }
 
 /// `e^(A·t)` and `∫₀ᵗ e^(A·s) ds · B`.
@@ -253,48 +238,6 @@ pub fn exponential(m: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         sum = &sum * &sum;
     }
     sum.iter().all(|x| x.is_finite()).then_some(sum)
-}
-
-/// Free responses to each state, sample by sample: `C·Φᵏ`.
-#[derive(Debug, Clone)]
-pub struct FreeSwing {
-    phi: Vec<f64>,
-    row: Vec<f64>,
-    last: [Vec<f64>; 2],
-    out: Vec<f64>,
-    seen: usize,
-    measured: Measured,
-    period_s: f64,
-}
-
-impl FreeSwing {
-    /// The next sample, one figure for each state.
-    pub fn next_row(&mut self) -> &[f64] {
-        let n = self.row.len();
-        let t = self.period_s;
-        let [before, earlier] = &self.last;
-        for (((slot, y), before), earlier) in
-            self.out.iter_mut().zip(&self.row).zip(before).zip(earlier)
-        {
-            *slot = match self.measured {
-                Measured::Direct => *y,
-                Measured::Velocity if self.seen > 0 => (y - before) / t,
-                Measured::Position if self.seen > 1 => (y - 2.0 * before + earlier) / (t * t),
-                _ => 0.0,
-            };
-        }
-        self.seen = self.seen.saturating_add(1);
-        self.last.swap(0, 1);
-        let [before, _] = &mut self.last;
-        before.copy_from_slice(&self.row);
-        self.row.fill(0.0);
-        for (x, phi) in before.iter().zip(self.phi.chunks_exact(n.max(1))) {
-            for (slot, p) in self.row.iter_mut().zip(phi) {
-                *slot += x * p;
-            }
-        }
-        &self.out
-    }
 }
 
 /// A sampled system at work: keeps its state from one stretch of input to the

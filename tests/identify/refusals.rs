@@ -7,7 +7,7 @@ use gwatt::identify::Recording;
 use gwatt::identify::flexible::{self, Method};
 use gwatt::identify::rigid::{self, Friction};
 
-use super::{Noise, PERIOD_S, choice, csv, table};
+use super::{Noise, PERIOD_S, choice, csv, m_sequence, table};
 
 /// What is wrong with a recording, by the message.
 fn refusal(text: &str) -> String {
@@ -34,7 +34,9 @@ fn bad_recordings_are_refused_with_what_to_do() {
         assert!(message.contains(what), "{what}: {message}");
         assert!(message.contains("help: "), "{message}");
     };
-    said("", "fewer than two columns");
+    said("", "the recording is empty");
+    said("time_s\n0\n", "fewer than two columns");
+    said(&good.replace(',', ";"), "not separated by commas");
     said(&good.replace("time_s", "seconds"), "no column time_s");
     said(&good.replace("force_n", "force"), "unit of column force");
     said(
@@ -94,4 +96,28 @@ fn time_may_jitter_a_little() {
     let period = table(1e-4).unwrap().period_s;
     assert!((period - PERIOD_S).abs() < 1e-9);
     assert!(table(0.1).is_err());
+}
+
+/// `y(k) = u(k) − y(k − 1)/2` has its pole at −1/2, where no axis that is sampled has
+/// one.
+#[test]
+fn a_recording_that_no_axis_makes_is_refused() {
+    let torque = m_sequence(1000);
+    let mut before = 0.0;
+    let accel: Vec<f64> = torque
+        .iter()
+        .map(|u| {
+            before = u - 0.5 * before;
+            before
+        })
+        .collect();
+    let table = table(&["torque_nm", "accel_rad_s2"], &[&torque, &accel]);
+    let mut choice = choice(Method::Arx);
+    choice.given.order = Some(1);
+    let trouble = flexible::identify(&table, &choice).unwrap_err();
+    assert_eq!(trouble.message, "no stable model fits the recording");
+    assert_eq!(
+        trouble.help,
+        "check units and signs of the columns, excite longer, or give --order"
+    );
 }

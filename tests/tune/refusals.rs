@@ -46,6 +46,14 @@ fn filters_that_cannot_be_had_are_refused() {
         }),
         "a low-pass of 450 Hz cannot be had at 1000 Hz"
     );
+    // So slow that its poles are 1 to the last digit.
+    assert_eq!(
+        of(Wish {
+            bandwidth_hz: Some(1e-15),
+            ..base
+        }),
+        "the filter of axis X would not be stable"
+    );
     assert_eq!(
         of(Wish {
             no_low_pass: true,

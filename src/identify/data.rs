@@ -1,0 +1,59 @@
+//! What is fitted: input and output, and how they were measured.
+
+use super::state_space::Measured;
+
+/// The longest delay that is looked for, and a little.
+const LEAD_IN: usize = 16;
+
+/// What is fitted.
+#[derive(Debug, Clone, Copy)]
+pub struct Data<'a> {
+    /// Input, held between samples.
+    pub input: &'a [f64],
+    /// Output; differences of it where a speed or position was measured.
+    pub output: &'a [f64],
+    /// What the excitation alone makes of the input, in a closed loop.
+    pub undisturbed: Option<&'a [f64]>,
+    /// Sampling period.
+    pub period_s: f64,
+    /// What was measured.
+    pub measured: Measured,
+    /// True for commands as input.
+    pub from_command: bool,
+    /// True for positions as input and output: most of what they are is slow.
+    pub positions: bool,
+}
+
+impl Data<'_> {
+    /// The first samples only.
+    #[must_use]
+    pub fn head(&self, count: usize) -> Self {
+        let cut = |x: &'_ [f64]| -> usize { count.min(x.len()) };
+        Self {
+            input: self.input.get(..cut(self.input)).unwrap_or_default(),
+            output: self.output.get(..cut(self.output)).unwrap_or_default(),
+            undisturbed: self
+                .undisturbed
+                .map(|x| x.get(..cut(x)).unwrap_or_default()),
+            ..*self
+        }
+    }
+
+    /// Samples at the beginning that do not count. Before the first one a force
+    /// was nil; where a command stood is not known, and comes late.
+    #[must_use]
+    pub fn skip(&self) -> usize {
+        match self.measured {
+            _ if self.from_command => LEAD_IN,
+            Measured::Direct => 0,
+            Measured::Velocity => 1,
+            Measured::Position => 2,
+        }
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.input.len().min(self.output.len())
+    }
+}

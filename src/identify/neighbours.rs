@@ -1,0 +1,274 @@
+//! Models that differ a little from one that was found: where a search goes on.
+
+use super::mode::with_mode;
+use super::spectrum::FrequencyResponse;
+use super::transfer::{Factor, TransferFunction};
+
+/// Poles at most.
+pub const ORDER_MAX: usize = 8;
+/// How far above the fastest mode another one is looked for at first.
+const ABOVE: [f64; 3] = [1.5, 2.5, 4.0];
+
+/// What is given instead of searched for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Given {
+    /// Number of poles.
+    pub order: Option<usize>,
+    /// Number of zeros.
+    pub zeros: Option<usize>,
+    /// Delay, s.
+    pub delay_s: Option<f64>,
+}
+
+/// True for models of one shape from which a fit comes to the same end.
+#[must_use]
+pub fn are_alike(a: &TransferFunction, b: &TransferFunction) -> bool {
+    const NEAR: f64 = 0.01;
+    let factors = |x: &TransferFunction| -> Vec<Factor> {
+        let all = x.zeros.iter().chain(&x.poles);
+        all.copied().collect()
+    };
+    let same = |a: &Factor, b: &Factor| match (*a, *b) {
+        (
+            Factor::Pair {
+                omega_rad_s,
+                damping,
+            },
+            Factor::Pair {
+                omega_rad_s: other,
+                damping: than,
+            },
+        ) => {
+            (omega_rad_s / other - 1.0).abs() < NEAR
+                && (damping - than).abs() < NEAR * damping.abs().max(0.02)
+        }
+        (
+            Factor::Real { time_constant_s },
+            Factor::Real {
+                time_constant_s: other,
+            },
+        ) => (time_constant_s / other - 1.0).abs() < 10.0 * NEAR,
+        _ => false,
+    };
+    let (left, right) = (factors(a), factors(b));
+    a.delay_s == b.delay_s
+        && a.zeros.len() == b.zeros.len()
+        && left.len() == right.len()
+        && left.iter().zip(&right).all(|(a, b)| same(a, b))
+}
+
+/// Models that differ from one by a zero, a pair of zeros, a mode, or a period
+/// of delay.
+#[must_use]
+pub fn neighbours(
+    from: &TransferFunction,
+    response: &FrequencyResponse,
+    given: Given,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    let far_zero = far_zero(period_s);
+    let lean = lean(from);
+    let mut out = reflected(from, given, period_s);
+    if given.order.is_none() {
+        out.extend(cancelled(from));
+    }
+    if given.order.is_none() && lean.order() < from.order() {
+        // Fast poles and zeros may have stood for a delay.
+        let later = if given.delay_s.is_none() { 2 } else { 0 };
+        for periods in 0..=later {
+            let mut less = lean.clone();
+            less.delay_s += f64::from(periods) * period_s;
+            if less.zero_count() < less.order() {
+                let mut more = less.clone();
+                more.zeros.push(far_zero);
+                out.push(more);
+            }
+            out.push(less);
+        }
+    }
+    let mut shapes = vec![from.clone()];
+    if from.zero_count() < from.order() {
+        let mut more = from.clone();
+        more.zeros.push(far_zero);
+        shapes.push(more);
+    }
+    for index in 0..from.zeros.len() {
+        let mut less = from.clone();
+        less.zeros.remove(index);
+        shapes.push(less.clone());
+        less.zeros.push(far_zero);
+        shapes.push(less);
+    }
+    out.extend(shapes.iter().skip(1).cloned());
+    if given.delay_s.is_none() {
+        for shape in &shapes {
+            let mut sooner = shape.clone();
+            sooner.delay_s -= period_s;
+            if sooner.delay_s > -0.5 * period_s {
+                sooner.delay_s = sooner.delay_s.max(0.0);
+                out.push(sooner);
+            }
+        }
+        for shape in &shapes {
+            let mut later = shape.clone();
+            later.delay_s += period_s;
+            out.push(later);
+        }
+    }
+    if given.order.is_none() {
+        if from.order() + 2 <= ORDER_MAX {
+            out.extend(with_mode(from, response, period_s));
+        }
+        out.extend(without_mode(from, far_zero));
+    }
+    if let Some(zeros) = given.zeros {
+        out.retain(|model| model.zero_count() == zeros);
+    }
+    out
+}
+
+/// Without a pole and a zero that stand for nothing beside one another.
+fn cancelled(from: &TransferFunction) -> Vec<TransferFunction> {
+    const NEAR: f64 = 0.05;
+    let mut out = Vec::new();
+    for (index, pole) in from.poles.iter().enumerate() {
+        let is_near = |zero: &Factor| {
+            let apart = libm::log(zero.corner_rad_s() / pole.corner_rad_s());
+            zero.degree() == pole.degree() && apart.abs() < NEAR
+        };
+        if let Some(at) = from.zeros.iter().position(is_near) {
+            let mut less = from.clone();
+            less.poles.remove(index);
+            less.zeros.remove(at);
+            out.push(less);
+        }
+    }
+    out
+}
+
+/// Dampers make a real zero far above the band: seldom seen in the response, but
+/// not nothing.
+fn far_zero(period_s: f64) -> Factor {
+    Factor::Real {
+        time_constant_s: 0.1 * period_s,
+    }
+}
+
+/// Zeros that swing come from what hangs on the load, and that is damped: where
+/// they came out undamped, the same ones damped, with less delay.
+fn reflected(from: &TransferFunction, given: Given, period_s: f64) -> Vec<TransferFunction> {
+    let mut damped = from.clone();
+    let mut is_other = false;
+    for zero in &mut damped.zeros {
+        if zero.oscillates()
+            && let Factor::Pair { damping, .. } = zero
+            && *damping < 0.0
+        {
+            *damping = -*damping;
+            is_other = true;
+        }
+    }
+    if !is_other {
+        return Vec::new();
+    }
+    let sooner = if given.delay_s.is_none() { 3 } else { 1 };
+    (0..sooner)
+        .map(|periods| from.delay_s - f64::from(periods) * period_s)
+        .filter(|delay_s| *delay_s >= 0.0)
+        .map(|delay_s| TransferFunction {
+            delay_s,
+            ..damped.clone()
+        })
+        .collect()
+}
+
+/// What swings of a model: the rest often stands for nothing but noise.
+fn lean(from: &TransferFunction) -> TransferFunction {
+    let swings =
+        |factor: &&Factor| matches!(factor, Factor::Pair { damping, .. } if damping.abs() < 0.7);
+    let poles: Vec<Factor> = from.poles.iter().filter(swings).copied().collect();
+    let order = 2 * poles.len();
+    let mut zeros: Vec<Factor> = from.zeros.iter().filter(swings).copied().collect();
+    zeros.truncate(order / 2);
+    TransferFunction {
+        zeros,
+        poles,
+        ..from.clone()
+    }
+}
+
+/// Where no neighbour is better: the slowest of what swings, with one faster mode
+/// placed anew, by the response or well above. Outside the band of the excitation
+/// a mode may have gone astray.
+#[must_use]
+pub fn restarts(
+    from: &TransferFunction,
+    response: &FrequencyResponse,
+    given: Given,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    if given.order.is_some() || given.zeros.is_some() {
+        return Vec::new();
+    }
+    let lean = lean(from);
+    (1..=lean.poles.len())
+        .flat_map(|count| {
+            let mut slow = lean.clone();
+            for list in [&mut slow.zeros, &mut slow.poles] {
+                list.sort_by(|a, b| a.corner_rad_s().total_cmp(&b.corner_rad_s()));
+                list.truncate(count);
+            }
+            let mut starts = with_mode(&slow, response, period_s);
+            for above in ABOVE {
+                let mut stiff = slow.clone();
+                let fastest = slow.poles.last().map(|pole| pole.corner_rad_s());
+                stiff.poles.extend(fastest.map(|omega| Factor::Pair {
+                    omega_rad_s: above * omega,
+                    damping: 0.05,
+                }));
+                starts.push(stiff.clone());
+                stiff.zeros.push(far_zero(period_s));
+                starts.push(stiff);
+            }
+            starts
+        })
+        .collect()
+}
+
+/// Without one pole, and without none or one of the zeros: the nearest first.
+fn without_mode(from: &TransferFunction, far_zero: Factor) -> Vec<TransferFunction> {
+    let mut out = Vec::new();
+    for (at, pole) in from.poles.iter().enumerate() {
+        let distance = |zero: &Factor| libm::log(zero.corner_rad_s() / pole.corner_rad_s()).abs();
+        let mut less = from.clone();
+        less.poles.remove(at);
+        let mut zeros: Vec<(f64, usize)> = less
+            .zeros
+            .iter()
+            .enumerate()
+            .filter(|(_, zero)| zero.degree() == pole.degree())
+            .map(|(index, zero)| (distance(zero), index))
+            .collect();
+        zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut shapes: Vec<TransferFunction> = zeros
+            .iter()
+            .map(|(_, index)| {
+                let mut lesser = less.clone();
+                lesser.zeros.remove(*index);
+                lesser
+            })
+            .collect();
+        shapes.push(less);
+        for shape in shapes {
+            if shape.zero_count() < shape.order() {
+                let mut more = shape.clone();
+                more.zeros.push(far_zero);
+                out.push(more);
+            }
+            if shape.zero_count() <= shape.order() {
+                out.push(shape);
+            }
+        }
+    }
+    out
+}
