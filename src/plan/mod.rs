@@ -13,6 +13,8 @@ pub mod lookahead;
 pub mod period;
 mod power_law;
 mod profile;
+#[cfg(test)]
+pub(crate) mod random;
 mod s_curve;
 mod slope;
 mod spindle;

@@ -107,6 +107,7 @@ mod tests {
     use crate::machine::{AxisSet, Machine};
     use crate::plan::Blend;
     use crate::plan::lookahead::{Piece, Planned, Speeds2};
+    use crate::plan::random::Random;
     use crate::power::{PowerModel, Want};
     use crate::syntax::{Block, scan_line};
     use std::fmt::Write as _;
@@ -147,17 +148,7 @@ mod tests {
         moves.expect("a move")
     }
 
-    /// A small generator, so that failures can be repeated (xorshift64*).
-    struct Random(u64);
-
     impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 >> 12;
-            self.0 ^= self.0 << 25;
-            self.0 ^= self.0 >> 27;
-            (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
         /// Two unit directions at right angles; in the plane of X and Y if so.
         fn frame(&mut self, flat: bool) -> [[f64; 3]; 2] {
             let mut vector = || {

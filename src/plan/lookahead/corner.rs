@@ -367,18 +367,9 @@ fn step<T>(
 mod tests {
     use super::{After, Corner, Element, Joint, LINEAR};
     use crate::machine::{CornerAngle, CornerRule};
-
-    /// A small generator, so that failures can be repeated (xorshift64*).
-    struct Random(u64);
+    use crate::plan::random::Random;
 
     impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 >> 12;
-            self.0 ^= self.0 << 25;
-            self.0 ^= self.0 >> 27;
-            (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
         /// Between 1 and 10 to the power of so much.
         fn scale(&mut self, decades: f64) -> f64 {
             libm::pow(10.0, decades * self.next())

@@ -3,18 +3,9 @@
 use super::super::super::s_curve::Steepness;
 use super::{Node, Runs, Span};
 use crate::plan::Phase;
-
-/// A small generator, so that failures can be repeated (xorshift64*).
-struct Random(u64);
+use crate::plan::random::Random;
 
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     fn chance(&mut self, share: f64) -> bool {
         self.next() < share
     }

@@ -1,18 +1,7 @@
 //! The window against the whole program at once, and against plain arithmetic.
 
 use super::{Node, Span, Window};
-
-/// A small generator, so that failures can be repeated (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
+use crate::plan::random::Random;
 
 /// Elements from 1 µm to 30 mm; `stops`: the share of joints at rest.
 fn nodes(seed: u64, count: usize, stops: f64) -> Vec<Node<usize>> {
