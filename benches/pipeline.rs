@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Diagnostics, Facts, Interpreter, Move, Step};
-use gwatt::machine::Machine;
+use gwatt::machine::{Machine, PathMode};
 use gwatt::pipeline::{Law, LimitOptions, Options, Strategy, analyze, limit};
 use gwatt::plan::{Overrides, Plan, plan};
 use gwatt::power::{PowerModel, Want};
@@ -21,8 +21,11 @@ use gwatt::source::{LineReader, lines};
 use gwatt::syntax::{Block, parse_line, scan_line};
 
 const PROGRAM_BYTES: usize = 1_000_000;
+/// A machine with look-ahead, and the same that stops behind each block.
+const AHEAD: &str = "router-48v";
+const STOPS: &str = "router-48v, exact stop";
 /// Straight cuts that fit; a small converter; the default.
-const MACHINES: [&str; 3] = ["vmc", "router-48v", "three-axis"];
+const MACHINES: [&str; 4] = ["vmc", AHEAD, STOPS, "three-axis"];
 const LIMIT: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
@@ -71,8 +74,14 @@ fn path(text: &mut String, row: u32) {
 }
 
 fn machine(name: &str) -> Machine {
-    match Machine::load(name) {
-        Ok((machine, _)) => machine,
+    let stops = name == STOPS;
+    match Machine::load(if stops { AHEAD } else { name }) {
+        Ok((mut machine, _)) => {
+            if stops {
+                machine.path.mode = Some(PathMode::ExactStop);
+            }
+            machine
+        }
         Err(errors) => panic!("{name}: {errors:?}"),
     }
 }

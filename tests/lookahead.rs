@@ -1,6 +1,7 @@
 //! Look-ahead planners through their public interface.
 
 mod corners;
+mod glide;
 mod linuxcnc;
 mod measured;
 mod profile;

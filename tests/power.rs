@@ -385,6 +385,7 @@ proptest! {
             energy: false,
             floor_w: floors[0] * scale,
             regen_floor_w: floors[1] * largest(|demand| demand.regen_w),
+            accel: true,
         };
         let pruned = judged(&machine, &moves, certificate, want);
         prop_assert_eq!([all.len(), peaks.len(), pruned.len()], [moves.len(); 3]);

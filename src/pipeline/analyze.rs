@@ -31,7 +31,7 @@ pub fn analyze<R: Read + Seek + Send>(
     let adviser = Adviser::new(machine);
     while let Some(line) = front.next_line()? {
         tally.learn_files(line.files);
-        assessor.want = tally.want();
+        assessor.want = wanted(&tally);
         for step in &*line.steps {
             let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
                 let help = || adviser.help(mv, assessment, line.interpreter);
@@ -41,7 +41,7 @@ pub fn analyze<R: Read + Seek + Send>(
                 Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
                 Step::Action(action) => assessor.act(action, &mut sink),
             }
-            assessor.want = tally.want();
+            assessor.want = wanted(&tally);
         }
         tally.check()?;
     }
@@ -86,6 +86,15 @@ pub fn moves<R: Read + Seek + Send>(
         }
     }
     front.finish()
+}
+
+/// What is wanted of the next move.
+fn wanted(tally: &Tally<'_, '_>) -> Want {
+    let want = tally.want();
+    Want {
+        accel: want.energy,
+        ..want
+    }
 }
 
 /// The planned certificate cannot be given for moves that are blended by rules

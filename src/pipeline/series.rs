@@ -57,6 +57,7 @@ pub fn series<R: Read + Seek + Send>(
         energy: false,
         floor_w: f64::INFINITY,
         regen_floor_w: f64::INFINITY,
+        accel: false,
     };
     let mut assessor = Assessor::new(machine, options.certificate, want).showing();
     let mut sampler = Sampler {

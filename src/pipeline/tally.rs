@@ -73,6 +73,7 @@ impl<'m, 'r> Tally<'m, 'r> {
             energy: false,
             floor_w: self.summary.peak_w.min(limit_w),
             regen_floor_w: self.summary.regen_w.min(regen_limit_w),
+            accel: true,
         }
     }
 

@@ -162,7 +162,7 @@ impl<'m> Assessor<'m> {
         match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
             Effect::Stop => {
-                ahead.stop(&self.model, &mut self.eye);
+                ahead.stop(self.machine, &self.model, &mut self.eye);
                 ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
             }
             Effect::Unknown => ahead.doubt(),
@@ -205,7 +205,7 @@ impl<'m> Assessor<'m> {
             return;
         };
         if mv.kind == MoveKind::Dwell {
-            ahead.stop(model, eye);
+            ahead.stop(machine, model, eye);
             ahead.hand_on(machine, model, eye, sink);
             eye.alone(machine, model, mv, self.largest);
             eye.show(machine, mv, self.nominal);
@@ -331,7 +331,7 @@ impl<'m> Assessor<'m> {
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.release(None, false, sink);
         if let Some(ahead) = &mut self.ahead {
-            ahead.stop(&self.model, &mut self.eye);
+            ahead.stop(self.machine, &self.model, &mut self.eye);
             ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
         }
     }

@@ -31,7 +31,8 @@ pub struct Assessment {
     pub duration_s: f64,
     /// Path speed that feed and axes permit at 100 % override, mm/s.
     pub speed_mm_s: f64,
-    /// Path acceleration, mm/s².
+    /// Path acceleration, mm/s²; of moves that are planned together perhaps 0
+    /// where it is not wanted.
     pub accel_mm_s2: f64,
     /// Path speed reached at the largest override, mm/s.
     pub top_speed_mm_s: f64,

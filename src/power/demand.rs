@@ -10,6 +10,8 @@ pub struct Want {
     pub floor_w: f64,
     /// The same for the power that is fed back, in W.
     pub regen_floor_w: f64,
+    /// Whether the acceleration that the path permits is wanted.
+    pub accel: bool,
 }
 
 impl Want {
@@ -24,12 +26,14 @@ impl Want {
         energy: false,
         floor_w: f64::NEG_INFINITY,
         regen_floor_w: f64::NEG_INFINITY,
+        accel: true,
     };
     /// Exact peaks and the energy.
     pub const ALL: Self = Self {
         energy: true,
         floor_w: f64::NEG_INFINITY,
         regen_floor_w: f64::NEG_INFINITY,
+        accel: true,
     };
 }
 

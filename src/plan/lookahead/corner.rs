@@ -33,11 +33,21 @@ pub(super) struct Before {
     end: AxisValues,
     span: usize,
     is_unit: bool,
+    is_curved: bool,
     /// Length by acceleration, mm²/s².
     ramp2: f64,
     /// Squared speed at which it could begin from rest.
     rest2: f64,
     prints: Prints,
+}
+
+impl Before {
+    /// The direction of an element that moves straight in X, Y and Z, and runs
+    /// through the joint if the corner permits it.
+    pub fn straight(&self) -> Option<[f64; 3]> {
+        let straight = self.joint != Joint::Stop && self.span == LINEAR && self.is_unit;
+        (straight && !self.is_curved).then_some([self.end[0], self.end[1], self.end[2]])
+    }
 }
 
 /// Whether X, Y or Z move, and whether the extruder feeds.
@@ -96,6 +106,7 @@ impl<'e, T> After<'e, T> {
             joint: element.joint,
             top_mm_s: self.top_mm_s,
             end: element.end,
+            is_curved: element.curve.is_some(),
             span: match element.curve {
                 Some(_) => span(&element.end),
                 None => self.span,
@@ -206,6 +217,57 @@ fn cosine(axes: usize, before: &AxisValues, after: &AxisValues) -> Option<f64> {
     Some((-dot(before, after, axes) / length2.sqrt()).clamp(-1.0, 1.0))
 }
 
+/// A joint that is to be passed at a speed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Passage {
+    /// Lowest acceleration of the axes and along the element behind, mm/s².
+    pub accel_mm_s2: f64,
+    /// Of the element behind.
+    pub length_mm: f64,
+    /// The speed, squared.
+    pub speed2: f64,
+}
+
+impl Passage {
+    /// True only where the rule permits it, for straight elements whose
+    /// directions `u` and `w` are units of X, Y and Z; a quick answer.
+    #[inline]
+    pub(super) fn is_permitted(&self, rule: &CornerRule, u: &[f64; 3], w: &[f64; 3]) -> bool {
+        match rule {
+            CornerRule::JunctionDeviation {
+                deviation_mm,
+                small_block_mm,
+                ..
+            } => {
+                let c = u[0] * w[0] + u[1] * w[1] + u[2] * w[2];
+                self.is_shallow(c, *deviation_mm, *small_block_mm)
+            }
+            CornerRule::SpeedStep { step_mm_s, .. } => {
+                let speed2 = self.speed2 * (1.0 + ROUNDING);
+                let changes = u.iter().zip(w).zip(step_mm_s);
+                changes.fold(true, |permitted, ((u, w), step)| {
+                    permitted & ((w - u) * (w - u) * speed2 <= step * step)
+                })
+            }
+            _ => false,
+        }
+    }
+
+    /// With `c = u·w` the rule is `s² = (1 + c)/2 ≥ (K/(1 + K))²` for
+    /// `K = v²/(a·d)`, with the lowest acceleration of the axes for a. Turns θ
+    /// of chords up to π/4 have `1 − c ≥ 0.47·θ²`.
+    #[inline]
+    fn is_shallow(&self, c: f64, deviation_mm: f64, small_block_mm: f64) -> bool {
+        let speed2 = self.speed2 * (1.0 + ROUNDING);
+        let s = speed2 / (self.accel_mm_s2 * deviation_mm + speed2);
+        let chords = self.length_mm < small_block_mm;
+        let turns = self.accel_mm_s2 * self.length_mm;
+        c > 0.0
+            && 0.5 * (1.0 + c) * (1.0 - ROUNDING) >= s * s
+            && (!chords || 0.47 * turns * turns >= speed2 * speed2 * (1.0 - c + 2.0 * UNIT))
+    }
+}
+
 /// A corner that is passed within a distance from it.
 struct Corner<'a, T> {
     deviation_mm: f64,
@@ -222,10 +284,6 @@ struct Corner<'a, T> {
 impl<T> Corner<'_, T> {
     /// True only where [`Self::speed2`] is not below `most2`, at a small part of
     /// its cost: most corners of a finishing pass are shallow.
-    ///
-    /// With `c = u·w` the rule is `s² = (1 + c)/2 ≥ (K/(1 + K))²` for
-    /// `K = v²/(a·d)`, with the lowest acceleration of the axes for a. Turns θ
-    /// of chords up to π/4 have `1 − c ≥ 0.47·θ²`.
     #[inline]
     fn permits(&self, most2: f64) -> bool {
         let (u, w) = (&self.before.end, &self.after.start);
@@ -243,15 +301,12 @@ impl<T> Corner<'_, T> {
                 }
             }
         }
-        let c = dot(u, w, LINEAR);
-        let most2 = most2 * (1.0 + ROUNDING);
-        let s = most2 / (accel * self.deviation_mm + most2);
-        let length_mm = self.after.length_mm;
-        let chords = length_mm < self.small_block_mm;
-        let turns = accel * length_mm;
-        c > 0.0
-            && 0.5 * (1.0 + c) * (1.0 - ROUNDING) >= s * s
-            && (!chords || 0.47 * turns * turns >= most2 * most2 * (1.0 - c + 2.0 * UNIT))
+        let passage = Passage {
+            accel_mm_s2: accel,
+            length_mm: self.after.length_mm,
+            speed2: most2,
+        };
+        passage.is_shallow(dot(u, w, LINEAR), self.deviation_mm, self.small_block_mm)
     }
 
     fn speed2(&self) -> f64 {

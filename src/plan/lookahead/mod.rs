@@ -8,6 +8,7 @@ mod blend;
 mod chord;
 mod corner;
 mod element;
+mod glide;
 mod join;
 mod linuxcnc;
 mod pending;
@@ -17,6 +18,8 @@ mod runs;
 mod vector;
 mod window;
 
+pub(crate) use corner::Passage;
 pub use element::{Curve, Element, Joint};
+pub(crate) use glide::Gliding;
 pub use planner::{Blend, PathPlanner, Piece, Planned};
 pub use ramp::Speeds2;

@@ -155,7 +155,7 @@ pub(super) struct Load<T> {
 }
 
 #[derive(Debug, Clone)]
-enum Rule<T> {
+pub(super) enum Rule<T> {
     Corner(Option<Before>),
     LinuxCnc(Box<LinuxCnc<T>>),
 }
@@ -172,9 +172,9 @@ enum Rule<T> {
 /// is as it was; under limits of jerk that is a joint that limits the speed.
 #[derive(Debug, Clone)]
 pub struct PathPlanner<T> {
-    look_ahead: LookAhead,
-    rule: Rule<T>,
-    window: Window<Load<T>>,
+    pub(super) look_ahead: LookAhead,
+    pub(super) rule: Rule<T>,
+    pub(super) window: Window<Load<T>>,
 }
 
 impl<T: Copy> PathPlanner<T> {
@@ -213,18 +213,8 @@ impl<T: Copy> PathPlanner<T> {
     /// Adds an element.
     #[inline]
     pub fn push(&mut self, element: &Element<T>) {
-        let mut limited;
-        let path = self.look_ahead.path_accel_mm_s2;
-        let driven = element.drive_accel_mm_s2 < element.accel_mm_s2;
-        let element = if element.path_accel_mm_s2 > path || driven {
-            limited = *element;
-            limited.path_accel_mm_s2 = limited.path_accel_mm_s2.min(path);
-            let most = limited.path_accel_mm_s2.min(limited.drive_accel_mm_s2);
-            limited.accel_mm_s2 = limited.accel_mm_s2.min(most);
-            &limited
-        } else {
-            element
-        };
+        let limited = self.limited(element);
+        let element = limited.as_ref().unwrap_or(element);
         if let Rule::LinuxCnc(rule) = &mut self.rule {
             rule.push(element, &mut self.window);
             return;
@@ -240,24 +230,30 @@ impl<T: Copy> PathPlanner<T> {
         }
     }
 
-    fn push_corner(&mut self, element: &Element<T>, at: [f64; 2]) {
-        let Rule::Corner(before) = &mut self.rule else {
-            return;
-        };
-        let rule = &self.look_ahead.corner;
-        let after = After::new(rule, element);
-        let top2 = after.top_mm_s * after.top_mm_s;
-        let entry2 = match before {
-            Some(before) if before.joint != Joint::Stop => {
-                let before2 = before.top_mm_s * before.top_mm_s;
-                let most2 = if before2 < top2 { before2 } else { top2 };
-                corner::speed2(rule, before, &after, most2)
-            }
-            _ => 0.0,
-        };
-        if entry2 == 0.0 {
-            self.window.stop();
+    /// The element under the rules' own limit and the drives', where they are lower.
+    #[inline]
+    pub(super) fn limited(&self, element: &Element<T>) -> Option<Element<T>> {
+        let path = self.look_ahead.path_accel_mm_s2;
+        let driven = element.drive_accel_mm_s2 < element.accel_mm_s2;
+        if element.path_accel_mm_s2 <= path && !driven {
+            return None;
         }
+        let mut limited = *element;
+        limited.path_accel_mm_s2 = limited.path_accel_mm_s2.min(path);
+        let most = limited.path_accel_mm_s2.min(limited.drive_accel_mm_s2);
+        limited.accel_mm_s2 = limited.accel_mm_s2.min(most);
+        Some(limited)
+    }
+
+    /// An element behind its first joint, and as the window sees it, where it
+    /// begins at rest.
+    #[inline]
+    pub(super) fn node<'e>(
+        &self,
+        element: &'e Element<T>,
+        at: [f64; 2],
+    ) -> (After<'e, T>, Node<Load<T>>) {
+        let after = After::new(&self.look_ahead.corner, element);
         let load = Load {
             tag: element.tag,
             first: element.tag,
@@ -269,10 +265,31 @@ impl<T: Copy> PathPlanner<T> {
             certain: true,
             overlap_s: 0.0,
         };
-        let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, entry2, load);
+        let top2 = after.top_mm_s * after.top_mm_s;
+        let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
         node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
         node.step2 = after.rest2;
         node.jerk = element.jerk_mm_s3;
+        (after, node)
+    }
+
+    fn push_corner(&mut self, element: &Element<T>, at: [f64; 2]) {
+        let (after, mut node) = self.node(element, at);
+        let Rule::Corner(before) = &mut self.rule else {
+            return;
+        };
+        node.entry2 = match before {
+            Some(before) if before.joint != Joint::Stop => {
+                let before2 = before.top_mm_s * before.top_mm_s;
+                let top2 = after.top_mm_s * after.top_mm_s;
+                let most2 = if before2 < top2 { before2 } else { top2 };
+                corner::speed2(&self.look_ahead.corner, before, &after, most2)
+            }
+            _ => 0.0,
+        };
+        if node.entry2 == 0.0 {
+            self.window.stop();
+        }
         self.window.push(node);
         *before = Some(after.before());
     }

@@ -2,6 +2,15 @@
 
 use super::super::profile::{Phase, PhaseKind, Profile};
 
+/// What the sums of a long path leave of rounding in a speed, as a share. A ramp
+/// of that height would take no time, and still have the power of a ramp.
+const ROUNDING: f64 = 1e-10;
+
+#[inline]
+fn differ(v: f64, other: f64) -> bool {
+    (v - other).abs() > ROUNDING * v
+}
+
 /// Speeds of a path element, squared, in mm²/s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speeds2 {
@@ -38,13 +47,13 @@ impl Speeds2 {
         let down_mm = 0.5 * (top2 - end) / accel;
         let cruise_mm = length - up_mm - down_mm;
         let mut duration_s = 0.0;
-        if v != v0 {
+        if differ(v, v0) {
             duration_s += (v - v0).abs() / accel;
         }
         if cruise_mm > 1e-12 * length {
             duration_s += cruise_mm / v;
         }
-        if v > v1 {
+        if v > v1 && differ(v, v1) {
             duration_s += (v - v1) / accel;
         }
         duration_s
@@ -75,7 +84,7 @@ impl Profile {
         let up_mm = 0.5 * (top2 - start).abs() / accel;
         let down_mm = 0.5 * (top2 - end) / accel;
         let cruise_mm = length - up_mm - down_mm;
-        if v != v0 {
+        if differ(v, v0) {
             let a = if v > v0 { accel } else { -accel };
             profile
                 .phases
@@ -85,7 +94,7 @@ impl Profile {
         if cruise_mm > 1e-12 * length {
             profile.phases.push(phase(cruise_mm / v, up_mm, v, v, 0.0));
         }
-        if v > v1 {
+        if v > v1 && differ(v, v1) {
             let at_mm = length - down_mm;
             profile
                 .phases

@@ -13,6 +13,7 @@
 //! run as fast as planned even from rest.
 
 mod count;
+mod glide;
 mod hand_on;
 mod open;
 
@@ -26,6 +27,7 @@ use crate::interpret::Move;
 use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Element, PathPlanner};
+use glide::Glider;
 use open::Open;
 
 pub(crate) use open::{Role, joint, role};
@@ -35,6 +37,7 @@ pub(crate) use open::{Role, joint, role};
 pub(super) struct Ahead {
     /// At the largest overrides: peaks.
     largest: Side,
+    glider: Glider,
     /// At 100 %: times and energies; where that is the same, nothing.
     nominal: Option<Side>,
     /// Moves that are not handed on, by number from `first` on.
@@ -85,7 +88,13 @@ impl Ahead {
             next: 0,
         });
         let alike = largest.overrides == nominal.overrides;
+        let blocks = if alike {
+            largest.planner.glide_blocks()
+        } else {
+            0
+        };
         Self {
+            glider: Glider::new(machine, largest.overrides, blocks),
             largest,
             nominal: (!alike).then_some(nominal),
             open: VecDeque::new(),
@@ -115,9 +124,13 @@ impl Ahead {
         text: &[u8],
         want: Want,
     ) -> bool {
+        if self.glide(model, eye, mv, text, want) {
+            return true;
+        }
         if role(machine, mv) != Role::Path {
             return false;
         }
+        self.catch_up(machine);
         let number = self.first + self.open.len() as u64;
         if !self.largest.describe(machine, mv, number) {
             return false;
@@ -160,6 +173,7 @@ impl Ahead {
         assessment: Assessment,
         want: Want,
     ) {
+        self.catch_up(machine);
         if role(machine, mv) == Role::Nothing {
             let mut open = self.room(mv, text, want);
             open.assessment = assessment;
@@ -185,7 +199,8 @@ impl Ahead {
     }
 
     /// The motion stops behind the last move.
-    pub fn stop(&mut self, model: &PowerModel, eye: &mut Eye) {
+    pub fn stop(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+        self.catch_up(machine);
         self.stop_planners();
         self.at_rest = true;
         self.in_doubt = false;

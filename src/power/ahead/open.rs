@@ -25,6 +25,8 @@ pub(super) struct Open {
     pub moves: bool,
     /// It neither begins nor ends in motion.
     pub alone: bool,
+    /// 2·a·L, at least, where the motion glides.
+    pub ramp2: f64,
     /// Its pieces over time, where they are looked at.
     pub kept: Kept,
 }
@@ -72,6 +74,7 @@ impl Open {
             rests: false,
             moves: false,
             alone: true,
+            ramp2: 0.0,
             kept: Kept::default(),
         }
     }

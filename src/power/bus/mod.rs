@@ -146,6 +146,7 @@ impl<'m> SpindleBus<'m> {
         if self.reserve_w == [f64::INFINITY; 2] {
             return Want {
                 energy: want.energy,
+                accel: want.accel,
                 ..Want::PEAKS
             };
         }
@@ -153,6 +154,7 @@ impl<'m> SpindleBus<'m> {
             energy: want.energy,
             floor_w: want.floor_w - self.reserve_w[0],
             regen_floor_w: want.regen_floor_w - self.reserve_w[1],
+            accel: want.accel,
         }
     }
 

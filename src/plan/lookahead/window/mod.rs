@@ -20,6 +20,7 @@
 //! A controller that sees `n` blocks ahead keeps able to stop within them:
 //! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1).
 
+mod glide;
 #[cfg(test)]
 mod tests;
 

@@ -1,0 +1,164 @@
+//! Moves that are followed without the planner: they come out as by way of it.
+
+use std::fmt::Write as _;
+
+use gwatt::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
+use gwatt::machine::{CornerRule, Machine, builtin_controller};
+use gwatt::power::{Assessment, Assessor, Want};
+use gwatt::syntax::{Block, scan_line};
+use proptest::prelude::*;
+
+use super::machine;
+
+/// What is known of each move, in order. Peaks up to the floor are of no interest.
+fn judged(machine: &Machine, program: &str, floor_w: f64, accel: bool) -> Vec<(u64, Assessment)> {
+    let reading = Reading::default();
+    let mut interpreter = Interpreter::new(machine, &reading);
+    let want = Want {
+        energy: false,
+        floor_w,
+        regen_floor_w: floor_w,
+        accel,
+    };
+    let mut assessor = Assessor::new(machine, None, want);
+    let mut found = Vec::new();
+    let mut keep = |mv: &Move, judged: &Assessment, _: &[u8]| found.push((mv.line, *judged));
+    let (mut block, mut steps) = (Block::default(), Vec::new());
+    let (mut facts, mut said) = (Facts::default(), Diagnostics::default());
+    for (number, line) in (1..).zip(program.split_inclusive('\n')) {
+        let line = line.as_bytes();
+        scan_line(line, true, &mut block);
+        steps.clear();
+        interpreter.execute(number, line, &mut block, &mut steps, &mut facts, &mut said);
+        for step in &steps {
+            match step {
+                Step::Move(mv) => assessor.push(mv, line, &mut keep),
+                Step::Action(action) => assessor.act(action, &mut keep),
+            }
+        }
+    }
+    assessor.finish(&mut keep);
+    found
+}
+
+/// The share of moves that the planner was not asked about, if all else is alike.
+fn glided(machine: &Machine, program: &str, floor_w: f64) -> f64 {
+    let quick = judged(machine, program, floor_w, false);
+    let slow = judged(machine, program, floor_w, true);
+    assert_eq!(quick.len(), slow.len());
+    let mut gliding = 0;
+    for ((line, quick), (other, slow)) in quick.iter().zip(&slow) {
+        assert_eq!(line, other);
+        gliding += usize::from(quick.accel_mm_s2 == 0.0 && slow.accel_mm_s2 > 0.0);
+        // The sums by which a controller's blocks are looked ahead begin elsewhere:
+        // their last digits differ, and a ramp of that height has a peak.
+        let times = |judged: &Assessment| {
+            let top = judged.top_speed_mm_s;
+            [judged.duration_s, judged.fastest_s, judged.speed_mm_s, top]
+        };
+        // A peak that nobody wants may be anything up to the floor.
+        let peaks = |judged: &Assessment| {
+            let demand = &judged.demand;
+            [demand.peak_w, demand.regen_w].map(|peak_w| peak_w.max(floor_w))
+        };
+        let found = [quick, slow].map(|judged| (times(judged), peaks(judged)));
+        let [(times, peaks), (slow_times, slow_peaks)] = found;
+        let kind = |judged: &Assessment| (judged.certificate, judged.blended, judged.joined);
+        let alike = |(a, b): (f64, f64)| (a - b).abs() <= 1e-9 * b.abs();
+        assert!(
+            times.into_iter().zip(slow_times).all(alike)
+                && (times != slow_times || peaks.into_iter().zip(slow_peaks).all(alike))
+                && kind(quick) == kind(slow),
+            "line {line}: {found:?} in\n{program}"
+        );
+    }
+    gliding as f64 / quick.len() as f64
+}
+
+/// grbl, and a control with a permitted step of speed that sees few blocks.
+fn machines() -> [Machine; 2] {
+    let grbl = machine("grbl", 100.0, 1000.0);
+    let mut other = grbl.clone();
+    let mut step_mm_s = [f64::INFINITY; gwatt::machine::AXES];
+    step_mm_s[..3].copy_from_slice(&[4.0, 6.0, 2.0]);
+    let rules = builtin_controller("grbl").unwrap().planner.look_ahead;
+    let mut rules = rules.unwrap();
+    rules.blocks = Some(5);
+    rules.corner = CornerRule::SpeedStep {
+        step_mm_s,
+        same_kind_only: false,
+    };
+    other.controller.planner.look_ahead = Some(rules);
+    [grbl, other]
+}
+
+/// A finishing pass: an arch of lines of 0.5 mm at 40 mm/s.
+fn pass() -> String {
+    let mut text = "G21 G90 G94\nG0 X0 Y0 Z0\nF2400\n".to_owned();
+    for i in 1..200 {
+        let x = 0.5 * f64::from(i);
+        let _ = writeln!(text, "G1 X{x} Z{:.4}", 5.0 * libm::sin(x * 0.03));
+    }
+    text
+}
+
+#[test]
+fn a_finishing_pass_glides() {
+    for machine in machines() {
+        let share = glided(&machine, &pass(), 1e9);
+        assert!(share > 0.9, "{share}");
+    }
+}
+
+#[test]
+fn peaks_of_interest_are_looked_at() {
+    // 100 kg at 40 mm/s and at rest ask for nothing; at 1000 mm/s² for some watts.
+    let [machine, _] = machines();
+    assert_eq!(glided(&machine, &pass(), -1.0), 0.0);
+}
+
+/// Lines of a program.
+fn any_lines() -> impl Strategy<Value = Vec<String>> {
+    let step = || (-1.0..1.0_f64, -1.0..1.0_f64);
+    // Onward, with little or much of a turn, short or long, and no two alike.
+    let onward = (0.05..0.8_f64, step(), -3..0_i32, 1..30_u32);
+    let onward = onward.prop_map(|(x, (y, z), bend, times)| {
+        let bend = libm::pow(10.0, f64::from(bend));
+        let line = |i| {
+            let x = x * (1.0 + 0.2 * libm::sin(f64::from(i) + y));
+            format!("G1 X{x:.6} Y{:.4} Z{:.4}", bend * y, bend * z)
+        };
+        (0..times).map(line).collect()
+    });
+    let other = prop_oneof![
+        4 => (1.0..30.0_f64).prop_map(|x| format!("G1 X{x:.6}")),
+        2 => step().prop_map(|(x, y)| format!("G1 X{x:.6} Y{y:.6}")),
+        2 => (300..5000_u32).prop_map(|feed| format!("F{feed}")),
+        1 => (0.1..2.0_f64).prop_map(|r| format!("G2 X{r:.6} Y{r:.6} I{r:.6}")),
+        1 => step().prop_map(|(x, z)| format!("G0 X{x:.6} Z{z:.6}")),
+        1 => Just("G4 P0.1".to_owned()),
+        1 => Just("M8".to_owned()),
+        1 => Just("M62 P0".to_owned()),
+        1 => Just("G61.1".to_owned()),
+        1 => Just("G64".to_owned()),
+        1 => Just("G1 X0".to_owned()),
+    ];
+    prop_oneof![
+        3 => onward,
+        2 => other.prop_map(|line| vec![line]),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn programs_come_out_alike(
+        lines in prop::collection::vec(any_lines(), 1..25),
+        feed in prop_oneof![600..900_u32, 1500..6000_u32],
+        floor_w in prop_oneof![Just(1e9), 0.0..8.0_f64],
+    ) {
+        let text = format!("G21 G91 G94 G64\nF{feed}\n{}\n", lines.concat().join("\n"));
+        for machine in machines() {
+            glided(&machine, &text, floor_w);
+        }
+    }
+}
