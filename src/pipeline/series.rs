@@ -79,11 +79,11 @@ pub fn series<R: Read + Seek + Send>(
                 Step::Move(mv) => assessor.push(mv, b"", &mut |_, _, _| {}),
                 Step::Action(action) => assessor.act(action, &mut |_, _, _| {}),
             }
-            sampler.take_all(&mut assessor)?;
+            sampler.take_all(&mut assessor, false)?;
         }
     }
     assessor.finish(&mut |_, _, _| {});
-    sampler.take_all(&mut assessor)?;
+    sampler.take_all(&mut assessor, true)?;
     front.finish().map(|_| ())
 }
 
@@ -121,7 +121,7 @@ impl Stretch<'_> {
     /// The spindle's own time at an instant of the motion.
     fn turned_s(&self, t: f64) -> f64 {
         let since_s = self.spindle.map_or(0.0, |(_, since_s)| since_s);
-        since_s + (t - self.from_s) * self.motion.adds
+        since_s + (t - self.from_s)
     }
 
     /// From its beginning to its end, the instants at which something may jump.
@@ -136,8 +136,7 @@ impl Stretch<'_> {
             for pair in switches.windows(2) {
                 let inside = f64::midpoint(pair[0], pair[1]);
                 let turned = [pair[0], pair[1]].map(|t| self.turned_s(t));
-                let adds = self.motion.adds;
-                let own_s = |turned_s: f64| pair[0] + (turned_s - turned[0]) / adds;
+                let own_s = |turned_s: f64| pair[0] + (turned_s - turned[0]);
                 let at = |turned_s: f64| self.motion.x_mm(own_s(turned_s), inside, x_mm);
                 let found = turning.switches_s(turned, at);
                 own.extend(found.into_iter().map(own_s));
@@ -151,10 +150,26 @@ impl Stretch<'_> {
 }
 
 impl Sampler<'_> {
-    fn take_all(&mut self, assessor: &mut Assessor<'_>) -> Result<(), Failure> {
-        self.motions.extend(assessor.motions());
+    /// Takes what is known by now; of the axes the last motion only at the end:
+    /// the next one may begin before it ends.
+    fn take_all(&mut self, assessor: &mut Assessor<'_>, ends: bool) -> Result<(), Failure> {
+        for motion in assessor.motions() {
+            let Some(last) = self.motions.pop_back() else {
+                self.motions.push_back(motion);
+                continue;
+            };
+            let done_s = if self.motions.is_empty() {
+                self.moved_s
+            } else {
+                0.0
+            };
+            self.motions.extend(last.followed_by(motion, done_s));
+        }
         let Some(turnings) = assessor.turnings() else {
-            while let Some(motion) = self.motions.pop_front() {
+            let kept = usize::from(!ends);
+            while self.motions.len() > kept
+                && let Some(motion) = self.motions.pop_front()
+            {
                 let to_s = motion.duration_s();
                 self.take(&motion, to_s, None)?;
             }
@@ -183,14 +198,9 @@ impl Sampler<'_> {
         {
             let lasts_s = motion.duration_s();
             let left_s = turning.duration_s - turned_s;
-            let adds = motion.adds;
-            let ends = (lasts_s - self.moved_s) * adds <= left_s + apart_s;
-            let to_s = if ends {
-                lasts_s
-            } else {
-                self.moved_s + left_s / adds
-            };
-            let moved_s = (to_s - self.moved_s) * adds;
+            let ends = lasts_s - self.moved_s <= left_s + apart_s;
+            let to_s = if ends { lasts_s } else { self.moved_s + left_s };
+            let moved_s = to_s - self.moved_s;
             self.take(&motion, to_s, Some((turning, turned_s)))?;
             turned_s += moved_s;
             if !ends {

@@ -122,7 +122,8 @@ impl Motion {
 
     /// Speed and acceleration of an axis at two instants between the same
     /// switches, of which the second tells the law; `None` where it stands.
-    fn axis(&self, axis: usize, [t, inside]: [f64; 2]) -> Option<[(f64, f64); 2]> {
+    fn axis(&self, axis: usize, instants: [f64; 2]) -> Option<[(f64, f64); 2]> {
+        let [t, inside] = instants.map(|t| t + self.from_s);
         match &self.course {
             Course::Rest(_) => None,
             Course::Path(phases) | Course::Line(phases) => {
@@ -157,15 +158,29 @@ impl Motion {
                 let states = states(phases, [t, inside]).unwrap_or_default();
                 Some(states.map(|state| (side * state.velocity_mm_s, side * state.accel_mm_s2)))
             }
+            Course::Both(both) => {
+                let both = both.iter().filter_map(|one| one.axis(axis, [t, inside]));
+                both.reduce(|a, b| [0, 1].map(|i| (a[i].0 + b[i].0, a[i].1 + b[i].1)))
+            }
         }
     }
 
     /// Speed along the path at the first of two instants, as in [`Self::axis`].
     fn path_mm_s(&self, instants: [f64; 2]) -> f64 {
+        let own = instants.map(|t| t + self.from_s);
         match &self.course {
             Course::Rest(_) | Course::Axes(_) => 0.0,
             Course::Path(phases) | Course::Line(phases) | Course::Blend(_, phases) => {
-                states(phases, instants).map_or(0.0, |[state, _]| state.velocity_mm_s)
+                states(phases, own).map_or(0.0, |[state, _]| state.velocity_mm_s)
+            }
+            Course::Both(both) => {
+                let speeds = [0, 1, 2].map(|axis| self.axis(axis, instants));
+                let speeds = speeds.map(|axis| axis.map_or(0.0, |[(speed, _), _]| speed));
+                let speed_mm_s = speeds.iter().map(|speed| speed * speed).sum::<f64>().sqrt();
+                if speed_mm_s > 0.0 {
+                    return speed_mm_s;
+                }
+                both.iter().map(|one| one.path_mm_s(own)).sum()
             }
         }
     }
@@ -174,14 +189,17 @@ impl Motion {
     /// `inside`; it was at `before_mm` where the last motion ended.
     #[must_use]
     pub fn x_mm(&self, t: f64, inside: f64, before_mm: f64) -> f64 {
-        let along = |phases: &[Phase]| {
-            let state = states(phases, [t, inside]).map(|[state, _]| state.position_mm);
+        let [t, inside] = [t, inside].map(|t| t + self.from_s);
+        let at = |phases: &[Phase], instants| {
+            let state = states(phases, instants).map(|[state, _]| state.position_mm);
             // Behind the last phase.
             state.unwrap_or_else(|| {
                 let last = phases.last();
                 last.map_or(0.0, |last| last.position_mm + last.length_mm())
             })
         };
+        let along = |phases: &[Phase]| at(phases, [t, inside]);
+        let first = |phases: &[Phase]| at(phases, [self.from_s; 2]);
         let share = (self.mv.end[X] - self.mv.start[X]) / self.mv.length_mm;
         match &self.course {
             Course::Rest(_) => before_mm,
@@ -195,15 +213,17 @@ impl Motion {
                 });
                 turned.unwrap_or_else(|| self.mv.start[X] + share * along(phases))
             }
-            Course::Line(phases) => before_mm + share * along(phases),
+            Course::Line(phases) => before_mm + share * (along(phases) - first(phases)),
             Course::Blend(blend, phases) => {
                 let [tangent, normal] = [blend.tangent[X], blend.normal[X]];
-                let position_mm = along(phases);
-                let lead_mm = position_mm.min(blend.lead_mm);
-                let angle = (position_mm - lead_mm) / blend.radius_mm;
-                let (sin, cos) = libm::sincos(angle);
-                let across = tangent * sin + normal * (1.0 - cos);
-                before_mm + tangent * lead_mm + blend.radius_mm * across
+                let x_mm = |position_mm: f64| {
+                    let lead_mm = position_mm.min(blend.lead_mm);
+                    let angle = (position_mm - lead_mm) / blend.radius_mm;
+                    let (sin, cos) = libm::sincos(angle);
+                    let across = tangent * sin + normal * (1.0 - cos);
+                    tangent * lead_mm + blend.radius_mm * across
+                };
+                before_mm + x_mm(along(phases)) - x_mm(first(phases))
             }
             Course::Axes(axes) => {
                 let Some((_, phases)) = axes.iter().find(|(own, _)| *own == X) else {
@@ -211,6 +231,13 @@ impl Motion {
                 };
                 let side = 1.0_f64.copysign(self.mv.end[X] - self.mv.start[X]);
                 self.mv.start[X] + side * along(phases)
+            }
+            Course::Both(both) => {
+                let from_s = self.from_s;
+                let moved_mm = both
+                    .iter()
+                    .map(|one| one.x_mm(t, inside, 0.0) - one.x_mm(from_s, from_s, 0.0));
+                before_mm + moved_mm.sum::<f64>()
             }
         }
     }

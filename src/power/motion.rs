@@ -18,9 +18,11 @@ const QUADRANTS: f64 = 4096.0;
 pub struct Motion {
     /// The move that it belongs to.
     pub mv: Move,
-    /// Share of its time that it adds to what came before: less than 1 where it
-    /// begins while the motion before it comes to rest.
-    pub adds: f64,
+    /// How long it runs already while the motion before it comes to rest, s.
+    pub overlap_s: f64,
+    /// The part of the course that it is, s.
+    pub(super) from_s: f64,
+    to_s: f64,
     pub(super) course: Course,
 }
 
@@ -37,6 +39,8 @@ pub(super) enum Course {
     Blend(Blend, Vec<Phase>),
     /// Each axis for itself.
     Axes(Vec<(usize, Vec<Phase>)>),
+    /// Two motions at once: the speeds of each axis add up.
+    Both(Box<[Motion; 2]>),
 }
 
 impl Motion {
@@ -53,19 +57,22 @@ impl Motion {
             Trajectory::Rest if plan.duration_s.is_finite() => Course::Rest(plan.duration_s),
             Trajectory::Rest | Trajectory::Unknown(_) => return None,
         };
-        Some(Self {
-            mv: mv.clone(),
-            adds: 1.0,
-            course,
-        })
+        Some(Self::new(mv.clone(), course))
     }
 
     /// The axes stand, in the place of `mv`.
     pub(super) fn rest(mv: Move, duration_s: f64) -> Self {
+        Self::new(mv, Course::Rest(duration_s))
+    }
+
+    fn new(mv: Move, course: Course) -> Self {
+        let lasts_s = course.switches_s().last().copied();
         Self {
             mv,
-            adds: 1.0,
-            course: Course::Rest(duration_s),
+            overlap_s: 0.0,
+            from_s: 0.0,
+            to_s: lasts_s.unwrap_or(0.0),
+            course,
         }
     }
 
@@ -73,49 +80,86 @@ impl Motion {
     #[must_use]
     pub(super) fn of_piece(mv: &Move, planned: &Planned<u64>) -> Self {
         let mut profile = planned.profile();
-        let adds = if planned.overlap_s > 0.0 {
-            planned.duration_s() / (planned.duration_s() + planned.overlap_s)
-        } else {
-            1.0
-        };
-        match &planned.piece {
+        let (mv, course) = match &planned.piece {
             Piece::Along { from_mm, .. } => {
                 for phase in &mut profile.phases {
                     phase.position_mm += from_mm;
                 }
-                Self {
-                    mv: mv.clone(),
-                    adds,
-                    course: Course::Path(along(mv, &profile)),
-                }
+                (mv.clone(), Course::Path(along(mv, &profile)))
             }
-            Piece::Joined { direction } => Self {
-                mv: straight_line(mv, direction, planned.length_mm),
-                adds,
-                course: Course::Line(profile.phases.to_vec()),
-            },
+            Piece::Joined { direction } => {
+                let line = straight_line(mv, direction, planned.length_mm);
+                (line, Course::Line(profile.phases.to_vec()))
+            }
             Piece::Blend(blend) => {
                 let cuts = cuts(blend);
                 let phases = profile.phases.iter();
                 let phases = phases.flat_map(|phase| pieces(phase, &cuts));
-                Self {
-                    mv: straight_line(mv, &blend.tangent, 1.0),
-                    adds,
-                    course: Course::Blend(*blend, phases.collect()),
-                }
+                let lead = straight_line(mv, &blend.tangent, 1.0);
+                (lead, Course::Blend(*blend, phases.collect()))
             }
+        };
+        Self {
+            overlap_s: planned.overlap_s,
+            ..Self::new(mv, course)
+        }
+    }
+
+    /// This motion and the next one, which may begin before this one ends: one
+    /// behind the other, with what they do at once between them. Of this one
+    /// `done_s` seconds are over.
+    #[must_use]
+    pub fn followed_by(self, next: Self, done_s: f64) -> Vec<Self> {
+        let lasts_s = self.duration_s();
+        let overlap_s = next.overlap_s.min(lasts_s - done_s);
+        if overlap_s <= 0.0 {
+            return vec![self, next];
+        }
+        let at_s = lasts_s - overlap_s;
+        let both_s = overlap_s.min(next.duration_s());
+        let both = [self.part(at_s, at_s + both_s), next.part(0.0, both_s)];
+        let together = Self::new(self.mv.clone(), Course::Both(Box::new(both)));
+        let first = self.part(0.0, at_s);
+        let rest = [
+            self.part(at_s + both_s, lasts_s),
+            next.part(both_s, next.duration_s()),
+        ];
+        let parts = [first, together].into_iter().chain(rest);
+        parts.filter(|part| part.duration_s() > 0.0).collect()
+    }
+
+    /// The part between two of its instants.
+    fn part(&self, from_s: f64, to_s: f64) -> Self {
+        Self {
+            overlap_s: 0.0,
+            from_s: self.from_s + from_s,
+            to_s: self.to_s.min(self.from_s + to_s),
+            ..self.clone()
         }
     }
 
     /// How long it lasts, s.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        self.switches_s().last().copied().unwrap_or(0.0)
+        (self.to_s - self.from_s).max(0.0)
     }
 
     /// Instants at which an acceleration may jump, from 0 to the end, s.
     #[must_use]
     pub fn switches_s(&self) -> Vec<f64> {
+        let inside = |t: &f64| *t > self.from_s && *t < self.to_s;
+        let mut switches = vec![0.0];
+        let own = self.course.switches_s().into_iter().filter(inside);
+        switches.extend(own.map(|t| t - self.from_s));
+        switches.push(self.duration_s());
+        switches.dedup();
+        switches
+    }
+}
+
+impl Course {
+    /// Instants at which an acceleration may jump, from 0 to the end, s.
+    fn switches_s(&self) -> Vec<f64> {
         let ends = |phases: &[Phase]| {
             let mut end = 0.0;
             let ends = phases.iter().map(|phase| {
@@ -124,10 +168,11 @@ impl Motion {
             });
             ends.collect::<Vec<f64>>()
         };
-        let mut switches = match &self.course {
-            Course::Rest(duration_s) => vec![*duration_s],
-            Course::Path(phases) | Course::Line(phases) | Course::Blend(_, phases) => ends(phases),
-            Course::Axes(axes) => axes.iter().flat_map(|(_, phases)| ends(phases)).collect(),
+        let mut switches = match self {
+            Self::Rest(duration_s) => vec![*duration_s],
+            Self::Path(phases) | Self::Line(phases) | Self::Blend(_, phases) => ends(phases),
+            Self::Axes(axes) => axes.iter().flat_map(|(_, phases)| ends(phases)).collect(),
+            Self::Both(both) => both.iter().flat_map(Motion::switches_s).collect(),
         };
         switches.push(0.0);
         switches.sort_by(f64::total_cmp);

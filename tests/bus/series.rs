@@ -210,3 +210,42 @@ fn a_series_adds_up_to_the_report() {
     }
     assert_eq!(compared, 16);
 }
+
+/// A line and arcs of two planes under `LinuxCNC`'s G64, whose ramps overlap at the
+/// joints: speeds neither jump nor fall to 0 there, and the path ends where it is
+/// to end, as early as the report says.
+#[test]
+fn overlapping_moves_are_shown_at_once() {
+    let mill = machine("linuxcnc", "", "", "");
+    let program = "G17 G64\nG1 X20 F3000\nG3 X24 Y4 I0 J4\nG18 G2 X34 Z10 I10 K0\nG1 X50 Z14\n";
+    let (_, summary) = run(&mill, program, &Options::default());
+    let rows = shown(&mill, program, 1e-4);
+    let last_s = rows[rows.len() - 1].0;
+    assert!((last_s - summary.duration_s).abs() < 1e-9, "{last_s}");
+    let mut moved_mm = [0.0; 3];
+    for pair in rows.windows(2) {
+        let [(from_s, line, first), (to_s, _, then)] = pair else {
+            panic!("two");
+        };
+        let dt = to_s - from_s;
+        let mut speed2 = 0.0;
+        for (axis, moved_mm) in moved_mm.iter_mut().enumerate() {
+            let (a, b) = (&first.axes[axis], &then.axes[axis]);
+            let change = 0.5 * dt * (a.accel_mm_s2 + b.accel_mm_s2);
+            let jump = b.velocity_mm_s - a.velocity_mm_s - change;
+            assert!(jump.abs() < 1e-3, "{jump} mm/s at {from_s} s, line {line}");
+            *moved_mm += 0.5 * dt * (a.velocity_mm_s + b.velocity_mm_s);
+            speed2 += a.velocity_mm_s * a.velocity_mm_s;
+        }
+        near(first.path_mm_s, speed2.sqrt());
+        let stands = first.path_mm_s < 1.0;
+        assert!(
+            !stands || *from_s < 0.01 || *from_s > last_s - 0.01,
+            "{pair:?}"
+        );
+        assert!(first.bus_w[0] <= summary.peak_w);
+    }
+    for (moved_mm, to_mm) in moved_mm.into_iter().zip([50.0, 4.0, 14.0]) {
+        assert!((moved_mm - to_mm).abs() < 1e-3, "{moved_mm} {to_mm}");
+    }
+}

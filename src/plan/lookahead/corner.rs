@@ -244,10 +244,8 @@ impl Passage {
             }
             CornerRule::SpeedStep { step_mm_s, .. } => {
                 let speed2 = self.speed2 * (1.0 + ROUNDING);
-                let changes = u.iter().zip(w).zip(step_mm_s);
-                changes.fold(true, |permitted, ((u, w), step)| {
-                    permitted & ((w - u) * (w - u) * speed2 <= step * step)
-                })
+                let mut changes = u.iter().zip(w).zip(step_mm_s);
+                changes.all(|((u, w), step)| (w - u) * (w - u) * speed2 <= step * step)
             }
             _ => false,
         }
