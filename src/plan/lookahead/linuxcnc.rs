@@ -160,8 +160,10 @@ impl<T: Copy> LinuxCnc<T> {
         let kink_speed = v * self.kink_ratio / share;
         let fit = fit([&first, &second], &self.axes, accel);
         let blend_speed = fit.as_ref().map_or(0.0, |fit| fit.speed);
-        let overlap = 0.5 * before.overlap(next);
-        if overlap >= kink_speed && overlap >= blend_speed {
+        let faster = kink_speed.max(blend_speed);
+        // What it comes to at most needs no closer look at most corners.
+        let may_overlap = 0.25 * (before.target_speed() + next.target_speed()) >= faster;
+        if may_overlap && 0.5 * before.overlap(next) >= faster {
             (before.kink_behind, next.kink_before) = kept;
             return Way::Parabolic;
         }

@@ -1,0 +1,130 @@
+//! `identify` and `excite`.
+
+use super::Shop;
+
+/// An axis of 50 kg that goes to and fro, as CSV.
+fn axis_recording() -> String {
+    use std::fmt::Write as _;
+    let mut text = "time_s,force_n,position_m\n".to_owned();
+    for k in 0..2000 {
+        let t = f64::from(k) * 1e-3;
+        let (slow, fast) = (10.0, 31.0);
+        let x = 0.02 * libm::sin(slow * t) + 0.004 * libm::sin(fast * t);
+        let v = 0.02 * slow * libm::cos(slow * t) + 0.004 * fast * libm::cos(fast * t);
+        let a =
+            -0.02 * slow * slow * libm::sin(slow * t) - 0.004 * fast * fast * libm::sin(fast * t);
+        let force = 50.0 * a + 100.0 * v + 20.0 * v.signum();
+        writeln!(text, "{t:.3},{force},{x}").unwrap();
+    }
+    text
+}
+
+#[test]
+fn what_is_identified_goes_into_json_and_into_the_machine_file() {
+    let shop = Shop::new();
+    shop.put("x.csv", axis_recording());
+    let machine = shop.run(&["machine", "show", "vmc"]).stdout;
+    shop.put("mill.toml", &machine);
+    let ran = shop.run(&[
+        "identify",
+        "x.csv",
+        "--axis",
+        "x",
+        "--json",
+        "x.json",
+        "--toml",
+        "x.toml",
+        "--into",
+        "mill.toml",
+    ]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(ran.stdout.contains("verdict: good"), "{}", ran.stdout);
+    let json: serde_json::Value = serde_json::from_str(&shop.get("x.json")).unwrap();
+    for (key, truth) in [
+        ("mass_kg", 50.0),
+        ("viscous_n_s_m", 100.0),
+        ("coulomb_n", 20.0),
+    ] {
+        let value = json[key].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.02, "{key} {value}");
+        assert!(json[format!("{key}_std")].is_number());
+    }
+    for key in ["offset_n", "rel_error"] {
+        assert!(json[key].is_number(), "{key}");
+    }
+    assert!(json["zeros"].as_array().unwrap().is_empty());
+    assert_eq!(shop.get("mill.toml.bak"), machine);
+    let merged = shop.get("mill.toml");
+    assert_ne!(merged, machine);
+    let comments = |text: &str| text.matches('#').count();
+    assert_eq!(comments(&merged), comments(&machine));
+    assert_eq!(shop.run(&["machine", "check", "mill.toml"]).code, 0);
+    assert!(shop.get("x.toml").starts_with("[axes.X]\nmass_kg = "));
+}
+
+#[test]
+fn what_cannot_be_identified_leaves_nothing_behind() {
+    let shop = Shop::new();
+    shop.put("x.csv", axis_recording().replace("force_n", "force"));
+    shop.put("good.csv", axis_recording());
+    let machine = shop.run(&["machine", "show", "vmc"]).stdout;
+    shop.put("mill.toml", &machine);
+    let before = shop.files();
+    let run = |more: &[&'static str]| shop.run(&[&["identify"], more].concat());
+    run(&["x.csv", "--axis", "X", "--json", "x.json"]).refused("unit of column force");
+    run(&["none.csv", "--axis", "X"]).refused("cannot read the recording");
+    run(&["good.csv", "--axis", "Q"]).refused("is no axis");
+    run(&[
+        "good.csv",
+        "--axis",
+        "B",
+        "--into",
+        "mill.toml",
+        "--json",
+        "x.json",
+    ])
+    .refused("no axis B");
+    run(&["good.csv", "--axis", "X", "--json", "good.csv"]).refused("is read by this run");
+    shop.run(&["power-fit", "good.csv"])
+        .refused("no column velocity_mm_s");
+    shop.run(&["excite", "--amplitude", "0"])
+        .refused("not positive");
+    shop.run(&["excite", "--amplitude", "1", "--order", "40"])
+        .refused("from 3 to 20");
+    shop.run(&[
+        "excite",
+        "--amplitude",
+        "1",
+        "--shape",
+        "log-sweep",
+        "--to-hz",
+        "900",
+    ])
+    .refused("cannot be made");
+    shop.run(&["excite", "--amplitude", "1", "--stroke-deg", "1"])
+        .refused("--inertia-kg-m2");
+    assert_eq!(shop.files(), before);
+    assert_eq!(shop.get("mill.toml"), machine);
+}
+
+#[test]
+fn an_excitation_warns_where_the_axis_would_leave_its_stroke() {
+    let shop = Shop::new();
+    let common = [
+        "excite",
+        "--amplitude",
+        "50",
+        "--name",
+        "force_n",
+        "--mass-kg",
+        "90",
+    ];
+    let with = |more: &[&'static str]| shop.run(&[&common[..], more].concat());
+    let ran = with(&["--stroke-mm", "1", "--speed-mm-min", "100"]);
+    assert_eq!(ran.code, 0);
+    assert!(ran.stderr.contains("would travel"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("would reach"), "{}", ran.stderr);
+    assert_eq!(ran.stdout.lines().count(), 4096);
+    let ran = with(&["--stroke-mm", "1000", "--speed-mm-min", "100000"]);
+    assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
+}
