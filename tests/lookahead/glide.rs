@@ -75,21 +75,26 @@ fn glided(machine: &Machine, program: &str, floor_w: f64) -> f64 {
     gliding as f64 / quick.len() as f64
 }
 
-/// grbl, and a control with a permitted step of speed that sees few blocks.
-fn machines() -> [Machine; 2] {
+/// grbl, the same with a low limit along the path, and a control with a permitted
+/// step of speed that sees few blocks.
+fn machines() -> [Machine; 3] {
     let grbl = machine("grbl", 100.0, 1000.0);
     let mut other = grbl.clone();
     let mut step_mm_s = [f64::INFINITY; gwatt::machine::AXES];
     step_mm_s[..3].copy_from_slice(&[4.0, 6.0, 2.0]);
     let rules = builtin_controller("grbl").unwrap().planner.look_ahead;
     let mut rules = rules.unwrap();
+    let mut slow = grbl.clone();
+    rules.path_accel_mm_s2 = 250.0;
+    slow.controller.planner.look_ahead = Some(rules);
+    rules.path_accel_mm_s2 = f64::INFINITY;
     rules.blocks = Some(5);
     rules.corner = CornerRule::SpeedStep {
         step_mm_s,
         same_kind_only: false,
     };
     other.controller.planner.look_ahead = Some(rules);
-    [grbl, other]
+    [grbl, slow, other]
 }
 
 /// A finishing pass: an arch of lines of 0.5 mm at 40 mm/s.
@@ -106,14 +111,14 @@ fn pass() -> String {
 fn a_finishing_pass_glides() {
     for machine in machines() {
         let share = glided(&machine, &pass(), 1e9);
-        assert!(share > 0.9, "{share}");
+        assert!(share > 0.8, "{share}");
     }
 }
 
 #[test]
 fn peaks_of_interest_are_looked_at() {
     // 100 kg at 40 mm/s and at rest ask for nothing; at 1000 mm/s² for some watts.
-    let [machine, _] = machines();
+    let [machine, ..] = machines();
     assert_eq!(glided(&machine, &pass(), -1.0), 0.0);
 }
 

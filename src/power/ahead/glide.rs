@@ -8,7 +8,7 @@
 
 use super::Ahead;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisSet, Machine, PathMode};
+use crate::machine::{AxisSet, LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Gliding, Passage};
 use crate::power::demand::Want;
@@ -28,6 +28,8 @@ pub(super) struct Glider {
     speed_mm_s: f64,
     /// Override of feeds.
     feed: f64,
+    /// The rules' own limit along any path, mm/s².
+    path_accel_mm_s2: f64,
     /// Moves that may be open.
     blocks: usize,
     /// Moves that pass before it is worth another look.
@@ -53,11 +55,12 @@ struct Course {
 
 impl Glider {
     /// `blocks`: moves that may be open; 0: nothing glides.
-    pub fn new(machine: &Machine, overrides: Overrides, blocks: usize) -> Self {
+    pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
         let mut glider = Self {
             axes: AxisSet::default(),
             speed_mm_s: f64::INFINITY,
             feed: overrides.feed,
+            path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks,
             pause: 0,
             course: None,
@@ -81,15 +84,19 @@ impl Glider {
             && mv.arc.is_none()
             && mv.unknown_start.is_empty()
     }
-}
 
-/// The lowest acceleration of some axes of a move, and along its path.
-#[inline]
-fn least_accel_mm_s2(mv: &Move, axes: AxisSet) -> f64 {
-    let limits = axes.iter().filter_map(|axis| mv.accel_mm_s2.get(axis));
-    limits.fold(mv.path_accel_mm_s2, |least, accel| {
-        if *accel < least { *accel } else { least }
-    })
+    /// The lowest acceleration of some axes of a move, and along its path.
+    #[inline]
+    fn least_accel_mm_s2(&self, mv: &Move, axes: AxisSet) -> f64 {
+        let limits = axes.iter().filter_map(|axis| mv.accel_mm_s2.get(axis));
+        let along = mv.path_accel_mm_s2.min(self.path_accel_mm_s2);
+        limits.fold(
+            along,
+            |least, accel| {
+                if *accel < least { *accel } else { least }
+            },
+        )
+    }
 }
 
 /// Whether nothing but the time and the largest speed of a move at one speed is
@@ -128,7 +135,7 @@ impl Ahead {
                 }
             }
         }
-        let (Some(course), Some(last)) = (&mut self.glider.course, self.open.back()) else {
+        let (Some(course), Some(last)) = (&self.glider.course, self.open.back()) else {
             return false;
         };
         let first = course.first.saturating_sub(self.first) as usize;
@@ -142,8 +149,9 @@ impl Ahead {
                 *change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
             }
         }
+        let axes = AxisSet(mv.moving.0 | last.mv.moving.0);
         let passage = Passage {
-            accel_mm_s2: least_accel_mm_s2(mv, AxisSet(mv.moving.0 | last.mv.moving.0)),
+            accel_mm_s2: self.glider.least_accel_mm_s2(mv, axes),
             length_mm: mv.length_mm,
             speed2: course.speed_mm_s * course.speed_mm_s,
         };
@@ -157,10 +165,12 @@ impl Ahead {
         if !glides {
             return false;
         }
-        let ramp2 = 2.0 * passage.accel_mm_s2 * mv.length_mm;
-        course.direction = w;
-        course.ramp2 += ramp2;
         let speed_mm_s = course.speed_mm_s;
+        let ramp2 = 2.0 * passage.accel_mm_s2 * mv.length_mm;
+        if let Some(course) = &mut self.glider.course {
+            course.direction = w;
+            course.ramp2 += ramp2;
+        }
         let mut open = self.room(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
         open.ramp2 = ramp2;
@@ -199,7 +209,7 @@ impl Ahead {
             if !glides {
                 return Err(index + 1);
             }
-            let accel_mm_s2 = least_accel_mm_s2(&open.mv, open.mv.moving);
+            let accel_mm_s2 = self.glider.least_accel_mm_s2(&open.mv, open.mv.moving);
             open.ramp2 = 2.0 * accel_mm_s2 * open.mv.length_mm;
             ramp2 += if index > 0 { open.ramp2 } else { 0.0 };
         }

@@ -94,7 +94,7 @@ impl Ahead {
             0
         };
         Self {
-            glider: Glider::new(machine, largest.overrides, blocks),
+            glider: Glider::new(machine, &rules, largest.overrides, blocks),
             largest,
             nominal: (!alike).then_some(nominal),
             open: VecDeque::new(),
