@@ -248,4 +248,11 @@ fn overlapping_moves_are_shown_at_once() {
     for (moved_mm, to_mm) in moved_mm.into_iter().zip([50.0, 4.0, 14.0]) {
         assert!((moved_mm - to_mm).abs() < 1e-3, "{moved_mm} {to_mm}");
     }
+    // Two chords of one arc, with a blend between them.
+    let program = "G17 G64 P0.5\nG1 X-1.892 Y7.1653 F9000\nG1 X12.8504 Y7.3865\n\
+                   G3 X13.2335 Y7.6038 Z-1 I0.0305 J0.3925\nG1 X30\n";
+    let (_, summary) = run(&mill, program, &Options::default());
+    let rows = shown(&mill, program, 1e-3);
+    let last_s = rows[rows.len() - 1].0;
+    assert!((last_s - summary.duration_s).abs() < 1e-9, "{last_s}");
 }

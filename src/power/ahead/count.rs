@@ -99,8 +99,9 @@ impl Ahead {
             piece_demand(model, &open.mv, planned, open.want)
         };
         let certain = !peaks || self.is_certain(planned, from, to);
-        // Half of a blend belongs to what is behind it.
-        let halves = if planned.next.is_some() { 0.5 } else { 1.0 };
+        // Half of a blend belongs to what is behind it, if that is another move: it
+        // may lie between two chords of one arc.
+        let halves = if last == planned.tag { 1.0 } else { 0.5 };
         let lengths: f64 = (from..=own)
             .filter_map(|index| self.open.get(index))
             .map(|open| open.mv.length_mm)
