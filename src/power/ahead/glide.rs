@@ -35,12 +35,12 @@ pub(super) struct Glider {
     /// Moves that pass before it is worth another look.
     pause: usize,
     /// The planner does not know of the last moves.
-    course: Option<Course>,
+    glide: Option<Glide>,
 }
 
 /// Where a motion glides.
 #[derive(Debug)]
-struct Course {
+struct Glide {
     /// Of F, mm/s.
     feed_mm_s: f64,
     /// The same under the override.
@@ -63,7 +63,7 @@ impl Glider {
             path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks,
             pause: 0,
-            course: None,
+            glide: None,
         };
         if blocks > 0 && machine.force_curves.is_empty() {
             for (index, axis) in machine.axes.iter().take(LINEAR).enumerate() {
@@ -122,23 +122,23 @@ impl Ahead {
         if doubtful || want.accel || !eye.is_closed() || !self.glider.suits(mv) {
             return false;
         }
-        if self.glider.course.is_none() {
+        if self.glider.glide.is_none() {
             if self.glider.pause > 0 {
                 self.glider.pause -= 1;
                 return false;
             }
-            match self.course(model) {
-                Ok(course) => self.glider.course = Some(course),
+            match self.begin_gliding(model) {
+                Ok(glide) => self.glider.glide = Some(glide),
                 Err(pause) => {
                     self.glider.pause = pause;
                     return false;
                 }
             }
         }
-        let (Some(course), Some(last)) = (&self.glider.course, self.open.back()) else {
+        let (Some(glide), Some(last)) = (&self.glider.glide, self.open.back()) else {
             return false;
         };
-        let first = course.first.saturating_sub(self.first) as usize;
+        let first = glide.first.saturating_sub(self.first) as usize;
         if self.open.len().saturating_sub(first) > self.glider.blocks {
             self.glider.pause = self.glider.blocks;
             return false;
@@ -153,23 +153,20 @@ impl Ahead {
         let passage = Passage {
             accel_mm_s2: self.glider.least_accel_mm_s2(mv, axes),
             length_mm: mv.length_mm,
-            speed2: course.speed_mm_s * course.speed_mm_s,
+            speed2: glide.speed_mm_s * glide.speed_mm_s,
         };
-        let glides = course.feed_mm_s == mv.feed_mm_s
+        let glides = glide.feed_mm_s == mv.feed_mm_s
             && last.mv.path_mode == PathMode::LookAhead
-            && self
-                .largest
-                .planner
-                .permits(&course.direction, &w, &passage)
-            && is_plain(model, mv, course.speed_mm_s, want);
+            && self.largest.planner.permits(&glide.direction, &w, &passage)
+            && is_plain(model, mv, glide.speed_mm_s, want);
         if !glides {
             return false;
         }
-        let speed_mm_s = course.speed_mm_s;
+        let speed_mm_s = glide.speed_mm_s;
         let ramp2 = 2.0 * passage.accel_mm_s2 * mv.length_mm;
-        if let Some(course) = &mut self.glider.course {
-            course.direction = w;
-            course.ramp2 += ramp2;
+        if let Some(glide) = &mut self.glider.glide {
+            glide.direction = w;
+            glide.ramp2 += ramp2;
         }
         let mut open = self.room(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
@@ -183,7 +180,7 @@ impl Ahead {
 
     /// How the motion glides over the moves that are open; otherwise, how many of
     /// them must pass before it may.
-    fn course(&mut self, model: &PowerModel) -> Result<Course, usize> {
+    fn begin_gliding(&mut self, model: &PowerModel) -> Result<Glide, usize> {
         let Gliding {
             first: number,
             open,
@@ -213,7 +210,7 @@ impl Ahead {
             open.ramp2 = 2.0 * accel_mm_s2 * open.mv.length_mm;
             ramp2 += if index > 0 { open.ramp2 } else { 0.0 };
         }
-        Ok(Course {
+        Ok(Glide {
             feed_mm_s,
             speed_mm_s,
             direction,
@@ -225,47 +222,47 @@ impl Ahead {
     /// Counts the moves that are final.
     #[inline]
     fn count_gliding(&mut self) {
-        let Some(course) = &mut self.glider.course else {
+        let Some(glide) = &mut self.glider.glide else {
             return;
         };
-        let needed2 = course.speed_mm_s * course.speed_mm_s * (1.0 + ROUNDING);
-        while course.ramp2 >= needed2 {
-            let index = course.first.saturating_sub(self.first) as usize;
+        let needed2 = glide.speed_mm_s * glide.speed_mm_s * (1.0 + ROUNDING);
+        while glide.ramp2 >= needed2 {
+            let index = glide.first.saturating_sub(self.first) as usize;
             let Some(open) = self.open.get_mut(index) else {
                 break;
             };
-            let duration_s = open.mv.length_mm / course.speed_mm_s;
+            let duration_s = open.mv.length_mm / glide.speed_mm_s;
             open.alone = false;
             open.assessment.duration_s += duration_s;
             open.assessment.fastest_s += duration_s;
-            open.assessment.top_speed_mm_s = course.speed_mm_s;
-            self.largest.next = course.first;
-            course.first += 1;
+            open.assessment.top_speed_mm_s = glide.speed_mm_s;
+            self.largest.next = glide.first;
+            glide.first += 1;
             let Some(next) = self.open.get(index + 1) else {
                 break;
             };
-            course.ramp2 -= next.ramp2;
+            glide.ramp2 -= next.ramp2;
         }
     }
 
     /// Tells the planner of the moves since it was left alone.
     #[inline]
     pub(super) fn catch_up(&mut self, machine: &Machine) {
-        if let Some(course) = self.glider.course.take() {
-            self.end_gliding(machine, &course);
+        if let Some(glide) = self.glider.glide.take() {
+            self.end_gliding(machine, &glide);
         }
     }
 
-    fn end_gliding(&mut self, machine: &Machine, course: &Course) {
+    fn end_gliding(&mut self, machine: &Machine, glide: &Glide) {
         let side = &mut self.largest;
-        let first = course.first.saturating_sub(self.first) as usize;
+        let first = glide.first.saturating_sub(self.first) as usize;
         for (index, open) in self.open.iter().enumerate().skip(first) {
             // All have a path: their lengths and their limits are above 0.
             if !side.describe(machine, &open.mv, self.first + index as u64) {
                 continue;
             }
             if index == first {
-                let speed2 = course.speed_mm_s * course.speed_mm_s;
+                let speed2 = glide.speed_mm_s * glide.speed_mm_s;
                 side.planner.glide_to(&side.element, speed2);
             } else {
                 side.planner.push(&side.element);
