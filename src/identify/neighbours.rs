@@ -6,8 +6,12 @@ use super::transfer::{Factor, TransferFunction};
 
 /// Poles at most.
 pub const ORDER_MAX: usize = 8;
+/// No mode is looked for beyond, rad per period.
+const FAST: f64 = 0.9 * std::f64::consts::PI;
+/// Periods of delay at most.
+pub const LAG_MAX: f64 = 12.0;
 /// How far above the fastest mode another one is looked for at first.
-const ABOVE: [f64; 3] = [1.5, 2.5, 4.0];
+const ABOVE: [f64; 3] = [2.5, 4.0, 1.5];
 
 /// What is given instead of searched for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -67,23 +71,21 @@ pub fn neighbours(
     period_s: f64,
 ) -> Vec<TransferFunction> {
     let far_zero = far_zero(period_s);
-    let lean = lean(from);
     let mut out = reflected(from, given, period_s);
+    out.extend(as_delay(from, given, period_s));
     if given.order.is_none() {
         out.extend(cancelled(from));
-    }
-    if given.order.is_none() && lean.order() < from.order() {
-        // Fast poles and zeros may have stood for a delay.
-        let later = if given.delay_s.is_none() { 2 } else { 0 };
-        for periods in 0..=later {
-            let mut less = lean.clone();
-            less.delay_s += f64::from(periods) * period_s;
-            if less.zero_count() < less.order() {
-                let mut more = less.clone();
-                more.zeros.push(far_zero);
-                out.push(more);
+        out.extend(without_mode(from, far_zero, true));
+        let lean = lean(from, response.band_rad_s());
+        if lean.order() < from.order() {
+            for less in with_lag_of(&lean, from, given, period_s) {
+                if less.zero_count() < less.order() {
+                    let mut more = less.clone();
+                    more.zeros.push(far_zero);
+                    out.push(more);
+                }
+                out.push(less);
             }
-            out.push(less);
         }
     }
     let mut shapes = vec![from.clone()];
@@ -119,7 +121,12 @@ pub fn neighbours(
         if from.order() + 2 <= ORDER_MAX {
             out.extend(with_mode(from, response, period_s));
         }
-        out.extend(without_mode(from, far_zero));
+        out.extend(without_mode(from, far_zero, false));
+        if from.order() < ORDER_MAX {
+            let mut lagging = from.clone();
+            lagging.poles.push(lag_pole(period_s));
+            out.extend(with_lag_of(&lagging, from, given, period_s));
+        }
     }
     if let Some(zeros) = given.zeros {
         out.retain(|model| model.zero_count() == zeros);
@@ -129,7 +136,7 @@ pub fn neighbours(
 
 /// Without a pole and a zero that stand for nothing beside one another.
 fn cancelled(from: &TransferFunction) -> Vec<TransferFunction> {
-    const NEAR: f64 = 0.05;
+    const NEAR: f64 = 0.2;
     let mut out = Vec::new();
     for (index, pole) in from.poles.iter().enumerate() {
         let is_near = |zero: &Factor| {
@@ -146,11 +153,76 @@ fn cancelled(from: &TransferFunction) -> Vec<TransferFunction> {
     out
 }
 
+/// By how much a model makes slow signals late, s: what a recording tells of it,
+/// whatever fast poles, zeros and delay make of that.
+fn lag_s(of: &TransferFunction) -> f64 {
+    let sum = |list: &[Factor]| -> f64 { list.iter().map(|factor| factor.lag_s()).sum() };
+    of.delay_s + sum(&of.poles) - sum(&of.zeros)
+}
+
+/// A model with the whole periods of delay that make it as late as another one:
+/// the nearest number, and the next.
+fn with_lag_of(
+    model: &TransferFunction,
+    other: &TransferFunction,
+    given: Given,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    if given.delay_s.is_some() {
+        return vec![model.clone()];
+    }
+    let missing = lag_s(other) - lag_s(model) + model.delay_s;
+    let periods = (missing / period_s).clamp(0.0, LAG_MAX);
+    let near = libm::round(periods);
+    let next = if periods < near {
+        near - 1.0
+    } else {
+        near + 1.0
+    };
+    [near, next]
+        .into_iter()
+        .map(|periods| TransferFunction {
+            delay_s: periods * period_s,
+            ..model.clone()
+        })
+        .collect()
+}
+
+/// Zeros on the right stand for a delay, as poles that do not swing may: without
+/// one of them, and with the zero where it makes early what it made late.
+fn as_delay(from: &TransferFunction, given: Given, period_s: f64) -> Vec<TransferFunction> {
+    let mut out = Vec::new();
+    for (index, zero) in from.zeros.iter().enumerate() {
+        if zero.lag_s() >= 0.0 || zero.oscillates() {
+            continue;
+        }
+        let mut less = from.clone();
+        less.zeros.remove(index);
+        out.extend(with_lag_of(&less, from, given, period_s));
+        let mut mirrored = from.clone();
+        if let Some(zero) = mirrored.zeros.get_mut(index) {
+            match zero {
+                Factor::Pair { damping, .. } => *damping = -*damping,
+                Factor::Real { time_constant_s } => *time_constant_s = -*time_constant_s,
+            }
+        }
+        out.extend(with_lag_of(&mirrored, from, given, period_s));
+    }
+    out
+}
+
 /// Dampers make a real zero far above the band: seldom seen in the response, but
 /// not nothing.
 fn far_zero(period_s: f64) -> Factor {
     Factor::Real {
         time_constant_s: 0.1 * period_s,
+    }
+}
+
+/// What filters and current loops make: a lag of its own, soon over.
+fn lag_pole(period_s: f64) -> Factor {
+    Factor::Real {
+        time_constant_s: 0.5 * period_s,
     }
 }
 
@@ -182,10 +254,14 @@ fn reflected(from: &TransferFunction, given: Given, period_s: f64) -> Vec<Transf
         .collect()
 }
 
-/// What swings of a model: the rest often stands for nothing but noise.
-fn lean(from: &TransferFunction) -> TransferFunction {
-    let swings =
-        |factor: &&Factor| matches!(factor, Factor::Pair { damping, .. } if damping.abs() < 0.7);
+/// What swings of a model, up to where it shows: the rest often stands for nothing
+/// but noise.
+fn lean(from: &TransferFunction, band_rad_s: f64) -> TransferFunction {
+    const BEYOND: f64 = 1.2;
+    let swings = |factor: &&Factor| {
+        matches!(factor, Factor::Pair { damping, omega_rad_s }
+            if damping.abs() < 0.7 && *omega_rad_s < BEYOND * band_rad_s)
+    };
     let poles: Vec<Factor> = from.poles.iter().filter(swings).copied().collect();
     let order = 2 * poles.len();
     let mut zeros: Vec<Factor> = from.zeros.iter().filter(swings).copied().collect();
@@ -210,35 +286,50 @@ pub fn restarts(
     if given.order.is_some() || given.zeros.is_some() {
         return Vec::new();
     }
-    let lean = lean(from);
+    let lean = lean(from, response.band_rad_s());
     (1..=lean.poles.len())
+        .rev()
         .flat_map(|count| {
             let mut slow = lean.clone();
             for list in [&mut slow.zeros, &mut slow.poles] {
                 list.sort_by(|a, b| a.corner_rad_s().total_cmp(&b.corner_rad_s()));
                 list.truncate(count);
             }
-            let mut starts = with_mode(&slow, response, period_s);
+            let mut starts = Vec::new();
             for above in ABOVE {
                 let mut stiff = slow.clone();
                 let fastest = slow.poles.last().map(|pole| pole.corner_rad_s());
+                if fastest.is_some_and(|omega| above * omega * period_s > FAST) {
+                    continue;
+                }
                 stiff.poles.extend(fastest.map(|omega| Factor::Pair {
                     omega_rad_s: above * omega,
-                    damping: 0.05,
+                    damping: 0.3,
                 }));
-                starts.push(stiff.clone());
-                stiff.zeros.push(far_zero(period_s));
-                starts.push(stiff);
+                for mut stiff in with_lag_of(&stiff, from, given, period_s) {
+                    starts.push(stiff.clone());
+                    stiff.zeros.push(far_zero(period_s));
+                    starts.push(stiff);
+                }
+                stiff.poles.push(lag_pole(period_s));
+                starts.extend(with_lag_of(&stiff, from, given, period_s));
             }
+            starts.extend(with_mode(&slow, response, period_s));
             starts
         })
         .collect()
 }
 
-/// Without one pole, and without none or one of the zeros: the nearest first.
-fn without_mode(from: &TransferFunction, far_zero: Factor) -> Vec<TransferFunction> {
+/// Without the fastest pole, or without one of the others, and without none or one
+/// of the zeros: the nearest first.
+fn without_mode(from: &TransferFunction, far_zero: Factor, fastest: bool) -> Vec<TransferFunction> {
     let mut out = Vec::new();
+    let corners = || from.poles.iter().map(|pole| pole.corner_rad_s());
+    let most = corners().fold(0.0, f64::max);
     for (at, pole) in from.poles.iter().enumerate() {
+        if (pole.corner_rad_s() == most) != fastest {
+            continue;
+        }
         let distance = |zero: &Factor| libm::log(zero.corner_rad_s() / pole.corner_rad_s()).abs();
         let mut less = from.clone();
         less.poles.remove(at);

@@ -19,7 +19,7 @@ use super::data::Data;
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
 use super::sensitivity::{differences, gather};
-use super::transfer::TransferFunction;
+use super::transfer::{Factor, TransferFunction};
 
 const STEPS_MAX: usize = 40;
 /// An improvement of the sum of squares below this share of one row's ends the
@@ -47,8 +47,8 @@ pub struct Estimate {
     pub power: f64,
     /// Parameters that were fitted, offset and first state left out.
     pub count: usize,
-    /// Whole periods of delay and pairs of poles.
-    pub sought: usize,
+    /// What the criterion charges for besides parameters.
+    pub charge: f64,
     /// Steps that the search took.
     pub steps: usize,
     /// Offset of the output.
@@ -58,13 +58,10 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Bayes' information criterion; the smaller, the better. Each period of
-    /// delay and each pair of poles counts as a parameter more: which of many
-    /// delays and frequencies it was had to be found too, and noise is tried as
-    /// often. What is there pays for it many times over.
+    /// Bayes' information criterion with its [`charge()`]; the smaller, the better.
     #[must_use]
     pub fn criterion(&self) -> f64 {
-        criterion(self.rest, self.power, self.rows, self.count + self.sought)
+        criterion(self.rest, self.power, self.rows, self.count) + self.charge
     }
 
     /// Standard error of the parameter at `index`.
@@ -158,10 +155,11 @@ pub fn refine(
     let mut damping = 1e-4;
     let power: f64 = raw.output.iter().map(|y| y * y).sum();
     let mut steps = 0;
-    let free = |transfer: &TransferFunction| count + sought(transfer, data.period_s);
     for round in 0..LONGER * effort.steps {
         // What is missing, in units of the criterion: what is near is worth more.
-        let missing = criterion(least, power, normal.rows, free(&transfer)) - effort.to_beat;
+        let missing = criterion(least, power, normal.rows, count)
+            + charge(&transfer, data.period_s, normal.rows)
+            - effort.to_beat;
         if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
             break;
         }
@@ -207,8 +205,8 @@ pub fn refine(
     if data.undisturbed.is_some() {
         (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
     }
-    let sought = sought(&transfer, data.period_s);
-    let mut estimate = finish(transfer, &normal, [count, sought], power)?;
+    let mut estimate = finish(transfer, &normal, count, power)?;
+    estimate.charge = charge(&estimate.transfer, data.period_s, normal.rows);
     estimate.steps = steps;
     if !whitening.is_empty() {
         // Offset and first state of the signals as they are.
@@ -222,9 +220,41 @@ pub fn refine(
     Some(estimate)
 }
 
-/// Whole periods of delay and pairs of poles.
-fn sought(transfer: &TransferFunction, period_s: f64) -> usize {
-    libm::floor(transfer.delay_s / period_s + 1e-9) as usize + transfer.order() / 2
+/// What a model has to pay for besides its parameters. Which of many frequencies
+/// and delays it was had to be found too, and noise is tried as often: each first
+/// state explains the samples over which it swings, all of them where there is no
+/// damping. Zeros that structures seldom have, but noise often, count twice: those
+/// on the right, which stand for a delay, and leads that undo one.
+fn charge(transfer: &TransferFunction, period_s: f64, rows: usize) -> f64 {
+    let n = rows as f64;
+    let lag = libm::floor(transfer.delay_s / period_s + 1e-9);
+    let lasting = |decay_rad_s: f64| libm::log(1.0 + (1.0 / (decay_rad_s * period_s)).min(n));
+    let states: f64 = transfer
+        .poles
+        .iter()
+        .map(|pole| match *pole {
+            Factor::Pair {
+                omega_rad_s: w,
+                damping,
+            } => {
+                let spread = (damping * damping - 1.0).max(0.0).sqrt();
+                lasting(w * (damping - spread)) + lasting(w * (damping + spread))
+            }
+            Factor::Real { time_constant_s } => lasting(1.0 / time_constant_s),
+        })
+        .sum();
+    let seldom = transfer.zeros_on_the_right() + leads(transfer);
+    states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
+}
+
+/// Real zeros that are no dampers' beside the fastest mode: they lead by more than
+/// such a one, whose time is `2ζ/ω`.
+fn leads(transfer: &TransferFunction) -> usize {
+    const DAMPER: f64 = 0.5;
+    let swinging = transfer.poles.iter().filter(|pole| pole.oscillates());
+    let fastest = swinging.map(|pole| pole.corner_rad_s()).fold(0.0, f64::max);
+    let leads = |zero: &&Factor| matches!(zero, Factor::Real { time_constant_s } if time_constant_s * fastest > DAMPER);
+    transfer.zeros.iter().filter(leads).count()
 }
 
 /// All unknowns; a swing that was over at once is left at nil.
@@ -283,7 +313,7 @@ fn moved(transfer: &TransferFunction, delay_is_free: bool, step: &[f64]) -> Tran
 fn finish(
     transfer: TransferFunction,
     normal: &Normal,
-    [count, sought]: [usize; 2],
+    count: usize,
     power: f64,
 ) -> Option<Estimate> {
     let left = rest(normal, count)?;
@@ -298,7 +328,7 @@ fn finish(
         rows: normal.rows,
         power,
         count,
-        sought,
+        charge: 0.0,
         steps: 0,
         offset,
         state,

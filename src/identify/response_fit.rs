@@ -44,7 +44,8 @@ impl ResponseFit {
     #[must_use]
     pub fn criterion(&self) -> f64 {
         let n = self.rows as f64;
-        n * libm::log((self.misfit / n).max(f64::MIN_POSITIVE)) + self.count as f64 * libm::log(n)
+        let count = self.count + self.transfer.zeros_on_the_right();
+        n * libm::log((self.misfit / n).max(f64::MIN_POSITIVE)) + count as f64 * libm::log(n)
     }
 }
 

@@ -27,7 +27,7 @@ const SEARCH_STEPS: usize = 20;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
 const STEPS_MAX: usize = 500;
-const STEPS_LAST: usize = 120;
+const STEPS_LAST: usize = 200;
 /// Rounds of model and noise.
 const ROUNDS_OF_NOISE: usize = 4;
 /// Steps from model to model at most.
@@ -143,7 +143,10 @@ fn ladder(
         }
     }
     let mut best = best?;
-    let mut is_restarted = false;
+    // Where the first model is taken from, what shows is mostly right, and the
+    // rest not.
+    let mut is_restarted = true;
+    let mut idle = 0;
     let mut left = STEPS_MAX;
     let mut tried = vec![best.transfer.clone()];
     for _ in 0..ROUNDS_MAX {
@@ -186,10 +189,12 @@ fn ladder(
         }
         if best.criterion() < before - WORTH {
             is_restarted = false;
-        } else if is_restarted {
+            idle = 0;
+        } else if idle == 1 {
             break;
         } else {
-            is_restarted = true;
+            is_restarted = !is_restarted;
+            idle = 1;
         }
     }
     if given.delay_s.is_some() {
@@ -228,7 +233,7 @@ fn starts(data: &Data<'_>, response: &FrequencyResponse, given: Given) -> Vec<Tr
     }
     fits.sort_by(|a, b| a.0.total_cmp(&b.0));
     fits.into_iter()
-        .take(2)
+        .take(3)
         .map(|(_, transfer)| TransferFunction {
             delay_s: given.delay_s.unwrap_or(transfer.delay_s),
             ..transfer

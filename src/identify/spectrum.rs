@@ -24,6 +24,23 @@ pub struct FrequencyResponse {
     pub periodic: bool,
 }
 
+impl FrequencyResponse {
+    /// Up to where the input explains most of the output, rad/s: beyond, a
+    /// recording tells nothing but what fast modes make of slow motion.
+    #[must_use]
+    pub fn band_rad_s(&self) -> f64 {
+        const BINS: usize = 5;
+        const FAIR: f64 = 0.5;
+        let explained = self.coherence.windows(BINS).rposition(|bins| {
+            let sum: f64 = bins.iter().sum();
+            sum > FAIR * BINS as f64
+        });
+        let edge = explained.map_or(self.frequency_hz.len(), |first| first + BINS);
+        let hz = self.frequency_hz.get(edge.saturating_sub(1));
+        hz.map_or(f64::INFINITY, |hz| 2.0 * PI * hz)
+    }
+}
+
 /// Averages the response of `output` to `input`. With an `instrument` (the
 /// excitation of a closed loop) both are referred to it, which keeps the loop's
 /// noise out. Lengths must be equal. `None` for fewer than 64 samples.

@@ -114,6 +114,13 @@ impl TransferFunction {
         multiply(vec![1.0], &self.poles)
     }
 
+    /// How many zeros lie right of the imaginary axis.
+    #[must_use]
+    pub fn zeros_on_the_right(&self) -> usize {
+        let right = self.zeros.iter().filter(|zero| zero.lag_s() < 0.0);
+        right.map(|zero| zero.degree()).sum()
+    }
+
     /// The poles times `period_s`; two at one place are put a little apart, as
     /// partial fractions need it.
     pub(super) fn pole_places(&self, period_s: f64) -> Vec<Complex<f64>> {
