@@ -3,10 +3,10 @@
 use super::arx;
 use super::data::Data;
 use super::flexible::{Choice, Prepared};
-use super::neighbours::ORDER_MAX;
+use super::neighbours::{LAG_MAX, ORDER_MAX};
 use super::output_error::{Effort, Estimate, refine};
 use super::response_fit::{self, ResponseFit};
-use super::search::{LAG_MAX, response_of, search};
+use super::search::{response_of, search};
 use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;

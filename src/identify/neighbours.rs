@@ -8,8 +8,8 @@ use super::transfer::{Factor, TransferFunction};
 pub const ORDER_MAX: usize = 8;
 /// No mode is looked for beyond, rad per period.
 const FAST: f64 = 0.9 * std::f64::consts::PI;
-/// Periods of delay at most.
-pub const LAG_MAX: f64 = 12.0;
+/// Periods of delay that are tried.
+pub const LAG_MAX: usize = 12;
 /// How far above the fastest mode another one is looked for at first.
 const ABOVE: [f64; 3] = [2.5, 4.0, 1.5];
 
@@ -172,7 +172,7 @@ fn with_lag_of(
         return vec![model.clone()];
     }
     let missing = lag_s(other) - lag_s(model) + model.delay_s;
-    let periods = (missing / period_s).clamp(0.0, LAG_MAX);
+    let periods = (missing / period_s).clamp(0.0, LAG_MAX as f64);
     let near = libm::round(periods);
     let next = if periods < near {
         near - 1.0

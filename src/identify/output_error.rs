@@ -251,8 +251,8 @@ fn charge(transfer: &TransferFunction, period_s: f64, rows: usize) -> f64 {
 /// such a one, whose time is `2ζ/ω`.
 fn leads(transfer: &TransferFunction) -> usize {
     const DAMPER: f64 = 0.5;
-    let swinging = transfer.poles.iter().filter(|pole| pole.oscillates());
-    let fastest = swinging.map(|pole| pole.corner_rad_s()).fold(0.0, f64::max);
+    let modes = transfer.poles.iter().filter(|pole| pole.degree() == 2);
+    let fastest = modes.map(|pole| pole.corner_rad_s()).fold(0.0, f64::max);
     let leads = |zero: &&Factor| matches!(zero, Factor::Real { time_constant_s } if time_constant_s * fastest > DAMPER);
     transfer.zeros.iter().filter(leads).count()
 }

@@ -3,7 +3,7 @@
 //! criterion prefers.
 
 use super::data::Data;
-use super::neighbours::{Given, ORDER_MAX, are_alike, neighbours, restarts};
+use super::neighbours::{Given, LAG_MAX, ORDER_MAX, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
 use super::output_error::{Effort, Estimate, refine, residuals};
 use super::response_fit::grow;
@@ -11,8 +11,6 @@ use super::spectrum::{FrequencyResponse, measure};
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;
 
-/// Periods of delay that are tried.
-pub const LAG_MAX: usize = 12;
 /// Samples on which models are compared; the last fit takes all.
 const COMPARED: usize = 8_000;
 /// A model better by this much is gone on from without looking at others.
