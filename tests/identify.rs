@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod power_log;
+mod readers;
 mod refusals;
 mod rigid;
 mod signals;

@@ -49,11 +49,10 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
     let (found, validation) = if is_flexible {
         let found = flexible::identify(&recording, &choice).with_context(name)?;
         let validation = match &args.validate {
-            Some(path) => Some(flexible::predict_error(
-                &found,
-                &open(path, letter)?,
-                &choice,
-            )?),
+            Some(path) => Some(
+                flexible::predict_error(&found, &open(path, letter)?, &choice)
+                    .with_context(|| path.display().to_string())?,
+            ),
             None => None,
         };
         (Found::Flexible(Box::new(found)), validation)
@@ -65,7 +64,10 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
         let found =
             rigid::fit(&recording, ratio, friction, args.bandwidth_hz).with_context(name)?;
         let validation = match &args.validate {
-            Some(path) => Some(rigid::predict_error(&found, &open(path, letter)?, ratio)?),
+            Some(path) => Some(
+                rigid::predict_error(&found, &open(path, letter)?, ratio)
+                    .with_context(|| path.display().to_string())?,
+            ),
             None => None,
         };
         (Found::Rigid(Box::new(found)), validation)

@@ -34,12 +34,12 @@ pub fn run(args: &PowerFitArgs, terminal: Terminal) -> Result<Verdict> {
         log.add(BufReader::new(file), letter)
             .with_context(|| name.to_string())?;
     }
-    let model = fit(&log)?;
     let names: Vec<String> = args.logs.iter().map(|p| p.display().to_string()).collect();
     let recording = match names.as_slice() {
         [one] => one.clone(),
         many => format!("{} logs", many.len()),
     };
+    let model = fit(&log).with_context(|| recording.clone())?;
     let heading = Heading {
         recording,
         axis: letter,

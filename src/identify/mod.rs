@@ -33,6 +33,7 @@ mod polynomial;
 mod quality;
 mod recording;
 mod response_fit;
+mod rows;
 mod search;
 mod sensitivity;
 mod spectrum;

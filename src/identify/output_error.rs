@@ -158,7 +158,7 @@ pub fn refine(
     for round in 0..LONGER * effort.steps {
         // What is missing, in units of the criterion: what is near is worth more.
         let missing = criterion(least, power, normal.rows, count)
-            + charge(&transfer, data.period_s, normal.rows)
+            + charge(raw, &transfer, normal.rows)
             - effort.to_beat;
         if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
             break;
@@ -206,7 +206,7 @@ pub fn refine(
         (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
     }
     let mut estimate = finish(transfer, &normal, count, power)?;
-    estimate.charge = charge(&estimate.transfer, data.period_s, normal.rows);
+    estimate.charge = charge(raw, &estimate.transfer, normal.rows);
     estimate.steps = steps;
     if !whitening.is_empty() {
         // Offset and first state of the signals as they are.
@@ -225,8 +225,9 @@ pub fn refine(
 /// state explains the samples over which it swings, all of them where there is no
 /// damping. Zeros that structures seldom have, but noise often, count twice: those
 /// on the right, which stand for a delay, and leads that undo one.
-fn charge(transfer: &TransferFunction, period_s: f64, rows: usize) -> f64 {
+fn charge(data: &Data<'_>, transfer: &TransferFunction, rows: usize) -> f64 {
     let n = rows as f64;
+    let period_s = data.period_s;
     let lag = libm::floor(transfer.delay_s / period_s + 1e-9);
     let lasting = |decay_rad_s: f64| libm::log(1.0 + (1.0 / (decay_rad_s * period_s)).min(n));
     let states: f64 = transfer
@@ -243,7 +244,13 @@ fn charge(transfer: &TransferFunction, period_s: f64, rows: usize) -> f64 {
             Factor::Real { time_constant_s } => lasting(1.0 / time_constant_s),
         })
         .sum();
-    let seldom = transfer.zeros_on_the_right() + leads(transfer);
+    // Loops lead as they like.
+    let leads = if data.from_command {
+        0
+    } else {
+        leads(transfer)
+    };
+    let seldom = transfer.zeros_on_the_right() + leads;
     states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
 }
 

@@ -10,6 +10,7 @@ use std::io::Read;
 use super::column::{Kind, Quantity, Reading, axis_of, read};
 use super::normal::Normal;
 use super::rigid::Figure;
+use super::rows::{Rows, no_number};
 use super::trouble::{Outcome, Trouble};
 
 /// Rows at most.
@@ -96,21 +97,10 @@ impl PowerLog {
     ///
     /// When a column is missing or the file cannot be read.
     pub fn add(&mut self, input: impl Read, axis: char) -> Outcome<()> {
-        let broken = |error: csv::Error| {
-            Trouble::new(
-                format!("the log cannot be read: {error}"),
-                "it must be CSV, every line with as many values as the header has names",
-            )
-        };
-        let mut text = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .from_reader(input);
-        let header = text.headers().map_err(broken)?.clone();
+        let mut rows = Rows::open(input)?;
         let mut wanted: [Option<(usize, f64)>; 3] = [None; 3];
         let mut electrical: [Option<(usize, Electrical)>; 2] = [None, None];
-        for (index, name) in header.iter().enumerate() {
-            let name = name.trim_start_matches('\u{feff}');
+        for (index, name) in rows.names.iter().enumerate() {
             let (slot, factor) = match self.meaning(name, axis)? {
                 Some((Quantity::Velocity, factor)) => (0, factor),
                 Some((Quantity::Acceleration, factor)) => (1, factor),
@@ -119,7 +109,7 @@ impl PowerLog {
                     let found = electrical_slot(name, axis);
                     if let Some(place) = found.and_then(|slot| electrical.get_mut(slot)) {
                         let column = Electrical {
-                            name: name.to_owned(),
+                            name: name.clone(),
                             values: Vec::new(),
                         };
                         *place = Some((index, column));
@@ -143,13 +133,22 @@ impl PowerLog {
                 ));
             }
         }
-        let mut record = csv::StringRecord::new();
-        while text.read_record(&mut record).map_err(broken)? {
-            let number = |index: usize| -> f64 {
-                let cell = record.get(index).unwrap_or_default();
-                cell.parse().unwrap_or(f64::NAN)
-            };
-            let row = wanted.map(|place| place.map_or(f64::NAN, |(index, f)| number(index) * f));
+        while let Some(line) = rows.next_line()? {
+            let mut row = [f64::NAN; 3];
+            for ((slot, place), name) in row.iter_mut().zip(&wanted).zip(names) {
+                let Some((index, factor)) = *place else {
+                    continue;
+                };
+                let cell = rows.cell(index);
+                match cell.parse::<f64>() {
+                    Ok(value) => *slot = value * factor,
+                    Err(_) if cell.is_empty() => {}
+                    Err(_) => {
+                        let name = rows.names.get(index).map_or(name, String::as_str);
+                        return Err(no_number(line, name, cell));
+                    }
+                }
+            }
             let [v, a, p] = row;
             if v.is_finite() && a.is_finite() && p.is_finite() {
                 self.velocity.push(v);
@@ -157,7 +156,8 @@ impl PowerLog {
                 self.power.push(p);
             }
             for (index, column) in electrical.iter_mut().flatten() {
-                column.values.push(number(*index));
+                let cell = rows.cell(*index);
+                column.values.push(cell.parse().unwrap_or(f64::NAN));
             }
             if self.power.len() > ROWS_MAX {
                 return Err(Trouble::new(

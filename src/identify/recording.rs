@@ -3,6 +3,7 @@
 use std::io::Read;
 
 use super::column::{Kind, Quantity, Reading, axis_of, read, units_of};
+use super::rows::{Lines, Rows, no_number};
 use super::trouble::{Outcome, Trouble};
 
 /// Intervals may differ from the period by this share of it.
@@ -43,31 +44,17 @@ impl Recording {
     ///
     /// Anything that keeps the data from being used, with what to do.
     pub fn read(input: impl Read, axis: Option<char>) -> Outcome<Self> {
-        let mut text = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .flexible(false)
-            .from_reader(input);
-        let header = text.headers().map_err(|error| broken(&error))?.clone();
-        if header.len() < 2 {
-            return Err(one_column(&header));
-        }
-        let (columns, ignored) = columns(&header, axis)?;
+        let mut rows = Rows::open(input)?;
+        let (columns, ignored) = columns(&rows.names, axis)?;
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-        let mut record = csv::StringRecord::new();
-        while text
-            .read_record(&mut record)
-            .map_err(|error| broken(&error))?
-        {
-            let line = record.position().map_or(0, csv::Position::line);
+        let mut lines = Lines::default();
+        while let Some(line) = rows.next_line()? {
+            lines.add(line);
             for ((index, name, _), list) in columns.iter().zip(&mut values) {
-                let cell = record.get(*index).unwrap_or_default();
+                let cell = rows.cell(*index);
                 let value: f64 = cell.parse().unwrap_or(f64::NAN);
                 if !value.is_finite() {
-                    return Err(Trouble::new(
-                        format!("line {line}: {name} is \"{cell}\", not a number"),
-                        "cut the recording there, or record again: samples must not be missing",
-                    ));
+                    return Err(no_number(line, name, cell));
                 }
                 list.push(value);
             }
@@ -102,7 +89,7 @@ impl Recording {
             ));
         }
         Ok(Self {
-            period_s: period(&time)?,
+            period_s: period(&time, &lines)?,
             signals,
             ignored,
         })
@@ -129,41 +116,12 @@ impl Recording {
     }
 }
 
-/// What is wrong with a header of one column, or none.
-fn one_column(header: &csv::StringRecord) -> Trouble {
-    let name = header.get(0).unwrap_or_default();
-    if name.is_empty() {
-        return Trouble::new(
-            "the recording is empty",
-            "record again; the first line names the columns, such as time_s,torque_nm,position_mm",
-        );
-    }
-    if name.contains(';') || name.contains('\t') {
-        return Trouble::new(
-            "the columns of the recording are not separated by commas",
-            "export it with commas between the columns, and with points in the numbers",
-        );
-    }
-    Trouble::new(
-        "the recording has fewer than two columns",
-        "separate columns with commas; the first line names them, such as time_s,torque_nm,position_mm",
-    )
-}
-
-fn broken(error: &csv::Error) -> Trouble {
-    Trouble::new(
-        format!("the recording cannot be read: {error}"),
-        "it must be CSV in UTF-8, every line with as many values as the header has names",
-    )
-}
-
 type Column = (usize, String, super::column::Meaning);
 
-fn columns(header: &csv::StringRecord, axis: Option<char>) -> Outcome<(Vec<Column>, Vec<String>)> {
+fn columns(header: &[String], axis: Option<char>) -> Outcome<(Vec<Column>, Vec<String>)> {
     let mut columns: Vec<Column> = Vec::new();
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
-        let name = name.trim_start_matches('\u{feff}');
         let is_ours = match (axis_of(name), axis) {
             (Some(found), Some(wanted)) => found == wanted,
             _ => true,
@@ -179,7 +137,7 @@ fn columns(header: &csv::StringRecord, axis: Option<char>) -> Outcome<(Vec<Colum
                         "leave one of them in the file, or put the axis letter in front, such as x_position_mm",
                     ));
                 }
-                columns.push((index, name.to_owned(), meaning));
+                columns.push((index, name.clone(), meaning));
             }
             Reading::UnitInDoubt(quantity) if is_ours => {
                 return Err(Trouble::new(
@@ -187,7 +145,7 @@ fn columns(header: &csv::StringRecord, axis: Option<char>) -> Outcome<(Vec<Colum
                     format!("end its name with the unit, one of: {}", units_of(quantity)),
                 ));
             }
-            _ => ignored.push(name.to_owned()),
+            _ => ignored.push(name.clone()),
         }
     }
     if columns
@@ -203,7 +161,7 @@ fn columns(header: &csv::StringRecord, axis: Option<char>) -> Outcome<(Vec<Colum
 }
 
 /// The sampling period, if there is one.
-fn period(time: &[f64]) -> Outcome<f64> {
+fn period(time: &[f64], lines: &Lines) -> Outcome<f64> {
     let intervals: Vec<f64> = time
         .iter()
         .zip(time.iter().skip(1))
@@ -219,14 +177,14 @@ fn period(time: &[f64]) -> Outcome<f64> {
         ));
     }
     for (index, interval) in intervals.iter().enumerate() {
-        let line = index + 3;
+        let (before, line) = (lines.of(index), lines.of(index + 1));
         let deviation = (interval - usual) / usual;
         if deviation.abs() <= JITTER {
             continue;
         }
         if *interval <= 0.0 {
             return Err(Trouble::new(
-                format!("sample {}: the time goes back or stands still", line - 1),
+                format!("line {line}: the time goes back or stands still"),
                 "sort the samples by time, each once",
             ));
         }
@@ -236,18 +194,13 @@ fn period(time: &[f64]) -> Outcome<f64> {
             .count();
         if deviation > 0.5 && many * 50 < intervals.len() {
             return Err(Trouble::new(
-                format!(
-                    "a gap behind sample {}: {:.6} s instead of {usual:.6} s",
-                    line - 2,
-                    interval
-                ),
+                format!("a gap behind line {before}: {interval:.6} s instead of {usual:.6} s"),
                 "cut the recording there, or record again without losses",
             ));
         }
         return Err(Trouble::new(
             format!(
-                "sampling is uneven: sample {} comes after {interval:.6} s, others after {usual:.6} s ({many} intervals are off by more than {} %)",
-                line - 1,
+                "sampling is uneven: line {line} comes after {interval:.6} s, others after {usual:.6} s ({many} intervals are off by more than {} %)",
                 100.0 * JITTER
             ),
             "record with a fixed period, and write the time with enough digits",

@@ -145,7 +145,11 @@ fn ladder(
     // rest not.
     let mut is_restarted = true;
     let mut idle = 0;
-    let mut left = STEPS_MAX;
+    // What comes after another round has little left to look for.
+    let (mut left, mut spare) = match before {
+        Some(_) => (STEPS_LAST, STEPS_LAST),
+        None => (STEPS_MAX, 3 * STEPS_LAST),
+    };
     let mut tried = vec![best.transfer.clone()];
     for _ in 0..ROUNDS_MAX {
         let mut top: Option<Estimate> = None;
@@ -179,7 +183,9 @@ fn ladder(
             }
         }
         // Something is left for what comes next, to leave a wrong path.
-        left = left.max(STEPS_LAST);
+        let more = STEPS_LAST.saturating_sub(left).min(spare);
+        left += more;
+        spare -= more;
         let before = best.criterion();
         if let Some(top) = top.filter(|top| is_better(top, Some(&best))) {
             tried.push(top.transfer.clone());

@@ -1,0 +1,200 @@
+//! Rows of a CSV file with their lines, and what is wrong with them in plain
+//! words: recordings come from many programs.
+
+use std::io::{Chain, Cursor, Read};
+
+use super::trouble::{Outcome, Trouble};
+
+/// Bytes at the beginning that tell what a file is.
+const BEGINNING: u64 = 4096;
+/// Characters of a cell that are shown.
+const SHOWN: usize = 24;
+
+/// A CSV file that is read row by row.
+pub struct Rows<R> {
+    text: csv::Reader<Chain<Cursor<Vec<u8>>, R>>,
+    /// The names in the header.
+    pub names: Vec<String>,
+    record: csv::StringRecord,
+}
+
+impl<R: Read> Rows<R> {
+    /// Opens a file and reads its header.
+    ///
+    /// # Errors
+    ///
+    /// When it is no CSV with commas, in UTF-8.
+    pub fn open(mut input: R) -> Outcome<Self> {
+        let mut beginning = Vec::new();
+        input
+            .by_ref()
+            .take(BEGINNING)
+            .read_to_end(&mut beginning)
+            .map_err(|error| unreadable(&error))?;
+        let is_wide = beginning.starts_with(&[0xFF, 0xFE]) || beginning.starts_with(&[0xFE, 0xFF]);
+        if is_wide || beginning.contains(&0) {
+            return Err(Trouble::new(
+                if is_wide {
+                    "the file is UTF-16"
+                } else {
+                    "the file is no text: there are bytes of 0 in it"
+                },
+                "export it as CSV in UTF-8; the first line names the columns, such as time_s,torque_nm,position_mm",
+            ));
+        }
+        if beginning.starts_with("\u{feff}".as_bytes()) {
+            beginning.drain(.."\u{feff}".len());
+        }
+        let mut text = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(Cursor::new(beginning).chain(input));
+        let header = text.headers().map_err(|error| broken(&error))?;
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        if names.len() < 2 {
+            return Err(one_column(names.first().map_or("", String::as_str)));
+        }
+        Ok(Self {
+            text,
+            names,
+            record: csv::StringRecord::new(),
+        })
+    }
+
+    /// Goes to the next row; its line, or nothing at the end.
+    ///
+    /// # Errors
+    ///
+    /// When the row cannot be read, or has not as many values as there are names.
+    pub fn next_line(&mut self) -> Outcome<Option<u64>> {
+        let read = self.text.read_record(&mut self.record);
+        if !read.map_err(|error| broken(&error))? {
+            return Ok(None);
+        }
+        let line = self.record.position().map_or(0, csv::Position::line);
+        let (found, named) = (self.record.len(), self.names.len());
+        if found == named {
+            return Ok(Some(line));
+        }
+        let (help, what) = if found > named {
+            (
+                "numbers need decimal points: commas separate columns",
+                "more",
+            )
+        } else {
+            (
+                "cut the recording there, or export it again: every line needs as many values as the header has names",
+                "fewer",
+            )
+        };
+        Err(Trouble::new(
+            format!("line {line} has {found} values, {what} than the {named} names of the header"),
+            help,
+        ))
+    }
+
+    /// A cell of the row; empty where there is none.
+    #[must_use]
+    pub fn cell(&self, index: usize) -> &str {
+        self.record.get(index).unwrap_or_default()
+    }
+}
+
+/// A cell that is no number, in a line.
+#[must_use]
+pub fn no_number(line: u64, name: &str, cell: &str) -> Trouble {
+    let shown: String = cell
+        .chars()
+        .take(SHOWN)
+        .flat_map(char::escape_debug)
+        .collect();
+    let more = if cell.chars().count() > SHOWN {
+        "…"
+    } else {
+        ""
+    };
+    let is_german = cell.contains(',') && cell.replacen(',', ".", 1).parse::<f64>().is_ok();
+    Trouble::new(
+        format!("line {line}: {name} is \"{shown}{more}\", not a number"),
+        if is_german {
+            "export it with decimal points instead of decimal commas"
+        } else {
+            "cut the recording there, or record again: samples must not be missing"
+        },
+    )
+}
+
+/// What is wrong with a header of one column, or none.
+fn one_column(name: &str) -> Trouble {
+    if name.is_empty() {
+        return Trouble::new(
+            "the recording is empty",
+            "record again; the first line names the columns, such as time_s,torque_nm,position_mm",
+        );
+    }
+    if name.contains(';') || name.contains('\t') {
+        return Trouble::new(
+            "the columns of the recording are not separated by commas",
+            "export it with commas between the columns, and with points in the numbers",
+        );
+    }
+    Trouble::new(
+        "the recording has fewer than two columns",
+        "separate columns with commas; the first line names them, such as time_s,torque_nm,position_mm",
+    )
+}
+
+fn unreadable(error: &std::io::Error) -> Trouble {
+    Trouble::new(
+        format!("the file cannot be read: {error}"),
+        "check that it is a file, and that it may be read",
+    )
+}
+
+/// Why the reader stopped, without its own words.
+fn broken(error: &csv::Error) -> Trouble {
+    let line = error.position().map(csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::Io(error) => unreadable(error),
+        csv::ErrorKind::Utf8 { .. } => Trouble::new(
+            match line {
+                Some(line) => format!("line {line} is not in UTF-8"),
+                None => "the file is not in UTF-8".to_owned(),
+            },
+            "export it as CSV in UTF-8",
+        ),
+        _ => Trouble::new(
+            match line {
+                Some(line) => format!("line {line} cannot be read"),
+                None => "the file cannot be read".to_owned(),
+            },
+            "it must be CSV in UTF-8, every line with as many values as the header has names",
+        ),
+    }
+}
+
+/// The lines of samples, kept where they do not follow one another.
+#[derive(Debug, Default)]
+pub struct Lines {
+    runs: Vec<(usize, u64)>,
+    count: usize,
+}
+
+impl Lines {
+    /// Adds the line of the next sample.
+    pub fn add(&mut self, line: u64) {
+        if self.of(self.count) != line {
+            self.runs.push((self.count, line));
+        }
+        self.count += 1;
+    }
+
+    /// The line of a sample.
+    #[must_use]
+    pub fn of(&self, sample: usize) -> u64 {
+        let at = self.runs.partition_point(|(first, _)| *first <= sample);
+        let run = at.checked_sub(1).and_then(|at| self.runs.get(at));
+        run.map_or(0, |(first, line)| line + (sample - first) as u64)
+    }
+}
