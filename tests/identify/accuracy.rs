@@ -1,6 +1,7 @@
 //! How accurate the estimates are, and how honest their errors.
 
 use gwatt::identify::flexible::{self, Method};
+use gwatt::identify::{Factor, TransferFunction};
 
 use super::{
     PERIOD_S, choice, errors, held_m_sequence, noisy_recording, one_side, random, two_sides,
@@ -38,6 +39,33 @@ fn errors_are_as_small_as_the_noise_allows() {
         // χ² by its degrees of freedom; figures of one seed hang together a little.
         let mean = sum / (seeds as f64 * least.len() as f64);
         assert!((0.3..2.2).contains(&mean), "{mean}");
+    }
+}
+
+/// Beyond the band of the excitation fast modes, delays and lags are hard to tell
+/// apart: none of them may take a part of the damping of what shows.
+#[test]
+fn what_lies_beyond_the_band_does_not_move_the_zero() {
+    let late = TransferFunction {
+        delay_s: 3.0 * PERIOD_S,
+        ..one_side()
+    };
+    let mut lagging = one_side();
+    lagging.poles.push(Factor::Real {
+        time_constant_s: 0.8 * PERIOD_S,
+    });
+    for (axis, samples, to_hz, noise, seed) in [
+        (one_side(), 16_000, 45.0, 0.2, 125),
+        (late, 4000, 45.0, 0.05, 5),
+        (lagging, 4000, 100.0, 0.2, 1),
+    ] {
+        let recording = noisy_recording(&axis, &random(samples, to_hz), noise, seed);
+        let found = flexible::identify(&recording, &choice(Method::Iv)).unwrap();
+        let errors = errors(&axis, &found);
+        for (error, std) in &errors {
+            assert!(error.abs() < 4.0 * std, "{errors:?}, {:?}", found.transfer);
+        }
+        assert!(errors[0].1 < 2e-3 && errors[1].1 < 0.1, "{errors:?}");
     }
 }
 
