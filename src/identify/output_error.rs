@@ -260,7 +260,7 @@ fn leads(transfer: &TransferFunction) -> usize {
     const DAMPER: f64 = 0.5;
     let modes = transfer.poles.iter().filter(|pole| pole.degree() == 2);
     let fastest = modes.map(|pole| pole.corner_rad_s()).fold(0.0, f64::max);
-    let leads = |zero: &&Factor| matches!(zero, Factor::Real { time_constant_s } if time_constant_s * fastest > DAMPER);
+    let leads = |zero: &&Factor| zero.degree() == 1 && zero.lag_s() * fastest > DAMPER;
     transfer.zeros.iter().filter(leads).count()
 }
 
