@@ -232,6 +232,33 @@ fn facing_at_constant_surface_speed() {
     assert!(found[2].peak_w > 31.4 * fastest);
 }
 
+/// On the spindle's axis the clamp holds; where X is not known any speed may be,
+/// which `limit` takes for the same when it reads its own output.
+#[test]
+fn surface_speed_where_the_axis_stands_or_is_not_known() {
+    let lathe = machine("iso", "", "", "");
+    let facing = "G96 S100 M3\nG4 P2\nG0 X-10\n";
+    let (found, _) = run(&lathe, facing, &Options::default());
+    assert!(found.iter().any(|row| row.peak_w > 0.9 * FULL_W));
+    assert!(found.iter().all(|row| row.peak_w < 2.0 * FULL_W));
+    let options = Options {
+        reading: Reading {
+            start: Start::Unknown,
+            ..Reading::default()
+        },
+        ..Options::default()
+    };
+    let how = LimitOptions {
+        strategy: Strategy::Optimal,
+        law: Law::Exact,
+        allow_feed: true,
+    };
+    let (program, mut out) = (format!("G21 G90\n{facing}M2\n"), Vec::new());
+    let summary = limit(Cursor::new(&program), &lathe, &options, how, &mut out, None).unwrap();
+    assert!(summary.certified, "{:?}", summary.reasons);
+    assert_eq!(out, program.as_bytes());
+}
+
 /// Tapping turns the spindle round: from 3000/min to −3000/min and back.
 #[test]
 fn tapping_turns_the_spindle_round() {

@@ -46,7 +46,8 @@ pub(super) struct Speeds {
 
 impl Surface {
     fn at(&self, radius_mm: f64) -> f64 {
-        let n = self.speed_mm_s * SECONDS_PER_MINUTE / (TAU * radius_mm);
+        // On the axis rounding must not make a negative 0 of it.
+        let n = self.speed_mm_s * SECONDS_PER_MINUTE / (TAU * radius_mm.abs());
         // Not a number at V = 0 on the axis.
         let n = if n < self.clamp_rpm {
             n
