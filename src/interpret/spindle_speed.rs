@@ -144,6 +144,13 @@ impl Control<'_> {
                 }
             }
         }
-        if low > 0.0 { low } else { (-high).max(0.0) }
+        // No negative 0: speeds are divided by it.
+        if low > 0.0 {
+            low
+        } else if high < 0.0 {
+            -high
+        } else {
+            0.0
+        }
     }
 }
