@@ -31,15 +31,19 @@ const ARCS_ANGLE_MIN: f64 = PI / 12.0;
 pub(super) struct Axes {
     exists: [bool; 3],
     pub speed: Vector,
+    /// The lowest of them.
+    least_speed: f64,
     pub jerk: Vector,
 }
 
 impl Axes {
     pub fn of(machine: &Machine) -> Self {
         let axis = |i: usize| machine.axes.get(i).and_then(Option::as_ref);
+        let speeds = [0, 1, 2].map(|i| axis(i).map(|axis| axis.rapid_mm_s));
         Self {
-            exists: [0, 1, 2].map(|i| axis(i).is_some()),
-            speed: [0, 1, 2].map(|i| axis(i).map_or(0.0, |axis| axis.rapid_mm_s)),
+            exists: speeds.map(|speed| speed.is_some()),
+            speed: speeds.map(Option::unwrap_or_default),
+            least_speed: speeds.into_iter().flatten().fold(f64::INFINITY, f64::min),
             jerk: [0, 1, 2].map(|i| axis(i).map_or(f64::INFINITY, limits::jerk)),
         }
     }
@@ -52,11 +56,17 @@ impl Axes {
 /// One side of a joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
-    /// Unit direction of motion at the joint.
-    pub tangent: Vector,
+    pub leg: Leg,
     /// Of an arc: from the joint to its centre, its radius, its angle and the
     /// normal of its plane.
     pub circle: Option<Circle>,
+}
+
+/// What a side of a joint is, straight or not.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Leg {
+    /// Unit direction of motion at the joint.
+    pub tangent: Vector,
     /// Length as programmed, and what earlier blends left of it.
     pub nominal_mm: f64,
     pub length_mm: f64,
@@ -91,7 +101,7 @@ pub(super) struct Fit {
     pub accel: f64,
 }
 
-impl Side {
+impl Leg {
     fn target_speed(&self) -> f64 {
         self.asked_speed.min(self.max_speed)
     }
@@ -109,30 +119,136 @@ impl Side {
 /// Diameter of the circle that fits into the box of the limits, cut through its
 /// centre by the plane with this normal.
 fn inscribed(normal: Vector, limits: Vector) -> f64 {
-    let mut smallest = f64::INFINITY;
-    for (i, limit) in limits.into_iter().enumerate() {
+    let mut smallest2 = f64::INFINITY;
+    for (limit, part) in limits.into_iter().zip(normal) {
         if limit > 0.0 {
-            let across = (1.0 - normal[i] * normal[i]).max(1e-24).sqrt();
-            smallest = smallest.min(limit / across);
+            let across2 = (1.0 - part * part).max(1e-24);
+            smallest2 = smallest2.min(limit * limit / across2);
         }
     }
-    smallest
+    smallest2.sqrt()
 }
 
-/// The speed that both sides and the plane of the corner permit.
-fn goal(sides: [&Side; 2], turn: f64, planar: f64) -> f64 {
-    let [first, second] = sides;
-    let cos = libm::cos(turn.min(PI * 0.49));
-    let v1 = first.max_speed.min(second.max_speed / cos);
-    let v2 = second.max_speed.min(first.max_speed / cos);
-    let altitude = if first.circle.is_none() && second.circle.is_none() {
+/// The corner that a blend rounds.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    /// Of half the angle inside.
+    sin: f64,
+    cos: f64,
+    /// By which the path turns.
+    turn: f64,
+    /// Unit normal of its plane.
+    binormal: Vector,
+}
+
+impl Corner {
+    /// Of two lines; with `θ = (π − φ)/2` the sum of their directions is as long
+    /// as `2·sin θ`, the difference as `2·cos θ`. `None` where there is none.
+    #[inline]
+    fn of([u, w]: [Vector; 2]) -> Option<Self> {
+        let (sin, cos) = (0.5 * length(add(u, w)), 0.5 * length(sub(w, u)));
+        let least = if cos < sin { cos } else { sin };
+        let small = libm::asin(least);
+        if small < ANGLE_MIN {
+            return None;
+        }
+        Some(Self {
+            sin,
+            cos,
+            turn: 2.0 * if cos < sin { small } else { FRAC_PI_2 - small },
+            binormal: scale(cross(u, w), 0.5 / (sin * cos)),
+        })
+    }
+
+    /// Half the angle inside.
+    fn theta(&self) -> f64 {
+        FRAC_PI_2 - 0.5 * self.turn
+    }
+
+    /// The same corner with another angle, half of it given.
+    fn with(self, theta: f64) -> Self {
+        Self {
+            sin: libm::sin(theta),
+            cos: libm::cos(theta),
+            turn: PI - 2.0 * theta,
+            ..self
+        }
+    }
+
+    /// The speed that both sides and the plane permit.
+    #[inline]
+    fn goal(&self, [first, second]: [&Leg; 2], axes: &Axes, straight: bool) -> f64 {
+        let asked = first.target_speed().max(second.target_speed());
+        // Whatever the plane, that much fits into it.
+        if axes.least_speed >= asked {
+            return asked;
+        }
+        let planar = inscribed(self.binormal, axes.speed);
+        if !straight || planar >= asked {
+            return asked.min(planar);
+        }
+        let cos = libm::cos(self.turn.min(PI * 0.49));
+        let v1 = first.max_speed.min(second.max_speed / cos);
+        let v2 = second.max_speed.min(first.max_speed / cos);
         let base = length(sub(scale(second.tangent, v2), scale(first.tangent, v1)));
-        v1 * v2 * libm::sin(turn) / base
-    } else {
-        0.0
-    };
-    let asked = first.target_speed().max(second.target_speed());
-    asked.min(altitude.max(planar))
+        let altitude = v1 * v2 * libm::sin(self.turn) / base;
+        asked.min(altitude.max(planar))
+    }
+
+    /// The blend between two legs that give up so much at most, mm.
+    #[inline]
+    fn round(
+        &self,
+        legs: [&Leg; 2],
+        most_mm: [f64; 2],
+        axes: &Axes,
+        accel: Vector,
+        straight: bool,
+    ) -> Option<Fit> {
+        let [first, second] = legs;
+        let a = inscribed(self.binormal, accel);
+        let v_goal = self.goal(legs, axes, straight);
+        let (s, c, turn) = (self.sin, self.cos, self.turn);
+        let tolerance = first.tolerance().min(second.tolerance());
+        // cos θ/(1 − sin θ) without a difference.
+        let d_most = ((1.0 + s) * tolerance / c).min(most_mm[0].min(most_mm[1]));
+        let r_most = s / c * d_most;
+        let v = (a * NORMAL_SHARE * r_most).sqrt().min(v_goal);
+        // A circle no larger than a blend by two ramps at half the acceleration,
+        // each over its side, takes; nor smaller than the speed needs.
+        let half = 0.5 * a;
+        let ramp_s = (2.0 * half * d_most).sqrt().min(v) / half;
+        let radius = (v * v / (a * NORMAL_SHARE)).max((ramp_s * v / turn).min(r_most));
+        if radius < 1e-12 || radius * turn < ARC_LENGTH_MIN_MM {
+            return None;
+        }
+        Some(Fit {
+            radius,
+            sweep: turn,
+            tangent: first.tangent,
+            normal: cross(self.binormal, first.tangent),
+            trims: [radius * c / s; 2],
+            speed: v,
+            asked_speed: first.target_speed().max(second.target_speed()),
+            accel: a,
+        })
+    }
+}
+
+/// The blend between two lines, if there is one that fits.
+#[inline]
+pub(super) fn between_lines(legs: [&Leg; 2], axes: &Axes, accel: Vector) -> Option<Fit> {
+    let corner = Corner::of(legs.map(|leg| leg.tangent))?;
+    corner.round(legs, legs_give(legs), axes, accel, true)
+}
+
+/// A line gives at most half of its programmed length and what is left of it.
+#[inline]
+fn legs_give([first, second]: [&Leg; 2]) -> [f64; 2] {
+    [
+        first.length_mm.min(first.nominal_mm * LENGTH_SHARE),
+        second.length_mm * LENGTH_SHARE,
+    ]
 }
 
 /// How an arc enters the fit: the blend lies inside its circle, how much of it
@@ -163,74 +279,38 @@ impl Bent {
 
 /// The blend of a joint, if there is one that fits.
 pub(super) fn fit(sides: [&Side; 2], axes: &Axes, accel: Vector) -> Option<Fit> {
-    let [first, second] = sides;
-    let theta_tangents = 0.5 * angle(scale(first.tangent, -1.0), second.tangent);
-    if FRAC_PI_2 - theta_tangents < ANGLE_MIN || theta_tangents < ANGLE_MIN {
-        return None;
+    let legs = sides.map(|side| &side.leg);
+    if sides.iter().all(|side| side.circle.is_none()) {
+        return between_lines(legs, axes, accel);
     }
-    let binormal = unit(cross(first.tangent, second.tangent))?;
-    let bisector = unit(sub(second.tangent, first.tangent))?;
-    let coplanar = |circle: &Circle| length(cross(binormal, circle.normal)) < ANGLE_MIN;
-    if sides
-        .iter()
-        .any(|side| side.circle.as_ref().is_some_and(|circle| !coplanar(circle)))
-    {
-        return None;
-    }
-    let mut theta = theta_tangents;
+    let corner = Corner::of(legs.map(|leg| leg.tangent))?;
+    let bisector = unit(sub(legs[1].tangent, legs[0].tangent))?;
+    let theta = corner.theta();
+    let mut least = theta;
+    let mut most_mm = legs_give(legs);
     let shares = [2.0 / 3.0, 1.0 / 3.0];
     let mut bent: [Option<Bent>; 2] = [None, None];
-    for ((side, share), bent) in sides.iter().zip(shares).zip(&mut bent) {
+    for (i, (side, share)) in sides.iter().zip(shares).enumerate() {
         if let Some(circle) = &side.circle {
-            let of = Bent::of(circle, bisector, theta_tangents, share);
-            if of.convex {
-                theta = theta.min(theta_tangents - of.most / 4.0);
+            if length(cross(corner.binormal, circle.normal)) >= ANGLE_MIN {
+                return None;
             }
-            *bent = Some(of);
+            let of = Bent::of(circle, bisector, theta, share);
+            if of.convex {
+                least = least.min(theta - of.most / 4.0);
+            }
+            most_mm[i] = of.reach(circle);
+            bent[i] = Some(of);
         }
     }
-    if bent.iter().all(Option::is_some) && theta < ARCS_ANGLE_MIN {
+    if bent.iter().all(Option::is_some) && least < ARCS_ANGLE_MIN {
         return None;
     }
-    let turn = PI - 2.0 * theta;
-    // A line gives at most half of its programmed length and what is left of it.
-    let first_mm = match (&bent[0], &first.circle) {
-        (Some(bent), Some(circle)) => bent.reach(circle),
-        _ => first.length_mm.min(first.nominal_mm * LENGTH_SHARE),
-    };
-    let second_mm = match (&bent[1], &second.circle) {
-        (Some(bent), Some(circle)) => bent.reach(circle),
-        _ => second.length_mm * LENGTH_SHARE,
-    };
-    let a = inscribed(binormal, accel);
-    let v_goal = goal(sides, turn, inscribed(binormal, axes.speed));
-    let (s, c) = (libm::sin(theta), libm::cos(theta));
-    let tolerance = first.tolerance().min(second.tolerance());
-    let d_most = (c * tolerance / (1.0 - s)).min(first_mm.min(second_mm));
-    let r_most = s / c * d_most;
-    let v = (a * NORMAL_SHARE * r_most).sqrt().min(v_goal);
-    // A circle no larger than a blend by two ramps at half the acceleration,
-    // each over its side, takes; nor smaller than the speed needs.
-    let half = 0.5 * a;
-    let ramp_s = (2.0 * half * d_most).sqrt().min(v) / half;
-    let radius = (v * v / (a * NORMAL_SHARE)).max((ramp_s * v / turn).min(r_most));
-    if radius < 1e-12 || radius * turn < ARC_LENGTH_MIN_MM {
-        return None;
-    }
-    let fit = Fit {
-        radius,
-        sweep: turn,
-        tangent: first.tangent,
-        normal: unit(cross(binormal, first.tangent))?,
-        trims: [radius * c / s; 2],
-        speed: v,
-        asked_speed: first.target_speed().max(second.target_speed()),
-        accel: a,
-    };
-    if bent.iter().all(Option::is_none) {
-        return Some(fit);
-    }
-    onto_arcs(fit, sides, &bent, binormal, bisector, tolerance)
+    let tolerance = legs[0].tolerance().min(legs[1].tolerance());
+    let lines = corner
+        .with(least)
+        .round(legs, most_mm, axes, accel, false)?;
+    onto_arcs(lines, sides, &bent, corner.binormal, bisector, tolerance)
 }
 
 /// Moves a blend that was fitted to lines so that it touches the arcs.
@@ -258,7 +338,7 @@ fn onto_arcs(
         }
         (None, Some(circle)) => {
             let (center, d) = beside_line(
-                scale(sides[0].tangent, -1.0),
+                scale(sides[0].leg.tangent, -1.0),
                 circle.center,
                 apart(1)?,
                 r,
@@ -270,7 +350,7 @@ fn onto_arcs(
         }
         (Some(circle), None) => {
             let (center, d) = beside_line(
-                sides[1].tangent,
+                sides[1].leg.tangent,
                 circle.center,
                 apart(0)?,
                 r,
@@ -297,7 +377,7 @@ fn onto_arcs(
     }
     let touch = |i: usize, sign: f64| -> Option<Vector> {
         Some(match &sides[i].circle {
-            None => scale(sides[i].tangent, sign * fit.trims[i]),
+            None => scale(sides[i].leg.tangent, sign * fit.trims[i]),
             Some(circle) => {
                 let out = unit(sub(center, circle.center))?;
                 add(circle.center, scale(out, circle.radius))

@@ -133,14 +133,14 @@ impl<T: Copy> LinuxCnc<T> {
         if before.rotates() || next.rotates() {
             return if blends { Way::Parabolic } else { Way::Stop };
         }
-        let sum = add(first.tangent, second.tangent);
+        let sum = add(first.leg.tangent, second.leg.tangent);
         if dot(sum, sum) < REVERSAL2 {
             return Way::Stop;
         }
         let accel = self.axes.accel(&next.element.axis_accel_mm_s2);
         let v = before.target_speed().min(next.target_speed());
         let step = scale(
-            sub(second.tangent, first.tangent),
+            sub(second.leg.tangent, first.leg.tangent),
             v / self.cycle_s + next.accel(),
         );
         let mut share = share_of(step, accel);

@@ -5,7 +5,7 @@
 //! an element runs while the one before it still brakes.
 
 use super::super::arc;
-use super::blend::{Circle, Side, angle_between};
+use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
 use super::planner::Piece;
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
@@ -105,10 +105,6 @@ impl<T: Copy> Pending<T> {
         let element = &self.element;
         let change = if at_end { &element.end } else { &element.start };
         let along = [change[0], change[1], change[2]];
-        let tolerance_mm = match element.joint {
-            Joint::Blend { tolerance_mm, .. } => tolerance_mm,
-            _ => 0.0,
-        };
         let circle = match &element.curve {
             None => None,
             Some(curve) => {
@@ -130,15 +126,24 @@ impl<T: Copy> Pending<T> {
                 })
             }
         };
-        Some(Side {
-            tangent: unit(along)?,
-            circle,
+        let leg = self.leg(unit(along)?);
+        Some(Side { leg, circle })
+    }
+
+    /// A side of a joint that it is passed in this direction.
+    fn leg(&self, tangent: Vector) -> Leg {
+        let element = &self.element;
+        Leg {
+            tangent,
             nominal_mm: element.length_mm,
             length_mm: self.length_mm,
             max_speed: self.max_speed,
             asked_speed: element.feed_mm_s,
-            tolerance_mm,
-        })
+            tolerance_mm: match element.joint {
+                Joint::Blend { tolerance_mm, .. } => tolerance_mm,
+                _ => 0.0,
+            },
+        }
     }
 
     /// What is left of it.
@@ -172,10 +177,10 @@ impl<T: Copy> Pending<T> {
     fn pull(&self, at_end: bool) -> Option<Vector> {
         let side = self.side(at_end)?;
         let Some(circle) = &side.circle else {
-            return Some(side.tangent);
+            return Some(side.leg.tangent);
         };
-        let across = dot(side.tangent, circle.normal);
-        let flat = unit(sub(side.tangent, scale(circle.normal, across)))?;
+        let across = dot(side.leg.tangent, circle.normal);
+        let flat = unit(sub(side.leg.tangent, scale(circle.normal, across)))?;
         if at_end {
             return Some(flat);
         }
