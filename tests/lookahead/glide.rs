@@ -75,9 +75,9 @@ fn glided(machine: &Machine, program: &str, floor_w: f64) -> f64 {
     gliding as f64 / quick.len() as f64
 }
 
-/// grbl, the same with a low limit along the path, and a control with a permitted
-/// step of speed that sees few blocks.
-fn machines() -> [Machine; 3] {
+/// grbl, the same with a low limit along the path, a control with a permitted
+/// step of speed that sees few blocks, and `LinuxCNC`.
+fn machines() -> [Machine; 4] {
     let grbl = machine("grbl", 100.0, 1000.0);
     let mut other = grbl.clone();
     let mut step_mm_s = [f64::INFINITY; gwatt::machine::AXES];
@@ -94,7 +94,7 @@ fn machines() -> [Machine; 3] {
         same_kind_only: false,
     };
     other.controller.planner.look_ahead = Some(rules);
-    [grbl, slow, other]
+    [grbl, slow, other, machine("linuxcnc", 100.0, 1000.0)]
 }
 
 /// A finishing pass: an arch of lines of 0.5 mm at 40 mm/s.
@@ -146,6 +146,9 @@ fn any_lines() -> impl Strategy<Value = Vec<String>> {
         1 => Just("M62 P0".to_owned()),
         1 => Just("G61.1".to_owned()),
         1 => Just("G64".to_owned()),
+        1 => (1..60_u32).prop_map(|p| format!("G64 P{}", 0.001 * f64::from(p))),
+        1 => Just("G64 P0.02 Q0.01".to_owned()),
+        1 => Just("G61".to_owned()),
         1 => Just("G1 X0".to_owned()),
     ];
     prop_oneof![

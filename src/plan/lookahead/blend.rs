@@ -49,6 +49,12 @@ impl Axes {
     }
 
     pub fn accel(&self, limits: &AxisValues) -> Vector {
+        self.masked([limits[0], limits[1], limits[2]])
+    }
+
+    /// The same of X, Y and Z.
+    #[inline]
+    pub fn masked(&self, limits: Vector) -> Vector {
         [0, 1, 2].map(|i| if self.exists[i] { limits[i] } else { 0.0 })
     }
 }

@@ -42,11 +42,11 @@ pub(super) struct Before {
 }
 
 impl Before {
-    /// The direction of an element that moves straight in X, Y and Z, and runs
-    /// through the joint if the corner permits it.
-    pub fn straight(&self) -> Option<[f64; 3]> {
-        let straight = self.joint != Joint::Stop && self.span == LINEAR && self.is_unit;
-        (straight && !self.is_curved).then_some([self.end[0], self.end[1], self.end[2]])
+    /// Whether the element moves straight in X, Y and Z, and runs through the joint
+    /// if the corner permits it.
+    pub fn is_straight(&self) -> bool {
+        let through = self.joint != Joint::Stop && self.span == LINEAR && self.is_unit;
+        through && !self.is_curved
     }
 }
 
@@ -219,7 +219,7 @@ fn cosine(axes: usize, before: &AxisValues, after: &AxisValues) -> Option<f64> {
 
 /// A joint that is to be passed at a speed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Passage {
+pub(super) struct Passage {
     /// Lowest acceleration of the axes and along the element behind, mm/s².
     pub accel_mm_s2: f64,
     /// Of the element behind.

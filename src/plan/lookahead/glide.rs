@@ -4,9 +4,9 @@
 //! without the planner, and give it those that are not final when that ends: it is
 //! then where it would have been.
 
-use super::corner::Passage;
-use super::element::Element;
-use super::planner::{PathPlanner, Rule};
+use super::corner::{Before, Passage};
+use super::element::{Element, Joint};
+use super::planner::{PathPlanner, Planned, Rule};
 
 /// Elements that are looked ahead at most without the planner.
 const BLOCKS_MAX: usize = 64;
@@ -14,58 +14,145 @@ const BLOCKS_MAX: usize = 64;
 /// A motion at full speed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gliding<T> {
-    /// The first element that is open.
+    /// The first element that is open, but for those that the planner keeps.
     pub first: T,
-    /// Pieces of path that are.
+    /// Elements that are.
     pub open: usize,
+    /// The planner keeps pieces of path before that, to be taken with
+    /// [`PathPlanner::pop_gliding`] once they are final.
+    pub keeps: bool,
     /// Squared, mm²/s².
     pub speed2: f64,
-    /// In X, Y and Z, where the last one ends.
+    /// Where the last element begins.
+    pub start: LineStart,
+}
+
+/// What the joint before a line has taken of it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct LineStart {
+    /// Of its path, mm.
+    pub taken_mm: f64,
+    /// Share of its acceleration.
+    pub kink: f64,
+}
+
+/// A straight feed in X, Y and Z whose start is known.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
     pub direction: [f64; 3],
+    pub length_mm: f64,
+    /// Limits of the axes, mm/s².
+    pub axis_accel_mm_s2: [f64; 3],
+    /// Limit along the path whatever the direction, mm/s².
+    pub path_accel_mm_s2: f64,
+    /// Not above the acceleration along the path, here and through the joint
+    /// before it, mm/s².
+    pub least_accel_mm_s2: f64,
+    /// What happens at its end.
+    pub joint: Joint,
+    pub start: LineStart,
+}
+
+/// A joint that the motion glides through.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Passed {
+    /// What of the path is left to the line before it, mm.
+    pub own_mm: f64,
+    /// What belongs to both halfway, mm, and its curvature.
+    pub shared_mm: f64,
+    pub curvature_per_mm: f64,
+    /// Share of the least acceleration of both that all this permits.
+    pub accel_share: f64,
+    /// Where the line behind it begins.
+    pub next: LineStart,
 }
 
 impl<T: Copy> PathPlanner<T> {
     /// How many elements may be followed that are not final; 0: none.
     pub(crate) fn glide_blocks(&self) -> usize {
-        if !matches!(self.rule, Rule::Corner(_)) || !self.window.may_glide() {
+        if !self.window.may_glide() {
             return 0;
         }
-        self.window.blocks().unwrap_or(BLOCKS_MAX).min(BLOCKS_MAX)
+        let blocks = self.window.blocks().unwrap_or(usize::MAX);
+        let blocks = match self.rule {
+            Rule::Corner(_) => blocks,
+            // A blend counts as well.
+            Rule::LinuxCnc(_) => blocks.saturating_sub(1) / 2,
+        };
+        blocks.min(BLOCKS_MAX)
     }
 
     /// Where the motion glides, over all elements that are open. Otherwise, how
     /// many must be final before it can do so.
     #[inline]
     pub(crate) fn gliding(&self) -> Result<Gliding<T>, usize> {
-        let Rule::Corner(Some(before)) = &self.rule else {
-            return Err(0);
+        let (speed2, open) = self.window.gliding()?;
+        match &self.rule {
+            Rule::Corner(before) => {
+                let straight = before.as_ref().is_some_and(Before::is_straight);
+                if !straight {
+                    return Err(0);
+                }
+                Ok(Gliding {
+                    first: open.front().ok_or(0_usize)?.payload.tag,
+                    open: open.len(),
+                    keeps: false,
+                    speed2,
+                    start: LineStart::default(),
+                })
+            }
+            Rule::LinuxCnc(rule) => {
+                let (first, start) = rule.gliding(speed2).ok_or(1_usize)?;
+                Ok(Gliding {
+                    first,
+                    open: 1,
+                    keeps: true,
+                    speed2,
+                    start,
+                })
+            }
+        }
+    }
+
+    /// How the joint of two lines is passed at the speed (mm/s) that both ask for
+    /// and their axes permit in any direction; `None` where it is not, or not
+    /// plainly.
+    #[inline]
+    pub(crate) fn passes(&self, before: &Line, next: &Line, speed_mm_s: f64) -> Option<Passed> {
+        if let Rule::LinuxCnc(rule) = &self.rule {
+            return rule.passes(before, next, speed_mm_s);
+        }
+        let passage = Passage {
+            accel_mm_s2: next.least_accel_mm_s2,
+            length_mm: next.length_mm,
+            speed2: speed_mm_s * speed_mm_s,
         };
-        let direction = before.straight().ok_or(0_usize)?;
-        let open = self.window.gliding()?;
-        let first = open.front().ok_or(0_usize)?;
-        Ok(Gliding {
-            first: first.payload.tag,
-            open: open.len(),
-            speed2: first.top2,
-            direction,
+        let permitted =
+            passage.is_permitted(&self.look_ahead.corner, &before.direction, &next.direction);
+        permitted.then_some(Passed {
+            own_mm: before.length_mm,
+            accel_share: 1.0,
+            ..Passed::default()
         })
     }
 
-    /// Whether the rules permit a joint of two elements with the directions `u`
-    /// and `w` in X, Y and Z; a quick answer that may be no where it is yes.
-    #[inline]
-    pub(crate) fn permits(&self, u: &[f64; 3], w: &[f64; 3], passage: &Passage) -> bool {
-        passage.is_permitted(&self.look_ahead.corner, u, w)
+    /// The next piece that the planner keeps; it is run at that speed, squared.
+    pub(crate) fn pop_gliding(&mut self, speed2: f64) -> Option<Planned<T>> {
+        self.window.pop_gliding(speed2).map(Planned::of)
     }
 
     /// Forgets the elements that are open: the motion has glided to the start of
     /// this one, with that speed, squared.
-    pub(crate) fn glide_to(&mut self, element: &Element<T>, speed2: f64) {
+    pub(crate) fn glide_to(&mut self, element: &Element<T>, start: LineStart, speed2: f64) {
         let limited = self.limited(element);
         let element = limited.as_ref().unwrap_or(element);
+        self.window.glide_to(speed2);
+        if let Rule::LinuxCnc(rule) = &mut self.rule {
+            return rule.glide_to(element, start, speed2);
+        }
         let (after, mut node) = self.node(element, [0.0, element.length_mm]);
         node.entry2 = speed2;
-        self.window.glide_to(node);
+        self.window.push(node);
         self.rule = Rule::Corner(Some(after.before()));
     }
 }

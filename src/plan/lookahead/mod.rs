@@ -18,8 +18,7 @@ mod runs;
 mod vector;
 mod window;
 
-pub(crate) use corner::Passage;
 pub use element::{Curve, Element, Joint};
-pub(crate) use glide::Gliding;
+pub(crate) use glide::{Gliding, Line, LineStart, Passed};
 pub use planner::{Blend, PathPlanner, Piece, Planned};
 pub use ramp::Speeds2;

@@ -12,7 +12,7 @@ use super::corner::{self, After, Before};
 use super::element::{Element, Joint};
 use super::linuxcnc::LinuxCnc;
 use super::ramp::Speeds2;
-use super::window::{Node, Window};
+use super::window::{Node, Span, Window};
 use crate::machine::{CornerRule, LookAhead, Machine};
 use crate::plan::{Profile, Section};
 
@@ -321,8 +321,14 @@ impl<T: Copy> PathPlanner<T> {
     }
 
     fn pop_ready(&mut self) -> Option<Planned<T>> {
-        let span = self.window.pop()?;
-        Some(Planned {
+        self.window.pop().map(Planned::of)
+    }
+}
+
+impl<T> Planned<T> {
+    #[inline]
+    pub(super) fn of(span: Span<Load<T>>) -> Self {
+        Self {
             tag: span.payload.tag,
             first: span.payload.first,
             next: span.payload.next,
@@ -337,6 +343,6 @@ impl<T: Copy> PathPlanner<T> {
             section: span.section,
             certain: span.certain && span.payload.certain,
             overlap_s: span.payload.overlap_s,
-        })
+        }
     }
 }

@@ -5,12 +5,16 @@
 //! permit that and the path behind it is long enough to brake, Σ 2·a·L ≥ v², with
 //! no more blocks than the controller sees. What is not final when that ends is
 //! given to the planner.
+//!
+//! How much of the path is a line's own, and how much a blend, is known with the
+//! line behind it.
 
 use super::Ahead;
+use super::open::{Open, joint};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisSet, LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
-use crate::plan::lookahead::{Gliding, Passage};
+use crate::plan::lookahead::{Gliding, Line, LineStart, Passed};
 use crate::power::demand::Want;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
@@ -18,11 +22,23 @@ use crate::power::model::PowerModel;
 const LINEAR: usize = 3;
 /// What rounding may make of the sum, as a share.
 const ROUNDING: f64 = 1e-6;
+/// Moves that pass before another look where one was in vain.
+const PAUSE: usize = 8;
 
 /// What is known of gliding beforehand, and how far it has come.
 #[derive(Debug)]
 pub(super) struct Glider {
-    /// The axes that glide: those of X, Y and Z.
+    terms: Terms,
+    /// Moves that pass before it is worth another look.
+    pause: usize,
+    /// The planner does not know of the last moves.
+    glide: Option<Glide>,
+}
+
+/// What may glide.
+#[derive(Debug)]
+struct Terms {
+    /// The axes that do: those of X, Y and Z.
     axes: AxisSet,
     /// Speed that each of them permits, whatever the direction, mm/s.
     speed_mm_s: f64,
@@ -32,10 +48,6 @@ pub(super) struct Glider {
     path_accel_mm_s2: f64,
     /// Moves that may be open.
     blocks: usize,
-    /// Moves that pass before it is worth another look.
-    pause: usize,
-    /// The planner does not know of the last moves.
-    glide: Option<Glide>,
 }
 
 /// Where a motion glides.
@@ -45,65 +57,99 @@ struct Glide {
     feed_mm_s: f64,
     /// The same under the override.
     speed_mm_s: f64,
-    /// Of the last move.
-    direction: [f64; LINEAR],
-    /// The first move that is not final.
+    /// The last move.
+    line: Line,
+    /// The first move that is not final, and where it begins.
     first: u64,
-    /// Σ 2·a·L of those behind it, at least.
+    start: LineStart,
+    /// The planner still keeps pieces of path before that.
+    keeps: bool,
+    /// Σ 2·a·L, at least, of the moves behind the first one; while the planner
+    /// keeps pieces, of that too.
+    ramp2: f64,
+}
+
+/// What a move that glides comes to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Glided {
+    passed: Passed,
+    /// 2·a·L, at least.
     ramp2: f64,
 }
 
 impl Glider {
     /// `blocks`: moves that may be open; 0: nothing glides.
     pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
-        let mut glider = Self {
+        let mut terms = Terms {
             axes: AxisSet::default(),
             speed_mm_s: f64::INFINITY,
             feed: overrides.feed,
             path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks,
-            pause: 0,
-            glide: None,
         };
         if blocks > 0 && machine.force_curves.is_empty() {
             for (index, axis) in machine.axes.iter().take(LINEAR).enumerate() {
                 let Some(axis) = axis else { continue };
-                glider.axes.insert(index);
-                glider.speed_mm_s = glider.speed_mm_s.min(axis.rapid_mm_s);
+                terms.axes.insert(index);
+                terms.speed_mm_s = lower(axis.rapid_mm_s, terms.speed_mm_s);
             }
         }
-        glider
+        Self {
+            terms,
+            pause: 0,
+            glide: None,
+        }
     }
+}
 
+impl Terms {
     /// Whether a move may glide at some speed: a straight feed.
     #[inline]
-    fn suits(&self, mv: &Move) -> bool {
+    fn suit(&self, mv: &Move) -> bool {
         mv.kind == MoveKind::Feed
             && mv.moving.0 & !self.axes.0 == 0
             && mv.length_mm > 0.0
             && mv.arc.is_none()
             && mv.unknown_start.is_empty()
+            && mv.path_mode == PathMode::LookAhead
     }
 
-    /// The lowest acceleration of some axes of a move, and along its path.
+    /// A move that suits, and a joint before it at which these axes move.
     #[inline]
-    fn least_accel_mm_s2(&self, mv: &Move, axes: AxisSet) -> f64 {
+    fn line(&self, mv: &Move, axes: AxisSet) -> Line {
+        let mut direction = [0.0; LINEAR];
+        for axis in mv.moving.iter() {
+            if let Some(change) = direction.get_mut(axis) {
+                *change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            }
+        }
+        let path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
         let limits = axes.iter().filter_map(|axis| mv.accel_mm_s2.get(axis));
-        let along = mv.path_accel_mm_s2.min(self.path_accel_mm_s2);
-        limits.fold(
-            along,
-            |least, accel| {
-                if *accel < least { *accel } else { least }
-            },
-        )
+        let [x, y, z, ..] = mv.accel_mm_s2;
+        Line {
+            direction,
+            length_mm: mv.length_mm,
+            axis_accel_mm_s2: [x, y, z],
+            path_accel_mm_s2,
+            least_accel_mm_s2: limits.fold(path_accel_mm_s2, |least, accel| lower(*accel, least)),
+            joint: joint(mv),
+            start: LineStart::default(),
+        }
     }
 }
 
-/// Whether nothing but the time and the largest speed of a move at one speed is
-/// of interest.
+/// Whether nothing but the time and the largest speed of a move is of interest,
+/// which has this speed all along, and behind it on a curve.
 #[inline]
-fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, want: Want) -> bool {
-    !want.energy && model.is_below_floor(mv, [speed_mm_s, 0.0], want)
+fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, per_mm: f64, want: Want) -> bool {
+    let accel_mm_s2 = per_mm * speed_mm_s * speed_mm_s;
+    !want.energy && model.is_below_floor(mv, [speed_mm_s, accel_mm_s2], want)
+}
+
+/// `f64::min` is several instructions more.
+#[inline]
+fn lower(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl Ahead {
@@ -113,13 +159,13 @@ impl Ahead {
     pub(super) fn glide(
         &mut self,
         model: &PowerModel,
-        eye: &Eye,
+        eye: &mut Eye,
         mv: &Move,
         text: &[u8],
         want: Want,
     ) -> bool {
         let doubtful = self.in_doubt || self.reach2.is_some();
-        if doubtful || want.accel || !eye.is_closed() || !self.glider.suits(mv) {
+        if doubtful || want.accel || !eye.is_closed() || !self.glider.terms.suit(mv) {
             return false;
         }
         if self.glider.glide.is_none() {
@@ -135,47 +181,45 @@ impl Ahead {
                 }
             }
         }
-        let (Some(glide), Some(last)) = (&self.glider.glide, self.open.back()) else {
+        let Some(speed_mm_s) = self.glide_on(model, mv) else {
+            self.glider.pause = PAUSE;
             return false;
         };
-        let first = glide.first.saturating_sub(self.first) as usize;
-        if self.open.len().saturating_sub(first) > self.glider.blocks {
-            self.glider.pause = self.glider.blocks;
-            return false;
-        }
-        let mut w = [0.0; LINEAR];
-        for axis in mv.moving.iter() {
-            if let Some(change) = w.get_mut(axis) {
-                *change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
-            }
-        }
-        let axes = AxisSet(mv.moving.0 | last.mv.moving.0);
-        let passage = Passage {
-            accel_mm_s2: self.glider.least_accel_mm_s2(mv, axes),
-            length_mm: mv.length_mm,
-            speed2: glide.speed_mm_s * glide.speed_mm_s,
-        };
-        let glides = glide.feed_mm_s == mv.feed_mm_s
-            && last.mv.path_mode == PathMode::LookAhead
-            && self.largest.planner.permits(&glide.direction, &w, &passage)
-            && is_plain(model, mv, glide.speed_mm_s, want);
-        if !glides {
-            return false;
-        }
-        let speed_mm_s = glide.speed_mm_s;
-        let ramp2 = 2.0 * passage.accel_mm_s2 * mv.length_mm;
-        if let Some(glide) = &mut self.glider.glide {
-            glide.direction = w;
-            glide.ramp2 += ramp2;
-        }
         let mut open = self.room(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
-        open.ramp2 = ramp2;
         open.moves = true;
-        open.rests = mv.path_mode == PathMode::ExactStop;
         self.open.push_back(open);
-        self.count_gliding();
+        self.count_gliding(model, eye);
         true
+    }
+
+    /// Glides through the joint before a move; gives the speed, mm/s.
+    #[inline]
+    fn glide_on(&mut self, model: &PowerModel, mv: &Move) -> Option<f64> {
+        let Glider { terms, glide, .. } = &mut self.glider;
+        let glide = glide.as_mut()?;
+        let first = glide.first.checked_sub(self.first)? as usize;
+        if self.open.len().checked_sub(first)? > terms.blocks || glide.feed_mm_s != mv.feed_mm_s {
+            return None;
+        }
+        let last = self.open.back_mut()?;
+        let line = terms.line(mv, AxisSet(mv.moving.0 | last.mv.moving.0));
+        let passed = self.largest.planner.passes(&glide.line, &line, glide.speed_mm_s)?;
+        let per_mm = passed.curvature_per_mm;
+        if !is_plain(model, &last.mv, glide.speed_mm_s, per_mm, last.want) {
+            return None;
+        }
+        let least_mm_s2 = lower(glide.line.least_accel_mm_s2, line.least_accel_mm_s2);
+        let ramp2 = 2.0 * passed.accel_share * least_mm_s2 * (passed.own_mm + passed.shared_mm);
+        last.glided = Glided { passed, ramp2 };
+        if glide.keeps || self.open.len() - 1 > first {
+            glide.ramp2 += ramp2;
+        }
+        glide.line = Line {
+            start: passed.next,
+            ..line
+        };
+        Some(glide.speed_mm_s)
     }
 
     /// How the motion glides over the moves that are open; otherwise, how many of
@@ -184,65 +228,94 @@ impl Ahead {
         let Gliding {
             first: number,
             open,
+            keeps,
             speed2,
-            direction,
+            start,
         } = self.largest.planner.gliding()?;
+        let terms = &self.glider.terms;
         let first = number.checked_sub(self.first).ok_or(open)? as usize;
-        if self.open.len().checked_sub(first) != Some(open) || open > self.glider.blocks {
+        if self.open.len().checked_sub(first) != Some(open) || open > terms.blocks {
             // Pieces of arcs, or a path that is too short to brake on.
             return Err(open);
         }
-        let feed_mm_s = self.open.back().ok_or(0_usize)?.mv.feed_mm_s;
-        let speed_mm_s = feed_mm_s * self.glider.feed;
-        if speed_mm_s * speed_mm_s != speed2 || speed_mm_s > self.glider.speed_mm_s {
+        let mv = &self.open.back().ok_or(0_usize)?.mv;
+        let feed_mm_s = mv.feed_mm_s;
+        let speed_mm_s = feed_mm_s * terms.feed;
+        if speed_mm_s * speed_mm_s != speed2 || speed_mm_s > terms.speed_mm_s {
             return Err(open);
         }
+        let mut line = terms.line(mv, mv.moving);
+        line.start = start;
         let mut ramp2 = 0.0;
-        for (index, open) in self.open.iter_mut().skip(first).enumerate() {
-            let glides = self.glider.suits(&open.mv)
-                && open.mv.feed_mm_s == feed_mm_s
-                && !open.in_doubt
-                && is_plain(model, &open.mv, speed_mm_s, open.want);
+        for (index, each) in self.open.iter_mut().skip(first).enumerate() {
+            let glides = terms.suit(&each.mv)
+                && each.mv.feed_mm_s == feed_mm_s
+                && !each.in_doubt
+                && is_plain(model, &each.mv, speed_mm_s, 0.0, each.want);
             if !glides {
                 return Err(index + 1);
             }
-            let accel_mm_s2 = self.glider.least_accel_mm_s2(&open.mv, open.mv.moving);
-            open.ramp2 = 2.0 * accel_mm_s2 * open.mv.length_mm;
-            ramp2 += if index > 0 { open.ramp2 } else { 0.0 };
+            if index + 1 < open {
+                each.glided = Glided::whole(&terms.line(&each.mv, each.mv.moving));
+                ramp2 += if index > 0 { each.glided.ramp2 } else { 0.0 };
+            }
         }
         Ok(Glide {
             feed_mm_s,
             speed_mm_s,
-            direction,
+            line,
             first: number,
+            start,
+            keeps,
             ramp2,
         })
     }
 
     /// Counts the moves that are final.
     #[inline]
-    fn count_gliding(&mut self) {
+    fn count_gliding(&mut self, model: &PowerModel, eye: &mut Eye) {
         let Some(glide) = &mut self.glider.glide else {
             return;
         };
         let needed2 = glide.speed_mm_s * glide.speed_mm_s * (1.0 + ROUNDING);
+        if glide.ramp2 >= needed2 && glide.keeps {
+            return self.count_kept(model, eye);
+        }
         while glide.ramp2 >= needed2 {
             let index = glide.first.saturating_sub(self.first) as usize;
             let Some(open) = self.open.get_mut(index) else {
                 break;
             };
-            let duration_s = open.mv.length_mm / glide.speed_mm_s;
-            open.alone = false;
-            open.assessment.duration_s += duration_s;
-            open.assessment.fastest_s += duration_s;
-            open.assessment.top_speed_mm_s = glide.speed_mm_s;
+            let passed = open.glided.passed;
+            let shared_s = 0.5 * passed.shared_mm / glide.speed_mm_s;
+            open.glides_for(passed.own_mm / glide.speed_mm_s + shared_s, glide.speed_mm_s);
             self.largest.next = glide.first;
             glide.first += 1;
-            let Some(next) = self.open.get(index + 1) else {
+            glide.start = passed.next;
+            let Some(next) = self.open.get_mut(index + 1) else {
                 break;
             };
-            glide.ramp2 -= next.ramp2;
+            glide.ramp2 -= next.glided.ramp2;
+            if shared_s > 0.0 {
+                next.glides_for(shared_s, glide.speed_mm_s);
+            }
         }
+    }
+
+    /// Counts what the planner keeps: that is final now.
+    fn count_kept(&mut self, model: &PowerModel, eye: &mut Eye) {
+        let Some(mut glide) = self.glider.glide.take() else {
+            return;
+        };
+        let speed2 = glide.speed_mm_s * glide.speed_mm_s;
+        while let Some(planned) = self.largest.planner.pop_gliding(speed2) {
+            self.largest.next = planned.first;
+            self.take(model, eye, &planned, true, true);
+        }
+        glide.keeps = false;
+        let index = glide.first.saturating_sub(self.first) as usize;
+        glide.ramp2 -= self.open.get(index).map_or(0.0, |first| first.glided.ramp2);
+        self.glider.glide = Some(glide);
     }
 
     /// Tells the planner of the moves since it was left alone.
@@ -256,17 +329,45 @@ impl Ahead {
     fn end_gliding(&mut self, machine: &Machine, glide: &Glide) {
         let side = &mut self.largest;
         let first = glide.first.saturating_sub(self.first) as usize;
+        let speed2 = glide.speed_mm_s * glide.speed_mm_s;
         for (index, open) in self.open.iter().enumerate().skip(first) {
+            let known = glide.keeps && index == first;
             // All have a path: their lengths and their limits are above 0.
-            if !side.describe(machine, &open.mv, self.first + index as u64) {
+            if known || !side.describe(machine, &open.mv, self.first + index as u64) {
                 continue;
             }
             if index == first {
-                let speed2 = glide.speed_mm_s * glide.speed_mm_s;
-                side.planner.glide_to(&side.element, speed2);
+                side.planner.glide_to(&side.element, glide.start, speed2);
             } else {
                 side.planner.push(&side.element);
             }
+        }
+    }
+}
+
+impl Glided {
+    /// A line that is run as it is.
+    fn whole(line: &Line) -> Self {
+        Self {
+            passed: Passed {
+                own_mm: line.length_mm,
+                ..Passed::default()
+            },
+            ramp2: 2.0 * line.least_accel_mm_s2 * line.length_mm,
+        }
+    }
+}
+
+impl Open {
+    /// Counts a time at a constant speed, which it does not begin or end at rest.
+    #[inline]
+    fn glides_for(&mut self, duration_s: f64, speed_mm_s: f64) {
+        let assessment = &mut self.assessment;
+        self.alone = false;
+        assessment.duration_s += duration_s;
+        assessment.fastest_s += duration_s;
+        if assessment.top_speed_mm_s < speed_mm_s {
+            assessment.top_speed_mm_s = speed_mm_s;
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A move that waits for what is planned behind it, and how moves take part.
 
 use super::Ahead;
+use super::glide::Glided;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{Machine, PathMode};
 use crate::plan::is_independent;
@@ -25,8 +26,8 @@ pub(super) struct Open {
     pub moves: bool,
     /// It neither begins nor ends in motion.
     pub alone: bool,
-    /// 2·a·L, at least, where the motion glides.
-    pub ramp2: f64,
+    /// How it comes out where the motion glides.
+    pub glided: Glided,
     /// Its pieces over time, where they are looked at.
     pub kept: Kept,
 }
@@ -74,7 +75,7 @@ impl Open {
             rests: false,
             moves: false,
             alone: true,
-            ramp2: 0.0,
+            glided: Glided::default(),
             kept: Kept::default(),
         }
     }

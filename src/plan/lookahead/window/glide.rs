@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Node, Window};
+use super::{Node, Span, Window};
 
 impl<P: Copy> Window<P> {
     /// Whether elements of this window may be followed from outside.
@@ -16,10 +16,10 @@ impl<P: Copy> Window<P> {
     }
 
     /// The elements that are open, if the motion has the largest speed of all of
-    /// them and of the joints between. Otherwise, how many must be final before it
-    /// can be so.
+    /// them and of the joints between, and that speed, squared. Otherwise, how many
+    /// must be final before it can be so.
     #[inline]
-    pub fn gliding(&self) -> Result<&VecDeque<Node<P>>, usize> {
+    pub fn gliding(&self) -> Result<(f64, &VecDeque<Node<P>>), usize> {
         let speed2 = self.now2;
         if self.ready > 0 || speed2 == 0.0 {
             return Err(0);
@@ -30,16 +30,29 @@ impl<P: Copy> Window<P> {
                 return Err(index);
             }
         }
-        Ok(&self.nodes)
+        Ok((speed2, &self.nodes))
     }
 
-    /// Forgets the elements that are open, over which the motion has glided: it
-    /// has come to the start of `node`, at the speed that this may be entered at.
-    pub fn glide_to(&mut self, mut node: Node<P>) {
-        node.e2 = node.entry2;
-        self.now2 = node.entry2;
-        self.settle_at = self.open_min;
+    /// The first element that is open, over which the motion glides.
+    pub fn pop_gliding(&mut self, speed2: f64) -> Option<Span<P>> {
+        let node = self.nodes.pop_front()?;
+        Some(Span {
+            start2: speed2,
+            end2: speed2,
+            top2: speed2,
+            length: node.length,
+            accel: node.accel,
+            certain: true,
+            section: None,
+            payload: node.payload,
+        })
+    }
+
+    /// Forgets the elements that are open: the motion has glided over them at this
+    /// speed, squared.
+    pub fn glide_to(&mut self, speed2: f64) {
         self.nodes.clear();
-        self.nodes.push_back(node);
+        self.now2 = speed2;
+        self.settle_at = self.open_min;
     }
 }

@@ -203,7 +203,8 @@ impl<P: Copy> Window<P> {
                 node.run = last.run.wrapping_add(1);
             }
         } else {
-            node.entry2 = 0.0;
+            // Not in motion, but where it has glided here.
+            node.entry2 = lower(node.entry2, self.now2);
             node.smooth_entry2 = 0.0;
         }
         if node.smooth_accel > node.accel {

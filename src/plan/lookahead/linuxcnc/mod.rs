@@ -9,6 +9,8 @@
 //! cycle, takes no more than `kink_ratio` of an axis' acceleration; both
 //! elements give that share up. Facts from `tp.c`, `tc.c` and measurements.
 
+mod glide;
+
 use super::super::arc::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
 use super::blend::{Axes, Fit, fit};
 use super::element::{Element, Joint};
