@@ -204,7 +204,10 @@ impl Ahead {
         }
         let last = self.open.back_mut()?;
         let line = terms.line(mv, AxisSet(mv.moving.0 | last.mv.moving.0));
-        let passed = self.largest.planner.passes(&glide.line, &line, glide.speed_mm_s)?;
+        let passed = self
+            .largest
+            .planner
+            .passes(&glide.line, &line, glide.speed_mm_s)?;
         let per_mm = passed.curvature_per_mm;
         if !is_plain(model, &last.mv, glide.speed_mm_s, per_mm, last.want) {
             return None;
@@ -288,7 +291,10 @@ impl Ahead {
             };
             let passed = open.glided.passed;
             let shared_s = 0.5 * passed.shared_mm / glide.speed_mm_s;
-            open.glides_for(passed.own_mm / glide.speed_mm_s + shared_s, glide.speed_mm_s);
+            open.glides_for(
+                passed.own_mm / glide.speed_mm_s + shared_s,
+                glide.speed_mm_s,
+            );
             self.largest.next = glide.first;
             glide.first += 1;
             glide.start = passed.next;

@@ -1,11 +1,11 @@
 //! Lines that are run at full speed from blend to blend.
 
-use super::super::blend::{Leg, between_lines};
+use super::super::blend::{Corner, Leg};
 use super::super::element::{Element, Joint};
 use super::super::glide::{Line, LineStart, Passed};
 use super::super::pending::Pending;
-use super::super::vector::{dot, scale, sub};
-use super::{CYCLES_MIN, LinuxCnc, TANGENTIAL_SHARE, share_of};
+use super::super::vector::dot;
+use super::{CYCLES_MIN, LinuxCnc, TANGENTIAL_SHARE};
 
 impl<T: Copy> LinuxCnc<T> {
     /// The element that waits and its start, if it is a plain line
@@ -43,19 +43,12 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let cycle_mm = speed_mm_s * self.cycle_s;
         let shortest_mm = cycle_mm * CYCLES_MIN;
-        if next.length_mm < cycle_mm || dot(before.direction, next.direction) <= 0.0 {
+        let (u, w) = (before.direction, next.direction);
+        if next.length_mm < cycle_mm || dot(u, w) <= 0.0 {
             return None;
         }
-        let accel = self.axes.masked(next.axis_accel_mm_s2);
-        let mut along = next.path_accel_mm_s2;
-        for (limit, part) in accel.into_iter().zip(next.direction) {
-            if part != 0.0 {
-                along = along.min(limit / part.abs());
-            }
-        }
-        let change = sub(next.direction, before.direction);
-        let share = share_of(scale(change, speed_mm_s / self.cycle_s + along), accel);
         let length_mm = before.length_mm - before.start.taken_mm;
+        let share = self.kink_share(u, next, speed_mm_s);
         if share <= self.kink_ratio {
             return (length_mm >= shortest_mm).then_some(Passed {
                 own_mm: length_mm,
@@ -75,34 +68,50 @@ impl<T: Copy> LinuxCnc<T> {
             asked_speed: speed_mm_s,
             tolerance_mm,
         };
-        let legs = [
-            leg(before, length_mm, tolerance_mm),
-            leg(next, next.length_mm, next_tolerance_mm),
-        ];
-        let fit = between_lines([&legs[0], &legs[1]], &self.axes, accel)?;
-        if fit.speed < speed_mm_s {
+        let first = leg(before, length_mm, tolerance_mm);
+        let second = leg(next, next.length_mm, next_tolerance_mm);
+        let accel = self.axes.masked(next.axis_accel_mm_s2);
+        let blend = Corner::of(u, w)?.round_lines([&first, &second], &self.axes, accel)?;
+        if blend.speed < speed_mm_s {
             return None;
         }
-        let [taken_mm, next_mm] = fit.trims;
-        let left_mm = length_mm - taken_mm;
-        let blend_mm = fit.radius * fit.sweep;
+        let left_mm = length_mm - blend.trim;
+        let blend_mm = blend.radius * blend.sweep;
         // What is too short to stand alone leads into the blend.
-        let [own_mm, shared_mm] = if left_mm < self.gap_cycles * cycle_mm {
-            [0.0, left_mm.max(0.0) + blend_mm]
+        let (own_mm, shared_mm) = if left_mm < self.gap_cycles * cycle_mm {
+            (0.0, left_mm.max(0.0) + blend_mm)
         } else {
-            [left_mm, blend_mm]
+            (left_mm, blend_mm)
         };
         let long = shared_mm >= shortest_mm && (own_mm == 0.0 || own_mm >= shortest_mm);
         long.then_some(Passed {
             own_mm,
             shared_mm,
-            curvature_per_mm: 1.0 / fit.radius,
+            curvature_per_mm: 1.0 / blend.radius,
             accel_share: TANGENTIAL_SHARE.min(1.0 - self.kink_ratio),
             next: LineStart {
-                taken_mm: next_mm,
+                taken_mm: blend.trim,
                 kink: 0.0,
             },
         })
+    }
+
+    /// The share of an axis' acceleration that the step of velocity takes.
+    #[inline]
+    fn kink_share(&self, u: [f64; 3], next: &Line, speed_mm_s: f64) -> f64 {
+        // What the axes permit along the path, as its inverse.
+        let (mut steepest, mut largest) = (1.0 / next.path_accel_mm_s2, 0.0);
+        let w = next.direction;
+        for ((u, w), limit) in u.into_iter().zip(w).zip(next.axis_accel_mm_s2) {
+            let (part, change) = (w.abs() / limit, (w - u).abs() / limit);
+            if part > steepest {
+                steepest = part;
+            }
+            if change > largest {
+                largest = change;
+            }
+        }
+        largest * (speed_mm_s / self.cycle_s + 1.0 / steepest)
     }
 
     /// The motion has come to the start of this line at that speed, squared.
