@@ -4,13 +4,16 @@
 //! With `u` the unit tangent of X Y Z, `Σ m_n·u_n² ≤ max m` and `|u_n| ≤ 1`, so
 //!
 //! ```text
-//! P ≤ P₀ + B/η_min + Σ R·F²,   B = v·(max m·k·a + Σ(Fc + |Fg|) + v·Σ b)
+//! drawn     P ≤ P₀ + v·(max m·k·a + Σ(Fc + |Fg|) + v·Σ b)/η_min + Σ R·F²
+//! fed back  P ≤ v·(max m·k·a + Σ(|Fg| − k·Fc)⁺)
 //! ```
 //!
-//! and no more than B is fed back. On an arc `a` takes the centripetal
-//! acceleration in, since `Σ m·τ·ν ≤ max m` too.
+//! since friction takes from what an axis feeds back. On an arc `a` takes the
+//! centripetal acceleration in: `Σ m·τ·ν ≤ max m` too. Other axes, whose share of
+//! the path is the same all along, come on top one by one.
 
 use super::axis::{AxisPower, Side};
+use super::straight;
 use crate::interpret::Move;
 use crate::machine::AxisSet;
 
@@ -20,18 +23,23 @@ const XYZ: u16 = 0b111;
 /// The coefficients of the bound for one converter.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ceiling {
+    /// The converter's axes.
+    axes: AxisSet,
     si_per_unit: f64,
     mass: f64,
     friction: f64,
+    /// Gravity that friction does not hold.
+    excess: f64,
     viscous: f64,
     copper: f64,
     inverse_efficiency: f64,
 }
 
 impl Ceiling {
-    /// The bound for the axes of `set` among X, Y and Z.
+    /// The bound for the axes of `set`.
     pub fn new(axes: &[AxisPower], set: AxisSet) -> Self {
         let mut ceiling = Self {
+            axes: set,
             inverse_efficiency: 1.0,
             ..Self::default()
         };
@@ -42,7 +50,10 @@ impl Ceiling {
                 .max(power.accel_factor(Side::Regen, false));
             ceiling.si_per_unit = ceiling.si_per_unit.max(power.si_per_unit);
             ceiling.mass = ceiling.mass.max(power.mass * factor);
-            ceiling.friction += power.coulomb + power.gravity.abs();
+            let gravity = power.gravity.abs();
+            ceiling.friction += power.coulomb + gravity;
+            let held = power.coulomb * power.friction_factor(Side::Regen);
+            ceiling.excess += (gravity - held).max(0.0);
             ceiling.viscous += power.viscous;
             ceiling.copper += power.copper;
             ceiling.inverse_efficiency = ceiling.inverse_efficiency.max(power.inverse_efficiency);
@@ -51,22 +62,25 @@ impl Ceiling {
     }
 
     /// The bound of what a move from a known start draws and feeds back, W, at a
-    /// speed and an acceleration (mm/s, mm/s²) of at most these; nothing where
-    /// other axes move too.
+    /// speed and an acceleration (mm/s, mm/s²) of at most these.
     #[inline]
-    pub fn of(&self, mv: &Move, v: f64, a: f64, idle_w: f64) -> Option<[f64; 2]> {
-        if mv.moving.0 & !XYZ != 0 {
-            return None;
-        }
-        let v = v * self.si_per_unit;
-        let mut a = a * self.si_per_unit;
+    pub fn of(&self, axes: &[AxisPower], mv: &Move, [v, a]: [f64; 2], idle_w: f64) -> [f64; 2] {
+        let v_si = v * self.si_per_unit;
+        let mut a_si = a * self.si_per_unit;
         if let Some(arc) = &mv.arc {
-            a += v * v / (arc.radius_mm * self.si_per_unit);
+            a_si += v_si * v_si / (arc.radius_mm * self.si_per_unit);
         }
-        let force = self.mass * a + self.friction + self.viscous * v;
-        let mechanical = v * force;
+        let inertia = self.mass * a_si;
+        let force = inertia + self.friction + self.viscous * v_si;
         // F² of each axis is at most that of all, whose sum is bounded too.
-        let drawn_w = idle_w + mechanical * self.inverse_efficiency + self.copper * force * force;
-        Some([drawn_w, mechanical])
+        let mut drawn_w =
+            idle_w + v_si * force * self.inverse_efficiency + self.copper * force * force;
+        let mut fed_back_w = v_si * (inertia + self.excess);
+        for axis in AxisSet(mv.moving.0 & self.axes.0 & !XYZ).iter() {
+            let [drawn, fed_back] = straight::axis_bound_w(&axes[axis], axis, mv, [v, a]);
+            drawn_w += drawn;
+            fed_back_w += fed_back;
+        }
+        [drawn_w, fed_back_w]
     }
 }

@@ -164,7 +164,8 @@ impl PowerModel {
         figures: &PathFigures,
         want: Want,
     ) -> Option<Demand> {
-        let [peak_w, regen_w] = self.ceiling_w(mv, figures.top_speed_mm_s, figures.accel_mm_s2)?;
+        let extremes = [figures.top_speed_mm_s, figures.accel_mm_s2];
+        let [peak_w, regen_w] = self.ceiling_w(mv, extremes)?;
         if want.energy {
             return None;
         }
@@ -174,8 +175,8 @@ impl PowerModel {
     /// Whether a path needs no closer look: at a speed and an acceleration (mm/s,
     /// mm/s²) of at most these its peaks are of no interest.
     #[inline]
-    pub(super) fn is_below_floor(&self, mv: &Move, [v, a]: [f64; 2], want: Want) -> bool {
-        self.ceiling_w(mv, v, a)
+    pub(super) fn is_below_floor(&self, mv: &Move, extremes: [f64; 2], want: Want) -> bool {
+        self.ceiling_w(mv, extremes)
             .is_some_and(|peaks_w| want.passes(peaks_w))
     }
 
@@ -199,12 +200,12 @@ impl PowerModel {
     /// Upper bounds of the power that a path draws and feeds back, W, if there is
     /// one quickly.
     #[inline]
-    fn ceiling_w(&self, mv: &Move, v: f64, a: f64) -> Option<[f64; 2]> {
+    fn ceiling_w(&self, mv: &Move, extremes: [f64; 2]) -> Option<[f64; 2]> {
         let [converter] = self.converters.as_slice() else {
             return None;
         };
         let idle_w = converter.idle_w(mv, &self.axes, mv.moving);
-        converter.ceiling.of(mv, v, a, idle_w)
+        Some(converter.ceiling.of(&self.axes, mv, extremes, idle_w))
     }
 }
 

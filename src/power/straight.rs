@@ -119,24 +119,35 @@ pub(super) fn bound_w(
     [v, a]: [f64; 2],
     idle_w: f64,
 ) -> [f64; 2] {
-    let per_length = 1.0 / mv.length_mm;
     let (mut drawn_w, mut fed_back_w) = (idle_w, 0.0);
     for axis in AxisSet(mv.moving.0 & converter.axes.0).iter() {
-        let power = &model.axes[axis];
-        let direction = (mv.end[axis] - mv.start[axis]) * power.si_per_unit * per_length;
-        let inertia = power.mass * (direction * a).abs();
-        let gravity = power.gravity * direction.signum();
-        let speed = direction.abs() * v;
-        let drive = inertia * power.accel_factor(Side::Motor, true);
-        let brake = inertia * power.accel_factor(Side::Regen, false);
-        let drag = power.coulomb + power.viscous * speed;
-        drawn_w += (speed * (drive + drag + gravity)).max(0.0) * power.inverse_efficiency;
-        let force = drive.max(brake) + drag + gravity.abs();
-        drawn_w += power.copper * force * force;
-        let least = power.coulomb * power.friction_factor(Side::Regen) + gravity;
-        fed_back_w += (speed * (brake - least)).max(0.0) * power.efficiency;
+        let [drawn, fed_back] = axis_bound_w(&model.axes[axis], axis, mv, [v, a]);
+        drawn_w += drawn;
+        fed_back_w += fed_back;
     }
-    [drawn_w, fed_back_w].map(|power_w| power_w * (1.0 + ROUNDING))
+    [drawn_w, fed_back_w]
+}
+
+/// The same of one axis, whose share of the path does not change.
+#[inline]
+pub(super) fn axis_bound_w(
+    power: &AxisPower,
+    axis: usize,
+    mv: &Move,
+    [v, a]: [f64; 2],
+) -> [f64; 2] {
+    let direction = (mv.end[axis] - mv.start[axis]) * power.si_per_unit / mv.length_mm;
+    let inertia = power.mass * (direction * a).abs();
+    let gravity = power.gravity * direction.signum();
+    let speed = direction.abs() * v;
+    let drive = inertia * power.accel_factor(Side::Motor, true);
+    let brake = inertia * power.accel_factor(Side::Regen, false);
+    let drag = power.coulomb + power.viscous * speed;
+    let force = drive.max(brake) + drag + gravity.abs();
+    let drawn_w = (speed * (drive + drag + gravity)).max(0.0) * power.inverse_efficiency;
+    let least = power.coulomb * power.friction_factor(Side::Regen) + gravity;
+    let fed_back_w = (speed * (brake - least)).max(0.0) * power.efficiency;
+    [drawn_w + power.copper * force * force, fed_back_w].map(|power_w| power_w * (1.0 + ROUNDING))
 }
 
 /// Whether a phase has one acceleration.
