@@ -97,6 +97,31 @@ fn machines() -> [Machine; 4] {
     [grbl, slow, other, machine("linuxcnc", 100.0, 1000.0)]
 }
 
+/// Printers; their extruder bears 40 mm/s.
+fn printers() -> [Machine; 3] {
+    ["marlin", "klipper", "reprap"].map(|controller| {
+        let mut text = format!(
+            "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n\
+             [converter]\npeak_power_w = 1e9\n"
+        );
+        let axes = [
+            ("X", 200, 3000),
+            ("Y", 200, 2500),
+            ("Z", 60, 800),
+            ("E", 40, 2000),
+        ];
+        for (axis, speed, accel) in axes {
+            let _ = write!(
+                text,
+                "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {}\naccel_mm_s2 = {accel}\n\
+                 mass_kg = 4\ncoulomb_n = 5\n",
+                speed * 60
+            );
+        }
+        Machine::from_toml("test.toml", &text).expect("a machine").0
+    })
+}
+
 /// A finishing pass: an arch of lines of 0.5 mm at 40 mm/s.
 fn pass() -> String {
     let mut text = "G21 G90 G94\nG0 X0 Y0 Z0\nF2400\n".to_owned();
@@ -112,6 +137,19 @@ fn a_finishing_pass_glides() {
     for machine in machines() {
         let share = glided(&machine, &pass(), 1e9);
         assert!(share > 0.8, "{share}");
+    }
+}
+
+#[test]
+fn a_wall_of_a_print_glides() {
+    let mut text = "G21 G90 M83\nG28\nG0 X100 Y0 Z0.2\nG1 F2400\n".to_owned();
+    for i in 1..400 {
+        let (sin, cos) = libm::sincos(f64::from(i) * 0.01);
+        let _ = writeln!(text, "G1 X{:.4} Y{:.4} E0.033", 100.0 * cos, 100.0 * sin);
+    }
+    for machine in printers() {
+        let share = glided(&machine, &text, 1e9);
+        assert!(share > 0.7, "{share} {}", machine.controller.name);
     }
 }
 
@@ -157,7 +195,37 @@ fn any_lines() -> impl Strategy<Value = Vec<String>> {
     ]
 }
 
+/// The same as a print: most lines extrude, more or less.
+fn any_print() -> impl Strategy<Value = Vec<String>> {
+    let known = |line: &str| !["M", "G6", "G4"].iter().any(|word| line.starts_with(word));
+    (any_lines(), 0.0..0.2_f64, 0..4_u32).prop_map(move |(lines, e, kind)| {
+        let lines = lines.into_iter().filter(|line| known(line)).zip(0..);
+        let extrude = |(line, i): (String, u32)| {
+            let e = e * (1.0 + 0.3 * libm::sin(f64::from(i)));
+            match kind {
+                _ if !line.starts_with("G1") => line,
+                0 => line,
+                1 => format!("{line} E{:.6}", -e),
+                _ => format!("{line} E{e:.6}"),
+            }
+        };
+        lines.map(extrude).collect()
+    })
+}
+
 proptest! {
+    #[test]
+    fn prints_come_out_alike(
+        lines in prop::collection::vec(any_print(), 1..25),
+        feed in prop_oneof![600..900_u32, 1500..9000_u32],
+        floor_w in prop_oneof![Just(1e9), 0.0..8.0_f64],
+    ) {
+        let text = format!("G21 G90 M83\nG28\nG91\nG1 F{feed}\n{}\n", lines.concat().join("\n"));
+        for machine in printers() {
+            glided(&machine, &text, floor_w);
+        }
+    }
+
     #[test]
     fn programs_come_out_alike(
         lines in prop::collection::vec(any_lines(), 1..25),

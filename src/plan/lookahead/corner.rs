@@ -10,16 +10,17 @@
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use super::element::{Element, Joint};
+use super::passage::Passage;
 use crate::machine::{AXES, AxisId, AxisValues, CornerAngle, CornerRule};
 
 /// Cosines beyond this are no corner, or a reversal.
 const STRAIGHT: f64 = 0.999_999;
 const LINEAR: usize = 3;
-const EXTRUDER: usize = AxisId::E as usize;
+pub(super) const EXTRUDER: usize = AxisId::E as usize;
 /// How far from 1 the square of a direction may be that counts as a unit.
-const UNIT: f64 = 1e-9;
+pub(super) const UNIT: f64 = 1e-9;
 /// What rounding may make of the figures of a corner, as a share.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// What the rules must know of the element before a joint.
 #[derive(Debug, Clone)]
@@ -42,11 +43,10 @@ pub(super) struct Before {
 }
 
 impl Before {
-    /// Whether the element moves straight in X, Y and Z, and runs through the joint
-    /// if the corner permits it.
+    /// Whether the element is straight, as long as its part in X, Y and Z, and runs
+    /// through the joint if the corner permits it.
     pub fn is_straight(&self) -> bool {
-        let through = self.joint != Joint::Stop && self.span == LINEAR && self.is_unit;
-        through && !self.is_curved
+        self.joint != Joint::Stop && self.is_unit && !self.is_curved
     }
 }
 
@@ -215,55 +215,6 @@ fn cosine(axes: usize, before: &AxisValues, after: &AxisValues) -> Option<f64> {
         return None;
     }
     Some((-dot(before, after, axes) / length2.sqrt()).clamp(-1.0, 1.0))
-}
-
-/// A joint that is to be passed at a speed.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Passage {
-    /// Lowest acceleration of the axes and along the element behind, mm/s².
-    pub accel_mm_s2: f64,
-    /// Of the element behind.
-    pub length_mm: f64,
-    /// The speed, squared.
-    pub speed2: f64,
-}
-
-impl Passage {
-    /// True only where the rule permits it, for straight elements whose
-    /// directions `u` and `w` are units of X, Y and Z; a quick answer.
-    #[inline]
-    pub(super) fn is_permitted(&self, rule: &CornerRule, u: &[f64; 3], w: &[f64; 3]) -> bool {
-        match rule {
-            CornerRule::JunctionDeviation {
-                deviation_mm,
-                small_block_mm,
-                ..
-            } => {
-                let c = u[0] * w[0] + u[1] * w[1] + u[2] * w[2];
-                self.is_shallow(c, *deviation_mm, *small_block_mm)
-            }
-            CornerRule::SpeedStep { step_mm_s, .. } => {
-                let speed2 = self.speed2 * (1.0 + ROUNDING);
-                let mut changes = u.iter().zip(w).zip(step_mm_s);
-                changes.all(|((u, w), step)| (w - u) * (w - u) * speed2 <= step * step)
-            }
-            _ => false,
-        }
-    }
-
-    /// With `c = u·w` the rule is `s² = (1 + c)/2 ≥ (K/(1 + K))²` for
-    /// `K = v²/(a·d)`, with the lowest acceleration of the axes for a. Turns θ
-    /// of chords up to π/4 have `1 − c ≥ 0.47·θ²`.
-    #[inline]
-    fn is_shallow(&self, c: f64, deviation_mm: f64, small_block_mm: f64) -> bool {
-        let speed2 = self.speed2 * (1.0 + ROUNDING);
-        let s = speed2 / (self.accel_mm_s2 * deviation_mm + speed2);
-        let chords = self.length_mm < small_block_mm;
-        let turns = self.accel_mm_s2 * self.length_mm;
-        c > 0.0
-            && 0.5 * (1.0 + c) * (1.0 - ROUNDING) >= s * s
-            && (!chords || 0.47 * turns * turns >= speed2 * speed2 * (1.0 - c + 2.0 * UNIT))
-    }
 }
 
 /// A corner that is passed within a distance from it.

@@ -4,8 +4,9 @@
 //! without the planner, and give it those that are not final when that ends: it is
 //! then where it would have been.
 
-use super::corner::{Before, Passage};
+use super::corner::Before;
 use super::element::{Element, Joint};
+use super::passage;
 use super::planner::{PathPlanner, Planned, Rule};
 
 /// Elements that are looked ahead at most without the planner.
@@ -25,6 +26,8 @@ pub(crate) struct Gliding<T> {
     pub speed2: f64,
     /// Where the last element begins.
     pub start: LineStart,
+    /// See [`Passed::accel_share`].
+    pub accel_share: f64,
 }
 
 /// What the joint before a line has taken of it.
@@ -36,10 +39,14 @@ pub(crate) struct LineStart {
     pub kink: f64,
 }
 
-/// A straight feed in X, Y and Z whose start is known.
+/// A straight feed in X, Y and Z, and beside them of an extruder, whose start is
+/// known.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
+    /// A unit.
     pub direction: [f64; 3],
+    /// Of the extruder per unit of path.
+    pub extrusion: f64,
     pub length_mm: f64,
     /// Limits of the axes, mm/s².
     pub axis_accel_mm_s2: [f64; 3],
@@ -99,6 +106,7 @@ impl<T: Copy> PathPlanner<T> {
                     keeps: false,
                     speed2,
                     start: LineStart::default(),
+                    accel_share: self.accel_share(),
                 })
             }
             Rule::LinuxCnc(rule) => {
@@ -109,6 +117,7 @@ impl<T: Copy> PathPlanner<T> {
                     keeps: true,
                     speed2,
                     start,
+                    accel_share: 1.0,
                 })
             }
         }
@@ -122,18 +131,17 @@ impl<T: Copy> PathPlanner<T> {
         if let Rule::LinuxCnc(rule) = &self.rule {
             return rule.passes(before, next, speed_mm_s);
         }
-        let passage = Passage {
-            accel_mm_s2: next.least_accel_mm_s2,
-            length_mm: next.length_mm,
-            speed2: speed_mm_s * speed_mm_s,
-        };
-        let permitted =
-            passage.is_permitted(&self.look_ahead.corner, &before.direction, &next.direction);
+        let permitted = passage::permits(&self.look_ahead.corner, before, next, speed_mm_s);
         permitted.then_some(Passed {
             own_mm: before.length_mm,
-            accel_share: 1.0,
+            accel_share: self.accel_share(),
             ..Passed::default()
         })
+    }
+
+    /// What hills are smoothed with.
+    fn accel_share(&self) -> f64 {
+        1.0 - self.look_ahead.min_cruise_ratio
     }
 
     /// The next piece that the planner keeps; it is run at that speed, squared.

@@ -11,6 +11,7 @@ mod element;
 mod glide;
 mod join;
 mod linuxcnc;
+mod passage;
 mod pending;
 mod planner;
 mod ramp;

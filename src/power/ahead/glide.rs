@@ -12,7 +12,7 @@
 use super::Ahead;
 use super::open::{Open, joint};
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisSet, LookAhead, Machine, PathMode};
+use crate::machine::{AXES, AxisId, AxisSet, AxisValues, LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Gliding, Line, LineStart, Passed};
 use crate::power::demand::Want;
@@ -20,6 +20,7 @@ use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 
 const LINEAR: usize = 3;
+const EXTRUDER: usize = AxisId::E as usize;
 /// What rounding may make of the sum, as a share.
 const ROUNDING: f64 = 1e-6;
 /// Moves that pass before another look where one was in vain.
@@ -38,10 +39,11 @@ pub(super) struct Glider {
 /// What may glide.
 #[derive(Debug)]
 struct Terms {
-    /// The axes that do: those of X, Y and Z.
+    /// The axes that do: those of X, Y and Z, and an extruder beside them.
     axes: AxisSet,
-    /// Speed that each of them permits, whatever the direction, mm/s.
-    speed_mm_s: f64,
+    linear: AxisSet,
+    /// Their speeds, mm/s.
+    speed_mm_s: AxisValues,
     /// Override of feeds.
     feed: f64,
     /// The rules' own limit along any path, mm/s².
@@ -82,17 +84,20 @@ impl Glider {
     pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
         let mut terms = Terms {
             axes: AxisSet::default(),
-            speed_mm_s: f64::INFINITY,
+            linear: AxisSet(0),
+            speed_mm_s: [0.0; AXES],
             feed: overrides.feed,
             path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks,
         };
         if blocks > 0 && machine.force_curves.is_empty() {
-            for (index, axis) in machine.axes.iter().take(LINEAR).enumerate() {
-                let Some(axis) = axis else { continue };
-                terms.axes.insert(index);
-                terms.speed_mm_s = lower(axis.rapid_mm_s, terms.speed_mm_s);
+            for index in (0..LINEAR).chain([EXTRUDER]) {
+                if let Some(axis) = machine.axes.get(index).and_then(Option::as_ref) {
+                    terms.axes.insert(index);
+                    terms.speed_mm_s[index] = axis.rapid_mm_s;
+                }
             }
+            terms.linear = AxisSet(terms.axes.0 & !(1 << EXTRUDER));
         }
         Self {
             terms,
@@ -108,33 +113,49 @@ impl Terms {
     fn suit(&self, mv: &Move) -> bool {
         mv.kind == MoveKind::Feed
             && mv.moving.0 & !self.axes.0 == 0
+            && mv.moving.0 & self.linear.0 != 0
             && mv.length_mm > 0.0
             && mv.arc.is_none()
             && mv.unknown_start.is_empty()
             && mv.path_mode == PathMode::LookAhead
     }
 
-    /// A move that suits, and a joint before it at which these axes move.
+    /// A move that suits, and a joint before it at which these axes move; `None`
+    /// where an axis does not permit the speed.
     #[inline]
-    fn line(&self, mv: &Move, axes: AxisSet) -> Line {
+    fn line(&self, mv: &Move, axes: AxisSet, speed_mm_s: f64) -> Option<Line> {
         let mut direction = [0.0; LINEAR];
-        for axis in mv.moving.iter() {
+        let mut permitted = true;
+        for axis in AxisSet(mv.moving.0 & self.linear.0).iter() {
+            let part = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            permitted &= part.abs() * speed_mm_s <= self.speed_mm_s[axis];
             if let Some(change) = direction.get_mut(axis) {
-                *change = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+                *change = part;
             }
         }
         let path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
-        let limits = axes.iter().filter_map(|axis| mv.accel_mm_s2.get(axis));
+        let mut least_accel_mm_s2 = path_accel_mm_s2;
+        for axis in axes.iter() {
+            least_accel_mm_s2 = lower(mv.accel_mm_s2[axis], least_accel_mm_s2);
+        }
+        let mut extrusion = 0.0;
+        if mv.moving.contains(EXTRUDER) {
+            extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) / mv.length_mm;
+            permitted &= extrusion.abs() * speed_mm_s <= self.speed_mm_s[EXTRUDER];
+            let along = mv.accel_mm_s2[EXTRUDER] / extrusion.abs();
+            least_accel_mm_s2 = lower(along, least_accel_mm_s2);
+        }
         let [x, y, z, ..] = mv.accel_mm_s2;
-        Line {
+        permitted.then_some(Line {
             direction,
+            extrusion,
             length_mm: mv.length_mm,
             axis_accel_mm_s2: [x, y, z],
             path_accel_mm_s2,
-            least_accel_mm_s2: limits.fold(path_accel_mm_s2, |least, accel| lower(*accel, least)),
+            least_accel_mm_s2,
             joint: joint(mv),
             start: LineStart::default(),
-        }
+        })
     }
 }
 
@@ -203,7 +224,8 @@ impl Ahead {
             return None;
         }
         let last = self.open.back_mut()?;
-        let line = terms.line(mv, AxisSet(mv.moving.0 | last.mv.moving.0));
+        let axes = AxisSet(mv.moving.0 | last.mv.moving.0);
+        let line = terms.line(mv, axes, glide.speed_mm_s)?;
         let passed = self
             .largest
             .planner
@@ -234,6 +256,7 @@ impl Ahead {
             keeps,
             speed2,
             start,
+            accel_share,
         } = self.largest.planner.gliding()?;
         let terms = &self.glider.terms;
         let first = number.checked_sub(self.first).ok_or(open)? as usize;
@@ -244,12 +267,10 @@ impl Ahead {
         let mv = &self.open.back().ok_or(0_usize)?.mv;
         let feed_mm_s = mv.feed_mm_s;
         let speed_mm_s = feed_mm_s * terms.feed;
-        if speed_mm_s * speed_mm_s != speed2 || speed_mm_s > terms.speed_mm_s {
+        if speed_mm_s * speed_mm_s != speed2 {
             return Err(open);
         }
-        let mut line = terms.line(mv, mv.moving);
-        line.start = start;
-        let mut ramp2 = 0.0;
+        let (mut ramp2, mut last) = (0.0, None);
         for (index, each) in self.open.iter_mut().skip(first).enumerate() {
             let glides = terms.suit(&each.mv)
                 && each.mv.feed_mm_s == feed_mm_s
@@ -258,15 +279,19 @@ impl Ahead {
             if !glides {
                 return Err(index + 1);
             }
+            let line = terms.line(&each.mv, each.mv.moving, speed_mm_s);
+            let line = line.ok_or(index + 1)?;
             if index + 1 < open {
-                each.glided = Glided::whole(&terms.line(&each.mv, each.mv.moving));
+                each.glided = Glided::whole(&line, accel_share);
                 ramp2 += if index > 0 { each.glided.ramp2 } else { 0.0 };
             }
+            last = Some(line);
         }
+        let line = last.ok_or(0_usize)?;
         Ok(Glide {
             feed_mm_s,
             speed_mm_s,
-            line,
+            line: Line { start, ..line },
             first: number,
             start,
             keeps,
@@ -353,13 +378,13 @@ impl Ahead {
 
 impl Glided {
     /// A line that is run as it is.
-    fn whole(line: &Line) -> Self {
+    fn whole(line: &Line, accel_share: f64) -> Self {
         Self {
             passed: Passed {
                 own_mm: line.length_mm,
                 ..Passed::default()
             },
-            ramp2: 2.0 * line.least_accel_mm_s2 * line.length_mm,
+            ramp2: 2.0 * accel_share * line.least_accel_mm_s2 * line.length_mm,
         }
     }
 }

@@ -44,7 +44,8 @@ impl<T: Copy> LinuxCnc<T> {
         let cycle_mm = speed_mm_s * self.cycle_s;
         let shortest_mm = cycle_mm * CYCLES_MIN;
         let (u, w) = (before.direction, next.direction);
-        if next.length_mm < cycle_mm || dot(u, w) <= 0.0 {
+        let straight = before.extrusion == 0.0 && next.extrusion == 0.0;
+        if !straight || next.length_mm < cycle_mm || dot(u, w) <= 0.0 {
             return None;
         }
         let length_mm = before.length_mm - before.start.taken_mm;

@@ -7,7 +7,7 @@ use super::{Node, Span, Window};
 impl<P: Copy> Window<P> {
     /// Whether elements of this window may be followed from outside.
     pub fn may_glide(&self) -> bool {
-        !self.smooth && self.runs.is_none()
+        self.runs.is_none()
     }
 
     /// How many elements a controller sees, if that is bounded.
@@ -26,7 +26,8 @@ impl<P: Copy> Window<P> {
         }
         for (index, node) in self.nodes.iter().enumerate() {
             let entered = index == 0 || node.entry2 == speed2;
-            if !entered || node.top2 != speed2 || node.forced {
+            let smooth = !self.smooth || node.smooth_entry2 == speed2;
+            if !entered || !smooth || node.top2 != speed2 || node.forced {
                 return Err(index);
             }
         }

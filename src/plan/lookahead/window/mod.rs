@@ -205,7 +205,7 @@ impl<P: Copy> Window<P> {
         } else {
             // Not in motion, but where it has glided here.
             node.entry2 = lower(node.entry2, self.now2);
-            node.smooth_entry2 = 0.0;
+            node.smooth_entry2 = node.entry2;
         }
         if node.smooth_accel > node.accel {
             node.smooth_accel = node.accel;
