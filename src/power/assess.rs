@@ -16,7 +16,7 @@ use super::motion::Motion;
 use super::robust::Part;
 use super::watch::{Kept, Rating, Watch};
 use crate::interpret::{Action, Move, MoveKind};
-use crate::machine::{Machine, PathMode, RapidJoint};
+use crate::machine::{Machine, PathMode};
 use crate::plan::{Overrides, PathFigures, blended_bound, path_bound, path_figures, plan};
 
 /// Judges the moves of one program.
@@ -31,7 +31,7 @@ pub struct Assessor<'m> {
     /// The overrides at which times are taken: 100 %, or less where the
     /// machine permits less.
     pub nominal: Overrides,
-    requested: Option<Certificate>,
+    pub(super) requested: Option<Certificate>,
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
     held: Option<Box<Held>>,
@@ -43,7 +43,7 @@ pub struct Assessor<'m> {
     /// The last move was a dwell.
     dwelt: bool,
     /// Moves that the controller plans together, where its rules are modelled.
-    ahead: Option<Box<Ahead>>,
+    pub(super) ahead: Option<Box<Ahead>>,
     pub(super) eye: Eye,
     /// What is switched on.
     switched: Switched,
@@ -467,34 +467,5 @@ impl<'m> Assessor<'m> {
             ahead: false,
             spindle: SpindleShare::NONE,
         }
-    }
-
-    /// Whether a move may be blended with one that is not known yet.
-    fn may_blend(&self, mv: &Move) -> bool {
-        if !moves(mv) {
-            return false;
-        }
-        let rapid = mv.kind == MoveKind::Rapid;
-        self.requested == Some(Certificate::Robust)
-            || mv.path_mode == PathMode::LookAhead
-                && (!rapid || self.machine.controller.planner.rapid_joint != RapidJoint::Stop)
-    }
-
-    /// Whether the controller may run from `first` into `second` without a stop.
-    #[must_use]
-    pub fn joins(&self, first: &Move, second: &Move) -> bool {
-        if !moves(first) || !moves(second) {
-            return false;
-        }
-        if self.requested == Some(Certificate::Robust) {
-            return true;
-        }
-        let rapids = [first, second].map(|mv| mv.kind == MoveKind::Rapid);
-        first.path_mode == PathMode::LookAhead
-            && match self.machine.controller.planner.rapid_joint {
-                RapidJoint::Stop => rapids == [false, false],
-                RapidJoint::Rapids => rapids[0] == rapids[1],
-                RapidJoint::All => true,
-            }
     }
 }

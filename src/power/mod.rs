@@ -28,6 +28,7 @@ mod held;
 mod independent;
 mod instant;
 mod interval;
+mod joining;
 mod model;
 mod motion;
 mod piece;

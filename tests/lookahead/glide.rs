@@ -11,7 +11,12 @@ use proptest::prelude::*;
 use super::machine;
 
 /// What is known of each move, in order. Peaks up to the floor are of no interest.
-fn judged(machine: &Machine, program: &str, floor_w: f64, accel: bool) -> Vec<(u64, Assessment)> {
+pub(super) fn judged(
+    machine: &Machine,
+    program: &str,
+    floor_w: f64,
+    accel: bool,
+) -> Vec<(u64, Assessment)> {
     let reading = Reading::default();
     let mut interpreter = Interpreter::new(machine, &reading);
     let want = Want {

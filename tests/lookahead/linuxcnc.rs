@@ -82,6 +82,26 @@ fn before_a_stop_that_a_word_causes_half_of_the_acceleration_is_left() {
 }
 
 #[test]
+fn in_exact_stop_an_arc_that_is_last_accelerates_by_half() {
+    // A quarter circle of 40 mm at 100 mm/s asks for a quarter of 1000 mm/s² across.
+    let length = 20.0 * std::f64::consts::PI;
+    let time = |accel: f64| length / 100.0 + 100.0 / accel;
+    let whole = 1000.0 * (1.0 - 0.25_f64 * 0.25).sqrt();
+    let arc = "G61.1\nG1 X0 F6000\nG2 X40 Y40 I40 J0\n";
+    let machine = super::machine("linuxcnc", 100.0, 1000.0);
+    for (behind, accel) in [
+        ("G1 X60\n", whole),
+        ("G4 P1\nG1 X60\n", 500.0),
+        ("M2\n", 500.0),
+    ] {
+        let judged = super::glide::judged(&machine, &format!("G0 X0 Y0\n{arc}{behind}"), 0.0, true);
+        let (_, arc) = judged.iter().find(|(line, _)| *line == 4).unwrap();
+        assert_close(arc.duration_s, time(accel));
+        assert!(!arc.blended);
+    }
+}
+
+#[test]
 fn blocks_are_seen_fifty_ahead() {
     // 0.2 mm each: √(2·a·50·0.2), a little more for the half of the last one.
     let mut program = String::from("G61\nG1 F9000\n");

@@ -210,6 +210,13 @@ impl<T: Copy> PathPlanner<T> {
         }
     }
 
+    /// Whether an arc before a stop that words cause, or at the end, accelerates
+    /// less than between others, in exact stop too.
+    #[must_use]
+    pub fn slows_last_arcs(&self) -> bool {
+        matches!(self.rule, Rule::LinuxCnc(_))
+    }
+
     /// Adds an element.
     #[inline]
     pub fn push(&mut self, element: &Element<T>) {

@@ -107,6 +107,11 @@ impl Ahead {
         }
     }
 
+    /// Whether an arc that ends at rest runs otherwise with nothing behind it.
+    pub fn slows_last_arcs(&self) -> bool {
+        self.largest.planner.slows_last_arcs()
+    }
+
     /// Whether a move waits.
     pub fn is_open(&self) -> bool {
         !self.open.is_empty()

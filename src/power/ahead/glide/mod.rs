@@ -9,18 +9,19 @@
 //! How much of the path is a line's own, and how much a blend, is known with the
 //! line behind it.
 
+mod terms;
+
 use super::Ahead;
-use super::open::{Open, joint};
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisId, AxisSet, AxisValues, LookAhead, Machine, PathMode};
+use super::open::Open;
+use crate::interpret::Move;
+use crate::machine::{AxisSet, LookAhead, Machine};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Gliding, Line, LineStart, Passed};
 use crate::power::demand::Want;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
+use terms::{Terms, lower};
 
-const LINEAR: usize = 3;
-const EXTRUDER: usize = AxisId::E as usize;
 /// What rounding may make of the sum, as a share.
 const ROUNDING: f64 = 1e-6;
 /// Moves that pass before another look where one was in vain.
@@ -34,22 +35,6 @@ pub(super) struct Glider {
     pause: usize,
     /// The planner does not know of the last moves.
     glide: Option<Glide>,
-}
-
-/// What may glide.
-#[derive(Debug)]
-struct Terms {
-    /// The axes that do: those of X, Y and Z, and an extruder beside them.
-    axes: AxisSet,
-    linear: AxisSet,
-    /// Their speeds, mm/s.
-    speed_mm_s: AxisValues,
-    /// Override of feeds.
-    feed: f64,
-    /// The rules' own limit along any path, mm/s².
-    path_accel_mm_s2: f64,
-    /// Moves that may be open.
-    blocks: usize,
 }
 
 /// Where a motion glides.
@@ -82,80 +67,11 @@ pub(super) struct Glided {
 impl Glider {
     /// `blocks`: moves that may be open; 0: nothing glides.
     pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
-        let mut terms = Terms {
-            axes: AxisSet::default(),
-            linear: AxisSet(0),
-            speed_mm_s: [0.0; AXES],
-            feed: overrides.feed,
-            path_accel_mm_s2: rules.path_accel_mm_s2,
-            blocks,
-        };
-        if blocks > 0 && machine.force_curves.is_empty() {
-            for index in (0..LINEAR).chain([EXTRUDER]) {
-                if let Some(axis) = machine.axes.get(index).and_then(Option::as_ref) {
-                    terms.axes.insert(index);
-                    terms.speed_mm_s[index] = axis.rapid_mm_s;
-                }
-            }
-            terms.linear = AxisSet(terms.axes.0 & !(1 << EXTRUDER));
-        }
         Self {
-            terms,
+            terms: Terms::new(machine, rules, overrides.feed, blocks),
             pause: 0,
             glide: None,
         }
-    }
-}
-
-impl Terms {
-    /// Whether a move may glide at some speed: a straight feed.
-    #[inline]
-    fn suit(&self, mv: &Move) -> bool {
-        mv.kind == MoveKind::Feed
-            && mv.moving.0 & !self.axes.0 == 0
-            && mv.moving.0 & self.linear.0 != 0
-            && mv.length_mm > 0.0
-            && mv.arc.is_none()
-            && mv.unknown_start.is_empty()
-            && mv.path_mode == PathMode::LookAhead
-    }
-
-    /// A move that suits, and a joint before it at which these axes move; `None`
-    /// where an axis does not permit the speed.
-    #[inline]
-    fn line(&self, mv: &Move, axes: AxisSet, speed_mm_s: f64) -> Option<Line> {
-        let mut direction = [0.0; LINEAR];
-        let mut permitted = true;
-        for axis in AxisSet(mv.moving.0 & self.linear.0).iter() {
-            let part = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
-            permitted &= part.abs() * speed_mm_s <= self.speed_mm_s[axis];
-            if let Some(change) = direction.get_mut(axis) {
-                *change = part;
-            }
-        }
-        let path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
-        let mut least_accel_mm_s2 = path_accel_mm_s2;
-        for axis in axes.iter() {
-            least_accel_mm_s2 = lower(mv.accel_mm_s2[axis], least_accel_mm_s2);
-        }
-        let mut extrusion = 0.0;
-        if mv.moving.contains(EXTRUDER) {
-            extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) / mv.length_mm;
-            permitted &= extrusion.abs() * speed_mm_s <= self.speed_mm_s[EXTRUDER];
-            let along = mv.accel_mm_s2[EXTRUDER] / extrusion.abs();
-            least_accel_mm_s2 = lower(along, least_accel_mm_s2);
-        }
-        let [x, y, z, ..] = mv.accel_mm_s2;
-        permitted.then_some(Line {
-            direction,
-            extrusion,
-            length_mm: mv.length_mm,
-            axis_accel_mm_s2: [x, y, z],
-            path_accel_mm_s2,
-            least_accel_mm_s2,
-            joint: joint(mv),
-            start: LineStart::default(),
-        })
     }
 }
 
@@ -165,12 +81,6 @@ impl Terms {
 fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, per_mm: f64, want: Want) -> bool {
     let accel_mm_s2 = per_mm * speed_mm_s * speed_mm_s;
     !want.energy && model.is_below_floor(mv, [speed_mm_s, accel_mm_s2], want)
-}
-
-/// `f64::min` is several instructions more.
-#[inline]
-fn lower(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }
 
 impl Ahead {

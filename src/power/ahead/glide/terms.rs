@@ -1,0 +1,105 @@
+//! Which moves may glide, and what they are to the planner.
+
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{AXES, AxisId, AxisSet, AxisValues, LookAhead, Machine, PathMode};
+use crate::plan::lookahead::{Line, LineStart};
+use crate::power::ahead::open::joint;
+
+const LINEAR: usize = 3;
+const EXTRUDER: usize = AxisId::E as usize;
+
+/// What may glide.
+#[derive(Debug)]
+pub(super) struct Terms {
+    /// The axes that do: those of X, Y and Z, and an extruder beside them.
+    axes: AxisSet,
+    linear: AxisSet,
+    /// Their speeds, mm/s.
+    speed_mm_s: AxisValues,
+    /// Override of feeds.
+    pub feed: f64,
+    /// The rules' own limit along any path, mm/s².
+    path_accel_mm_s2: f64,
+    /// Moves that may be open.
+    pub blocks: usize,
+}
+
+impl Terms {
+    /// `feed`: override; `blocks`: moves that may be open.
+    pub fn new(machine: &Machine, rules: &LookAhead, feed: f64, blocks: usize) -> Self {
+        let mut terms = Self {
+            axes: AxisSet::default(),
+            linear: AxisSet(0),
+            speed_mm_s: [0.0; AXES],
+            feed,
+            path_accel_mm_s2: rules.path_accel_mm_s2,
+            blocks,
+        };
+        if blocks > 0 && machine.force_curves.is_empty() {
+            for index in (0..LINEAR).chain([EXTRUDER]) {
+                if let Some(axis) = machine.axes.get(index).and_then(Option::as_ref) {
+                    terms.axes.insert(index);
+                    terms.speed_mm_s[index] = axis.rapid_mm_s;
+                }
+            }
+            terms.linear = AxisSet(terms.axes.0 & !(1 << EXTRUDER));
+        }
+        terms
+    }
+
+    /// Whether a move may glide at some speed: a straight feed.
+    #[inline]
+    pub fn suit(&self, mv: &Move) -> bool {
+        mv.kind == MoveKind::Feed
+            && mv.moving.0 & !self.axes.0 == 0
+            && mv.moving.0 & self.linear.0 != 0
+            && mv.length_mm > 0.0
+            && mv.arc.is_none()
+            && mv.unknown_start.is_empty()
+            && mv.path_mode == PathMode::LookAhead
+    }
+
+    /// A move that suits, and a joint before it at which these axes move; `None`
+    /// where an axis does not permit the speed.
+    #[inline]
+    pub fn line(&self, mv: &Move, axes: AxisSet, speed_mm_s: f64) -> Option<Line> {
+        let mut direction = [0.0; LINEAR];
+        let mut permitted = true;
+        for axis in AxisSet(mv.moving.0 & self.linear.0).iter() {
+            let part = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            permitted &= part.abs() * speed_mm_s <= self.speed_mm_s[axis];
+            if let Some(change) = direction.get_mut(axis) {
+                *change = part;
+            }
+        }
+        let path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
+        let mut least_accel_mm_s2 = path_accel_mm_s2;
+        for axis in axes.iter() {
+            least_accel_mm_s2 = lower(mv.accel_mm_s2[axis], least_accel_mm_s2);
+        }
+        let mut extrusion = 0.0;
+        if mv.moving.contains(EXTRUDER) {
+            extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) / mv.length_mm;
+            permitted &= extrusion.abs() * speed_mm_s <= self.speed_mm_s[EXTRUDER];
+            let along = mv.accel_mm_s2[EXTRUDER] / extrusion.abs();
+            least_accel_mm_s2 = lower(along, least_accel_mm_s2);
+        }
+        let [x, y, z, ..] = mv.accel_mm_s2;
+        permitted.then_some(Line {
+            direction,
+            extrusion,
+            length_mm: mv.length_mm,
+            axis_accel_mm_s2: [x, y, z],
+            path_accel_mm_s2,
+            least_accel_mm_s2,
+            joint: joint(mv),
+            start: LineStart::default(),
+        })
+    }
+}
+
+/// `f64::min` is several instructions more.
+#[inline]
+pub(super) fn lower(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}

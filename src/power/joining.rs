@@ -1,0 +1,41 @@
+//! Which moves wait for what comes behind them.
+
+use super::assess::Assessor;
+use super::assessment::Certificate;
+use super::held::moves;
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{PathMode, RapidJoint};
+
+impl Assessor<'_> {
+    /// Whether what comes behind a move may change how it runs: it may be blended with
+    /// that, or be an arc that `LinuxCNC` runs otherwise where nothing comes.
+    pub(super) fn may_blend(&self, mv: &Move) -> bool {
+        if !moves(mv) {
+            return false;
+        }
+        let (planner, ahead) = (&self.machine.controller.planner, self.ahead.as_ref());
+        let rapid = mv.kind == MoveKind::Rapid;
+        self.requested == Some(Certificate::Robust)
+            || mv.path_mode == PathMode::LookAhead
+                && (!rapid || planner.rapid_joint != RapidJoint::Stop)
+            || mv.arc.is_some() && ahead.is_some_and(|ahead| ahead.slows_last_arcs())
+    }
+
+    /// Whether the controller may run from `first` into `second` without a stop.
+    #[must_use]
+    pub fn joins(&self, first: &Move, second: &Move) -> bool {
+        if !moves(first) || !moves(second) {
+            return false;
+        }
+        if self.requested == Some(Certificate::Robust) {
+            return true;
+        }
+        let rapids = [first, second].map(|mv| mv.kind == MoveKind::Rapid);
+        first.path_mode == PathMode::LookAhead
+            && match self.machine.controller.planner.rapid_joint {
+                RapidJoint::Stop => rapids == [false, false],
+                RapidJoint::Rapids => rapids[0] == rapids[1],
+                RapidJoint::All => true,
+            }
+    }
+}
