@@ -70,10 +70,13 @@ impl<'m> Assessor<'m> {
             spindle: largest.spindle.min(1.0),
         };
         let model = PowerModel::new(machine);
-        let rules = machine.controller.planner.look_ahead.filter(|_| {
-            requested != Some(Certificate::Robust) && machine.path.mode != Some(PathMode::ExactStop)
-        });
-        let ahead = rules.map(|rules| Box::new(Ahead::new(machine, rules, [largest, nominal])));
+        let rules = machine.controller.planner.look_ahead;
+        let rules = rules.filter(|_| requested != Some(Certificate::Robust));
+        let ahead = rules
+            .map(|rules| Box::new(Ahead::new(machine, rules, [largest, nominal])))
+            .filter(|ahead| {
+                ahead.slows_last_arcs() || machine.path.mode != Some(PathMode::ExactStop)
+            });
         Self {
             machine,
             model,
@@ -216,6 +219,16 @@ impl<'m> Assessor<'m> {
         }
     }
 
+    /// The last move ends at rest, and the controller sees that another one comes.
+    #[inline(never)]
+    fn stop_between(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        let (machine, model, eye) = (self.machine, &self.model, &mut self.eye);
+        if let Some(ahead) = &mut self.ahead {
+            ahead.stop_between(machine, model, eye);
+            ahead.hand_on(machine, model, eye, sink);
+        }
+    }
+
     /// Takes the next move with the text of its line, and hands on what can be
     /// judged now. Where the machine has a spindle, its waits come among them as
     /// moves of kind [`MoveKind::Spindle`].
@@ -239,9 +252,14 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let open = self.ahead.as_ref().map(|ahead| ahead.is_open());
-        if open == Some(true) || open.is_some() && self.may_blend(mv) {
-            return self.push_ahead(mv, text, sink);
+        if let Some(ahead) = &self.ahead {
+            let (open, rests) = (ahead.is_open(), ahead.rests());
+            if self.may_blend(mv) || open && !(rests && self.is_alone(mv)) {
+                return self.push_ahead(mv, text, sink);
+            }
+            if open {
+                self.stop_between(sink);
+            }
         }
         self.eye.show(self.machine, mv, self.nominal);
         let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);

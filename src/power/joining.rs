@@ -1,5 +1,6 @@
 //! Which moves wait for what comes behind them.
 
+use super::ahead::{Role, role};
 use super::assess::Assessor;
 use super::assessment::Certificate;
 use super::held::moves;
@@ -19,6 +20,11 @@ impl Assessor<'_> {
             || mv.path_mode == PathMode::LookAhead
                 && (!rapid || planner.rapid_joint != RapidJoint::Stop)
             || mv.arc.is_some() && ahead.is_some_and(|ahead| ahead.slows_last_arcs())
+    }
+
+    /// Whether a move has a path of its own, begun and ended at rest.
+    pub(super) fn is_alone(&self, mv: &Move) -> bool {
+        mv.path_mode == PathMode::ExactStop && role(self.machine, mv) == Role::Path
     }
 
     /// Whether the controller may run from `first` into `second` without a stop.

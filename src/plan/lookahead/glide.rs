@@ -48,8 +48,9 @@ pub(crate) struct Line {
     /// Of the extruder per unit of path.
     pub extrusion: f64,
     pub length_mm: f64,
-    /// Limits of the axes, mm/s².
+    /// Limits of the axes, mm/s², and their inverse.
     pub axis_accel_mm_s2: [f64; 3],
+    pub inverse_accel: [f64; 3],
     /// Limit along the path whatever the direction, mm/s².
     pub path_accel_mm_s2: f64,
     /// Not above the acceleration along the path, here and through the joint

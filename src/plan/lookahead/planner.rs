@@ -304,9 +304,19 @@ impl<T: Copy> PathPlanner<T> {
     /// The motion stops behind the last element: a dwell, a tool change, the
     /// end of the program.
     pub fn stop(&mut self) {
+        self.stop_before(false);
+    }
+
+    /// The same where the controller sees another element behind that, which begins
+    /// at rest.
+    pub fn stop_between(&mut self) {
+        self.stop_before(true);
+    }
+
+    fn stop_before(&mut self, another: bool) {
         match &mut self.rule {
             Rule::Corner(before) => *before = None,
-            Rule::LinuxCnc(rule) => rule.stop(&mut self.window),
+            Rule::LinuxCnc(rule) => rule.stop(&mut self.window, another),
         }
         self.window.stop();
     }

@@ -207,15 +207,34 @@ impl Ahead {
     pub fn stop(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
         self.catch_up(machine);
         self.stop_planners();
+        self.rest(model, eye);
+    }
+
+    /// The motion stops behind the last move; the controller sees that another one
+    /// comes.
+    pub fn stop_between(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+        self.catch_up(machine);
+        self.largest.planner.stop_between();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.planner.stop_between();
+        }
+        self.rest(model, eye);
+    }
+
+    fn rest(&mut self, model: &PowerModel, eye: &mut Eye) {
         self.at_rest = true;
         self.in_doubt = false;
         self.pump(model, eye);
     }
 
+    /// Whether the last move ends at rest whatever comes.
+    pub fn rests(&self) -> bool {
+        self.open.back().is_some_and(|last| last.rests)
+    }
+
     /// Something stands here that may or may not stop the motion.
     pub fn doubt(&mut self) {
-        let rests = self.at_rest || self.open.back().is_some_and(|last| last.rests);
-        self.in_doubt |= !rests;
+        self.in_doubt |= !(self.at_rest || self.rests());
     }
 
     /// The moves that a stop here would change are in doubt.

@@ -103,8 +103,8 @@ impl<T: Copy> LinuxCnc<T> {
         // What the axes permit along the path, as its inverse.
         let (mut steepest, mut largest) = (1.0 / next.path_accel_mm_s2, 0.0);
         let w = next.direction;
-        for ((u, w), limit) in u.into_iter().zip(w).zip(next.axis_accel_mm_s2) {
-            let (part, change) = (w.abs() / limit, (w - u).abs() / limit);
+        for ((u, w), inverse) in u.into_iter().zip(w).zip(next.inverse_accel) {
+            let (part, change) = (w.abs() * inverse, (w - u).abs() * inverse);
             if part > steepest {
                 steepest = part;
             }

@@ -111,13 +111,14 @@ impl<T: Copy> LinuxCnc<T> {
         self.spare = Some(before);
     }
 
-    /// Nothing comes behind the last element.
-    pub fn stop(&mut self, window: &mut Window<Load<T>>) {
+    /// The motion stops behind the last element; nothing comes behind it unless it is
+    /// `followed`.
+    pub fn stop(&mut self, window: &mut Window<Load<T>>, followed: bool) {
         if let Some(joined) = self.joiner.flush(&self.axes) {
             self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
         if let Some(last) = self.pending.take() {
-            self.hand_over(&last, window, true);
+            self.hand_over(&last, window, !followed);
             self.spare = Some(last);
         }
     }

@@ -135,7 +135,7 @@ impl Ahead {
         }
         let last = self.open.back_mut()?;
         let axes = AxisSet(mv.moving.0 | last.mv.moving.0);
-        let line = terms.line(mv, axes, glide.speed_mm_s)?;
+        let line = terms.line(mv, axes, glide.speed_mm_s, Some(&glide.line))?;
         let passed = self
             .largest
             .planner
@@ -189,7 +189,7 @@ impl Ahead {
             if !glides {
                 return Err(index + 1);
             }
-            let line = terms.line(&each.mv, each.mv.moving, speed_mm_s);
+            let line = terms.line(&each.mv, each.mv.moving, speed_mm_s, last.as_ref());
             let line = line.ok_or(index + 1)?;
             if index + 1 < open {
                 each.glided = Glided::whole(&line, accel_share);

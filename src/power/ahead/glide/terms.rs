@@ -60,9 +60,16 @@ impl Terms {
     }
 
     /// A move that suits, and a joint before it at which these axes move; `None`
-    /// where an axis does not permit the speed.
+    /// where an axis does not permit the speed. `before`: some line, whose limits may
+    /// be the same.
     #[inline]
-    pub fn line(&self, mv: &Move, axes: AxisSet, speed_mm_s: f64) -> Option<Line> {
+    pub fn line(
+        &self,
+        mv: &Move,
+        axes: AxisSet,
+        speed_mm_s: f64,
+        before: Option<&Line>,
+    ) -> Option<Line> {
         let mut direction = [0.0; LINEAR];
         let mut permitted = true;
         for axis in AxisSet(mv.moving.0 & self.linear.0).iter() {
@@ -85,11 +92,17 @@ impl Terms {
             least_accel_mm_s2 = lower(along, least_accel_mm_s2);
         }
         let [x, y, z, ..] = mv.accel_mm_s2;
+        let axis_accel_mm_s2 = [x, y, z];
+        let inverse_accel = match before {
+            Some(before) if before.axis_accel_mm_s2 == axis_accel_mm_s2 => before.inverse_accel,
+            _ => axis_accel_mm_s2.map(|accel| 1.0 / accel),
+        };
         permitted.then_some(Line {
             direction,
             extrusion,
             length_mm: mv.length_mm,
-            axis_accel_mm_s2: [x, y, z],
+            axis_accel_mm_s2,
+            inverse_accel,
             path_accel_mm_s2,
             least_accel_mm_s2,
             joint: joint(mv),
