@@ -11,11 +11,12 @@ use crate::interpret::{Arc, Move, MoveKind};
 use crate::machine::{AXES, AxisValues, Machine};
 
 /// What happens at the end of an element, if the controller's rules permit it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Joint {
     /// A stop: exact stop mode, or a dwell, a tool change or another word
     /// behind it for which the controller waits. Where the stop has such a
     /// reason the planner is told with [`super::PathPlanner::stop`].
+    #[default]
     Stop,
     /// The path is kept; joints without a corner are run through.
     Exact,

@@ -41,7 +41,7 @@ pub(crate) struct LineStart {
 
 /// A straight feed in X, Y and Z, and beside them of an extruder, whose start is
 /// known.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Line {
     /// A unit.
     pub direction: [f64; 3],

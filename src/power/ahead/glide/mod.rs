@@ -44,8 +44,9 @@ struct Glide {
     feed_mm_s: f64,
     /// The same under the override.
     speed_mm_s: f64,
-    /// The last move.
-    line: Line,
+    /// The last move, and room for the next one; they change places.
+    lines: [Line; 2],
+    last: usize,
     /// The first move that is not final, and where it begins.
     first: u64,
     start: LineStart,
@@ -135,25 +136,31 @@ impl Ahead {
         }
         let last = self.open.back_mut()?;
         let axes = AxisSet(mv.moving.0 | last.mv.moving.0);
-        let line = terms.line(mv, axes, glide.speed_mm_s, Some(&glide.line))?;
+        let [one, other] = &mut glide.lines;
+        let (before, line) = if glide.last == 0 {
+            (one, other)
+        } else {
+            (other, one)
+        };
+        if !terms.describe(line, mv, axes, glide.speed_mm_s) {
+            return None;
+        }
         let passed = self
             .largest
             .planner
-            .passes(&glide.line, &line, glide.speed_mm_s)?;
+            .passes(before, line, glide.speed_mm_s)?;
         let per_mm = passed.curvature_per_mm;
         if !is_plain(model, &last.mv, glide.speed_mm_s, per_mm, last.want) {
             return None;
         }
-        let least_mm_s2 = lower(glide.line.least_accel_mm_s2, line.least_accel_mm_s2);
+        let least_mm_s2 = lower(before.least_accel_mm_s2, line.least_accel_mm_s2);
         let ramp2 = 2.0 * passed.accel_share * least_mm_s2 * (passed.own_mm + passed.shared_mm);
         last.glided = Glided { passed, ramp2 };
         if glide.keeps || self.open.len() - 1 > first {
             glide.ramp2 += ramp2;
         }
-        glide.line = Line {
-            start: passed.next,
-            ..line
-        };
+        line.start = passed.next;
+        glide.last ^= 1;
         Some(glide.speed_mm_s)
     }
 
@@ -180,7 +187,7 @@ impl Ahead {
         if speed_mm_s * speed_mm_s != speed2 {
             return Err(open);
         }
-        let (mut ramp2, mut last) = (0.0, None);
+        let (mut ramp2, mut line) = (0.0, Line::default());
         for (index, each) in self.open.iter_mut().skip(first).enumerate() {
             let glides = terms.suit(&each.mv)
                 && each.mv.feed_mm_s == feed_mm_s
@@ -189,19 +196,20 @@ impl Ahead {
             if !glides {
                 return Err(index + 1);
             }
-            let line = terms.line(&each.mv, each.mv.moving, speed_mm_s, last.as_ref());
-            let line = line.ok_or(index + 1)?;
+            if !terms.describe(&mut line, &each.mv, each.mv.moving, speed_mm_s) {
+                return Err(index + 1);
+            }
             if index + 1 < open {
                 each.glided = Glided::whole(&line, accel_share);
                 ramp2 += if index > 0 { each.glided.ramp2 } else { 0.0 };
             }
-            last = Some(line);
         }
-        let line = last.ok_or(0_usize)?;
+        line.start = start;
         Ok(Glide {
             feed_mm_s,
             speed_mm_s,
-            line: Line { start, ..line },
+            lines: [line; 2],
+            last: 0,
             first: number,
             start,
             keeps,

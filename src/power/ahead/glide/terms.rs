@@ -2,7 +2,7 @@
 
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AXES, AxisId, AxisSet, AxisValues, LookAhead, Machine, PathMode};
-use crate::plan::lookahead::{Line, LineStart};
+use crate::plan::lookahead::Line;
 use crate::power::ahead::open::joint;
 
 const LINEAR: usize = 3;
@@ -59,55 +59,40 @@ impl Terms {
             && mv.path_mode == PathMode::LookAhead
     }
 
-    /// A move that suits, and a joint before it at which these axes move; `None`
-    /// where an axis does not permit the speed. `before`: some line, whose limits may
-    /// be the same.
+    /// Describes a move that suits, and a joint before it at which these axes move, in
+    /// place; false where an axis does not permit the speed.
     #[inline]
-    pub fn line(
-        &self,
-        mv: &Move,
-        axes: AxisSet,
-        speed_mm_s: f64,
-        before: Option<&Line>,
-    ) -> Option<Line> {
-        let mut direction = [0.0; LINEAR];
+    pub fn describe(&self, line: &mut Line, mv: &Move, axes: AxisSet, speed_mm_s: f64) -> bool {
+        line.direction = [0.0; LINEAR];
         let mut permitted = true;
         for axis in AxisSet(mv.moving.0 & self.linear.0).iter() {
             let part = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
             permitted &= part.abs() * speed_mm_s <= self.speed_mm_s[axis];
-            if let Some(change) = direction.get_mut(axis) {
+            if let Some(change) = line.direction.get_mut(axis) {
                 *change = part;
             }
         }
-        let path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
-        let mut least_accel_mm_s2 = path_accel_mm_s2;
+        line.length_mm = mv.length_mm;
+        line.path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
+        let mut least_accel_mm_s2 = line.path_accel_mm_s2;
         for axis in axes.iter() {
             least_accel_mm_s2 = lower(mv.accel_mm_s2[axis], least_accel_mm_s2);
         }
-        let mut extrusion = 0.0;
+        line.extrusion = 0.0;
         if mv.moving.contains(EXTRUDER) {
-            extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) / mv.length_mm;
-            permitted &= extrusion.abs() * speed_mm_s <= self.speed_mm_s[EXTRUDER];
-            let along = mv.accel_mm_s2[EXTRUDER] / extrusion.abs();
-            least_accel_mm_s2 = lower(along, least_accel_mm_s2);
+            line.extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) / mv.length_mm;
+            let share = line.extrusion.abs();
+            permitted &= share * speed_mm_s <= self.speed_mm_s[EXTRUDER];
+            least_accel_mm_s2 = lower(mv.accel_mm_s2[EXTRUDER] / share, least_accel_mm_s2);
         }
+        line.least_accel_mm_s2 = least_accel_mm_s2;
         let [x, y, z, ..] = mv.accel_mm_s2;
-        let axis_accel_mm_s2 = [x, y, z];
-        let inverse_accel = match before {
-            Some(before) if before.axis_accel_mm_s2 == axis_accel_mm_s2 => before.inverse_accel,
-            _ => axis_accel_mm_s2.map(|accel| 1.0 / accel),
-        };
-        permitted.then_some(Line {
-            direction,
-            extrusion,
-            length_mm: mv.length_mm,
-            axis_accel_mm_s2,
-            inverse_accel,
-            path_accel_mm_s2,
-            least_accel_mm_s2,
-            joint: joint(mv),
-            start: LineStart::default(),
-        })
+        if line.axis_accel_mm_s2 != [x, y, z] {
+            line.axis_accel_mm_s2 = [x, y, z];
+            line.inverse_accel = line.axis_accel_mm_s2.map(|accel| 1.0 / accel);
+        }
+        line.joint = joint(mv);
+        permitted
     }
 }
 
