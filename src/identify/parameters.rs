@@ -35,7 +35,11 @@ pub fn with(template: &TransferFunction, theta: &[f64]) -> TransferFunction {
                 omega_rad_s,
                 damping,
             } => {
-                *omega_rad_s = libm::exp(rest.next().unwrap_or_default());
+                // What does not move stays as it is, to the last digit.
+                let log = rest.next().unwrap_or_default();
+                if log != libm::log(*omega_rad_s) {
+                    *omega_rad_s = libm::exp(log);
+                }
                 *damping = rest.next().unwrap_or_default();
             }
             Factor::Real { time_constant_s } => {
@@ -98,4 +102,30 @@ pub fn is_admissible(transfer: &TransferFunction, period_s: f64) -> bool {
         && transfer.zeros.iter().all(sound_zero)
         && transfer.gain.is_finite()
         && (0.0..1000.0 * period_s).contains(&transfer.delay_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A section that does not move is taken over from where it was: it must not
+    /// differ in its last digit.
+    #[test]
+    fn what_does_not_move_stays_the_same() {
+        for k in 1..2000 {
+            let omega_rad_s = 0.731 * f64::from(k);
+            let pair = |damping| Factor::Pair {
+                omega_rad_s,
+                damping,
+            };
+            let transfer = TransferFunction {
+                gain: 3.0,
+                zeros: vec![pair(0.1)],
+                poles: vec![pair(0.2)],
+                delay_s: 1e-3,
+            };
+            let same = with(&transfer, &parameters(&transfer, true));
+            assert_eq!(same, transfer);
+        }
+    }
 }
