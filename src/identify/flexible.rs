@@ -12,7 +12,7 @@ use super::quality;
 use super::recording::Recording;
 use super::rigid::Figure;
 use super::search::{LAGS, filtered};
-use super::spectrum::FrequencyResponse;
+use super::spectrum::{FrequencyResponse, excited_rad_s};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
 use super::trouble::{Outcome, Trouble};
@@ -93,6 +93,9 @@ pub struct Flexible {
 /// peak: 1/√2.
 const DIP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
+/// Zeros farther beyond the band do not count as anti-resonances.
+const BEYOND: f64 = 1.05;
+
 /// Input and output as they are fitted.
 pub(super) struct Prepared {
     input: Vec<f64>,
@@ -139,7 +142,10 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
         }
     };
     quality::moves(input_signal, help)?;
-    quality::not_saturated(input_signal)?;
+    // A command that stands at the end of its stroke is meant to.
+    if is_force {
+        quality::not_saturated(input_signal)?;
+    }
     let pick = |quantity| recording.get(quantity);
     let (output_signal, measured) = pick(Quantity::Acceleration)
         .map(|s| (s, Measured::Direct))
@@ -337,6 +343,13 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     let mut zeros = Vec::new();
     let mut poles = Vec::new();
     let band = std::f64::consts::PI / data.period_s;
+    // A zero beyond what the recording shows stands for something else.
+    let excited = if data.positions {
+        excited_rad_s(&filtered(data.input, &[-2.0, 1.0]), data.period_s)
+    } else {
+        excited_rad_s(data.input, data.period_s)
+    };
+    let shown = band.min(BEYOND * excited.max(found.response.shown_rad_s()));
     for (index, factor) in transfer.zeros.iter().chain(&transfer.poles).enumerate() {
         if let Factor::Pair {
             omega_rad_s,
@@ -353,8 +366,10 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
                     std: std(at + 1),
                 },
             };
+            let is_zero = index < transfer.zeros.len();
+            let band = if is_zero { shown } else { band };
             if damping.abs() < DIP && omega_rad_s < band {
-                if index < transfer.zeros.len() {
+                if is_zero {
                     zeros.push(root);
                 } else {
                     poles.push(root);
@@ -367,9 +382,12 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
     }
     let delay_std = if found.delay_is_free {
-        std(parameters(&transfer, true).len() - 1)
+        libm::hypot(
+            std(parameters(&transfer, true).len() - 1),
+            found.delay_doubt_s,
+        )
     } else {
-        0.0
+        found.delay_doubt_s
     };
     transfer.delay_s = (fitted_delay_s - prepared.early_s()).max(0.0);
     Ok(Flexible {

@@ -15,6 +15,8 @@ use super::transfer::TransferFunction;
 pub(super) struct Modelled {
     pub(super) estimate: Estimate,
     pub(super) delay_is_free: bool,
+    /// How far the delay is in doubt besides, s.
+    pub(super) delay_doubt_s: f64,
     pub(super) whitening: Vec<f64>,
     pub(super) response: FrequencyResponse,
     pub(super) has_errors: bool,
@@ -25,6 +27,7 @@ pub(super) fn by_search(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -
     Some(Modelled {
         estimate: found.estimate,
         delay_is_free: found.delay_is_free,
+        delay_doubt_s: found.delay_doubt_s,
         whitening: found.whitening,
         response: found.response,
         has_errors: true,
@@ -82,6 +85,7 @@ pub(super) fn by_response(
     Some(Modelled {
         estimate,
         delay_is_free: false,
+        delay_doubt_s: 0.0,
         whitening: Vec::new(),
         response,
         has_errors: true,
@@ -186,6 +190,7 @@ fn finish_plain(
     Some(Modelled {
         estimate: as_it_is(data, &transfer)?,
         delay_is_free: false,
+        delay_doubt_s: 0.0,
         whitening: Vec::new(),
         response: response_of(data, prepared.excitation.as_deref(), None)?,
         has_errors: false,

@@ -61,14 +61,15 @@ pub fn are_alike(a: &TransferFunction, b: &TransferFunction) -> bool {
         && left.iter().zip(&right).all(|(a, b)| same(a, b))
 }
 
-/// Models that differ from one by a zero, a pair of zeros, a mode, or a period
-/// of delay.
+/// Models that differ from one by a zero, a pair of zeros, a mode, or a step of
+/// delay.
 #[must_use]
 pub fn neighbours(
     from: &TransferFunction,
     response: &FrequencyResponse,
     given: Given,
     period_s: f64,
+    step_s: f64,
 ) -> Vec<TransferFunction> {
     let far_zero = far_zero(period_s);
     let mut out = reflected(from, given, period_s);
@@ -105,15 +106,15 @@ pub fn neighbours(
     if given.delay_s.is_none() {
         for shape in &shapes {
             let mut sooner = shape.clone();
-            sooner.delay_s -= period_s;
-            if sooner.delay_s > -0.5 * period_s {
+            sooner.delay_s -= step_s;
+            if sooner.delay_s > -0.5 * step_s {
                 sooner.delay_s = sooner.delay_s.max(0.0);
                 out.push(sooner);
             }
         }
         for shape in &shapes {
             let mut later = shape.clone();
-            later.delay_s += period_s;
+            later.delay_s += step_s;
             out.push(later);
         }
     }

@@ -30,6 +30,8 @@ const ENOUGH: f64 = 1e-3;
 /// the steps.
 const NEAR: f64 = 20.0;
 const LONGER: usize = 4;
+/// Farther than this many times that, a fit that promises little is given up.
+const HOPE: f64 = 10.0;
 
 /// A fitted model.
 #[derive(Debug, Clone)]
@@ -42,6 +44,8 @@ pub struct Estimate {
     pub rest: f64,
     /// Rows that it is the sum of.
     pub rows: usize,
+    /// Samples that they were made of.
+    pub samples: usize,
     /// Sum of squares of the output: the model's differences count as no less
     /// than rounding leaves of it.
     pub power: f64,
@@ -61,7 +65,15 @@ impl Estimate {
     /// Bayes' information criterion with its [`charge()`]; the smaller, the better.
     #[must_use]
     pub fn criterion(&self) -> f64 {
-        criterion(self.rest, self.power, self.rows, self.count) + self.charge
+        criterion(self.rest, self.power, self.rows, self.count, self.samples) + self.charge
+    }
+
+    /// Akaike's criterion: the smaller, the likelier, whatever is rare.
+    #[must_use]
+    pub fn likelihood(&self) -> f64 {
+        let n = self.rows as f64;
+        let rest = self.rest.max(ROUNDING * self.power).max(f64::MIN_POSITIVE);
+        n * libm::log(rest / n) + 2.0 * self.count as f64
     }
 
     /// Standard error of the parameter at `index`.
@@ -74,10 +86,10 @@ impl Estimate {
 /// The share of a signal that counts as rounding.
 const ROUNDING: f64 = 1e-14;
 
-fn criterion(rest: f64, power: f64, rows: usize, count: usize) -> f64 {
+fn criterion(rest: f64, power: f64, rows: usize, count: usize, samples: usize) -> f64 {
     let n = rows as f64;
     let rest = rest.max(ROUNDING * power).max(f64::MIN_POSITIVE);
-    n * libm::log(rest / n) + count as f64 * libm::log(n)
+    n * libm::log(rest / n) + count as f64 * libm::log(samples as f64)
 }
 
 /// How hard a fit is tried.
@@ -148,66 +160,23 @@ pub fn refine(
         undisturbed: None,
         ..*data
     };
-    let mut transfer = start.clone();
-    let mut normal = gather(&open, &transfer, delay_is_free, left_out)?;
-    let count = parameters(&transfer, delay_is_free).len();
-    let mut least = rest(&normal, count)?.rest;
-    let mut damping = 1e-4;
-    let power: f64 = raw.output.iter().map(|y| y * y).sum();
-    let mut steps = 0;
-    for round in 0..LONGER * effort.steps {
-        // What is missing, in units of the criterion: what is near is worth more.
-        let missing = criterion(least, power, normal.rows, count)
-            + charge(raw, &transfer, normal.rows)
-            - effort.to_beat;
-        if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
-            break;
-        }
-        steps = round + 1;
-        let Some(step) = normal.solve_from(0, damping) else {
-            damping *= 10.0;
-            if damping > 1e6 {
-                return None;
-            }
-            continue;
-        };
-        let next = moved(&transfer, delay_is_free, step.x.as_slice());
-        let tried = Some(&next)
-            .filter(|next| is_admissible(next, data.period_s))
-            .and_then(|next| gather(&open, next, delay_is_free, left_out))
-            .and_then(|normal| Some((rest(&normal, count)?.rest, normal)));
-        match tried {
-            Some((sum, found)) if sum <= least => {
-                let gained = least - sum;
-                transfer = next;
-                normal = found;
-                least = sum;
-                damping = (damping * 0.1).max(1e-12);
-                if gained <= ENOUGH * least / normal.rows as f64 || least <= ROUNDING * power {
-                    break;
-                }
-                // Against what the step brought.
-                let brought = normal.rows as f64 * gained / least;
-                let missing = missing - brought;
-                let is_slow = |share: f64| missing > NEAR && brought < share * missing;
-                if (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2)) {
-                    break;
-                }
-            }
-            _ => {
-                damping *= 10.0;
-                if damping > 1e6 {
-                    break;
-                }
-            }
-        }
-    }
+    let task = Task {
+        gather: &|model: &TransferFunction| gather(&open, model, delay_is_free, left_out),
+        delay_is_free,
+        period_s: raw.period_s,
+        from_command: raw.from_command,
+        power: raw.output.iter().map(|y| y * y).sum(),
+        samples: raw.len(),
+    };
+    let Descent {
+        mut transfer,
+        mut normal,
+        steps,
+    } = task.descend(start, effort)?;
     if data.undisturbed.is_some() {
         (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
     }
-    let mut estimate = finish(transfer, &normal, count, power)?;
-    estimate.charge = charge(raw, &estimate.transfer, normal.rows);
-    estimate.steps = steps;
+    let mut estimate = task.finish(transfer, &normal, steps)?;
     if !whitening.is_empty() {
         // Offset and first state of the signals as they are.
         let open = Data {
@@ -215,9 +184,131 @@ pub fn refine(
             ..*raw
         };
         let normal = gather(&open, &estimate.transfer, delay_is_free, raw.skip())?;
-        (estimate.state, estimate.offset) = nuisance(&rest(&normal, count)?);
+        (estimate.state, estimate.offset) = nuisance(&rest(&normal, estimate.count)?);
     }
     Some(estimate)
+}
+
+/// What is fitted.
+struct Task<'a> {
+    gather: &'a dyn Fn(&TransferFunction) -> Option<Normal>,
+    delay_is_free: bool,
+    period_s: f64,
+    from_command: bool,
+    /// Sum of squares of the output.
+    power: f64,
+    samples: usize,
+}
+
+/// Where a descent came to.
+struct Descent {
+    transfer: TransferFunction,
+    normal: Normal,
+    steps: usize,
+}
+
+impl Task<'_> {
+    fn descend(&self, start: &TransferFunction, effort: Effort) -> Option<Descent> {
+        let mut transfer = start.clone();
+        let mut normal = (self.gather)(&transfer)?;
+        let count = parameters(&transfer, self.delay_is_free).len();
+        let mut least = rest(&normal, count)?.rest;
+        let mut damping = 1e-4;
+        let mut steps = 0;
+        for round in 0..LONGER * effort.steps {
+            // What is missing, in units of the criterion: what is near is worth more.
+            let missing = criterion(least, self.power, normal.rows, count, self.samples)
+                + self.charge(&transfer)
+                - effort.to_beat;
+            if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
+                break;
+            }
+            steps = round + 1;
+            let Some(step) = normal.solve_from(0, damping) else {
+                damping *= 10.0;
+                if damping > 1e6 {
+                    return None;
+                }
+                continue;
+            };
+            // What the step promises, taken as straight: without hope there is no
+            // need to look.
+            if (1..4).contains(&round) && missing > HOPE * NEAR {
+                let promised = libm::log(least / step.rest.max(ROUNDING * self.power));
+                if normal.rows as f64 * promised < 0.2 * missing {
+                    break;
+                }
+            }
+            let next = moved(&transfer, self.delay_is_free, step.x.as_slice());
+            let tried = Some(&next)
+                .filter(|next| is_admissible(next, self.period_s))
+                .and_then(|next| (self.gather)(next))
+                .and_then(|normal| Some((rest(&normal, count)?.rest, normal)));
+            match tried {
+                Some((sum, found)) if sum <= least => {
+                    let gained = least - sum;
+                    transfer = next;
+                    normal = found;
+                    least = sum;
+                    damping = (damping * 0.1).max(1e-12);
+                    if gained <= ENOUGH * least / normal.rows as f64
+                        || least <= ROUNDING * self.power
+                    {
+                        break;
+                    }
+                    // Against what the step brought.
+                    let brought = normal.rows as f64 * gained / least;
+                    let missing = missing - brought;
+                    let is_slow = |share: f64| missing > NEAR && brought < share * missing;
+                    if (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2)) {
+                        break;
+                    }
+                }
+                _ => {
+                    damping *= 10.0;
+                    if damping > 1e6 {
+                        break;
+                    }
+                }
+            }
+        }
+        Some(Descent {
+            transfer,
+            normal,
+            steps,
+        })
+    }
+
+    fn charge(&self, transfer: &TransferFunction) -> f64 {
+        charge(transfer, self.samples, self.period_s, self.from_command)
+    }
+
+    fn finish(
+        &self,
+        transfer: TransferFunction,
+        normal: &Normal,
+        steps: usize,
+    ) -> Option<Estimate> {
+        let count = parameters(&transfer, self.delay_is_free).len();
+        let left = rest(normal, count)?;
+        let solution = solved(normal)?;
+        let unknowns = count + left.x.len();
+        let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
+        let (state, offset) = nuisance(&left);
+        Some(Estimate {
+            charge: self.charge(&transfer),
+            transfer,
+            covariance: solution.inverse.view((0, 0), (count, count)) * noise,
+            rest: left.rest,
+            rows: normal.rows,
+            samples: self.samples,
+            power: self.power,
+            count,
+            steps,
+            offset,
+            state,
+        })
+    }
 }
 
 /// What a model has to pay for besides its parameters. Which of many frequencies
@@ -225,9 +316,8 @@ pub fn refine(
 /// state explains the samples over which it swings, all of them where there is no
 /// damping. Zeros that structures seldom have, but noise often, count twice: those
 /// on the right, which stand for a delay, and leads that undo one.
-fn charge(data: &Data<'_>, transfer: &TransferFunction, rows: usize) -> f64 {
-    let n = rows as f64;
-    let period_s = data.period_s;
+fn charge(transfer: &TransferFunction, samples: usize, period_s: f64, from_command: bool) -> f64 {
+    let n = samples as f64;
     let lag = libm::floor(transfer.delay_s / period_s + 1e-9);
     let lasting = |decay_rad_s: f64| libm::log(1.0 + (1.0 / (decay_rad_s * period_s)).min(n));
     let states: f64 = transfer
@@ -244,24 +334,30 @@ fn charge(data: &Data<'_>, transfer: &TransferFunction, rows: usize) -> f64 {
             Factor::Real { time_constant_s } => lasting(1.0 / time_constant_s),
         })
         .sum();
-    // Loops lead as they like.
-    let leads = if data.from_command {
-        0
-    } else {
-        leads(transfer)
-    };
+    let leads = leads(transfer, from_command);
     let seldom = transfer.zeros_on_the_right() + leads;
     states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
 }
 
-/// Real zeros that are no dampers' beside the fastest mode: they lead by more than
-/// such a one, whose time is `2ζ/ω`.
-fn leads(transfer: &TransferFunction) -> usize {
+/// Damped zeros that are no dampers' beside the fastest mode: they lead by more than
+/// such a one, whose time is `2ζ/ω`. A loop leads as it likes where it is slow: below
+/// what swings slowest.
+fn leads(transfer: &TransferFunction, from_command: bool) -> usize {
     const DAMPER: f64 = 0.5;
-    let modes = transfer.poles.iter().filter(|pole| pole.degree() == 2);
-    let fastest = modes.map(|pole| pole.corner_rad_s()).fold(0.0, f64::max);
-    let leads = |zero: &&Factor| zero.degree() == 1 && zero.lag_s() * fastest > DAMPER;
-    transfer.zeros.iter().filter(leads).count()
+    const SWINGS: f64 = 0.3;
+    let modes = || {
+        let modes = transfer.poles.iter().filter(|pole| pole.degree() == 2);
+        modes.map(|pole| pole.corner_rad_s())
+    };
+    let fastest = modes().fold(0.0, f64::max);
+    let slowest = modes().fold(f64::INFINITY, f64::min);
+    let leads = |zero: &&Factor| match **zero {
+        Factor::Real { time_constant_s } => time_constant_s * fastest > DAMPER,
+        Factor::Pair { damping, .. } => damping > SWINGS,
+    };
+    let is_fast = |zero: &&Factor| !from_command || zero.corner_rad_s() > slowest;
+    let zeros = transfer.zeros.iter().filter(leads).filter(is_fast);
+    zeros.map(|zero| zero.degree()).sum()
 }
 
 /// All unknowns; a swing that was over at once is left at nil.
@@ -315,31 +411,6 @@ fn moved(transfer: &TransferFunction, delay_is_free: bool, step: &[f64]) -> Tran
         *value += step;
     }
     with(transfer, &theta)
-}
-
-fn finish(
-    transfer: TransferFunction,
-    normal: &Normal,
-    count: usize,
-    power: f64,
-) -> Option<Estimate> {
-    let left = rest(normal, count)?;
-    let solution = solved(normal)?;
-    let unknowns = count + left.x.len();
-    let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
-    let (state, offset) = nuisance(&left);
-    Some(Estimate {
-        transfer,
-        covariance: solution.inverse.view((0, 0), (count, count)) * noise,
-        rest: left.rest,
-        rows: normal.rows,
-        power,
-        count,
-        charge: 0.0,
-        steps: 0,
-        offset,
-        state,
-    })
 }
 
 /// First state and offset.

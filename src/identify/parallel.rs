@@ -249,14 +249,16 @@ fn fractions(transfer: &TransferFunction) -> Option<(Vec<[f64; 2]>, f64)> {
 
 /// How the input runs between samples: a polynomial of the share σ of a period
 /// since the last knot, in terms of the samples up to it.
-struct Hold {
+pub struct Hold {
     measured: Measured,
     /// Share of a period by which knots come after the sampling instants.
     late: f64,
 }
 
 impl Hold {
-    fn new(measured: Measured, late: f64) -> Self {
+    /// For a hold whose knots come `late` of a period behind the samples.
+    #[must_use]
+    pub fn new(measured: Measured, late: f64) -> Self {
         Self { measured, late }
     }
 
@@ -276,7 +278,8 @@ impl Hold {
     }
 
     /// The input at a sampling instant.
-    fn at_sample(&self) -> [f64; TAPS] {
+    #[must_use]
+    pub fn at_sample(&self) -> [f64; TAPS] {
         let mut out = [0.0; TAPS];
         let (sigma, first) = if self.late > 0.0 {
             (1.0 - self.late, 1)
@@ -291,7 +294,8 @@ impl Hold {
     }
 
     /// Samples the section of a pole.
-    fn section(&self, pole: Factor, period_s: f64) -> Option<Section> {
+    #[must_use]
+    pub fn section(&self, pole: Factor, period_s: f64) -> Option<Section> {
         let (rest, second) = step(pole, period_s, 1.0 - self.late)?;
         let mut section = Section {
             phi: rest,

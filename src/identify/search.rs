@@ -3,16 +3,22 @@
 //! criterion prefers.
 
 use super::data::Data;
-use super::neighbours::{Given, LAG_MAX, ORDER_MAX, are_alike, neighbours, restarts};
+use super::growth;
+use super::lines::Lines;
+use super::neighbours::{Given, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
 use super::output_error::{Effort, Estimate, refine, residuals};
-use super::response_fit::grow;
 use super::spectrum::{FrequencyResponse, measure};
-use super::subspace::{Subspace, with_poles};
-use super::transfer::TransferFunction;
+use super::transfer::{Factor, TransferFunction};
 
 /// Samples on which models are compared; the last fit takes all.
 const COMPARED: usize = 8_000;
+/// Lines on which models are looked for, and on which they are chosen, about.
+const COARSE: usize = 700;
+const COMPARED_COMMAND: usize = 16_000;
+const CHOSEN: usize = 24_000;
+/// Models of different kinds that are gone on with.
+const KEPT: usize = 5;
 /// A model better by this much is gone on from without looking at others.
 const CLEAR: f64 = 4.0;
 /// By how much a delay between samples has to be better than one of whole
@@ -24,7 +30,7 @@ const WORTH: f64 = 0.5;
 const SEARCH_STEPS: usize = 20;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
-const STEPS_MAX: usize = 500;
+const STEPS_MAX: usize = 300;
 const STEPS_LAST: usize = 200;
 /// Rounds of model and noise.
 const ROUNDS_OF_NOISE: usize = 4;
@@ -42,6 +48,8 @@ pub struct Found {
     pub estimate: Estimate,
     /// Whether the delay was fitted.
     pub delay_is_free: bool,
+    /// How far it is in doubt besides, s: other models have other delays.
+    pub delay_doubt_s: f64,
     /// Taps of the filter that made the noise white.
     pub whitening: Vec<f64>,
     /// The measured frequency response.
@@ -52,28 +60,72 @@ pub struct Found {
 #[must_use]
 pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
     let response = response_of(data, instrument, None)?;
-    let short = data.head(COMPARED);
+    let band_rad_s = response.shown_rad_s();
+    let step_s = data.period_s * growth::delay_step(data.from_command);
+    let steps_s = (data.period_s, step_s);
+    let compared = if data.from_command {
+        COMPARED_COMMAND
+    } else {
+        COMPARED
+    };
+    let (short, long) = (data.head(compared), data.head(CHOSEN));
     let mut taps: Vec<f64> = Vec::new();
-    let mut best: Option<(Estimate, bool, Vec<f64>)> = None;
+    let mut best: Option<(Estimate, bool, f64, Vec<f64>)> = None;
     // Noise that is not white shows only behind a model, and the model only
     // when the noise is known: a few rounds settle both, each from where the one
     // before came to.
     for _ in 0..ROUNDS_OF_NOISE {
         let before = best.as_ref().map(|(best, ..)| &best.transfer);
-        let Some((found, delay_is_free)) = ladder(&short, &response, given, &taps, before) else {
+        let coarse = Lines::new(data, &taps, band_rad_s, COARSE)?;
+        let mut starts = growth::starts(&coarse, given);
+        starts.extend(before.cloned());
+        let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
+            refine(&short, start, delay_is_free, &taps, effort)
+        };
+        let fit_long = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
+            refine(&long, start, delay_is_free, &taps, effort)
+        };
+        let budget = if before.is_some() {
+            (STEPS_LAST, STEPS_LAST)
+        } else {
+            (STEPS_MAX, STEPS_LAST)
+        };
+        let tried = ladder(&fit, steps_s, &response, given, &starts, budget);
+        let others = doubt_s(&tried);
+        let effort = Effort {
+            steps: SEARCH_STEPS,
+            to_beat: f64::MAX,
+        };
+        // On more samples another one may be the best.
+        let again = |found: Estimate| {
+            if short.len() == data.len() {
+                Some(found)
+            } else {
+                refine(&long, &found.transfer, false, &taps, effort)
+            }
+        };
+        let Some(found) = best_of(best_of(tried).filter_map(again).collect()).next() else {
             break;
         };
-        let left = residuals(&short, &found)?;
+        let (found, delay_is_free, alone_s) = match given.delay_s {
+            Some(_) => (found, false, 0.0),
+            None => any_delay(&fit_long, data.period_s, found),
+        };
+        let delay_doubt_s = match given.delay_s {
+            Some(_) => 0.0,
+            None => libm::hypot(others, alone_s),
+        };
+        let left = residuals(&long, &found)?;
         let exact = found.rest <= 1e-12 * found.power;
         let is_white = || Whiteness::of(filtered(&left, &taps).as_slice(), LAGS).is_white();
         let next = (!exact && !is_white()).then(|| whitening(&left, WHITENING_MAX));
-        best = Some((found, delay_is_free, taps));
+        best = Some((found, delay_is_free, delay_doubt_s, taps));
         match next {
             Some(next) => taps = next,
             None => break,
         }
     }
-    let (short_estimate, delay_is_free, taps) = best?;
+    let (short_estimate, delay_is_free, delay_doubt_s, taps) = best?;
     let estimate = refine(
         data,
         &short_estimate.transfer,
@@ -84,6 +136,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     Some(Found {
         estimate,
         delay_is_free,
+        delay_doubt_s,
         whitening: taps,
         response,
     })
@@ -118,51 +171,68 @@ pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Models of growing order; the best, and whether its delay is free.
+/// Fits a model from a start, with its delay or without.
+type Fit<'a> = dyn Fn(&TransferFunction, bool, Effort) -> Option<Estimate> + 'a;
+
+/// The best of models, one of each kind, the very best first.
+fn best_of(mut found: Vec<Estimate>) -> impl Iterator<Item = Estimate> {
+    found.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
+    let mut kinds: Vec<(usize, usize, f64)> = Vec::new();
+    found.retain(|found| {
+        let model = &found.transfer;
+        let kind = (model.order(), model.zero_count(), model.delay_s);
+        let is_new = !kinds.contains(&kind);
+        kinds.push(kind);
+        is_new
+    });
+    found.into_iter().take(KEPT)
+}
+
+/// All models that were tried on the way from the best of the starts to what no
+/// neighbour is better than.
 fn ladder(
-    data: &Data<'_>,
+    fit: &Fit<'_>,
+    (period_s, step_s): (f64, f64),
     response: &FrequencyResponse,
     given: Given,
-    taps: &[f64],
-    before: Option<&TransferFunction>,
-) -> Option<(Estimate, bool)> {
-    let mut starts = starts(data, response, given);
-    starts.extend(before.cloned());
+    starts: &[TransferFunction],
+    (mut left, mut spare): (usize, usize),
+) -> Vec<Estimate> {
+    let mut all: Vec<Estimate> = Vec::new();
     let mut best: Option<Estimate> = None;
     for start in starts {
         let effort = Effort {
             steps: SEARCH_STEPS,
             to_beat: f64::MAX,
         };
-        if let Some(found) = refine(data, &start, false, taps, effort)
-            && is_better(&found, best.as_ref())
-        {
-            best = Some(found);
+        if let Some(found) = fit(start, false, effort) {
+            all.push(found.clone());
+            if is_better(&found, best.as_ref()) {
+                best = Some(found);
+            }
         }
     }
-    let mut best = best?;
+    let Some(mut best) = best else {
+        return all;
+    };
     // Where the first model is taken from, what shows is mostly right, and the
     // rest not.
     let mut is_restarted = true;
     let mut idle = 0;
-    // What comes after another round has little left to look for.
-    let (mut left, mut spare) = match before {
-        Some(_) => (STEPS_LAST, STEPS_LAST),
-        None => (STEPS_MAX, 3 * STEPS_LAST),
-    };
     let mut tried = vec![best.transfer.clone()];
     for _ in 0..ROUNDS_MAX {
         let mut top: Option<Estimate> = None;
+        let needed = needed(&best, response.band_rad_s());
         let next = if is_restarted {
-            restarts(&best.transfer, response, given, data.period_s)
+            restarts(&best.transfer, response, given, period_s)
         } else {
-            neighbours(&best.transfer, response, given, data.period_s)
+            neighbours(&best.transfer, response, given, period_s, step_s)
         };
         for start in next {
             if left == 0 {
                 break;
             }
-            if tried.iter().any(|other| are_alike(other, &start)) {
+            if tried.iter().any(|other| are_alike(other, &start)) || lacks(&start, &needed) {
                 continue;
             }
             tried.push(start.clone());
@@ -170,15 +240,16 @@ fn ladder(
                 steps: SEARCH_STEPS,
                 to_beat: top.as_ref().unwrap_or(&best).criterion(),
             };
-            let found = refine(data, &start, false, taps, effort);
+            let found = fit(&start, false, effort);
             left = left.saturating_sub(found.as_ref().map_or(1, |found| found.steps));
-            if let Some(found) = found
-                && is_better(&found, top.as_ref())
-            {
-                let is_clear = found.criterion() < best.criterion() - CLEAR;
-                top = Some(found);
-                if is_clear {
-                    break;
+            if let Some(found) = found {
+                all.push(found.clone());
+                if is_better(&found, top.as_ref()) {
+                    let is_clear = found.criterion() < best.criterion() - CLEAR;
+                    top = Some(found);
+                    if is_clear {
+                        break;
+                    }
                 }
             }
         }
@@ -201,93 +272,97 @@ fn ladder(
             idle = 1;
         }
     }
-    if given.delay_s.is_some() {
-        return Some((best, false));
-    }
-    Some(any_delay(data, best, taps))
+    all
 }
 
-/// Models to start from: those that fit the frequency response best, for the
-/// best delay and the one a period shorter (with a held input, a model without
-/// direct path may as well be one with it, a period later).
-fn starts(data: &Data<'_>, response: &FrequencyResponse, given: Given) -> Vec<TransferFunction> {
-    let t = data.period_s;
-    let lags: Vec<usize> = match given.delay_s {
-        Some(delay) => vec![libm::round(delay / t) as usize],
-        None => (0..=LAG_MAX).collect(),
-    };
-    let mut fits: Vec<(f64, TransferFunction)> = Vec::new();
-    let mut worse_in_a_row = 0;
-    let mut least = f64::MAX;
-    for lag in lags {
-        let Some(fit) = grow(response, lag, given.order, ORDER_MAX, t) else {
-            continue;
-        };
-        let criterion = fit.criterion();
-        worse_in_a_row = if criterion < least {
-            0
-        } else {
-            worse_in_a_row + 1
-        };
-        least = least.min(criterion);
-        fits.push((criterion, fit.transfer));
-        if worse_in_a_row >= 2 {
-            break;
+/// Zeros and poles that ring and are known well: without one of them no model fits as well.
+/// One that another one nearly cancels is not, nor one beyond the band, which may
+/// stand for noise.
+fn needed(found: &Estimate, band_rad_s: f64) -> Vec<(bool, Factor)> {
+    const KNOWN: f64 = 0.05;
+    const BEYOND: f64 = 1.2;
+    let model = &found.transfer;
+    let mut at = 1;
+    let mut out = Vec::new();
+    for (index, factor) in model.zeros.iter().chain(&model.poles).enumerate() {
+        if let Factor::Pair { damping, .. } = factor
+            && damping.abs() < 0.25
+            && factor.corner_rad_s() < BEYOND * band_rad_s
+            && found.std(at).is_some_and(|std| std < KNOWN)
+            && found.std(at + 1).is_some_and(|std| std < KNOWN)
+        {
+            out.push((index < model.zeros.len(), *factor));
         }
+        at += factor.degree();
     }
-    fits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    fits.into_iter()
-        .take(3)
-        .map(|(_, transfer)| TransferFunction {
-            delay_s: given.delay_s.unwrap_or(transfer.delay_s),
-            ..transfer
-        })
-        .chain(from_subspace(data, given))
-        .collect()
+    out
 }
 
-/// Models from subspaces of the data: good where there is little noise.
-fn from_subspace(data: &Data<'_>, given: Given) -> Vec<TransferFunction> {
-    let Some(subspace) = Subspace::new(data.input, data.output) else {
-        return Vec::new();
-    };
-    let far = 1.5 * std::f64::consts::PI / data.period_s;
-    let orders = match given.order {
-        Some(order) => vec![order],
-        None => vec![2, 4, 6],
-    };
-    orders
-        .into_iter()
-        .filter_map(|order| {
-            let model = with_poles(subspace.poles(order)?, data.input, data.output)?;
-            let start = model.to_continuous(data.period_s, far).ok()?;
-            Some(TransferFunction {
-                delay_s: given.delay_s.unwrap_or(0.0),
-                ..start
-            })
+/// True for a model that has nothing near to one of those.
+fn lacks(model: &TransferFunction, needed: &[(bool, Factor)]) -> bool {
+    const NEAR: f64 = 0.3;
+    needed.iter().any(|(is_zero, factor)| {
+        let have = if *is_zero { &model.zeros } else { &model.poles };
+        !have.iter().any(|other| {
+            let apart = libm::log(other.corner_rad_s() / factor.corner_rad_s());
+            other.degree() == factor.degree() && apart.abs() < NEAR
         })
-        .collect()
+    })
 }
 
 fn is_better(found: &Estimate, than: Option<&Estimate>) -> bool {
     than.is_none_or(|than| found.criterion() < than.criterion())
 }
 
+/// How far the delays of models that explain the recording as well are apart from
+/// that of the best, s: each counts by how likely it makes the recording.
+fn doubt_s(tried: &[Estimate]) -> f64 {
+    let Some(best) = tried
+        .iter()
+        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))
+    else {
+        return 0.0;
+    };
+    let mut kinds: Vec<(f64, f64)> = Vec::new();
+    for found in tried {
+        let (delay_s, likelihood) = (found.transfer.delay_s, found.likelihood());
+        match kinds.iter_mut().find(|(delay, _)| *delay == delay_s) {
+            Some((_, least)) => *least = least.min(likelihood),
+            None => kinds.push((delay_s, likelihood)),
+        }
+    }
+    let least = kinds.iter().map(|(_, x)| *x).fold(f64::MAX, f64::min);
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (delay_s, likelihood) in kinds {
+        let weight = libm::exp(0.5 * (least - likelihood));
+        let apart = delay_s - best.transfer.delay_s;
+        sum += weight * apart * apart;
+        weights += weight;
+    }
+    (sum / weights).sqrt()
+}
+
 /// The delay set free, if that is clearly worth a parameter: beside a fast zero
-/// and a fast pole it makes all of them uncertain.
-fn any_delay(data: &Data<'_>, best: Estimate, taps: &[f64]) -> (Estimate, bool) {
-    let t = data.period_s;
+/// and a fast pole it makes all of them uncertain. Where it stays as it was, also
+/// how uncertain it would be, s.
+fn any_delay(fit: &Fit<'_>, t: f64, best: Estimate) -> (Estimate, bool, f64) {
+    let mut alone_s = 0.0;
     for part in [0.3, -0.3] {
         let mut start = best.transfer.clone();
         start.delay_s += part * t;
         if start.delay_s < 0.0 {
             continue;
         }
-        if let Some(found) = refine(data, &start, true, taps, Effort::FULL)
-            && found.criterion() < best.criterion() - CLEAR_DELAY
-        {
-            return (found, true);
+        if let Some(found) = fit(&start, true, Effort::FULL) {
+            if found.criterion() < best.criterion() - CLEAR_DELAY {
+                return (found, true, 0.0);
+            }
+            let apart = found.transfer.delay_s - best.transfer.delay_s;
+            let std = found.std(found.count - 1).unwrap_or(0.0);
+            if apart.abs() < t && found.likelihood() < best.likelihood() + 2.0 {
+                alone_s = f64::max(alone_s, std.min(t));
+            }
         }
     }
-    (best, false)
+    (best, false, alone_s)
 }

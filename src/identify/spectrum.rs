@@ -29,11 +29,21 @@ impl FrequencyResponse {
     /// recording tells nothing but what fast modes make of slow motion.
     #[must_use]
     pub fn band_rad_s(&self) -> f64 {
+        self.explained_rad_s(0.5)
+    }
+
+    /// Up to where the input shows in the output at all, rad/s.
+    #[must_use]
+    pub fn shown_rad_s(&self) -> f64 {
+        self.explained_rad_s(0.3)
+    }
+
+    /// Up to where the input explains this share of the output, rad/s.
+    fn explained_rad_s(&self, share: f64) -> f64 {
         const BINS: usize = 5;
-        const FAIR: f64 = 0.5;
         let explained = self.coherence.windows(BINS).rposition(|bins| {
             let sum: f64 = bins.iter().sum();
-            sum > FAIR * BINS as f64
+            sum > share * BINS as f64
         });
         let edge = explained.map_or(self.frequency_hz.len(), |first| first + BINS);
         let hz = self.frequency_hz.get(edge.saturating_sub(1));
@@ -86,6 +96,37 @@ fn transform(fft: &Arc<dyn RealToComplex<f64>>, x: &[f64], window: &[f64]) -> Ve
     // Lengths are those of the plan: it cannot refuse.
     let _ = fft.process(&mut data, &mut out);
     out
+}
+
+/// The transform of a signal as it is.
+#[must_use]
+pub fn transform_of(x: &[f64]) -> Vec<C> {
+    let fft = plan(x.len());
+    let mut data = x.to_vec();
+    let mut out = fft.make_output_vec();
+    // Lengths are those of the plan: it cannot refuse.
+    let _ = fft.process(&mut data, &mut out);
+    out
+}
+
+/// Up to where there is anything in a signal, rad/s.
+#[must_use]
+pub fn excited_rad_s(x: &[f64], period_s: f64) -> f64 {
+    const SHARE: f64 = 1e-4;
+    const BANDS: usize = 250;
+    let lines = transform_of(x);
+    let width = (lines.len() / BANDS).max(1);
+    // Without the mean, beside which the rest would seem little.
+    let powers: Vec<f64> = lines
+        .get(1..)
+        .unwrap_or_default()
+        .chunks(width)
+        .map(|band| band.iter().map(C::norm_sqr).sum())
+        .collect();
+    let most = powers.iter().copied().fold(0.0, f64::max);
+    let last = powers.iter().rposition(|power| *power > SHARE * most);
+    let edge = last.map_or(0, |last| (last + 1) * width);
+    2.0 * PI * edge as f64 / (x.len().max(1) as f64 * period_s)
 }
 
 #[derive(Clone, Copy, Default)]
