@@ -22,6 +22,7 @@ mod data;
 mod discrete;
 mod filter;
 mod growth;
+mod left;
 mod lines;
 mod methods;
 mod modal;

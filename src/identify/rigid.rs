@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::column::{Kind, Quantity};
 use super::filter::{derivative, low_pass, second_derivative};
+use super::left::rigid_to_hz;
 use super::noise::Whiteness;
 use super::normal::Normal;
 use super::quality;
@@ -58,6 +59,9 @@ pub struct Rigid {
     pub bandwidth_hz: f64,
     /// Whiteness of what is left.
     pub whiteness: Whiteness,
+    /// From which frequency on the axis is not rigid, Hz, where it resonates within
+    /// the band or not far above.
+    pub rigid_to_hz: Option<f64>,
     /// Unknowns in the order of the regressors, for [`predict_error`].
     theta: Vec<f64>,
     friction: Friction,
@@ -67,6 +71,10 @@ pub struct Rigid {
 struct Equations {
     columns: Vec<Vec<f64>>,
     force: Vec<f64>,
+    /// Both with the samples in which the axis stands.
+    whole: (Vec<Vec<f64>>, Vec<f64>),
+    /// Distance of samples, s.
+    step_s: f64,
 }
 
 /// The force of a recording in N (N·m where the motion turns), with `ratio`
@@ -186,9 +194,13 @@ fn equations(
             None => x,
         }
     };
+    let thinned: Vec<Vec<f64>> = columns.iter().map(|x| thin(x)).collect();
+    let force = thin(&force);
     Ok(Equations {
-        columns: columns.iter().map(|x| keep(thin(x))).collect(),
-        force: keep(thin(&force)),
+        columns: thinned.iter().cloned().map(&keep).collect(),
+        force: keep(force.clone()),
+        whole: (thinned, force),
+        step_s: step as f64 * t,
     })
 }
 
@@ -284,19 +296,50 @@ pub fn fit(
     if !(mass.std.is_finite() && mass.value.is_finite()) {
         return Err(not_excited());
     }
+    let rel_error = norm(&residuals) / norm(&equations.force);
+    let rigid_to_hz = if rel_error > SUSPECT {
+        not_rigid(&equations, &theta, bandwidth_hz)
+    } else {
+        None
+    };
     Ok(Rigid {
         mass,
         viscous,
         coulomb,
         offset,
         directions,
-        rel_error: norm(&residuals) / norm(&equations.force),
+        rel_error,
         samples: n,
         bandwidth_hz,
         whiteness: Whiteness::of(&residuals, 20.min(n / 5)),
+        rigid_to_hz,
         theta,
         friction,
     })
+}
+
+/// A model that leaves less than this share of the force is good enough.
+const SUSPECT: f64 = 0.1;
+
+/// From which frequency on the axis is not rigid: by what is left of its force when
+/// friction is taken off.
+fn not_rigid(equations: &Equations, theta: &[f64], bandwidth_hz: f64) -> Option<f64> {
+    let (columns, force) = &equations.whole;
+    let (acceleration, others) = columns.split_first()?;
+    let (mass, friction) = theta.split_first()?;
+    let mut inertial = force.clone();
+    for (column, factor) in others.iter().zip(friction) {
+        for (slot, x) in inertial.iter_mut().zip(column) {
+            *slot -= factor * x;
+        }
+    }
+    rigid_to_hz(
+        &inertial,
+        acceleration,
+        *mass,
+        equations.step_s,
+        bandwidth_hz,
+    )
 }
 
 /// Relative error with which a fitted axis predicts the force of another

@@ -177,15 +177,33 @@ type Fit<'a> = dyn Fn(&TransferFunction, bool, Effort) -> Option<Estimate> + 'a;
 /// The best of models, one of each kind, the very best first.
 fn best_of(mut found: Vec<Estimate>) -> impl Iterator<Item = Estimate> {
     found.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
-    let mut kinds: Vec<(usize, usize, f64)> = Vec::new();
-    found.retain(|found| {
-        let model = &found.transfer;
-        let kind = (model.order(), model.zero_count(), model.delay_s);
-        let is_new = !kinds.contains(&kind);
-        kinds.push(kind);
-        is_new
-    });
-    found.into_iter().take(KEPT)
+    let mut kept: Vec<Estimate> = Vec::new();
+    for found in found {
+        let is_known = kept
+            .iter()
+            .any(|other| is_of_kind(&found.transfer, &other.transfer));
+        if !is_known && kept.len() < KEPT {
+            kept.push(found);
+        }
+    }
+    kept.into_iter()
+}
+
+/// True for models with as many zeros and poles at about the same places, and with
+/// the same delay.
+fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
+    const NEAR: f64 = 0.2;
+    let corners = |list: &[Factor]| -> Vec<f64> {
+        let mut corners: Vec<f64> = list.iter().map(|x| x.corner_rad_s()).collect();
+        corners.sort_by(f64::total_cmp);
+        corners
+    };
+    let are_near = |a: &[Factor], b: &[Factor]| {
+        let (a, b) = (corners(a), corners(b));
+        let apart = |(a, b): (&f64, &f64)| libm::log(a / b).abs() < NEAR;
+        a.len() == b.len() && a.iter().zip(&b).all(apart)
+    };
+    a.delay_s == b.delay_s && are_near(&a.zeros, &b.zeros) && are_near(&a.poles, &b.poles)
 }
 
 /// All models that were tried on the way from the best of the starts to what no

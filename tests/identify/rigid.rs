@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use std::fs;
 
 use gwatt::identify::rigid::{self, Friction};
-use gwatt::identify::{Judgement, Recording, judgement};
+use gwatt::identify::{Judgement, Recording, TransferFunction, judgement};
 
-use super::{Noise, PERIOD_S, shared, table};
+use super::{Noise, PERIOD_S, branched, noisy_recording, random, shared, spring, table};
 
 /// To and fro with friction; position with noise of an encoder.
 fn rigid_table(noise: f64) -> Recording {
@@ -69,4 +69,33 @@ fn the_published_axis_comes_out_as_published() {
     assert!(found.rel_error <= 0.041, "{}", found.rel_error);
     let found = rigid::fit(&recording, None, Friction::Directional, None).unwrap();
     assert!(found.rel_error <= 0.029, "{}", found.rel_error);
+}
+
+/// An axis that resonates is not good as a rigid one; noise alone is.
+#[test]
+fn an_axis_that_resonates_is_told_from_a_noisy_one() {
+    let torque = random(8000, 45.0);
+    let judge = |axis: &TransferFunction, noise: f64, seed: u64| {
+        let recording = noisy_recording(axis, &torque, noise, seed);
+        let found = rigid::fit(&recording, None, Friction::Symmetric, None).unwrap();
+        (judgement::rigid(&found), found.rel_error)
+    };
+    for (zero_hz, seed) in [(15.0, 0), (25.0, 1), (30.0, 2), (40.0, 3)] {
+        let [k, c] = spring(0.008, zero_hz, 0.03);
+        let axis = branched(0.006, 0.01, spring(0.0045, 150.0, 0.05), &[[0.008, k, c]]);
+        for noise in [0.0, 0.05, 0.2] {
+            match judge(&axis, noise, seed) {
+                (Judgement::NotRigid { to_hz }, _) => {
+                    assert!(to_hz < zero_hz, "{zero_hz}: {to_hz}");
+                }
+                other => panic!("{zero_hz} Hz, noise {noise}: {other:?}"),
+            }
+        }
+    }
+    for seed in 0..50 {
+        // White noise at 1 kHz: what the band leaves of it is a quarter.
+        let (verdict, rel_error) = judge(&TransferFunction::constant(50.0), 0.8, seed);
+        assert_eq!(verdict, Judgement::Good, "seed {seed}, {rel_error}");
+        assert!(rel_error > 0.15, "{rel_error}");
+    }
 }
