@@ -1,6 +1,5 @@
-//! How many poles and zeros, and how much delay: models of growing order, each
-//! started from the measured frequency response, and the one that Bayes'
-//! criterion prefers.
+//! How many poles and zeros, and how much delay: from models that grew by modes to
+//! their neighbours, and the one that Bayes' criterion prefers.
 
 use super::data::Data;
 use super::growth;
@@ -11,12 +10,14 @@ use super::output_error::{Effort, Estimate, refine, residuals};
 use super::spectrum::{FrequencyResponse, measure};
 use super::transfer::{Factor, TransferFunction};
 
-/// Samples on which models are compared; the last fit takes all.
+/// Samples on which models are compared; of commands more, as a sweep shows each
+/// mode but once.
 const COMPARED: usize = 8_000;
-/// Lines on which models are looked for, and on which they are chosen, about.
-const COARSE: usize = 700;
 const COMPARED_COMMAND: usize = 16_000;
+/// Samples on which the best of them are; the last fit takes all.
 const CHOSEN: usize = 24_000;
+/// Lines on which modes are looked for, about.
+const COARSE: usize = 700;
 /// Models of different kinds that are gone on with.
 const KEPT: usize = 5;
 /// A model better by this much is gone on from without looking at others.
@@ -30,8 +31,10 @@ const WORTH: f64 = 0.5;
 const SEARCH_STEPS: usize = 20;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
-const STEPS_MAX: usize = 300;
+const STEPS_MAX: usize = 500;
 const STEPS_LAST: usize = 200;
+/// The same for commands, of which more samples are looked at.
+const STEPS_COMMAND: usize = 300;
 /// Rounds of model and noise.
 const ROUNDS_OF_NOISE: usize = 4;
 /// Steps from model to model at most.
@@ -87,8 +90,10 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         };
         let budget = if before.is_some() {
             (STEPS_LAST, STEPS_LAST)
+        } else if data.from_command {
+            (STEPS_COMMAND, STEPS_LAST)
         } else {
-            (STEPS_MAX, STEPS_LAST)
+            (STEPS_MAX, 3 * STEPS_LAST)
         };
         let tried = ladder(&fit, steps_s, &response, given, &starts, budget);
         let others = doubt_s(&tried);
@@ -299,13 +304,21 @@ fn ladder(
 fn needed(found: &Estimate, band_rad_s: f64) -> Vec<(bool, Factor)> {
     const KNOWN: f64 = 0.05;
     const BEYOND: f64 = 1.2;
+    const CANCELS: f64 = 0.05;
     let model = &found.transfer;
+    let others = |is_zero: bool| {
+        let others = if is_zero { &model.poles } else { &model.zeros };
+        others.iter().filter(|other| other.degree() == 2)
+    };
+    let is_near =
+        |a: &Factor, b: &Factor| libm::log(a.corner_rad_s() / b.corner_rad_s()).abs() < CANCELS;
     let mut at = 1;
     let mut out = Vec::new();
     for (index, factor) in model.zeros.iter().chain(&model.poles).enumerate() {
         if let Factor::Pair { damping, .. } = factor
             && damping.abs() < 0.25
             && factor.corner_rad_s() < BEYOND * band_rad_s
+            && !others(index < model.zeros.len()).any(|other| is_near(other, factor))
             && found.std(at).is_some_and(|std| std < KNOWN)
             && found.std(at + 1).is_some_and(|std| std < KNOWN)
         {

@@ -69,11 +69,12 @@ fn what_lies_beyond_the_band_does_not_move_the_zero() {
     }
 }
 
-/// Accuracy and honesty over 200 seeds; minutes. One anti-resonance is excited
+/// Accuracy and honesty over 1000 seeds; half an hour. One anti-resonance is excited
 /// by what ends a tenth above it, two at once by an M-sequence.
 #[test]
-#[ignore = "takes minutes: cargo test --release -- --ignored seeds"]
-fn two_hundred_seeds_are_as_accurate_as_promised() {
+#[ignore = "takes half an hour: cargo test --release -- --ignored seeds"]
+fn a_thousand_seeds_are_as_accurate_as_promised() {
+    const SEEDS: u64 = 1000;
     let count = |seconds: f64| (seconds / PERIOD_S) as usize;
     for (axis, seconds, noise, promised) in [
         (one_side(), 4.0, 0.05, &[5e-4, 2.5e-2, 1e-3][..]),
@@ -88,24 +89,26 @@ fn two_hundred_seeds_are_as_accurate_as_promised() {
         };
         let mut squares = vec![0.0; promised.len()];
         let mut inside = vec![0; promised.len()];
-        for seed in 0..200 {
+        for seed in 0..SEEDS {
             let recording = noisy_recording(&axis, &torque, noise, seed);
             let found = flexible::identify(&recording, &choice(Method::Iv)).unwrap();
             for (index, (error, std)) in errors(&axis, &found).into_iter().enumerate() {
-                squares[index] += error * error / 200.0;
+                squares[index] += error * error / SEEDS as f64;
                 inside[index] += usize::from(error.abs() <= 2.0 * std);
             }
         }
         let rms: Vec<f64> = squares.into_iter().map(f64::sqrt).collect();
-        println!("{seconds} s, noise {noise}: rms {rms:?}, inside {inside:?} of 200");
+        println!("{seconds} s, noise {noise}: rms {rms:?}, inside {inside:?} of {SEEDS}");
         for (rms, promised) in rms.iter().zip(promised) {
             assert!(rms <= promised, "noise {noise}: {rms} > {promised}");
         }
-        // 93 to 97 %, and what 200 seeds scatter about that.
+        // 200 seeds scatter by 3 about the 95.4 % that normal errors have: of the first
+        // 200 of these, 198 are inside for the second zero's frequency even where the
+        // model is known and only linearised. A thousand tell.
         for count in inside {
             assert!(
-                (180..=198).contains(&count),
-                "noise {noise}: {count} of 200"
+                (930..=970).contains(&count),
+                "noise {noise}: {count} of {SEEDS}"
             );
         }
     }
