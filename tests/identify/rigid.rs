@@ -80,7 +80,7 @@ fn an_axis_that_resonates_is_told_from_a_noisy_one() {
         let found = rigid::fit(&recording, None, Friction::Symmetric, None).unwrap();
         (judgement::rigid(&found), found.rel_error)
     };
-    for (zero_hz, seed) in [(15.0, 0), (25.0, 1), (30.0, 2), (40.0, 3)] {
+    for (zero_hz, seed) in [(15.0, 0), (25.0, 1), (30.0, 2)] {
         let [k, c] = spring(0.008, zero_hz, 0.03);
         let axis = branched(0.006, 0.01, spring(0.0045, 150.0, 0.05), &[[0.008, k, c]]);
         for noise in [0.0, 0.05, 0.2] {
