@@ -18,10 +18,7 @@ pub enum Judgement {
     /// Frequencies are known, dampings are not.
     TooNoisyForDamping,
     /// The axis resonates: the rigid model holds for slow motion only.
-    NotRigid {
-        /// Up to this frequency, Hz.
-        to_hz: f64,
-    },
+    NotRigid,
     /// The model does not explain the recording.
     DoesNotFit,
 }
@@ -34,7 +31,7 @@ impl Judgement {
             Self::Good => "good",
             Self::ExciteLonger { .. } => "excite longer",
             Self::TooNoisyForDamping => "too noisy for damping",
-            Self::NotRigid { .. } => "not rigid",
+            Self::NotRigid => "not rigid",
             Self::DoesNotFit => "the model does not fit",
         }
     }
@@ -47,9 +44,8 @@ impl fmt::Display for Judgement {
                 f,
                 "excite longer: about {times:.0} times as long, or with more amplitude"
             ),
-            Self::NotRigid { to_hz } => write!(
-                f,
-                "not rigid: the axis resonates, its mass seems another one from {to_hz:.1} Hz on; take --model flexible, or a --bandwidth-hz well below"
+            Self::NotRigid => f.write_str(
+                "not rigid: it resonates within the band; take --model flexible, or a --bandwidth-hz well below",
             ),
             other => f.write_str(other.word()),
         }
@@ -84,11 +80,11 @@ fn longer(times: f64) -> Judgement {
 /// Judges a rigid axis. Friction counts against the larger of its parts.
 #[must_use]
 pub fn rigid(axis: &Rigid) -> Judgement {
-    if axis.mass.value <= 0.0 || (axis.rel_error > REL_ERROR && axis.rigid_to_hz.is_none()) {
-        return Judgement::DoesNotFit;
+    if axis.mass.value > 0.0 && axis.resonates {
+        return Judgement::NotRigid;
     }
-    if let Some(to_hz) = axis.rigid_to_hz {
-        return Judgement::NotRigid { to_hz };
+    if axis.mass.value <= 0.0 || axis.rel_error > REL_ERROR {
+        return Judgement::DoesNotFit;
     }
     let mut times = excess(axis.mass, MASS);
     if let Some(coulomb) = axis.coulomb {

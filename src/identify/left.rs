@@ -14,28 +14,30 @@ const MISSED: f64 = 0.25;
 /// In so many neighbouring frequencies.
 const RUN: usize = 3;
 
-/// From which frequency on an axis is not rigid, Hz, if it is not within the band:
-/// by its force, friction taken off, and acceleration, every `step_s`.
+/// Whether an axis resonates within the band, Hz: by its force, friction taken off,
+/// and its acceleration, every `step_s`.
 #[must_use]
-pub fn rigid_to_hz(
+pub fn resonates(
     force: &[f64],
     acceleration: &[f64],
     mass: f64,
     step_s: f64,
     band_hz: f64,
-) -> Option<f64> {
-    let response = measure(force, acceleration, None, step_s, None)?;
-    let missed: Vec<bool> = response
+) -> bool {
+    let Some(measured) = measure(force, acceleration, None, step_s, None) else {
+        return false;
+    };
+    let missed: Vec<bool> = measured
         .response
         .iter()
-        .zip(&response.coherence)
-        .map(|(by_force, coherence)| {
+        .zip(&measured.coherence)
+        .zip(&measured.frequency_hz)
+        .take_while(|(_, hz)| **hz < band_hz)
+        .map(|((by_force, coherence), _)| {
             *coherence > COHERENT && (by_force * mass - 1.0).norm() > MISSED
         })
         .collect();
-    let first = missed
+    missed
         .windows(RUN)
-        .position(|run| run.iter().all(|missed| *missed))?;
-    let hz = response.frequency_hz.get(first).copied()?;
-    (hz < band_hz).then_some(hz)
+        .any(|run| run.iter().all(|missed| *missed))
 }

@@ -21,6 +21,7 @@ mod column;
 mod data;
 mod discrete;
 mod filter;
+mod fitted;
 mod growth;
 mod left;
 mod lines;

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::column::{Kind, Quantity};
 use super::filter::{derivative, low_pass, second_derivative};
-use super::left::rigid_to_hz;
+use super::left::resonates;
 use super::noise::Whiteness;
 use super::normal::Normal;
 use super::quality;
@@ -59,9 +59,8 @@ pub struct Rigid {
     pub bandwidth_hz: f64,
     /// Whiteness of what is left.
     pub whiteness: Whiteness,
-    /// From which frequency on the axis is not rigid, Hz, where it resonates within
-    /// the band or not far above.
-    pub rigid_to_hz: Option<f64>,
+    /// Whether it resonates within the band, so that no mass alone describes it.
+    pub resonates: bool,
     /// Unknowns in the order of the regressors, for [`predict_error`].
     theta: Vec<f64>,
     friction: Friction,
@@ -297,11 +296,8 @@ pub fn fit(
         return Err(not_excited());
     }
     let rel_error = norm(&residuals) / norm(&equations.force);
-    let rigid_to_hz = if rel_error > SUSPECT {
-        not_rigid(&equations, &theta, bandwidth_hz)
-    } else {
-        None
-    };
+    let resonates =
+        rel_error > SUSPECT && not_rigid(&equations, &theta, bandwidth_hz).unwrap_or(false);
     Ok(Rigid {
         mass,
         viscous,
@@ -312,7 +308,7 @@ pub fn fit(
         samples: n,
         bandwidth_hz,
         whiteness: Whiteness::of(&residuals, 20.min(n / 5)),
-        rigid_to_hz,
+        resonates,
         theta,
         friction,
     })
@@ -321,9 +317,9 @@ pub fn fit(
 /// A model that leaves less than this share of the force is good enough.
 const SUSPECT: f64 = 0.1;
 
-/// From which frequency on the axis is not rigid: by what is left of its force when
-/// friction is taken off.
-fn not_rigid(equations: &Equations, theta: &[f64], bandwidth_hz: f64) -> Option<f64> {
+/// Whether the axis resonates: by what is left of its force when friction is taken
+/// off.
+fn not_rigid(equations: &Equations, theta: &[f64], bandwidth_hz: f64) -> Option<bool> {
     let (columns, force) = &equations.whole;
     let (acceleration, others) = columns.split_first()?;
     let (mass, friction) = theta.split_first()?;
@@ -333,13 +329,14 @@ fn not_rigid(equations: &Equations, theta: &[f64], bandwidth_hz: f64) -> Option<
             *slot -= factor * x;
         }
     }
-    rigid_to_hz(
+    let step_s = equations.step_s;
+    Some(resonates(
         &inertial,
         acceleration,
         *mass,
-        equations.step_s,
+        step_s,
         bandwidth_hz,
-    )
+    ))
 }
 
 /// Relative error with which a fitted axis predicts the force of another

@@ -2,6 +2,7 @@
 //! their neighbours, and the one that Bayes' criterion prefers.
 
 use super::data::Data;
+use super::fitted;
 use super::growth;
 use super::lines::Lines;
 use super::neighbours::{Given, are_alike, neighbours, restarts};
@@ -81,6 +82,10 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         let before = best.as_ref().map(|(best, ..)| &best.transfer);
         let coarse = Lines::new(data, &taps, band_rad_s, COARSE)?;
         let mut starts = growth::starts(&coarse, given);
+        if !data.from_command {
+            // Without a loop about it what is measured shows the axis itself.
+            starts.extend(fitted::starts(&short, &response, given));
+        }
         starts.extend(before.cloned());
         let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
             refine(&short, start, delay_is_free, &taps, effort)

@@ -109,7 +109,7 @@ pub fn rigid_json(heading: &Heading, rigid: &Rigid, out: &mut dyn Write) -> io::
     map.insert("samples".into(), json!(rigid.samples));
     map.insert("bandwidth_hz".into(), json!(rigid.bandwidth_hz));
     map.insert("white".into(), json!(rigid.whiteness.is_white()));
-    map.insert("rigid_to_hz".into(), number(rigid.rigid_to_hz));
+    map.insert("resonates".into(), json!(rigid.resonates));
     judged(&mut map, judgement::rigid(rigid));
     finish(map, out)
 }
