@@ -253,8 +253,9 @@ impl<'m> Assessor<'m> {
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         if let Some(ahead) = &self.ahead {
-            let (open, rests) = (ahead.is_open(), ahead.rests());
-            if self.may_blend(mv) || open && !(rests && self.is_alone(mv)) {
+            let open = ahead.is_open();
+            let follows = open && !(ahead.rests() && self.is_alone(mv));
+            if follows || self.may_blend(mv) {
                 return self.push_ahead(mv, text, sink);
             }
             if open {

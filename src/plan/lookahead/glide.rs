@@ -48,7 +48,8 @@ pub(crate) struct Line {
     /// Of the extruder per unit of path.
     pub extrusion: f64,
     pub length_mm: f64,
-    /// Limits of the axes, mm/s², and their inverse.
+    /// Limits of the axes, mm/s², and their inverse; of interest to blends alone, as
+    /// is what happens at its end.
     pub axis_accel_mm_s2: [f64; 3],
     pub inverse_accel: [f64; 3],
     /// Limit along the path whatever the direction, mm/s².
@@ -56,7 +57,6 @@ pub(crate) struct Line {
     /// Not above the acceleration along the path, here and through the joint
     /// before it, mm/s².
     pub least_accel_mm_s2: f64,
-    /// What happens at its end.
     pub joint: Joint,
     pub start: LineStart,
 }

@@ -1,7 +1,7 @@
 //! Which moves may glide, and what they are to the planner.
 
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisId, AxisSet, AxisValues, LookAhead, Machine, PathMode};
+use crate::machine::{AXES, AxisId, AxisSet, AxisValues, CornerRule, LookAhead, Machine, PathMode};
 use crate::plan::lookahead::Line;
 use crate::power::ahead::open::joint;
 
@@ -22,6 +22,8 @@ pub(super) struct Terms {
     path_accel_mm_s2: f64,
     /// Moves that may be open.
     pub blocks: usize,
+    /// Corners are rounded: what that takes is described too.
+    blends: bool,
 }
 
 impl Terms {
@@ -34,6 +36,7 @@ impl Terms {
             feed,
             path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks,
+            blends: matches!(rules.corner, CornerRule::LinuxCnc { .. }),
         };
         if blocks > 0 && machine.force_curves.is_empty() {
             for index in (0..LINEAR).chain([EXTRUDER]) {
@@ -86,12 +89,14 @@ impl Terms {
             least_accel_mm_s2 = lower(mv.accel_mm_s2[EXTRUDER] / share, least_accel_mm_s2);
         }
         line.least_accel_mm_s2 = least_accel_mm_s2;
-        let [x, y, z, ..] = mv.accel_mm_s2;
-        if line.axis_accel_mm_s2 != [x, y, z] {
-            line.axis_accel_mm_s2 = [x, y, z];
-            line.inverse_accel = line.axis_accel_mm_s2.map(|accel| 1.0 / accel);
+        if self.blends {
+            let [x, y, z, ..] = mv.accel_mm_s2;
+            if line.axis_accel_mm_s2 != [x, y, z] {
+                line.axis_accel_mm_s2 = [x, y, z];
+                line.inverse_accel = line.axis_accel_mm_s2.map(|accel| 1.0 / accel);
+            }
+            line.joint = joint(mv);
         }
-        line.joint = joint(mv);
         permitted
     }
 }
