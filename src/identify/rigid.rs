@@ -9,11 +9,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::column::{Kind, Quantity};
 use super::filter::{derivative, low_pass, second_derivative};
-use super::left::resonates;
 use super::noise::Whiteness;
 use super::normal::Normal;
 use super::quality;
 use super::recording::Recording;
+use super::rigidity::resonates;
 use super::trouble::{Outcome, Trouble};
 
 /// Band of the common filter where none is given, Hz: above what moves an axis,

@@ -2,12 +2,12 @@
 //! their neighbours, and the one that Bayes' criterion prefers.
 
 use super::data::Data;
-use super::fitted;
-use super::growth;
-use super::lines::Lines;
+use super::mode_starts;
 use super::neighbours::{Given, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
 use super::output_error::{Effort, Estimate, refine, residuals};
+use super::response_starts;
+use super::spectral_lines::Lines;
 use super::spectrum::{FrequencyResponse, measure};
 use super::transfer::{Factor, TransferFunction};
 
@@ -65,7 +65,7 @@ pub struct Found {
 pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
     let response = response_of(data, instrument, None)?;
     let band_rad_s = response.shown_rad_s();
-    let step_s = data.period_s * growth::delay_step(data.from_command);
+    let step_s = data.period_s * mode_starts::delay_step(data.from_command);
     let steps_s = (data.period_s, step_s);
     let compared = if data.from_command {
         COMPARED_COMMAND
@@ -80,11 +80,11 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     // before came to.
     for _ in 0..ROUNDS_OF_NOISE {
         let before = best.as_ref().map(|(best, ..)| &best.transfer);
-        let coarse = Lines::new(data, &taps, band_rad_s, COARSE)?;
-        let mut starts = growth::starts(&coarse, given);
+        let coarse = Lines::new(data, &taps, band_rad_s, COARSE);
+        let mut starts = coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given));
         if !data.from_command {
             // Without a loop about it what is measured shows the axis itself.
-            starts.extend(fitted::starts(&short, &response, given));
+            starts.extend(response_starts::starts(&short, &response, given));
         }
         starts.extend(before.cloned());
         let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {

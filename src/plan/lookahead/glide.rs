@@ -125,8 +125,7 @@ impl<T: Copy> PathPlanner<T> {
     }
 
     /// How the joint of two lines is passed at the speed (mm/s) that both ask for
-    /// and their axes permit in any direction; `None` where it is not, or not
-    /// plainly.
+    /// and their axes permit; `None` where it is not, or not plainly.
     #[inline]
     pub(crate) fn passes(&self, before: &Line, next: &Line, speed_mm_s: f64) -> Option<Passed> {
         if let Rule::LinuxCnc(rule) = &self.rule {

@@ -3,7 +3,6 @@
 use super::super::blend::{Corner, Leg};
 use super::super::element::{Element, Joint};
 use super::super::glide::{Line, LineStart, Passed};
-use super::super::pending::Pending;
 use super::super::vector::dot;
 use super::{CYCLES_MIN, LinuxCnc, TANGENTIAL_SHARE};
 
@@ -117,8 +116,8 @@ impl<T: Copy> LinuxCnc<T> {
 
     /// The motion has come to the start of this line at that speed, squared.
     pub fn glide_to(&mut self, element: &Element<T>, start: LineStart, speed2: f64) {
-        let mut pending = Box::new(Pending::new(element, element.tag));
-        pending.begin(false, self.cycle_s);
+        self.spare = self.pending.take().or(self.spare.take());
+        let mut pending = self.begin(element, element.tag, false);
         pending.trim(start.taken_mm, true);
         pending.kink_before = start.kink;
         pending.entry2 = speed2;

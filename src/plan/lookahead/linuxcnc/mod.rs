@@ -77,15 +77,7 @@ impl<T: Copy> LinuxCnc<T> {
         is_line: bool,
         window: &mut Window<Load<T>>,
     ) {
-        let mut next = match self.spare.take() {
-            Some(mut next) => {
-                next.element = *element;
-                next.first = first;
-                next
-            }
-            None => Box::new(Pending::new(element, first)),
-        };
-        next.begin(is_line, self.cycle_s);
+        let mut next = self.begin(element, first, is_line);
         let Some(mut before) = self.pending.take() else {
             self.pending = Some(next);
             return;
@@ -109,6 +101,20 @@ impl<T: Copy> LinuxCnc<T> {
         }
         self.pending = Some(next);
         self.spare = Some(before);
+    }
+
+    /// An element that nothing has changed yet.
+    fn begin(&mut self, element: &Element<T>, first: T, is_line: bool) -> Box<Pending<T>> {
+        let mut next = match self.spare.take() {
+            Some(mut next) => {
+                next.element = *element;
+                next.first = first;
+                next
+            }
+            None => Box::new(Pending::new(element, first)),
+        };
+        next.begin(is_line, self.cycle_s);
+        next
     }
 
     /// The motion stops behind the last element; nothing comes behind it unless it is

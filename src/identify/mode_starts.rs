@@ -2,9 +2,9 @@
 //! is left unexplained, while any delay is allowed; then the delays that go with
 //! these modes are told apart.
 
-use super::lines::Lines;
 use super::modal::{Late, Modes};
 use super::neighbours::{Given, LAG_MAX, ORDER_MAX};
+use super::spectral_lines::Lines;
 use super::transfer::{Factor, TransferFunction};
 
 /// Dampings of modes that are tried.
