@@ -5,7 +5,7 @@
 //! then where it would have been.
 
 use super::corner::Before;
-use super::element::{Element, Joint};
+use super::element::Element;
 use super::passage;
 use super::planner::{PathPlanner, Planned, Rule};
 
@@ -48,16 +48,18 @@ pub(crate) struct Line {
     /// Of the extruder per unit of path.
     pub extrusion: f64,
     pub length_mm: f64,
-    /// Limits of the axes, mm/s², and their inverse; of interest to blends alone, as
-    /// is what happens at its end.
+    /// Limits of the axes, mm/s²; of interest to blends alone, as are those below.
     pub axis_accel_mm_s2: [f64; 3],
-    pub inverse_accel: [f64; 3],
     /// Limit along the path whatever the direction, mm/s².
     pub path_accel_mm_s2: f64,
+    /// Their inverses.
+    pub inverse_accel: [f64; 3],
+    pub inverse_path_accel: f64,
+    /// How far the path may be left at its end; 0: as far as it takes.
+    pub tolerance_mm: f64,
     /// Not above the acceleration along the path, here and through the joint
     /// before it, mm/s².
     pub least_accel_mm_s2: f64,
-    pub joint: Joint,
     pub start: LineStart,
 }
 

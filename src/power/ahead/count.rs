@@ -22,11 +22,8 @@ impl Ahead {
         if planned.next.is_some() || planned.first != planned.tag {
             return self.take_shared(model, eye, planned, peaks, times);
         }
-        let Some(index) = planned.tag.checked_sub(self.first) else {
-            return;
-        };
-        let index = index as usize;
-        let Some(open) = self.open.get_mut(index) else {
+        let number = planned.tag;
+        let Some(open) = self.open.get_mut(number) else {
             return;
         };
         if !eye.is_closed() {
@@ -60,8 +57,8 @@ impl Ahead {
             open.assessment.top_speed_mm_s = open.assessment.top_speed_mm_s.max(top_speed_mm_s);
             let doubtful = open.in_doubt || self.reach2.is_some() || !planned.certain;
             if doubtful {
-                let certain = self.is_certain(planned, index, index);
-                if let Some(open) = self.open.get_mut(index) {
+                let certain = self.is_certain(planned, number, number);
+                if let Some(open) = self.open.get_mut(number) {
                     open.certain &= certain;
                 }
             }
@@ -77,13 +74,8 @@ impl Ahead {
         peaks: bool,
         times: bool,
     ) {
-        let last = planned.next.unwrap_or(planned.tag);
-        let index = |number: u64| number.checked_sub(self.first).map(|index| index as usize);
-        let (Some(from), Some(own), Some(to)) =
-            (index(planned.first), index(planned.tag), index(last))
-        else {
-            return;
-        };
+        let (from, own) = (planned.first, planned.tag);
+        let to = planned.next.unwrap_or(own);
         let Some(open) = self.open.get_mut(own) else {
             return;
         };
@@ -101,22 +93,22 @@ impl Ahead {
         let certain = !peaks || self.is_certain(planned, from, to);
         // Half of a blend belongs to what is behind it, if that is another move: it
         // may lie between two chords of one arc.
-        let halves = if last == planned.tag { 1.0 } else { 0.5 };
+        let halves = if to == own { 1.0 } else { 0.5 };
         let lengths: f64 = (from..=own)
-            .filter_map(|index| self.open.get(index))
+            .filter_map(|number| self.open.get(number))
             .map(|open| open.mv.length_mm)
             .sum();
         let energy_j = std::mem::take(&mut demand.energy_j);
         let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
-        for index in from..=to {
-            let Some(open) = self.open.get_mut(index) else {
+        for number in from..=to {
+            let Some(open) = self.open.get_mut(number) else {
                 continue;
             };
             if open.mv.length_mm <= 0.0 {
                 continue;
             }
-            let share = if index > own {
+            let share = if number > own {
                 1.0 - halves
             } else {
                 halves * open.mv.length_mm / lengths
@@ -139,10 +131,10 @@ impl Ahead {
 
     /// Whether a piece runs as planned whatever happened where the motion was in
     /// doubt before it.
-    fn is_certain(&mut self, planned: &Planned<u64>, from: usize, to: usize) -> bool {
+    fn is_certain(&mut self, planned: &Planned<u64>, from: u64, to: u64) -> bool {
         let blend = matches!(planned.piece, Piece::Blend(_));
-        for index in from..=to {
-            if let Some(open) = self.open.get_mut(index)
+        for number in from..=to {
+            if let Some(open) = self.open.get_mut(number)
                 && open.in_doubt
             {
                 // Behind a stop there is no blend: the line begins at rest.

@@ -2,6 +2,7 @@
 
 use super::Ahead;
 use super::open::Open;
+use super::queue::Leaving;
 use crate::interpret::Move;
 use crate::machine::Machine;
 use crate::plan::{Overrides, blended_bound};
@@ -25,62 +26,58 @@ impl Ahead {
         let nominal = self.nominal.as_ref();
         let nominal = nominal.map_or(u64::MAX, |nominal| nominal.next);
         let finished = self.largest.next.min(nominal);
-        while let Some(front) = self.open.front() {
+        let glides_from = self.glider.begun().unwrap_or(u64::MAX);
+        loop {
+            let first = self.open.first();
+            let Some(front) = self.open.get(first) else {
+                break;
+            };
             if !front.moves {
                 // Those that do not move are passed.
-                self.first += 1;
-                if let Some(open) = self.open.pop_front() {
-                    eye.pass();
-                    sink(&open.mv, &open.assessment, &open.text);
-                    self.spare.push(open);
-                }
+                eye.pass();
+                sink(&front.mv, &front.assessment, &front.text);
+                self.open.pass();
                 continue;
             }
-            if self.first + 1 >= finished && !self.at_rest {
+            if first + 1 >= finished && !self.at_rest {
                 return;
             }
-            let next = match self.open.get(1) {
-                Some(next) if next.moves => Some(1),
-                _ => (2..self.open.len())
-                    .find(|&next| self.open.get(next).is_some_and(|next| next.moves)),
-            };
-            let known = self.first < finished
-                && match next {
-                    Some(next) => self.first + (next as u64) < finished,
-                    None => self.at_rest,
-                };
+            // Where the motion glides all is certain.
+            if first > glides_from {
+                sink(&front.mv, &front.assessment, &front.text);
+                self.open.leave();
+                continue;
+            }
+            let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
+            let next = (first + 1..self.open.end()).find(moves);
+            let known = first < finished && next.map_or(self.at_rest, |next| next < finished);
             if !known {
                 return;
             }
-            let Some(mut open) = self.open.pop_front() else {
+            let Some(Leaving { before, own, next }) = self.open.leaving(next) else {
                 return;
             };
-            self.first += 1;
-            let next = next
-                .and_then(|next| self.open.get(next - 1))
-                .map(|next| &**next)
-                .filter(|_| !open.rests);
-            let before = self.before.as_deref().filter(|before| !before.rests);
+            let next = next.filter(|_| !own.rests);
+            let before = before.filter(|before| !before.rests);
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
             // What no piece speaks of is not known.
-            let planned = !open.assessment.ahead || open.assessment.top_speed_mm_s > 0.0;
-            if planned && open.certain && certain(before) && certain(next) {
-                open.assessment.blended = !open.alone;
-                if open.assessment.ahead {
-                    eye.kept(model, &open.mv, &mut open.kept);
+            let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;
+            if planned && own.certain && certain(before) && certain(next) {
+                own.assessment.blended = !own.alone;
+                if own.assessment.ahead {
+                    eye.kept(model, &own.mv, &mut own.kept);
                 } else {
-                    eye.alone(machine, model, &open.mv, self.largest.overrides);
+                    eye.alone(machine, model, &own.mv, self.largest.overrides);
                 }
             } else {
                 let overrides = self.largest.overrides;
-                open.bound([before, next], machine, model, eye, overrides);
+                own.bound([before, next], machine, model, eye, overrides);
             }
-            sink(&open.mv, &open.assessment, &open.text);
-            self.spare.extend(self.before.replace(open));
+            sink(&own.mv, &own.assessment, &own.text);
+            self.open.leave();
         }
-        // What comes next begins at rest.
         if self.at_rest {
-            self.spare.extend(self.before.take());
+            self.open.begin_at_rest();
         }
     }
 }

@@ -16,8 +16,7 @@ mod count;
 mod glide;
 mod hand_on;
 mod open;
-
-use std::collections::VecDeque;
+mod queue;
 
 use super::assessment::Assessment;
 use super::demand::Want;
@@ -28,7 +27,7 @@ use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Element, PathPlanner};
 use glide::Glider;
-use open::Open;
+use queue::Queue;
 
 pub(crate) use open::{Role, joint, role};
 
@@ -40,13 +39,8 @@ pub(super) struct Ahead {
     glider: Glider,
     /// At 100 %: times and energies; where that is the same, nothing.
     nominal: Option<Side>,
-    /// Moves that are not handed on, by number from `first` on.
-    open: VecDeque<Box<Open>>,
-    first: u64,
-    /// The one that was handed on last, and room that is used again.
-    before: Option<Box<Open>>,
-    #[allow(clippy::vec_box, reason = "they go back and forth between two queues")]
-    spare: Vec<Box<Open>>,
+    /// Moves that are not handed on.
+    open: Queue,
     /// Nothing moves behind the last move.
     at_rest: bool,
     /// Something stands behind the last move that may or may not stop it.
@@ -97,10 +91,7 @@ impl Ahead {
             glider: Glider::new(machine, &rules, largest.overrides, blocks),
             largest,
             nominal: (!alike).then_some(nominal),
-            open: VecDeque::new(),
-            first: 0,
-            before: None,
-            spare: Vec::new(),
+            open: Queue::new(),
             at_rest: true,
             in_doubt: false,
             reach2: None,
@@ -136,7 +127,7 @@ impl Ahead {
             return false;
         }
         self.catch_up(machine);
-        let number = self.first + self.open.len() as u64;
+        let number = self.open.end();
         if !self.largest.describe(machine, mv, number) {
             return false;
         }
@@ -148,14 +139,13 @@ impl Ahead {
         if self.in_doubt {
             self.brake_in_doubt(model, eye);
         }
-        let mut open = self.room(mv, text, want);
+        let open = self.open.push(mv, text, want);
         let own = &self.nominal.as_ref().unwrap_or(&self.largest).element;
         open.assessment.speed_mm_s = own.top_mm_s();
         open.assessment.accel_mm_s2 = own.accel_mm_s2;
         open.moves = true;
         open.in_doubt = std::mem::take(&mut self.in_doubt);
         open.rests = mv.path_mode == PathMode::ExactStop;
-        self.open.push_back(open);
         // The planner holds it back, even if it ends at rest.
         self.at_rest = false;
         self.largest.planner.push(&self.largest.element);
@@ -180,24 +170,21 @@ impl Ahead {
     ) {
         self.catch_up(machine);
         if role(machine, mv) == Role::Nothing {
-            let mut open = self.room(mv, text, want);
-            open.assessment = assessment;
-            self.open.push_back(open);
+            self.open.push(mv, text, want).assessment = assessment;
             return self.pump(model, eye);
         }
         self.brake_in_doubt(model, eye);
-        let mut open = self.room(mv, text, want);
+        self.stop_planners();
+        let open = self.open.push(mv, text, want);
         open.assessment = Assessment {
             blended: true,
             ahead: true,
             ..assessment
         };
         open.certain = false;
-        self.stop_planners();
         open.moves = true;
         open.in_doubt = std::mem::replace(&mut self.in_doubt, true);
         self.at_rest = false;
-        self.open.push_back(open);
         self.pump(model, eye);
         let side = self.nominal.as_ref().unwrap_or(&self.largest);
         eye.show(machine, mv, side.overrides);
@@ -241,9 +228,11 @@ impl Ahead {
     fn brake_in_doubt(&mut self, model: &PowerModel, eye: &mut Eye) {
         self.largest.planner.settle();
         self.pump(model, eye);
-        let finished = self.largest.next.saturating_sub(self.first) as usize;
-        for open in self.open.iter_mut().skip(finished) {
-            open.certain = false;
+        let unfinished = self.largest.next.max(self.open.first());
+        for number in unfinished..self.open.end() {
+            if let Some(open) = self.open.get_mut(number) {
+                open.certain = false;
+            }
         }
     }
 
@@ -256,7 +245,7 @@ impl Ahead {
 
     /// Takes what the planners have finished.
     fn pump(&mut self, model: &PowerModel, eye: &mut Eye) {
-        let end = self.first + self.open.len() as u64;
+        let end = self.open.end();
         let times = self.nominal.is_none();
         while let Some(planned) = self.largest.planner.pop() {
             self.largest.next = planned.first;

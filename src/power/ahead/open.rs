@@ -1,6 +1,5 @@
 //! A move that waits for what is planned behind it, and how moves take part.
 
-use super::Ahead;
 use super::glide::Glided;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{Machine, PathMode};
@@ -43,28 +42,10 @@ pub(crate) enum Role {
     Unknown,
 }
 
-impl Ahead {
-    /// Room for a move, of which no piece is planned yet.
-    #[inline]
-    pub(super) fn room(&mut self, mv: &Move, text: &[u8], want: Want) -> Box<Open> {
-        let Some(mut open) = self.spare.pop() else {
-            return Box::new(Open::new(mv, text, want));
-        };
-        open.mv.clone_from(mv);
-        open.text.clear();
-        open.text.extend_from_slice(text);
-        open.assessment = Assessment::AHEAD;
-        open.want = want;
-        (open.certain, open.alone) = (true, true);
-        (open.in_doubt, open.rests, open.moves) = (false, false, false);
-        open.kept.clear();
-        open
-    }
-}
-
 impl Open {
+    /// A move of which no piece is planned yet.
     #[cold]
-    fn new(mv: &Move, text: &[u8], want: Want) -> Self {
+    pub fn new(mv: &Move, text: &[u8], want: Want) -> Self {
         Self {
             mv: mv.clone(),
             text: text.to_vec(),
@@ -78,6 +59,19 @@ impl Open {
             glided: Glided::default(),
             kept: Kept::default(),
         }
+    }
+
+    /// The same in place.
+    #[inline]
+    pub fn renew(&mut self, mv: &Move, text: &[u8], want: Want) {
+        self.mv.clone_from(mv);
+        self.text.clear();
+        self.text.extend_from_slice(text);
+        self.assessment = Assessment::AHEAD;
+        self.want = want;
+        (self.certain, self.alone) = (true, true);
+        (self.in_doubt, self.rests, self.moves) = (false, false, false);
+        self.kept.clear();
     }
 }
 

@@ -1,7 +1,7 @@
 //! Lines that are run at full speed from blend to blend.
 
 use super::super::blend::{Corner, Leg};
-use super::super::element::{Element, Joint};
+use super::super::element::Element;
 use super::super::glide::{Line, LineStart, Passed};
 use super::super::vector::dot;
 use super::{CYCLES_MIN, LinuxCnc, TANGENTIAL_SHARE};
@@ -30,26 +30,14 @@ impl<T: Copy> LinuxCnc<T> {
     /// As the rule passes a joint of two lines, where that slows nothing down.
     #[inline]
     pub fn passes(&self, before: &Line, next: &Line, speed_mm_s: f64) -> Option<Passed> {
-        let joints = [before.joint, next.joint].map(|joint| match joint {
-            Joint::Blend {
-                tolerance_mm,
-                join_mm: 0.0,
-            } => Some(tolerance_mm),
-            _ => None,
-        });
-        let [Some(tolerance_mm), Some(next_tolerance_mm)] = joints else {
-            return None;
-        };
         let cycle_mm = speed_mm_s * self.cycle_s;
         let shortest_mm = cycle_mm * CYCLES_MIN;
         let (u, w) = (before.direction, next.direction);
-        let straight = before.extrusion == 0.0 && next.extrusion == 0.0;
-        if !straight || next.length_mm < cycle_mm || dot(u, w) <= 0.0 {
+        if next.length_mm < cycle_mm || dot(u, w) <= 0.0 {
             return None;
         }
         let length_mm = before.length_mm - before.start.taken_mm;
-        let share = self.kink_share(u, next, speed_mm_s);
-        if share <= self.kink_ratio {
+        if let Some(share) = self.kink_share(u, next, speed_mm_s) {
             return (length_mm >= shortest_mm).then_some(Passed {
                 own_mm: length_mm,
                 accel_share: 1.0 - self.kink_ratio,
@@ -60,16 +48,16 @@ impl<T: Copy> LinuxCnc<T> {
                 ..Passed::default()
             });
         }
-        let leg = |line: &Line, length_mm, tolerance_mm| Leg {
+        let leg = |line: &Line, length_mm| Leg {
             tangent: line.direction,
             nominal_mm: line.length_mm,
             length_mm,
             max_speed: speed_mm_s,
             asked_speed: speed_mm_s,
-            tolerance_mm,
+            tolerance_mm: line.tolerance_mm,
         };
-        let first = leg(before, length_mm, tolerance_mm);
-        let second = leg(next, next.length_mm, next_tolerance_mm);
+        let first = leg(before, length_mm);
+        let second = leg(next, next.length_mm);
         let accel = self.axes.masked(next.axis_accel_mm_s2);
         let blend = Corner::of(u, w)?.round_lines([&first, &second], &self.axes, accel)?;
         if blend.speed < speed_mm_s {
@@ -96,11 +84,12 @@ impl<T: Copy> LinuxCnc<T> {
         })
     }
 
-    /// The share of an axis' acceleration that the step of velocity takes.
+    /// The share of an axis' acceleration that the step of velocity takes, if the
+    /// corner is passed so.
     #[inline]
-    fn kink_share(&self, u: [f64; 3], next: &Line, speed_mm_s: f64) -> f64 {
+    fn kink_share(&self, u: [f64; 3], next: &Line, speed_mm_s: f64) -> Option<f64> {
         // What the axes permit along the path, as its inverse.
-        let (mut steepest, mut largest) = (1.0 / next.path_accel_mm_s2, 0.0);
+        let (mut steepest, mut largest) = (next.inverse_path_accel, 0.0);
         let w = next.direction;
         for ((u, w), inverse) in u.into_iter().zip(w).zip(next.inverse_accel) {
             let (part, change) = (w.abs() * inverse, (w - u).abs() * inverse);
@@ -111,7 +100,13 @@ impl<T: Copy> LinuxCnc<T> {
                 largest = change;
             }
         }
-        largest * (speed_mm_s / self.cycle_s + 1.0 / steepest)
+        let rate = speed_mm_s / self.cycle_s;
+        // Where it plainly is not, that takes no division.
+        if largest * (rate * steepest + 1.0) > 1.001 * self.kink_ratio * steepest {
+            return None;
+        }
+        let share = largest * (rate + 1.0 / steepest);
+        (share <= self.kink_ratio).then_some(share)
     }
 
     /// The motion has come to the start of this line at that speed, squared.

@@ -47,6 +47,8 @@ struct Glide {
     /// The last move, and room for the next one; they change places.
     lines: [Line; 2],
     last: usize,
+    /// The first move of all.
+    begun: u64,
     /// The first move that is not final, and where it begins.
     first: u64,
     start: LineStart,
@@ -73,6 +75,11 @@ impl Glider {
             pause: 0,
             glide: None,
         }
+    }
+
+    /// The first move over which the motion glides, if it does.
+    pub fn begun(&self) -> Option<u64> {
+        self.glide.as_ref().map(|glide| glide.begun)
     }
 }
 
@@ -117,10 +124,9 @@ impl Ahead {
             self.glider.pause = PAUSE;
             return false;
         };
-        let mut open = self.room(mv, text, want);
+        let open = self.open.push(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
         open.moves = true;
-        self.open.push_back(open);
         self.count_gliding(model, eye);
         true
     }
@@ -130,8 +136,8 @@ impl Ahead {
     fn glide_on(&mut self, model: &PowerModel, mv: &Move) -> Option<f64> {
         let Glider { terms, glide, .. } = &mut self.glider;
         let glide = glide.as_mut()?;
-        let first = glide.first.checked_sub(self.first)? as usize;
-        if self.open.len().checked_sub(first)? > terms.blocks || glide.feed_mm_s != mv.feed_mm_s {
+        let number = self.open.end();
+        if number.checked_sub(glide.first)? > terms.blocks || glide.feed_mm_s != mv.feed_mm_s {
             return None;
         }
         let last = self.open.back_mut()?;
@@ -156,7 +162,7 @@ impl Ahead {
         let least_mm_s2 = lower(before.least_accel_mm_s2, line.least_accel_mm_s2);
         let ramp2 = 2.0 * passed.accel_share * least_mm_s2 * (passed.own_mm + passed.shared_mm);
         last.glided = Glided { passed, ramp2 };
-        if glide.keeps || self.open.len() - 1 > first {
+        if glide.keeps || glide.first + 1 < number {
             glide.ramp2 += ramp2;
         }
         line.start = passed.next;
@@ -168,7 +174,7 @@ impl Ahead {
     /// them must pass before it may.
     fn begin_gliding(&mut self, model: &PowerModel) -> Result<Glide, usize> {
         let Gliding {
-            first: number,
+            first,
             open,
             keeps,
             speed2,
@@ -176,8 +182,7 @@ impl Ahead {
             accel_share,
         } = self.largest.planner.gliding()?;
         let terms = &self.glider.terms;
-        let first = number.checked_sub(self.first).ok_or(open)? as usize;
-        if self.open.len().checked_sub(first) != Some(open) || open > terms.blocks {
+        if self.open.end().checked_sub(first) != Some(open as u64) || open as u64 > terms.blocks {
             // Pieces of arcs, or a path that is too short to brake on.
             return Err(open);
         }
@@ -188,7 +193,8 @@ impl Ahead {
             return Err(open);
         }
         let (mut ramp2, mut line) = (0.0, Line::default());
-        for (index, each) in self.open.iter_mut().skip(first).enumerate() {
+        for index in 0..open {
+            let each = self.open.get_mut(first + index as u64).ok_or(open)?;
             let glides = terms.suit(&each.mv)
                 && each.mv.feed_mm_s == feed_mm_s
                 && !each.in_doubt
@@ -210,7 +216,8 @@ impl Ahead {
             speed_mm_s,
             lines: [line; 2],
             last: 0,
-            first: number,
+            begun: first,
+            first,
             start,
             keeps,
             ramp2,
@@ -228,8 +235,7 @@ impl Ahead {
             return self.count_kept(model, eye);
         }
         while glide.ramp2 >= needed2 {
-            let index = glide.first.saturating_sub(self.first) as usize;
-            let Some(open) = self.open.get_mut(index) else {
+            let Some(open) = self.open.get_mut(glide.first) else {
                 break;
             };
             let passed = open.glided.passed;
@@ -241,7 +247,7 @@ impl Ahead {
             self.largest.next = glide.first;
             glide.first += 1;
             glide.start = passed.next;
-            let Some(next) = self.open.get_mut(index + 1) else {
+            let Some(next) = self.open.get_mut(glide.first) else {
                 break;
             };
             glide.ramp2 -= next.glided.ramp2;
@@ -262,8 +268,8 @@ impl Ahead {
             self.take(model, eye, &planned, true, true);
         }
         glide.keeps = false;
-        let index = glide.first.saturating_sub(self.first) as usize;
-        glide.ramp2 -= self.open.get(index).map_or(0.0, |first| first.glided.ramp2);
+        let first = self.open.get(glide.first);
+        glide.ramp2 -= first.map_or(0.0, |first| first.glided.ramp2);
         self.glider.glide = Some(glide);
     }
 
@@ -277,15 +283,16 @@ impl Ahead {
 
     fn end_gliding(&mut self, machine: &Machine, glide: &Glide) {
         let side = &mut self.largest;
-        let first = glide.first.saturating_sub(self.first) as usize;
         let speed2 = glide.speed_mm_s * glide.speed_mm_s;
-        for (index, open) in self.open.iter().enumerate().skip(first) {
-            let known = glide.keeps && index == first;
+        // What the planner keeps it knows.
+        let first = glide.first + u64::from(glide.keeps);
+        for number in first..self.open.end() {
+            let open = self.open.get(number);
             // All have a path: their lengths and their limits are above 0.
-            if known || !side.describe(machine, &open.mv, self.first + index as u64) {
+            if !open.is_some_and(|open| side.describe(machine, &open.mv, number)) {
                 continue;
             }
-            if index == first {
+            if number == glide.first {
                 side.planner.glide_to(&side.element, glide.start, speed2);
             } else {
                 side.planner.push(&side.element);

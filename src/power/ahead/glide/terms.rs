@@ -1,9 +1,8 @@
 //! Which moves may glide, and what they are to the planner.
 
-use crate::interpret::{Move, MoveKind};
+use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{AXES, AxisId, AxisSet, AxisValues, CornerRule, LookAhead, Machine, PathMode};
 use crate::plan::lookahead::Line;
-use crate::power::ahead::open::joint;
 
 const LINEAR: usize = 3;
 const EXTRUDER: usize = AxisId::E as usize;
@@ -21,7 +20,7 @@ pub(super) struct Terms {
     /// The rules' own limit along any path, mm/s².
     path_accel_mm_s2: f64,
     /// Moves that may be open.
-    pub blocks: usize,
+    pub blocks: u64,
     /// Corners are rounded: what that takes is described too.
     blends: bool,
 }
@@ -35,11 +34,13 @@ impl Terms {
             speed_mm_s: [0.0; AXES],
             feed,
             path_accel_mm_s2: rules.path_accel_mm_s2,
-            blocks,
+            blocks: blocks as u64,
             blends: matches!(rules.corner, CornerRule::LinuxCnc { .. }),
         };
         if blocks > 0 && machine.force_curves.is_empty() {
-            for index in (0..LINEAR).chain([EXTRUDER]) {
+            // Blends are those of X, Y and Z.
+            let extruder = (!terms.blends).then_some(EXTRUDER);
+            for index in (0..LINEAR).chain(extruder) {
                 if let Some(axis) = machine.axes.get(index).and_then(Option::as_ref) {
                     terms.axes.insert(index);
                     terms.speed_mm_s[index] = axis.rapid_mm_s;
@@ -90,15 +91,30 @@ impl Terms {
         }
         line.least_accel_mm_s2 = least_accel_mm_s2;
         if self.blends {
-            let [x, y, z, ..] = mv.accel_mm_s2;
-            if line.axis_accel_mm_s2 != [x, y, z] {
-                line.axis_accel_mm_s2 = [x, y, z];
-                line.inverse_accel = line.axis_accel_mm_s2.map(|accel| 1.0 / accel);
-            }
-            line.joint = joint(mv);
+            permitted &= describe_joint(line, mv);
         }
         permitted
     }
+}
+
+/// Describes what a blend needs; false where there is none at the end.
+#[inline]
+fn describe_joint(line: &mut Line, mv: &Move) -> bool {
+    let Corner::Round {
+        tolerance_mm,
+        join_mm: 0.0,
+    } = mv.corner
+    else {
+        return false;
+    };
+    line.tolerance_mm = tolerance_mm;
+    let [x, y, z, ..] = mv.accel_mm_s2;
+    if line.axis_accel_mm_s2 != [x, y, z] {
+        line.axis_accel_mm_s2 = [x, y, z];
+        line.inverse_accel = line.axis_accel_mm_s2.map(|accel| 1.0 / accel);
+    }
+    line.inverse_path_accel = 1.0 / line.path_accel_mm_s2;
+    true
 }
 
 /// `f64::min` is several instructions more.

@@ -1,0 +1,163 @@
+//! Moves that wait, by number; their room is used again in place.
+
+use super::open::Open;
+use crate::interpret::Move;
+use crate::power::demand::Want;
+
+/// Moves that wait, in program order.
+#[derive(Debug)]
+pub(super) struct Queue {
+    /// The move of number n lies at n modulo their number, a power of two.
+    slots: Vec<Option<Box<Open>>>,
+    /// The first that waits, and the next that comes.
+    first: u64,
+    end: u64,
+    /// The one that moved and was handed on last, unless what comes next begins at
+    /// rest; it is room then.
+    before: Option<Box<Open>>,
+    has_before: bool,
+}
+
+/// A move on its way out.
+pub(super) struct Leaving<'a> {
+    pub before: Option<&'a Open>,
+    pub own: &'a mut Open,
+    pub next: Option<&'a Open>,
+}
+
+impl Queue {
+    pub fn new() -> Self {
+        Self {
+            slots: vec![None],
+            first: 0,
+            end: 0,
+            before: None,
+            has_before: false,
+        }
+    }
+
+    /// The number of the first that waits.
+    pub fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// The number of the next that comes.
+    pub fn end(&self) -> u64 {
+        self.end
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.first == self.end
+    }
+
+    #[inline]
+    fn slot(&self, number: u64) -> usize {
+        number as usize & (self.slots.len() - 1)
+    }
+
+    #[inline]
+    fn waits(&self, number: u64) -> bool {
+        self.first <= number && number < self.end
+    }
+
+    /// A move that waits.
+    #[inline]
+    pub fn get(&self, number: u64) -> Option<&Open> {
+        let slot = self.slots.get(self.slot(number))?;
+        slot.as_deref().filter(|_| self.waits(number))
+    }
+
+    /// The same, to be changed.
+    #[inline]
+    pub fn get_mut(&mut self, number: u64) -> Option<&mut Open> {
+        let (slot, waits) = (self.slot(number), self.waits(number));
+        let slot = self.slots.get_mut(slot)?;
+        slot.as_deref_mut().filter(|_| waits)
+    }
+
+    /// The last one.
+    #[inline]
+    pub fn back(&self) -> Option<&Open> {
+        self.get(self.end.checked_sub(1)?)
+    }
+
+    /// The same, to be changed.
+    #[inline]
+    pub fn back_mut(&mut self) -> Option<&mut Open> {
+        self.get_mut(self.end.checked_sub(1)?)
+    }
+
+    /// Adds a move of which no piece is planned yet.
+    #[inline]
+    pub fn push(&mut self, mv: &Move, text: &[u8], want: Want) -> &mut Open {
+        if self.end - self.first == self.slots.len() as u64 {
+            self.grow();
+        }
+        let slot = self.slot(self.end);
+        self.end += 1;
+        match &mut self.slots[slot] {
+            Some(open) => {
+                open.renew(mv, text, want);
+                open
+            }
+            room => room.insert(Box::new(Open::new(mv, text, want))),
+        }
+    }
+
+    #[cold]
+    fn grow(&mut self) {
+        let before = self.slots.len();
+        self.slots.resize_with(2 * before, || None);
+        for number in self.first..self.end {
+            let slot = self.slot(number);
+            self.slots.swap(number as usize & (before - 1), slot);
+        }
+    }
+
+    /// The first that waits, between the one before it and another that waits.
+    #[inline]
+    pub fn leaving(&mut self, next: Option<u64>) -> Option<Leaving<'_>> {
+        if self.is_empty() {
+            return None;
+        }
+        let before = self.before.as_deref().filter(|_| self.has_before);
+        let own = self.slot(self.first);
+        let Some(next) = next else {
+            let own = self.slots.get_mut(own)?.as_deref_mut()?;
+            return Some(Leaving {
+                before,
+                own,
+                next: None,
+            });
+        };
+        let next = self.slot(next);
+        let [own, next] = self.slots.get_disjoint_mut([own, next]).ok()?;
+        Some(Leaving {
+            before,
+            own: own.as_deref_mut()?,
+            next: next.as_deref(),
+        })
+    }
+
+    /// Forgets the first that waits.
+    #[inline]
+    pub fn pass(&mut self) {
+        self.first += u64::from(!self.is_empty());
+    }
+
+    /// The first that waits is now the one before.
+    #[inline]
+    pub fn leave(&mut self) {
+        if !self.is_empty() {
+            let slot = self.slot(self.first);
+            std::mem::swap(&mut self.slots[slot], &mut self.before);
+            self.has_before = true;
+            self.first += 1;
+        }
+    }
+
+    /// What comes next begins at rest.
+    pub fn begin_at_rest(&mut self) {
+        self.has_before = false;
+    }
+}
