@@ -27,6 +27,7 @@ mod trace;
 mod rig;
 mod rows;
 mod shop;
+mod side_by_side;
 mod identify;
 mod tune;
 mod contour;

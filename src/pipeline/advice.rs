@@ -2,7 +2,7 @@
 
 use crate::interpret::{FeedMode, Interpreter, Move, MoveKind};
 use crate::limit::{Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
-use crate::machine::Machine;
+use crate::machine::{AxisValues, Machine};
 use crate::power::Assessment;
 
 /// What helps where the spindle alone is too much.
@@ -11,6 +11,27 @@ pub(super) const SPINDLE_HELP: &str = "a lower S, or a drive that runs up and br
 
 /// What helps where a move is not run by itself.
 const NEIGHBOURS_HELP: &str = "lower feed or acceleration here and in the neighbouring blocks";
+
+/// What advice depends on beside the move: the state of its block.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Circumstances {
+    compensates: bool,
+    per_minute: bool,
+    mm_per_unit: f64,
+    feed_accel_mm_s2: AxisValues,
+}
+
+impl Circumstances {
+    pub(super) fn of(interpreter: &Interpreter<'_>) -> Self {
+        let modal = interpreter.modal();
+        Self {
+            compensates: interpreter.compensates(),
+            per_minute: modal.feed_mode == FeedMode::PerMinute,
+            mm_per_unit: modal.mm_per_unit,
+            feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
+        }
+    }
+}
 
 /// Gives advice for moves that do not fit.
 pub(super) struct Adviser<'m> {
@@ -31,35 +52,28 @@ impl<'m> Adviser<'m> {
         }
     }
 
-    /// What helps; `interpreter` holds the state of the move's block.
-    pub(super) fn help(
-        &self,
-        mv: &Move,
-        assessment: &Assessment,
-        interpreter: &Interpreter<'_>,
-    ) -> String {
+    /// What helps.
+    pub(super) fn help(&self, mv: &Move, assessment: &Assessment, at: &Circumstances) -> String {
         if mv.kind == MoveKind::Spindle {
             return SPINDLE_HELP.to_owned();
         }
         if assessment.blended && !assessment.ahead {
             return NEIGHBOURS_HELP.to_owned();
         }
-        if interpreter.compensates() {
+        if at.compensates {
             return "lower the feed by hand: `limit` changes nothing under cutter compensation"
                 .to_owned();
         }
-        let modal = interpreter.modal();
-        let per_minute = modal.feed_mode == FeedMode::PerMinute;
         let permit = Permit {
             edit: true,
-            feed_word: per_minute,
-            as_feed: per_minute,
+            feed_word: at.per_minute,
+            as_feed: at.per_minute,
             reason: "",
             reason_help: "",
-            mm_per_unit: modal.mm_per_unit,
-            knob_mm_per_unit: modal.mm_per_unit,
+            mm_per_unit: at.mm_per_unit,
+            knob_mm_per_unit: at.mm_per_unit,
             feed_before: None,
-            feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
+            feed_accel_mm_s2: at.feed_accel_mm_s2,
         };
         let ends = if assessment.blended {
             Ends::Any(0)

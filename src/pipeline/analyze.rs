@@ -2,9 +2,10 @@
 
 use std::io::{Read, Seek};
 
-use super::advice::Adviser;
+use super::advice::{Adviser, Circumstances};
 use super::conditions::conditions;
 use super::front::Front;
+use super::relay::relay;
 use super::tally::Tally;
 use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
@@ -23,44 +24,115 @@ pub fn analyze<R: Read + Seek + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
-    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL)
-        .starting(options.reading.start)
-        .watching();
-    let energy = rows.is_some();
-    let mut tally = Tally::new(machine, options, rows);
-    let adviser = Adviser::new(machine);
-    while let Some(line) = front.next_line()? {
-        tally.learn_files(line.files);
-        assessor.want = wanted(&tally);
-        for step in &*line.steps {
+    let mut analysis = Analysis::new(machine, options, rows);
+    // Where little is to be judged, handing lines over costs as much.
+    if options.threads > 1 && analysis.weighs() {
+        front = relay(front, |files, line| {
+            analysis.tally.learn_files(files);
+            let text_of = |step, _: &Move| line.text_of(step);
+            analysis.take(line.steps(), text_of, || *line.circumstances)
+        })?;
+    } else {
+        while let Some(line) = front.next_line()? {
+            analysis.tally.learn_files(line.files);
+            let text_of = |_, mv: &Move| line.text_of(mv);
+            let circumstances = || Circumstances::of(line.interpreter);
+            analysis.take(line.steps, text_of, circumstances)?;
+        }
+    }
+    analysis.finish(front, options)
+}
+
+/// What judges a program, and what it has found.
+struct Analysis<'m, 'r> {
+    machine: &'m Machine,
+    assessor: Assessor<'m>,
+    tally: Tally<'m, 'r>,
+    adviser: Adviser<'m>,
+    energy: bool,
+}
+
+impl<'m, 'r> Analysis<'m, 'r> {
+    fn new(
+        machine: &'m Machine,
+        options: &Options,
+        rows: Option<&'r mut (dyn RowSink + 'r)>,
+    ) -> Self {
+        let energy = rows.is_some();
+        Self {
+            machine,
+            assessor: Assessor::new(machine, options.certificate, Want::ALL)
+                .starting(options.reading.start)
+                .watching(),
+            tally: Tally::new(machine, options, rows),
+            adviser: Adviser::new(machine),
+            energy,
+        }
+    }
+
+    /// Whether judging the program takes about as long as reading it.
+    fn weighs(&self) -> bool {
+        self.energy || self.assessor.weighs()
+    }
+
+    /// Takes what a line does; `text_of` gives the text that a step belongs to.
+    #[inline]
+    fn take<'t>(
+        &mut self,
+        steps: &[Step],
+        text_of: impl Fn(usize, &Move) -> &'t [u8],
+        circumstances: impl Fn() -> Circumstances,
+    ) -> Result<(), Failure> {
+        let Self {
+            assessor,
+            tally,
+            adviser,
+            ..
+        } = self;
+        assessor.want = wanted(tally);
+        for (index, step) in steps.iter().enumerate() {
             let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
-                let help = || adviser.help(mv, assessment, line.interpreter);
+                let help = || adviser.help(mv, assessment, &circumstances());
                 tally.take(mv, assessment, text, help);
             };
             match step {
-                Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
+                Step::Move(mv) => assessor.push(mv, text_of(index, mv), &mut sink),
                 Step::Action(action) => assessor.act(action, &mut sink),
             }
-            assessor.want = wanted(&tally);
+            assessor.want = wanted(tally);
         }
-        tally.check()?;
+        tally.check()
     }
-    let interpreter = front.interpreter();
-    assessor.finish(&mut |mv, assessment, text| {
-        tally.take(mv, assessment, text, || {
-            adviser.help(mv, assessment, interpreter)
+
+    /// The figures, behind the last line.
+    fn finish<R: Read + Seek>(
+        self,
+        front: Front<'_, R>,
+        options: &Options,
+    ) -> Result<Summary, Failure> {
+        let Self {
+            machine,
+            mut assessor,
+            mut tally,
+            adviser,
+            energy,
+        } = self;
+        let circumstances = Circumstances::of(front.interpreter());
+        assessor.finish(&mut |mv, assessment, text| {
+            let help = || adviser.help(mv, assessment, &circumstances);
+            tally.take(mv, assessment, text, help);
         });
-    });
-    tally.check()?;
-    let lines = front.lines;
-    let notes = front.finish()?;
-    refuse_planned(&assessor, machine)?;
-    tally.rate(assessor.ratings());
-    let mut summary = tally.finish(energy);
-    summary.lines = lines;
-    summary.notes = notes;
-    summary.conditions = conditions(machine, options, &summary);
-    Ok(summary)
+        tally.check()?;
+        let lines = front.lines;
+        let notes = front.finish()?;
+        refuse_planned(&assessor, machine)?;
+        tally.rate(assessor.ratings());
+        let mut summary = tally.finish(energy);
+        summary.lines = lines;
+        summary.notes = notes;
+        summary.conditions = conditions(machine, options, &summary);
+        Ok(summary)
+    }
 }
 
 /// Reads a program and hands over every commanded move with its duration in s

@@ -16,6 +16,7 @@ mod lower;
 mod motion;
 mod options;
 mod over_time;
+mod relay;
 mod restart;
 mod row;
 mod schedule;

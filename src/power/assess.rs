@@ -138,6 +138,13 @@ impl<'m> Assessor<'m> {
         self.requested
     }
 
+    /// Whether moves are planned together, or held against limits over time, which
+    /// takes about as long as reading them.
+    #[must_use]
+    pub fn weighs(&self) -> bool {
+        self.ahead.is_some() || self.eye.watch.is_some()
+    }
+
     /// Whether the next move would wait for its successor, or others for it.
     #[must_use]
     pub fn waits(&self, mv: &Move) -> bool {
