@@ -1,5 +1,6 @@
 //! Look-ahead planners through their public interface.
 
+mod certain;
 mod corners;
 mod glide;
 mod linuxcnc;

@@ -29,7 +29,7 @@ struct Batch {
     lines: Vec<Executed>,
     /// From which line on what holds.
     circumstances: Vec<(usize, Circumstances)>,
-    /// Where the text of a step is that belongs to an earlier line.
+    /// Where the text of a step is that belongs to an earlier line, by index.
     held: Vec<(usize, Range<usize>)>,
     /// Names of the files of subprograms that are new.
     files: Vec<String>,
@@ -61,7 +61,9 @@ impl<'b> Relayed<'b> {
     #[inline]
     pub(super) fn text_of(&self, step: usize) -> &'b [u8] {
         let step = self.steps.start + step;
-        let held = self.batch.held.iter().find(|(index, _)| *index == step);
+        let held = &self.batch.held;
+        let found = held.binary_search_by_key(&step, |(index, _)| *index);
+        let held = found.ok().and_then(|at| held.get(at));
         let text = held.map_or(&self.text, |(_, text)| text);
         self.batch.text.get(text.clone()).unwrap_or_default()
     }

@@ -100,9 +100,12 @@ impl<'m, 'r> Tally<'m, 'r> {
     }
 
     /// Learns the names of files of subprograms.
+    #[inline]
     pub(super) fn learn_files(&mut self, names: &[String]) {
-        let known = self.files.len();
-        self.files.extend(names.iter().skip(known).cloned());
+        if names.len() > self.files.len() {
+            let known = self.files.len();
+            self.files.extend(names.iter().skip(known).cloned());
+        }
     }
 
     /// Adds up by line too.

@@ -227,6 +227,7 @@ mod tests {
                 accel_mm_s2: accel_mm_s2.abs(),
                 section: None,
                 certain: true,
+                rests: false,
                 overlap_s: 0.0,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);
@@ -289,6 +290,7 @@ mod tests {
                 accel_mm_s2: 200.0 + 1800.0 * random.next(),
                 section: None,
                 certain: true,
+                rests: false,
                 overlap_s: 0.0,
             };
             let exact = piece_demand(&model, &mv, &planned, Want::PEAKS);

@@ -32,6 +32,8 @@ pub(super) struct Pending<T> {
     /// A parabolic blend before or behind it: its path is known within the
     /// tolerance only.
     pub parabolic: bool,
+    /// Behind it there is a stop.
+    pub rests: bool,
     /// The element before it, where it begins while that brakes.
     pub braking: Option<Braking>,
     /// Largest speed at its start, squared.
@@ -51,6 +53,7 @@ impl<T: Copy> Pending<T> {
             kink_before: 0.0,
             kink_behind: 0.0,
             parabolic: false,
+            rests: false,
             braking: None,
             entry2: 0.0,
         }
@@ -66,7 +69,7 @@ impl<T: Copy> Pending<T> {
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
         self.max_speed = max_speed.min(element.length_mm / cycle_s);
         (self.kink_before, self.kink_behind) = (0.0, 0.0);
-        self.parabolic = false;
+        (self.parabolic, self.rests) = (false, false);
         self.braking = None;
         self.entry2 = 0.0;
     }

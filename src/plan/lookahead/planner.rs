@@ -75,6 +75,9 @@ pub struct Planned<T> {
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
     pub certain: bool,
+    /// True where it ends at rest even if it is not certain: the controller's rules
+    /// stop there.
+    pub rests: bool,
     /// How long it runs already while the piece before it comes to rest, s.
     pub overlap_s: f64,
 }
@@ -151,6 +154,7 @@ pub(super) struct Load<T> {
     pub next: Option<T>,
     pub piece: Piece,
     pub certain: bool,
+    pub rests: bool,
     pub overlap_s: f64,
 }
 
@@ -270,6 +274,7 @@ impl<T: Copy> PathPlanner<T> {
                 to_mm: at[1],
             },
             certain: true,
+            rests: false,
             overlap_s: 0.0,
         };
         let top2 = after.top_mm_s * after.top_mm_s;
@@ -359,6 +364,7 @@ impl<T> Planned<T> {
             accel_mm_s2: span.accel,
             section: span.section,
             certain: span.certain && span.payload.certain,
+            rests: span.payload.rests,
             overlap_s: span.payload.overlap_s,
         }
     }

@@ -53,6 +53,7 @@ impl Ahead {
         }
         if peaks {
             let top_speed_mm_s = planned.top_speed_mm_s();
+            open.rests |= planned.rests;
             open.assessment.fastest_s += duration_s;
             open.assessment.top_speed_mm_s = open.assessment.top_speed_mm_s.max(top_speed_mm_s);
             let doubtful = open.in_doubt || self.reach2.is_some() || !planned.certain;
@@ -80,6 +81,7 @@ impl Ahead {
             return;
         };
         if peaks {
+            open.rests |= planned.rests;
             eye.keep(model, &open.mv, planned, &mut open.kept);
         }
         if times {

@@ -84,6 +84,7 @@ impl<T: Copy> LinuxCnc<T> {
         };
         match self.way(&mut before, &mut next) {
             Way::Stop => {
+                before.rests = true;
                 self.hand_over(&before, window, false);
                 window.stop();
             }
@@ -223,6 +224,7 @@ impl<T: Copy> LinuxCnc<T> {
             next: Some(next.first),
             piece,
             certain: true,
+            rests: false,
             overlap_s: 0.0,
         };
         let jerk = before.element.jerk_mm_s3.min(next.element.jerk_mm_s3);
@@ -295,6 +297,7 @@ impl<T: Copy> LinuxCnc<T> {
             next: None,
             piece: of.piece(),
             certain: !of.parabolic,
+            rests: of.rests,
             overlap_s: of.overlap_s(),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);

@@ -1,0 +1,43 @@
+//! Which moves are planned, and which get the robust bound.
+
+use std::io::Cursor;
+
+use gwatt::machine::Machine;
+use gwatt::pipeline::{Certificate, Options, Row, analyze};
+
+use crate::rows::Rows;
+
+fn rows(program: &str) -> Vec<Row> {
+    let (machine, _) = Machine::load("linuxcnc-mill").expect("an embedded machine");
+    let mut rows = Rows::default();
+    analyze(
+        Cursor::new(program),
+        &machine,
+        &Options::default(),
+        Some(&mut rows),
+    )
+    .expect("a program");
+    rows.0
+}
+
+/// The joint of line and small arc is a parabolic blend, whose path is not known;
+/// between feed and rapid LinuxCNC always stops.
+#[test]
+fn behind_a_stop_nothing_is_left_of_what_is_not_certain() {
+    let program = "G21 G90 G17 G94 G64\nG0 X0 Y0 Z5\nG1 X20 F1200\nX40 Z0\nG3 Y0.4 J0.2\n";
+    let behind = |stop: &str| rows(&format!("{program}{stop}G0 Z30\nX0\nM2\n"));
+    let (moving, dwelling) = (behind(""), behind("G4 P1\n"));
+    let certificates: Vec<_> = moving.iter().map(|row| row.certificate).collect();
+    let [robust, planned] = [Certificate::Robust, Certificate::Planned];
+    assert_eq!(
+        certificates,
+        [planned, robust, robust, robust, planned, planned]
+    );
+    let rapids = |rows: &[Row]| {
+        let rapids = rows.iter().rev().take(2);
+        rapids
+            .map(|row| (row.peak_w, row.duration_s))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(rapids(&moving), rapids(&dwelling));
+}
