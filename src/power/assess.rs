@@ -10,7 +10,7 @@ use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::eye::Eye;
-use super::held::{Held, Rider, moves};
+use super::held::{Held, RIDERS, Rider, moves};
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::robust::Part;
@@ -50,10 +50,6 @@ pub struct Assessor<'m> {
     /// The spindle beside the axes, where the machine has one.
     pub(super) bus: Option<Box<SpindleBus<'m>>>,
 }
-
-/// Moves of no length in a row that a controller may look across: more than
-/// any queue holds.
-const RIDERS: usize = 4096;
 
 impl<'m> Assessor<'m> {
     /// Judges by `requested`, or by what the controller profile models.

@@ -5,6 +5,10 @@ use super::robust::Part;
 use crate::interpret::{Move, MoveKind};
 use crate::plan::SpeedBound;
 
+/// Moves of no length in a row that a controller may look across: more than
+/// any queue holds.
+pub(super) const RIDERS: usize = 4096;
+
 /// A move that waits for its successor.
 #[derive(Debug)]
 pub(super) struct Held {

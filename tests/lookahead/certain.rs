@@ -41,3 +41,18 @@ fn behind_a_stop_nothing_is_left_of_what_is_not_certain() {
     };
     assert_eq!(rapids(&moving), rapids(&dwelling));
 }
+
+/// A controller's queue is empty before thousands of blocks of no length end.
+#[test]
+fn motion_does_not_wait_for_ever() {
+    let certificates = |idle: usize| {
+        let idle = "X20\n".repeat(idle);
+        let program = format!("G21 G90 G94 G64 F1200\nG1 X20\n{idle}X40\nX60\nM2\n");
+        let rows = rows(&program);
+        let rows = rows.iter().filter(|row| row.duration_s > 0.0);
+        rows.map(|row| row.certificate).collect::<Vec<_>>()
+    };
+    let [robust, planned] = [Certificate::Robust, Certificate::Planned];
+    assert_eq!(certificates(4000), [planned, planned, planned]);
+    assert_eq!(certificates(5000), [robust, robust, robust]);
+}

@@ -21,6 +21,7 @@ mod queue;
 use super::assessment::Assessment;
 use super::demand::Want;
 use super::eye::Eye;
+use super::held::RIDERS;
 use super::model::PowerModel;
 use crate::interpret::Move;
 use crate::machine::{LookAhead, Machine, PathMode};
@@ -171,6 +172,9 @@ impl Ahead {
         self.catch_up(machine);
         if role(machine, mv) == Role::Nothing {
             self.open.push(mv, text, want).assessment = assessment;
+            if self.open.len() > RIDERS && !self.at_rest {
+                return self.run_dry(model, eye);
+            }
             return self.pump(model, eye);
         }
         self.brake_in_doubt(model, eye);
@@ -188,6 +192,16 @@ impl Ahead {
         self.pump(model, eye);
         let side = self.nominal.as_ref().unwrap_or(&self.largest);
         eye.show(machine, mv, side.overrides);
+    }
+
+    /// Too many moves of no length in a row: the queue is empty before they end, and
+    /// where the motion stops is not certain.
+    #[cold]
+    fn run_dry(&mut self, model: &PowerModel, eye: &mut Eye) {
+        self.brake_in_doubt(model, eye);
+        self.stop_planners();
+        self.rest(model, eye);
+        self.in_doubt = true;
     }
 
     /// The motion stops behind the last move.

@@ -46,6 +46,10 @@ impl Queue {
         self.end
     }
 
+    pub fn len(&self) -> usize {
+        (self.end - self.first) as usize
+    }
+
     pub fn is_empty(&self) -> bool {
         self.first == self.end
     }
