@@ -190,6 +190,8 @@ impl Ahead {
         open.in_doubt = std::mem::replace(&mut self.in_doubt, true);
         self.at_rest = false;
         self.pump(model, eye);
+        // No piece will speak of it.
+        self.finish();
         let side = self.nominal.as_ref().unwrap_or(&self.largest);
         eye.show(machine, mv, side.overrides);
     }
@@ -257,9 +259,16 @@ impl Ahead {
         }
     }
 
+    /// Nothing more comes of the moves so far.
+    fn finish(&mut self) {
+        self.largest.next = self.open.end();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.next = self.largest.next;
+        }
+    }
+
     /// Takes what the planners have finished.
     fn pump(&mut self, model: &PowerModel, eye: &mut Eye) {
-        let end = self.open.end();
         let times = self.nominal.is_none();
         while let Some(planned) = self.largest.planner.pop() {
             self.largest.next = planned.first;
@@ -272,10 +281,7 @@ impl Ahead {
             self.take(model, eye, &planned, false, true);
         }
         if self.at_rest {
-            self.largest.next = end;
-            if let Some(nominal) = &mut self.nominal {
-                nominal.next = end;
-            }
+            self.finish();
         }
     }
 }
