@@ -3,7 +3,8 @@
 use std::io::Cursor;
 
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Options, Row, analyze};
+use gwatt::pipeline::{Certificate, Options, Row, analyze, moves};
+use gwatt::power::{Assessor, Want};
 
 use crate::rows::Rows;
 
@@ -55,4 +56,35 @@ fn motion_does_not_wait_for_ever() {
     let [robust, planned] = [Certificate::Robust, Certificate::Planned];
     assert_eq!(certificates(4000), [planned, planned, planned]);
     assert_eq!(certificates(5000), [robust, robust, robust]);
+}
+
+/// Neither blocks of no length, nor moves whose way is not modelled.
+#[test]
+fn moves_are_handed_on_as_the_program_goes() {
+    let (machine, _) = Machine::load("linuxcnc-mill").expect("an embedded machine");
+    for (line, most) in [
+        ("X10\n", 4100),
+        ("G38.2 X20 Z-1 Y4\nG0 X10\n", 4),
+        ("G33 X10 K1\nG1 X20\n", 8),
+    ] {
+        let program = format!(
+            "G21 G90 G94 F1200 M3 S500\nG1 X10\n{}M2\n",
+            line.repeat(5000)
+        );
+        let mut assessor = Assessor::new(&machine, None, Want::PEAKS);
+        let (mut pushed, mut handed_on) = (0_usize, 0_usize);
+        moves(
+            Cursor::new(program),
+            &machine,
+            &Options::default(),
+            &mut |mv, _| {
+                assessor.push(mv, b"", &mut |_, _, _| handed_on += 1);
+                pushed += 1;
+                assert!(pushed - handed_on <= most, "{line}: {pushed}, {handed_on}");
+                Ok(())
+            },
+        )
+        .expect("a program");
+        assert!(pushed >= 5000);
+    }
 }
