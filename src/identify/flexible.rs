@@ -2,6 +2,7 @@
 
 use super::arx;
 use super::column::{Kind, Quantity};
+use super::command_input::CommandInput;
 use super::data::Data;
 use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
 use super::neighbours::Given;
@@ -69,7 +70,7 @@ pub struct Flexible {
     /// Delay; from a command that is held, its half period of holding too.
     pub delay_s: Figure,
     /// The delay that was fitted, s: from a command it is longer by half a
-    /// period, as the input was taken early.
+    /// period or a whole one, as the input was taken early.
     pub fitted_delay_s: f64,
     /// Norm of what is left by norm of the output.
     pub rel_error: f64,
@@ -105,22 +106,10 @@ pub(super) struct Prepared {
     period_s: f64,
     is_force: bool,
     positions: bool,
-    /// By which the input is taken early, s.
-    lead_s: f64,
+    /// By how much the fitted delay is longer than that of the load, s: what the
+    /// input was taken early, less what made it late.
+    early_s: f64,
     names: (String, String),
-}
-
-impl Prepared {
-    /// By how much the fitted delay is longer than that of the load, s. The input
-    /// is taken early, but a held one comes half a period late on average.
-    fn early_s(&self) -> f64 {
-        self.lead_s
-            - if self.is_force {
-                0.0
-            } else {
-                0.5 * self.period_s
-            }
-    }
 }
 
 fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
@@ -161,55 +150,50 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
     if measured == Measured::Direct {
         quality::not_saturated(output_signal)?;
     }
-    // From a command both sides are differenced as often as the noise of what was
-    // measured stays white: positions not at all.
-    let (output, command_as) = if is_force {
-        (
-            differences(&output_signal.values, measured, t),
-            Measured::Direct,
-        )
-    } else {
-        let command_as = match measured {
-            Measured::Direct => Measured::Position,
-            Measured::Velocity => Measured::Velocity,
-            Measured::Position => Measured::Direct,
-        };
-        (output_signal.values.clone(), command_as)
-    };
     let factor = match (input_signal.kind, choice.ratio) {
         (Kind::Rotary, Some(ratio)) => ratio,
         _ => 1.0,
     };
-    let input = if is_force {
-        input_signal.values.iter().map(|u| u * factor).collect()
+    // From a command both sides are differenced as often as the noise of what was
+    // measured stays white: positions not at all. The plain methods know held
+    // inputs only.
+    let command = if choice.method == Method::Iv && choice.decimation.is_empty() {
+        CommandInput::spline
     } else {
-        differences(&input_signal.values, command_as, t)
+        CommandInput::held
+    };
+    let (input, output, runs, late_s) = if is_force {
+        let input = input_signal.values.iter().map(|u| u * factor).collect();
+        let output = differences(&output_signal.values, measured, t);
+        (input, output, measured, 0.0)
+    } else {
+        let command = command(&input_signal.values, measured, t);
+        let output = output_signal.values.clone();
+        (command.values, output, command.runs, command.late_s)
     };
     let excitation = pick(Quantity::Excitation)
         .filter(|signal| is_force && signal.name != input_signal.name)
         .map(|signal| signal.values.iter().map(|r| r * factor).collect());
     let positions = !is_force && measured == Measured::Position;
-    let measured = if is_force { measured } else { Measured::Direct };
     let mut prepared = Prepared {
         input,
         output,
         excitation,
-        measured,
+        measured: runs,
         period_s: t,
         is_force,
         positions,
-        lead_s: 0.0,
+        early_s: 0.0,
         names: (input_signal.name.clone(), output_signal.name.clone()),
     };
     decimate(&mut prepared, &choice.decimation);
-    if !is_force && !prepared.input.is_empty() {
-        // A command that runs on between samples is half a period ahead of one
-        // that is held: taken a period early, it comes late in either case.
-        prepared.input.copy_within(1.., 0);
-        if let [.., before, end] = prepared.input.as_mut_slice() {
-            *end = *before;
-        }
-        prepared.lead_s = prepared.period_s;
+    if !is_force {
+        // A command that runs on between samples is half a period ahead of one that
+        // is held: taken early, it comes late in either case.
+        let late_s = late_s + 0.5 * (prepared.period_s - t);
+        let lead = libm::ceil(late_s / prepared.period_s + 0.5 - 1e-9);
+        take_early(&mut prepared.input, lead as usize);
+        prepared.early_s = lead * prepared.period_s - late_s;
     }
     if prepared.input.len() < 256 {
         return Err(Trouble::new(
@@ -237,6 +221,15 @@ fn decimate(prepared: &mut Prepared, stages: &[usize]) {
         .map(|r| arx::decimate(r, stages, t));
     prepared.measured = Measured::Direct;
     prepared.period_s *= factor as f64;
+}
+
+/// Moves a signal so many samples forward; its end goes on as it was.
+fn take_early(x: &mut [f64], samples: usize) {
+    let samples = samples.min(x.len());
+    x.copy_within(samples.., 0);
+    let known = x.len() - samples;
+    let (kept, end) = x.split_at_mut(known);
+    end.fill(kept.last().copied().unwrap_or_default());
 }
 
 /// Differences that stand for the acceleration; the first ones, for which there
@@ -270,8 +263,9 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     let prepared = prepare(recording, choice)?;
     let mut choice = choice.clone();
     let searches = matches!(choice.method, Method::Iv | Method::Frequency);
-    let given = choice.given.delay_s.map(|delay| delay + prepared.early_s());
-    choice.given.delay_s = given.or((!searches).then_some(prepared.lead_s));
+    let whole_s = libm::ceil(prepared.early_s / prepared.period_s) * prepared.period_s;
+    let given = choice.given.delay_s.map(|delay| delay + prepared.early_s);
+    choice.given.delay_s = given.or((!searches).then_some(whole_s));
     let undisturbed = match &prepared.excitation {
         Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
             Trouble::new(
@@ -298,10 +292,10 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     };
     let mut found = find(&choice);
     let is_early =
-        |found: &Modelled| found.estimate.transfer.delay_s < prepared.early_s() * (1.0 - 1e-6);
+        |found: &Modelled| found.estimate.transfer.delay_s < prepared.early_s * (1.0 - 1e-6);
     if given.is_none() && found.as_ref().is_some_and(is_early) {
         // The load cannot be ahead of the command: poles stand for a delay.
-        choice.given.delay_s = Some(prepared.early_s());
+        choice.given.delay_s = Some(prepared.early_s);
         found = find(&choice).or(found);
     }
     let found = found.ok_or_else(|| {
@@ -389,7 +383,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     } else {
         found.delay_doubt_s
     };
-    transfer.delay_s = (fitted_delay_s - prepared.early_s()).max(0.0);
+    transfer.delay_s = (fitted_delay_s - prepared.early_s).max(0.0);
     Ok(Flexible {
         fitted_delay_s,
         inertia: prepared.is_force.then(|| Figure {

@@ -18,6 +18,7 @@ pub mod tune;
 
 mod arx;
 mod column;
+mod command_input;
 mod data;
 mod discrete;
 mod filter;
