@@ -20,6 +20,8 @@ pub struct Data<'a> {
     pub measured: Measured,
     /// True for commands as input.
     pub from_command: bool,
+    /// By how much the input is early, s: no delay is shorter.
+    pub early_s: f64,
     /// True for positions as input and output: most of what they are is slow.
     pub positions: bool,
 }

@@ -282,6 +282,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         period_s: prepared.period_s,
         measured: prepared.measured,
         from_command: !prepared.is_force,
+        early_s: prepared.early_s,
         positions: prepared.positions,
     };
     let find = |choice: &Choice| match choice.method {
@@ -290,14 +291,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         Method::Arx => by_arx(&data, &prepared, choice),
         Method::Subspace => by_subspace(&data, &prepared, choice),
     };
-    let mut found = find(&choice);
-    let is_early =
-        |found: &Modelled| found.estimate.transfer.delay_s < prepared.early_s * (1.0 - 1e-6);
-    if given.is_none() && found.as_ref().is_some_and(is_early) {
-        // The load cannot be ahead of the command: poles stand for a delay.
-        choice.given.delay_s = Some(prepared.early_s);
-        found = find(&choice).or(found);
-    }
+    let found = find(&choice);
     let found = found.ok_or_else(|| {
         Trouble::new(
             "no stable model fits the recording",
@@ -376,10 +370,9 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
     }
     let delay_std = if found.delay_is_free {
-        libm::hypot(
-            std(parameters(&transfer, true).len() - 1),
-            found.delay_doubt_s,
-        )
+        // Where other parameters can take its place, it is no longer straight.
+        let alone = std(parameters(&transfer, true).len() - 1);
+        libm::hypot(alone.min(data.period_s), found.delay_doubt_s)
     } else {
         found.delay_doubt_s
     };
@@ -423,6 +416,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         period_s: prepared.period_s,
         measured: prepared.measured,
         from_command: !prepared.is_force,
+        early_s: prepared.early_s,
         positions: prepared.positions,
     };
     let fitted = TransferFunction {

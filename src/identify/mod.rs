@@ -20,6 +20,7 @@ mod arx;
 mod column;
 mod command_input;
 mod data;
+mod delay_profile;
 mod discrete;
 mod filter;
 mod methods;

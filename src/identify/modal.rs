@@ -216,11 +216,13 @@ impl Lines {
         let (Some(first), Some(last)) = (self.theta().first(), self.theta().last()) else {
             return Vec::new();
         };
-        // The hold makes the input late by half a period.
+        // The hold makes the input late by half a period, each order of a spline by
+        // as much.
+        let held = 0.5 * (1 + self.measured().integrators()) as f64;
         let late = self
             .theta()
             .iter()
-            .map(|theta| on_circle(-(0.5 + modes.late.part) * theta));
+            .map(|theta| on_circle(-(held + modes.late.part) * theta));
         let input = self.driven(&[1.0, 0.0, 0.0, 0.0], modes.late.lag);
         let input: Vec<C> = input.iter().zip(late).map(|(u, late)| u * late).collect();
         let sparse = thinned(self.theta().len(), SPARSE);

@@ -54,11 +54,12 @@ pub fn starts(lines: &Lines, given: Given) -> Vec<TransferFunction> {
         let poles = any.as_ref().map_or(&[][..], |modes| &modes.poles);
         let at = |steps: usize| lines.at(poles, late(steps), 1);
         let most = (LAG_MAX as f64 / step) as usize;
-        let last = (0..=most)
+        let first = libm::ceil(lines.early_s / t / step - 1e-6) as usize;
+        let last = (first..=most)
             .filter_map(|steps| Some((at(steps)?.rest, steps)))
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        let last = last.map_or(0, |(_, steps)| steps);
-        for steps in (0..=last).rev().take(LAGS) {
+        let last = last.map_or(first, |(_, steps)| steps);
+        for steps in (first..=last).rev().take(LAGS) {
             if let Some(modes) = at(steps) {
                 let modes = lines.move_poles(modes, STEPS_BEST);
                 found.extend(grow(lines, modes, given.order));

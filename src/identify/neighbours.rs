@@ -154,13 +154,6 @@ fn cancelled(from: &TransferFunction) -> Vec<TransferFunction> {
     out
 }
 
-/// By how much a model makes slow signals late, s: what a recording tells of it,
-/// whatever fast poles, zeros and delay make of that.
-fn lag_s(of: &TransferFunction) -> f64 {
-    let sum = |list: &[Factor]| -> f64 { list.iter().map(|factor| factor.lag_s()).sum() };
-    of.delay_s + sum(&of.poles) - sum(&of.zeros)
-}
-
 /// A model with the whole periods of delay that make it as late as another one:
 /// the nearest number, and the next.
 fn with_lag_of(
@@ -172,7 +165,7 @@ fn with_lag_of(
     if given.delay_s.is_some() {
         return vec![model.clone()];
     }
-    let missing = lag_s(other) - lag_s(model) + model.delay_s;
+    let missing = other.lag_s() - model.lag_s() + model.delay_s;
     let periods = (missing / period_s).clamp(0.0, LAG_MAX as f64);
     let near = libm::round(periods);
     let next = if periods < near {

@@ -1,7 +1,11 @@
 //! How many poles and zeros, and how much delay: from models that grew by modes to
-//! their neighbours, and the one that Bayes' criterion prefers.
+//! their neighbours, and the one that Bayes' criterion prefers; behind a command the
+//! dead time by its profile.
+
+use nalgebra::Complex;
 
 use super::data::Data;
+use super::delay_profile::{Bounds, profile};
 use super::mode_starts;
 use super::neighbours::{Given, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
@@ -34,8 +38,9 @@ const SEARCH_STEPS: usize = 20;
 /// digit is not worth minutes.
 const STEPS_MAX: usize = 500;
 const STEPS_LAST: usize = 200;
-/// The same for commands, of which more samples are looked at.
-const STEPS_COMMAND: usize = 300;
+/// The same for commands, of which more samples are looked at, and whose dead time
+/// is sought afterwards.
+const STEPS_COMMAND: usize = 50;
 /// Rounds of model and noise.
 const ROUNDS_OF_NOISE: usize = 4;
 /// Steps from model to model at most.
@@ -66,7 +71,6 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     let response = response_of(data, instrument, None)?;
     let band_rad_s = response.shown_rad_s();
     let step_s = data.period_s * mode_starts::delay_step(data.from_command);
-    let steps_s = (data.period_s, step_s);
     let compared = if data.from_command {
         COMPARED_COMMAND
     } else {
@@ -96,12 +100,29 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         let budget = if before.is_some() {
             (STEPS_LAST, STEPS_LAST)
         } else if data.from_command {
-            (STEPS_COMMAND, STEPS_LAST)
+            (STEPS_COMMAND, 0)
         } else {
             (STEPS_MAX, 3 * STEPS_LAST)
         };
-        let tried = ladder(&fit, steps_s, &response, given, &starts, budget);
-        let others = doubt_s(&tried);
+        let mut tried = ladder(&fit, data, step_s, &response, given, &starts, budget);
+        let mut others = doubt_s(&tried);
+        if data.from_command && given.delay_s.is_none() {
+            let bounds = Bounds {
+                least_s: data.early_s,
+                step_s,
+                period_s: data.period_s,
+                band_rad_s,
+            };
+            let fit = |start: &TransferFunction, effort: Effort| {
+                let is_given = given.order.is_none_or(|order| start.order() == order)
+                    && given.zeros.is_none_or(|zeros| start.zero_count() == zeros);
+                is_given.then(|| fit(start, false, effort)).flatten()
+            };
+            if let Some(found) = profile(fit, tried.clone(), bounds) {
+                others = libm::hypot(found.doubt_s, step_s / 12.0_f64.sqrt());
+                tried = vec![found.estimate];
+            }
+        }
         let effort = Effort {
             steps: SEARCH_STEPS,
             to_beat: f64::MAX,
@@ -119,6 +140,8 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         };
         let (found, delay_is_free, alone_s) = match given.delay_s {
             Some(_) => (found, false, 0.0),
+            // Between the steps there is nothing to be found.
+            None if data.from_command && others > step_s => (found, false, 0.0),
             None => any_delay(&fit_long, data.period_s, found),
         };
         let delay_doubt_s = match given.delay_s {
@@ -152,7 +175,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     })
 }
 
-/// The measured response; of positions by their second differences, as slow
+/// The measured response, as of an input that is held; of positions by their second differences, as slow
 /// motion would leak into fast.
 #[must_use]
 pub fn response_of(
@@ -160,12 +183,29 @@ pub fn response_of(
     instrument: Option<&[f64]>,
     stretch: Option<usize>,
 ) -> Option<FrequencyResponse> {
-    if !data.positions {
-        return measure(data.input, data.output, instrument, data.period_s, stretch);
+    if data.positions {
+        let twice = |x: &[f64]| filtered(x, &[-2.0, 1.0]);
+        let (input, output) = (twice(data.input), twice(data.output));
+        return measure(&input, &output, instrument, data.period_s, stretch);
     }
-    let twice = |x: &[f64]| filtered(x, &[-2.0, 1.0]);
-    let (input, output) = (twice(data.input), twice(data.output));
-    measure(&input, &output, instrument, data.period_s, stretch)
+    let mut response = measure(data.input, data.output, instrument, data.period_s, stretch)?;
+    as_held(&mut response, data.measured.integrators(), data.period_s);
+    Some(response)
+}
+
+/// What a response would be were the input held: each difference of the output (or
+/// order of the spline) makes it late by half a period and weaker.
+fn as_held(response: &mut FrequencyResponse, times: usize, period_s: f64) {
+    let values = response.response.iter_mut().zip(&mut response.variance);
+    for ((value, variance), hz) in values.zip(&response.frequency_hz) {
+        let half = std::f64::consts::PI * hz * period_s;
+        let (sin, cos) = libm::sincos(half);
+        let early = Complex::new(cos, sin) * (half / sin);
+        for _ in 0..times {
+            *value *= early;
+            *variance *= early.norm_sqr();
+        }
+    }
 }
 
 /// A signal behind the whitening filter, its beginning left out.
@@ -220,15 +260,18 @@ fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
 /// neighbour is better than.
 fn ladder(
     fit: &Fit<'_>,
-    (period_s, step_s): (f64, f64),
+    data: &Data<'_>,
+    step_s: f64,
     response: &FrequencyResponse,
     given: Given,
     starts: &[TransferFunction],
     (mut left, mut spare): (usize, usize),
 ) -> Vec<Estimate> {
+    let period_s = data.period_s;
+    let is_possible = |start: &TransferFunction| start.delay_s > data.early_s - 1e-6 * period_s;
     let mut all: Vec<Estimate> = Vec::new();
     let mut best: Option<Estimate> = None;
-    for start in starts {
+    for start in starts.iter().filter(|start| is_possible(start)) {
         let effort = Effort {
             steps: SEARCH_STEPS,
             to_beat: f64::MAX,
@@ -260,7 +303,10 @@ fn ladder(
             if left == 0 {
                 break;
             }
-            if tried.iter().any(|other| are_alike(other, &start)) || lacks(&start, &needed) {
+            if tried.iter().any(|other| are_alike(other, &start))
+                || lacks(&start, &needed)
+                || !is_possible(&start)
+            {
                 continue;
             }
             tried.push(start.clone());

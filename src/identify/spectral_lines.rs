@@ -47,6 +47,8 @@ pub struct Lines {
     pub samples: usize,
     /// True for commands as input.
     pub from_command: bool,
+    /// The shortest delay, s.
+    pub early_s: f64,
 }
 
 impl Lines {
@@ -93,6 +95,7 @@ impl Lines {
             theta,
             samples: count,
             from_command: data.from_command,
+            early_s: data.early_s,
         };
         out.output = out.column(&pick(&output));
         out.power = out.output.iter().map(|x| x * x).sum();
@@ -109,6 +112,12 @@ impl Lines {
     #[must_use]
     pub fn edge(&self) -> f64 {
         self.edge
+    }
+
+    /// How the input runs between samples.
+    #[must_use]
+    pub fn measured(&self) -> Measured {
+        self.measured
     }
 
     /// How each line counts.

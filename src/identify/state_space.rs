@@ -23,7 +23,9 @@ pub enum Measured {
 }
 
 impl Measured {
-    fn integrators(self) -> usize {
+    /// How often it has been integrated.
+    #[must_use]
+    pub(super) fn integrators(self) -> usize {
         match self {
             Self::Direct => 0,
             Self::Velocity => 1,

@@ -114,6 +114,14 @@ impl TransferFunction {
         multiply(vec![1.0], &self.poles)
     }
 
+    /// By how much it makes slow signals late, s: what a recording tells of it,
+    /// whatever fast poles, zeros and delay make of that.
+    #[must_use]
+    pub fn lag_s(&self) -> f64 {
+        let sum = |list: &[Factor]| -> f64 { list.iter().map(|factor| factor.lag_s()).sum() };
+        self.delay_s + sum(&self.poles) - sum(&self.zeros)
+    }
+
     /// How many zeros lie right of the imaginary axis.
     #[must_use]
     pub fn zeros_on_the_right(&self) -> usize {

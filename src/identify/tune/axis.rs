@@ -93,7 +93,7 @@ pub struct AxisResponse {
     /// The measured response, if there is a recording.
     pub measured: Option<FrequencyResponse>,
     /// By how much the measured response is late, s, because the input is held
-    /// between samples and the output may be differences.
+    /// between samples.
     pub hold_s: f64,
     /// Dips of the measured response.
     pub dips: Vec<Dip>,
@@ -207,21 +207,10 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
         delay_s: found.transfer.delay_s,
         position_gain_1_s: None,
         measured: Some(found.response),
-        hold_s: hold_periods(recording, from_command) * recording.period_s + early_s,
+        hold_s: 0.5 * found.seconds / found.samples as f64 + early_s,
         dips: found_dips,
         notes,
     })
-}
-
-/// Half a period for the hold; and half a one for each difference.
-fn hold_periods(recording: &Recording, from_command: bool) -> f64 {
-    if from_command || recording.get(Quantity::Acceleration).is_some() {
-        0.5
-    } else if recording.get(Quantity::Velocity).is_some() {
-        1.0
-    } else {
-        1.5
-    }
 }
 
 fn motion_slides(recording: &Recording) -> bool {
