@@ -1,6 +1,7 @@
 //! Identification: axes of which the parameters are known, and published data.
 
 mod accuracy;
+mod commanded;
 mod power_log;
 mod readers;
 mod refusals;
