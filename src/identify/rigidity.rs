@@ -6,11 +6,12 @@
 
 use super::spectrum::measure;
 
-/// Frequencies count where the force explains this share of the acceleration: noise
-/// in either of them then changes their ratio by a twentieth at most.
-const COHERENT: f64 = 0.95;
-/// Where the model misses this share of a frequency's force, the axis is not rigid.
-const MISSED: f64 = 0.25;
+/// Where the model misses more than this share of a frequency's force, and so many
+/// standard errors of it, the axis is not rigid. What is not coherent, noise in the
+/// force or in the acceleration, makes their ratio another one by as much at most; it
+/// is taken twice.
+const MISSED: f64 = 0.1;
+const SURE: f64 = 4.0;
 /// In so many neighbouring frequencies.
 const RUN: usize = 3;
 
@@ -30,11 +31,14 @@ pub fn resonates(
     let missed: Vec<bool> = measured
         .response
         .iter()
+        .zip(&measured.variance)
         .zip(&measured.coherence)
         .zip(&measured.frequency_hz)
         .take_while(|(_, hz)| **hz < band_hz)
-        .map(|((by_force, coherence), _)| {
-            *coherence > COHERENT && (by_force * mass - 1.0).norm() > MISSED
+        .map(|(((by_force, variance), coherence), _)| {
+            let missed = (by_force * mass - 1.0).norm();
+            missed > MISSED + 2.0 * (1.0 - coherence)
+                && missed > SURE * mass.abs() * variance.sqrt()
         })
         .collect();
     missed
