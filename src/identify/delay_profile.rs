@@ -41,12 +41,18 @@ pub struct Profile {
 pub struct Bounds {
     /// The shortest delay, s.
     pub least_s: f64,
-    /// Steps of the delay, s.
-    pub step_s: f64,
+    /// Steps of the delay, periods.
+    pub step_periods: f64,
     /// Sampling period, s.
     pub period_s: f64,
     /// Up to where the recording shows the axis, rad/s.
     pub band_rad_s: f64,
+}
+
+impl Bounds {
+    fn step_s(&self) -> f64 {
+        self.step_periods * self.period_s
+    }
 }
 
 /// The profile below the delay of the best of models, and the model of the mean.
@@ -84,9 +90,9 @@ pub fn profile(
         least = least.min(here);
         let is_unlikely = here > least + UNLIKELY;
         unlikely = if is_unlikely { unlikely + 1 } else { 0 };
-        delay_s -= bounds.step_s;
+        delay_s -= bounds.step_s();
     }
-    of_the_mean(all, bounds)
+    of_the_mean(&all, bounds)
 }
 
 /// Models that go on to shorter dead times, each from its own on: with all zeros or
@@ -129,17 +135,17 @@ fn with_mode(
             .min(FAST / bounds.period_s),
         damping: DAMPING,
     });
-    let steps = libm::round((more.lag_s() - best.lag_s()) / bounds.step_s);
-    let delay_s = best.delay_s - steps.max(0.0) * bounds.step_s;
+    let steps = libm::round((more.lag_s() - best.lag_s()) / bounds.step_s());
+    let delay_s = best.delay_s - steps.max(0.0) * bounds.step_s();
     more.delay_s = delay_s.max(bounds.least_s);
     more
 }
 
 /// Of models, that of the mean delay, each delay counting by its likelihood.
-fn of_the_mean(all: Vec<Estimate>, bounds: Bounds) -> Option<Profile> {
+fn of_the_mean(all: &[Estimate], bounds: Bounds) -> Option<Profile> {
     let same_s = SAME * bounds.period_s;
     let mut delays: Vec<(f64, f64)> = Vec::new();
-    for found in &all {
+    for found in all {
         let (delay_s, likelihood) = (found.transfer.delay_s, found.likelihood());
         let is_same = |(other, _): &&mut (f64, f64)| (*other - delay_s).abs() < same_s;
         match delays.iter_mut().find(is_same) {

@@ -109,7 +109,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         if data.from_command && given.delay_s.is_none() {
             let bounds = Bounds {
                 least_s: data.early_s,
-                step_s,
+                step_periods: mode_starts::delay_step(true),
                 period_s: data.period_s,
                 band_rad_s,
             };
