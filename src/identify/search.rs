@@ -175,8 +175,8 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     })
 }
 
-/// The measured response, as of an input that is held; of positions by their second differences, as slow
-/// motion would leak into fast.
+/// The measured response, as of an input that is held; of positions by their second
+/// differences, as slow motion would leak into fast.
 #[must_use]
 pub fn response_of(
     data: &Data<'_>,
