@@ -3,12 +3,14 @@
 
 use std::io::{Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
 
 use super::batch::Batch;
 use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
 use super::lower::lower_further;
 use super::over_time::OverTime;
+use super::relay::no_thread;
 use super::whole::limit_whole;
 use super::writer::{Writer, Written};
 use super::{
@@ -148,10 +150,12 @@ fn side_by_side<R: Read + Seek + Send, W: Write + Send>(
     writer: Writer<'_, R, W>,
     certifier: Certifier<'_, '_>,
 ) -> Result<Option<(Written, Certified)>, Failure> {
-    std::thread::scope(|scope| {
+    thread::scope(|scope| {
         let (sender, receiver) = sync_channel(BATCHES);
         let (back, empty) = sync_channel(BATCHES + 2);
-        let handle = scope.spawn(move || certify_all(certifier, receiver, &back));
+        let handle = thread::Builder::new()
+            .spawn_scoped(scope, move || certify_all(certifier, receiver, &back))
+            .map_err(|error| no_thread(&error))?;
         let written = writer.run(&mut |batch| send(batch, &sender, &empty));
         drop(sender);
         // A panic of the certifier is a fault of gwatt: it goes on here.

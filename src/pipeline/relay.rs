@@ -3,7 +3,7 @@
 //! One thread reads and executes, the other judges. Lines go over by the hundred,
 //! and their buffers come back.
 
-use std::io::{Read, Seek};
+use std::io::{self, Read, Seek};
 use std::mem::replace;
 use std::ops::Range;
 use std::panic::resume_unwind;
@@ -154,12 +154,19 @@ pub(super) fn relay<R: Read + Seek + Send>(
     thread::scope(|scope| {
         let (sender, receiver) = sync_channel(BATCHES);
         let (back, empty) = sync_channel(BATCHES + 2);
-        let handle = scope.spawn(move || execute(front, &sender, &empty));
+        let handle = thread::Builder::new()
+            .spawn_scoped(scope, move || execute(front, &sender, &empty))
+            .map_err(|error| no_thread(&error))?;
         let taken = take(receiver, &back, &mut each);
         // A panic there is a fault of gwatt: it goes on here.
         let executed = handle.join().unwrap_or_else(|panic| resume_unwind(panic));
         taken.and(executed)
     })
+}
+
+/// A thread cannot be started.
+pub(super) fn no_thread(error: &io::Error) -> Failure {
+    Failure::Unsuitable(format!("cannot start a thread ({error}): give --threads 1"))
 }
 
 /// Reads and executes all lines, as long as somebody takes them.
