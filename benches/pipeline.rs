@@ -218,15 +218,23 @@ fn e_power(bencher: Bencher<'_, '_>, what: &str) {
 
 #[divan::bench(args = MACHINES)]
 fn f_check(bencher: Bencher<'_, '_>, name: &str) {
+    check(bencher, name, 1);
+}
+
+#[divan::bench(args = MACHINES)]
+fn f_check_in_two_threads(bencher: Bencher<'_, '_>, name: &str) {
+    check(bencher, name, 2);
+}
+
+fn check(bencher: Bencher<'_, '_>, name: &str, threads: usize) {
     let machine = machine(name);
-    bencher.counter(bytes()).bench_local(|| {
-        analyze(
-            std::io::Cursor::new(program()),
-            &machine,
-            &Options::default(),
-            None,
-        )
-    });
+    let options = Options {
+        threads,
+        ..Options::default()
+    };
+    bencher
+        .counter(bytes())
+        .bench_local(|| analyze(std::io::Cursor::new(program()), &machine, &options, None));
 }
 
 #[divan::bench(args = MACHINES)]

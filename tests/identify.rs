@@ -185,6 +185,14 @@ pub(crate) fn table(names: &[&str], columns: &[&[f64]]) -> Recording {
     Recording::read(csv(names, columns).as_bytes(), None).unwrap()
 }
 
+/// A pole or zero of two.
+pub(crate) fn pair(hz: f64, damping: f64) -> Factor {
+    Factor::Pair {
+        omega_rad_s: TAU * hz,
+        damping,
+    }
+}
+
 pub(crate) fn choice(method: Method) -> Choice {
     Choice {
         method,

@@ -19,14 +19,7 @@ use gwatt::identify::tune::{
 };
 use gwatt::report::{tuned_json, tuned_text};
 
-use crate::identify::{PERIOD_S, branched, choice, one_side, recording, spring, table};
-
-fn pair(hz: f64, damping: f64) -> Factor {
-    Factor::Pair {
-        omega_rad_s: TAU * hz,
-        damping,
-    }
-}
+use crate::identify::{PERIOD_S, branched, choice, one_side, pair, recording, spring, table};
 
 fn wish(discretization: Discretization) -> Wish {
     Wish {

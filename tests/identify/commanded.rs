@@ -6,17 +6,10 @@ use std::f64::consts::TAU;
 use gwatt::identify::flexible::{self, Flexible, Method};
 use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
 
-use super::{Noise, PERIOD_S, choice, table};
+use super::{Noise, PERIOD_S, choice, pair, table};
 
 /// Steps of the simulation in a sampling period.
 const FINE: usize = 10;
-
-fn pair(hz: f64, damping: f64) -> Factor {
-    Factor::Pair {
-        omega_rad_s: TAU * hz,
-        damping,
-    }
-}
 
 /// A load with an anti-resonance at 40 Hz in a loop of 20 Hz; a mode of the drive at
 /// 130 Hz lies beyond what is excited.

@@ -75,8 +75,8 @@ pub struct Planned<T> {
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
     pub certain: bool,
-    /// True where it ends at rest even if it is not certain: the controller's rules
-    /// stop there.
+    /// True where it ends at rest even if it is not certain, since the rules stop
+    /// there. `LinuxCNC`'s tell it; with others it is false.
     pub rests: bool,
     /// How long it runs already while the piece before it comes to rest, s.
     pub overlap_s: f64,
