@@ -36,6 +36,8 @@ mod polynomial;
 mod quadrants;
 mod quadrature;
 mod robust;
+#[cfg(test)]
+mod sample;
 mod search;
 mod overlap;
 mod spindle;

@@ -103,13 +103,12 @@ pub(super) fn straight_line(mv: &Move, direction: &[f64; 3], length_mm: f64) -> 
 mod tests {
     use super::super::straight;
     use super::piece_demand;
-    use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
     use crate::machine::{AxisSet, Machine};
     use crate::plan::Blend;
     use crate::plan::lookahead::{Piece, Planned, Speeds2};
     use crate::plan::random::Random;
+    use crate::power::sample::any_move;
     use crate::power::{PowerModel, Want};
-    use crate::syntax::{Block, scan_line};
     use std::fmt::Write as _;
 
     const MASS_KG: [f64; 3] = [500.0, 150.0, 300.0];
@@ -130,22 +129,6 @@ mod tests {
             );
         }
         Machine::from_toml("test.toml", &text).expect("a machine").0
-    }
-
-    /// Any move: of a piece that is a blend only its loads count.
-    fn any_move(machine: &Machine) -> Move {
-        let text = b"G21 G90 G64 P0.01 G1 X1 Y40 F600\n";
-        let reading = Reading::default();
-        let mut interpreter = Interpreter::new(machine, &reading);
-        let (mut block, mut steps) = (Block::default(), Vec::new());
-        let (mut facts, mut found) = (Facts::default(), Diagnostics::default());
-        scan_line(text, true, &mut block);
-        interpreter.execute(1, text, &mut block, &mut steps, &mut facts, &mut found);
-        let moves = steps.into_iter().find_map(|step| match step {
-            Step::Move(mv) => Some(mv),
-            Step::Action(_) => None,
-        });
-        moves.expect("a move")
     }
 
     impl Random {

@@ -1,14 +1,22 @@
 //! Moves that wait, by number; their room is used again in place.
+//!
+//! The ring is no larger than need be: what is used again soon is still in the
+//! processor's nearest cache.
 
 use super::open::Open;
 use crate::interpret::Move;
 use crate::power::demand::Want;
 
+/// A smaller ring is no gain.
+const RING_MIN: usize = 8;
+
 /// Moves that wait, in program order.
 #[derive(Debug)]
 pub(super) struct Queue {
-    /// The move of number n lies at n modulo their number, a power of two.
+    /// The move of number n lies at n modulo the size of the ring, a power of two;
+    /// behind the ring there is room for a larger one.
     slots: Vec<Option<Box<Open>>>,
+    ring: usize,
     /// The first that waits, and the next that comes.
     first: u64,
     end: u64,
@@ -29,6 +37,7 @@ impl Queue {
     pub fn new() -> Self {
         Self {
             slots: vec![None],
+            ring: 1,
             first: 0,
             end: 0,
             before: None,
@@ -56,7 +65,7 @@ impl Queue {
 
     #[inline]
     fn slot(&self, number: u64) -> usize {
-        number as usize & (self.slots.len() - 1)
+        number as usize & (self.ring - 1)
     }
 
     #[inline]
@@ -94,7 +103,7 @@ impl Queue {
     /// Adds a move of which no piece is planned yet.
     #[inline]
     pub fn push(&mut self, mv: &Move, text: &[u8], want: Want) -> &mut Open {
-        if self.end - self.first == self.slots.len() as u64 {
+        if self.len() == self.ring {
             self.grow();
         }
         let slot = self.slot(self.end);
@@ -110,8 +119,24 @@ impl Queue {
 
     #[cold]
     fn grow(&mut self) {
-        let before = self.slots.len();
-        self.slots.resize_with(2 * before, || None);
+        if self.ring == self.slots.len() {
+            self.slots.resize_with(2 * self.ring, || None);
+        }
+        self.resize(2 * self.ring);
+    }
+
+    /// Makes the ring smaller by half, where a quarter is enough.
+    #[cold]
+    fn shrink(&mut self) {
+        if self.ring > RING_MIN && 4 * self.len() <= self.ring {
+            self.resize(self.ring / 2);
+        }
+    }
+
+    /// Those that wait fit into both rings.
+    fn resize(&mut self, ring: usize) {
+        let before = self.ring;
+        self.ring = ring;
         for number in self.first..self.end {
             let slot = self.slot(number);
             self.slots.swap(number as usize & (before - 1), slot);
@@ -157,11 +182,58 @@ impl Queue {
             std::mem::swap(&mut self.slots[slot], &mut self.before);
             self.has_before = true;
             self.first += 1;
+            if slot == 0 {
+                self.shrink();
+            }
         }
     }
 
     /// What comes next begins at rest.
     pub fn begin_at_rest(&mut self) {
         self.has_before = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Machine;
+    use crate::power::sample::any_move;
+
+    const MACHINE: &str = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
+         [converter]\npeak_power_w = 1e6\n\
+         [axes.X]\nkind = \"linear\"\nrapid_mm_min = 3000\naccel_mm_s2 = 200\nmass_kg = 10\n\
+         [axes.Y]\nkind = \"linear\"\nrapid_mm_min = 3000\naccel_mm_s2 = 200\nmass_kg = 10\n";
+
+    /// Each move is found by its number, however the ring grows and shrinks.
+    #[test]
+    fn moves_stay_where_they_are_found() {
+        let (machine, _) = Machine::from_toml("test.toml", MACHINE).expect("a machine");
+        let (mut queue, mut mv) = (Queue::new(), any_move(&machine));
+        let check = |queue: &Queue| {
+            for number in queue.first()..queue.end() {
+                assert_eq!(queue.get(number).unwrap().mv.line, number);
+            }
+            assert!(queue.get(queue.end()).is_none());
+        };
+        for waiting in [1, 3, 100, 2, 40, 0, 9, 1] {
+            while queue.len() < waiting {
+                mv.line = queue.end();
+                queue.push(&mv, b"", Want::ALL);
+                check(&queue);
+            }
+            for _ in 0..200 {
+                mv.line = queue.end();
+                queue.push(&mv, b"", Want::ALL);
+                while queue.len() > waiting {
+                    queue.leave();
+                    let before = queue.before.as_ref().unwrap();
+                    assert_eq!(before.mv.line + 1, queue.first());
+                }
+                check(&queue);
+            }
+            assert!(queue.ring < 8 * waiting.max(RING_MIN), "{}", queue.ring);
+        }
+        assert_eq!(queue.slots.len(), 128);
     }
 }
