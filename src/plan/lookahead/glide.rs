@@ -92,19 +92,17 @@ impl<T: Copy> PathPlanner<T> {
         blocks.min(BLOCKS_MAX)
     }
 
-    /// Where the motion glides, over all elements that are open. Otherwise, how
-    /// many must be final before it can do so.
-    #[inline]
-    pub(crate) fn gliding(&self) -> Result<Gliding<T>, usize> {
+    /// Where the motion glides, over all elements that are open.
+    pub(crate) fn gliding(&self) -> Option<Gliding<T>> {
         let (speed2, open) = self.window.gliding()?;
         match &self.rule {
             Rule::Corner(before) => {
                 let straight = before.as_ref().is_some_and(Before::is_straight);
                 if !straight {
-                    return Err(0);
+                    return None;
                 }
-                Ok(Gliding {
-                    first: open.front().ok_or(0_usize)?.payload.tag,
+                Some(Gliding {
+                    first: open.front()?.payload.tag,
                     open: open.len(),
                     keeps: false,
                     speed2,
@@ -113,8 +111,8 @@ impl<T: Copy> PathPlanner<T> {
                 })
             }
             Rule::LinuxCnc(rule) => {
-                let (first, start) = rule.gliding(speed2).ok_or(1_usize)?;
-                Ok(Gliding {
+                let (first, start) = rule.gliding(speed2)?;
+                Some(Gliding {
                     first,
                     open: 1,
                     keeps: true,

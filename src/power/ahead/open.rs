@@ -64,7 +64,8 @@ impl Open {
     /// The same in place.
     #[inline]
     pub fn renew(&mut self, mv: &Move, text: &[u8], want: Want) {
-        self.mv.clone_from(mv);
+        // At once, without a copy between.
+        self.mv = Move { ..*mv };
         self.text.clear();
         self.text.extend_from_slice(text);
         self.assessment = Assessment::AHEAD;

@@ -13,12 +13,14 @@
 
 mod arcs;
 mod corner;
+mod shallow;
 
 use super::super::limits::{self, lower};
 use super::vector::{Vector, angle, scale};
 use crate::machine::{AxisValues, Machine};
 
 pub(super) use corner::Corner;
+pub(super) use shallow::Rounded;
 
 /// Share of an element that the tolerance may be.
 const TOLERANCE_SHARE: f64 = 0.25;
@@ -31,7 +33,7 @@ pub(super) struct Axes {
     exists: [bool; 3],
     pub speed: Vector,
     /// The lowest of them.
-    least_speed: f64,
+    pub least_speed: f64,
     pub jerk: Vector,
 }
 

@@ -1,6 +1,6 @@
 //! Lines that are run at full speed from blend to blend.
 
-use super::super::blend::{Corner, Leg};
+use super::super::blend::{Corner, Leg, Rounded};
 use super::super::element::Element;
 use super::super::glide::{Line, LineStart, Passed};
 use super::super::vector::dot;
@@ -58,30 +58,35 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let first = leg(before, length_mm);
         let second = leg(next, next.length_mm);
-        let accel = self.axes.masked(next.axis_accel_mm_s2);
-        let blend = Corner::of(u, w)?.round_lines([&first, &second], &self.axes, accel)?;
-        if blend.speed < speed_mm_s {
-            return None;
-        }
+        let legs = [&first, &second];
+        let blend = Rounded::shallow(legs, &self.axes, next.inverse_accel)
+            .or_else(|| self.rounded(legs, next, speed_mm_s))?;
         let left_mm = length_mm - blend.trim;
-        let blend_mm = blend.radius * blend.sweep;
         // What is too short to stand alone leads into the blend.
         let (own_mm, shared_mm) = if left_mm < self.gap_cycles * cycle_mm {
-            (0.0, left_mm.max(0.0) + blend_mm)
+            (0.0, left_mm.max(0.0) + blend.length_mm)
         } else {
-            (left_mm, blend_mm)
+            (left_mm, blend.length_mm)
         };
         let long = shared_mm >= shortest_mm && (own_mm == 0.0 || own_mm >= shortest_mm);
         long.then_some(Passed {
             own_mm,
             shared_mm,
-            curvature_per_mm: 1.0 / blend.radius,
+            curvature_per_mm: blend.curvature_per_mm,
             accel_share: TANGENTIAL_SHARE.min(1.0 - self.kink_ratio),
             next: LineStart {
                 taken_mm: blend.trim,
                 kink: 0.0,
             },
         })
+    }
+
+    /// The circle in any corner, where it slows nothing down.
+    fn rounded(&self, legs: [&Leg; 2], next: &Line, speed_mm_s: f64) -> Option<Rounded> {
+        let accel = self.axes.masked(next.axis_accel_mm_s2);
+        let corner = Corner::of(legs[0].tangent, legs[1].tangent)?;
+        let rounding = corner.round_lines(legs, &self.axes, accel)?;
+        (rounding.speed >= speed_mm_s).then(|| Rounded::of(&rounding))
     }
 
     /// The share of an axis' acceleration that the step of velocity takes, if the

@@ -16,22 +16,18 @@ impl<P: Copy> Window<P> {
     }
 
     /// The elements that are open, if the motion has the largest speed of all of
-    /// them and of the joints between, and that speed, squared. Otherwise, how many
-    /// must be final before it can be so.
-    #[inline]
-    pub fn gliding(&self) -> Result<(f64, &VecDeque<Node<P>>), usize> {
+    /// them and of the joints between, and that speed, squared.
+    pub fn gliding(&self) -> Option<(f64, &VecDeque<Node<P>>)> {
         let speed2 = self.now2;
         if self.ready > 0 || speed2 == 0.0 {
-            return Err(0);
+            return None;
         }
-        for (index, node) in self.nodes.iter().enumerate() {
+        let glides = self.nodes.iter().enumerate().all(|(index, node)| {
             let entered = index == 0 || node.entry2 == speed2;
             let smooth = !self.smooth || node.smooth_entry2 == speed2;
-            if !entered || !smooth || node.top2 != speed2 || node.forced {
-                return Err(index);
-            }
-        }
-        Ok((speed2, &self.nodes))
+            entered && smooth && node.top2 == speed2 && !node.forced
+        });
+        glides.then_some((speed2, &self.nodes))
     }
 
     /// The first element that is open, over which the motion glides.

@@ -24,14 +24,15 @@ use terms::{Terms, lower};
 
 /// What rounding may make of the sum, as a share.
 const ROUNDING: f64 = 1e-6;
-/// Moves that pass before another look where one was in vain.
-const PAUSE: usize = 8;
+/// Moves that pass at most before another look where one was in vain.
+const PAUSE_MAX: usize = 8;
 
 /// What is known of gliding beforehand, and how far it has come.
 #[derive(Debug)]
 pub(super) struct Glider {
     terms: Terms,
-    /// Moves that pass before it is worth another look.
+    /// Moves that pass before another look, and before the one behind that.
+    wait: usize,
     pause: usize,
     /// The planner does not know of the last moves.
     glide: Option<Glide>,
@@ -42,8 +43,9 @@ pub(super) struct Glider {
 struct Glide {
     /// Of F, mm/s.
     feed_mm_s: f64,
-    /// The same under the override.
+    /// The same under the override, and its inverse.
     speed_mm_s: f64,
+    s_per_mm: f64,
     /// The last move, and room for the next one; they change places.
     lines: [Line; 2],
     last: usize,
@@ -72,8 +74,17 @@ impl Glider {
     pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
         Self {
             terms: Terms::new(machine, rules, overrides.feed, blocks),
-            pause: 0,
+            wait: 0,
+            pause: 1,
             glide: None,
+        }
+    }
+
+    /// A look was in vain.
+    fn back_off(&mut self) {
+        self.wait = self.pause;
+        if self.pause < PAUSE_MAX {
+            self.pause += 1;
         }
     }
 
@@ -108,20 +119,14 @@ impl Ahead {
             return false;
         }
         if self.glider.glide.is_none() {
-            if self.glider.pause > 0 {
-                self.glider.pause -= 1;
+            if self.glider.wait > 0 {
+                self.glider.wait -= 1;
                 return false;
             }
-            match self.begin_gliding(model) {
-                Ok(glide) => self.glider.glide = Some(glide),
-                Err(pause) => {
-                    self.glider.pause = pause;
-                    return false;
-                }
-            }
+            self.glider.glide = self.begin_gliding(model, eye);
         }
         let Some(speed_mm_s) = self.glide_on(model, mv) else {
-            self.glider.pause = PAUSE;
+            self.glider.back_off();
             return false;
         };
         let open = self.open.push(mv, text, want);
@@ -170,9 +175,10 @@ impl Ahead {
         Some(glide.speed_mm_s)
     }
 
-    /// How the motion glides over the moves that are open; otherwise, how many of
-    /// them must pass before it may.
-    fn begin_gliding(&mut self, model: &PowerModel) -> Result<Glide, usize> {
+    /// How the motion glides over the moves that are open, if it does.
+    fn begin_gliding(&mut self, model: &PowerModel, eye: &mut Eye) -> Option<Glide> {
+        self.largest.planner.settle();
+        self.pump(model, eye);
         let Gliding {
             first,
             open,
@@ -184,26 +190,23 @@ impl Ahead {
         let terms = &self.glider.terms;
         if self.open.end().checked_sub(first) != Some(open as u64) || open as u64 > terms.blocks {
             // Pieces of arcs, or a path that is too short to brake on.
-            return Err(open);
+            return None;
         }
-        let mv = &self.open.back().ok_or(0_usize)?.mv;
-        let feed_mm_s = mv.feed_mm_s;
+        let feed_mm_s = self.open.back()?.mv.feed_mm_s;
         let speed_mm_s = feed_mm_s * terms.feed;
         if speed_mm_s * speed_mm_s != speed2 {
-            return Err(open);
+            return None;
         }
         let (mut ramp2, mut line) = (0.0, Line::default());
         for index in 0..open {
-            let each = self.open.get_mut(first + index as u64).ok_or(open)?;
+            let each = self.open.get_mut(first + index as u64)?;
             let glides = terms.suit(&each.mv)
                 && each.mv.feed_mm_s == feed_mm_s
                 && !each.in_doubt
-                && is_plain(model, &each.mv, speed_mm_s, 0.0, each.want);
+                && is_plain(model, &each.mv, speed_mm_s, 0.0, each.want)
+                && terms.describe(&mut line, &each.mv, each.mv.moving, speed_mm_s);
             if !glides {
-                return Err(index + 1);
-            }
-            if !terms.describe(&mut line, &each.mv, each.mv.moving, speed_mm_s) {
-                return Err(index + 1);
+                return None;
             }
             if index + 1 < open {
                 each.glided = Glided::whole(&line, accel_share);
@@ -211,9 +214,10 @@ impl Ahead {
             }
         }
         line.start = start;
-        Ok(Glide {
+        Some(Glide {
             feed_mm_s,
             speed_mm_s,
+            s_per_mm: 1.0 / speed_mm_s,
             lines: [line; 2],
             last: 0,
             begun: first,
@@ -239,12 +243,10 @@ impl Ahead {
                 break;
             };
             let passed = open.glided.passed;
-            let shared_s = 0.5 * passed.shared_mm / glide.speed_mm_s;
-            open.glides_for(
-                passed.own_mm / glide.speed_mm_s + shared_s,
-                glide.speed_mm_s,
-            );
+            let shared_s = 0.5 * passed.shared_mm * glide.s_per_mm;
+            open.glides_for(passed.own_mm * glide.s_per_mm + shared_s, glide.speed_mm_s);
             self.largest.next = glide.first;
+            self.glider.pause = 1;
             glide.first += 1;
             glide.start = passed.next;
             let Some(next) = self.open.get_mut(glide.first) else {

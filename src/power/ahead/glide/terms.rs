@@ -68,9 +68,10 @@ impl Terms {
     #[inline]
     pub fn describe(&self, line: &mut Line, mv: &Move, axes: AxisSet, speed_mm_s: f64) -> bool {
         line.direction = [0.0; LINEAR];
+        let per_mm = 1.0 / mv.length_mm;
         let mut permitted = true;
         for axis in AxisSet(mv.moving.0 & self.linear.0).iter() {
-            let part = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            let part = (mv.end[axis] - mv.start[axis]) * per_mm;
             permitted &= part.abs() * speed_mm_s <= self.speed_mm_s[axis];
             if let Some(change) = line.direction.get_mut(axis) {
                 *change = part;
@@ -84,7 +85,7 @@ impl Terms {
         }
         line.extrusion = 0.0;
         if mv.moving.contains(EXTRUDER) {
-            line.extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) / mv.length_mm;
+            line.extrusion = (mv.end[EXTRUDER] - mv.start[EXTRUDER]) * per_mm;
             let share = line.extrusion.abs();
             permitted &= share * speed_mm_s <= self.speed_mm_s[EXTRUDER];
             least_accel_mm_s2 = lower(mv.accel_mm_s2[EXTRUDER] / share, least_accel_mm_s2);
@@ -111,10 +112,20 @@ fn describe_joint(line: &mut Line, mv: &Move) -> bool {
     let [x, y, z, ..] = mv.accel_mm_s2;
     if line.axis_accel_mm_s2 != [x, y, z] {
         line.axis_accel_mm_s2 = [x, y, z];
-        line.inverse_accel = line.axis_accel_mm_s2.map(|accel| 1.0 / accel);
+        line.inverse_accel = line.axis_accel_mm_s2.map(inverse);
     }
     line.inverse_path_accel = 1.0 / line.path_accel_mm_s2;
     true
+}
+
+/// Of an axis that there is not, 0.
+#[inline]
+fn inverse(accel_mm_s2: f64) -> f64 {
+    if accel_mm_s2 > 0.0 {
+        1.0 / accel_mm_s2
+    } else {
+        0.0
+    }
 }
 
 /// `f64::min` is several instructions more.
