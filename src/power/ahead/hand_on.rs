@@ -23,10 +23,14 @@ impl Ahead {
         eye: &mut Eye,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
+        if let Some(begun) = self.glider.begun()
+            && self.open.first() > begun
+        {
+            return self.hand_on_gliding(sink);
+        }
         let nominal = self.nominal.as_ref();
         let nominal = nominal.map_or(u64::MAX, |nominal| nominal.next);
         let finished = self.largest.next.min(nominal);
-        let glides_from = self.glider.begun().unwrap_or(u64::MAX);
         loop {
             let first = self.open.first();
             let Some(front) = self.open.get(first) else {
@@ -41,12 +45,6 @@ impl Ahead {
             }
             if first + 1 >= finished && !self.at_rest {
                 return;
-            }
-            // Where the motion glides all is certain.
-            if first > glides_from {
-                sink(&front.mv, &front.assessment, &front.text);
-                self.open.leave();
-                continue;
             }
             let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
             let next = (first + 1..self.open.end()).find(moves);
@@ -78,6 +76,18 @@ impl Ahead {
         }
         if self.at_rest {
             self.open.begin_at_rest();
+        }
+    }
+
+    /// The same over moves where the motion glides: all move, and all is certain.
+    #[inline]
+    fn hand_on_gliding(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        while self.open.first() + 1 < self.largest.next {
+            let Some(front) = self.open.get(self.open.first()) else {
+                break;
+            };
+            sink(&front.mv, &front.assessment, &front.text);
+            self.open.leave();
         }
     }
 }
