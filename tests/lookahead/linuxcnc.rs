@@ -217,7 +217,17 @@ fn programs_last_as_recorded() {
         G1 X50 Z14\nM2\n";
     let off_the_plane = "G64 P0.05\nG1 X20 F3000\nG3 X20 Y0 Z-5 I-10 J0\nG1 Y10\nM2\n";
     let slower_at_the_end = "G64 P0.05\nG1 X40 F9000\nG1 X60 Y3.6 F200\nM2\n";
+    // Feeds beyond what the arcs permit: how sharp a corner is taken to be depends on
+    // the speed that is asked for.
+    let fast_arcs = "G64 P0.01\nF9000 G91\nG3 X11.26636 Y-3.51266 I5.15245 J-3.29821\n\
+        G2 X3.34856 Y3.93068 I-0.56539 J3.87331\nM2\n";
+    let fast_helices = "G64 P0.01\nF12000 G91\n\
+        G2 X-8.82999 Y-25.16527 I-1.85813 J-13.47979 Z3.5254\n\
+        G3 X0.32768 Y-2.18495 I7.33122 J-0.01759 Z-3.5111\n\
+        G3 X6.82299 Y0.35839 I3.36619 J1.04173 Z1.8086\nM2\n";
     for (program, recorded_s) in [
+        (fast_arcs, 1.003),
+        (fast_helices, 1.511),
         (overlapping_ramps, 1.920),
         (off_the_plane, 2.036),
         (SLOWER_BEHIND_A_BLEND, 1.097),

@@ -5,6 +5,7 @@
 //! an element runs while the one before it still brakes.
 
 use super::super::arc;
+use super::super::limits::lower;
 use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
 use super::planner::Piece;
@@ -174,6 +175,25 @@ impl<T: Copy> Pending<T> {
         arc::linuxcnc(max_speed, accel, radius_mm)
     }
 
+    /// The speed that the interpreter asks for: F, as far as the axes and turning in
+    /// the plane permit it. Of a helix the planner permits less.
+    fn asked_speed(&self) -> f64 {
+        let element = &self.element;
+        let asked = lower(element.feed_mm_s, element.speed_mm_s);
+        let Some(curve) = &element.curve else {
+            return asked;
+        };
+        let limits = curve.plane.map(|axis| element.axis_accel_mm_s2.get(axis));
+        let accel = limits
+            .into_iter()
+            .flatten()
+            .copied()
+            .fold(f64::INFINITY, lower);
+        let share = curve.radius_mm * curve.sweep_rad.abs() / element.length_mm;
+        let turning = (arc::LINUXCNC_NORMAL_SHARE * accel * curve.radius_mm).sqrt();
+        lower(asked, turning / share)
+    }
+
     /// Unit direction in which the planner expects an end to pull. An arc pulls in
     /// its plane; at its start it turns towards the centre, by what half of the
     /// speed asked for needs.
@@ -187,7 +207,7 @@ impl<T: Copy> Pending<T> {
         if at_end {
             return Some(flat);
         }
-        let half = 0.5 * self.element.feed_mm_s.min(self.element.speed_mm_s);
+        let half = 0.5 * self.asked_speed();
         let inward = scale(unit(circle.center)?, half * half / circle.radius);
         unit(add(scale(flat, self.unbent_share() * self.accel()), inward))
     }
