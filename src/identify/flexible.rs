@@ -284,6 +284,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         from_command: !prepared.is_force,
         early_s: prepared.early_s,
         positions: prepared.positions,
+        every: 1,
     };
     let find = |choice: &Choice| match choice.method {
         Method::Iv => by_search(&data, &prepared, choice),
@@ -418,6 +419,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         from_command: !prepared.is_force,
         early_s: prepared.early_s,
         positions: prepared.positions,
+        every: 1,
     };
     let fitted = TransferFunction {
         delay_s: model.fitted_delay_s,

@@ -45,6 +45,7 @@ mod sensitivity;
 mod spectrum;
 mod spectral_lines;
 mod state_space;
+mod stretch;
 mod subspace;
 mod transfer;
 mod trouble;
