@@ -11,7 +11,7 @@ use super::output_error::{Effort, Estimate};
 use super::transfer::{Factor, TransferFunction};
 
 /// Steps of each fit: models go on from those of the dead time before.
-const STEPS: usize = 8;
+const STEPS: usize = 14;
 /// Dead times less likely than the best by so much (Akaike's criterion), so many in
 /// a row, end the profile.
 const UNLIKELY: f64 = 20.0;

@@ -22,6 +22,7 @@ mod command_input;
 mod data;
 mod delay_profile;
 mod discrete;
+mod fewer_rows;
 mod filter;
 mod methods;
 mod modal;

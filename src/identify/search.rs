@@ -6,6 +6,7 @@ use nalgebra::Complex;
 
 use super::data::Data;
 use super::delay_profile::{Bounds, profile};
+use super::fewer_rows::FewerRows;
 use super::mode_starts;
 use super::neighbours::{Given, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
@@ -77,6 +78,10 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         COMPARED
     };
     let (short, long) = (data.head(compared), data.head(CHOSEN));
+    // Only what a loop follows is known to be slow.
+    let fewer = data.from_command.then(|| FewerRows::of(&short, band_rad_s));
+    let fewer = fewer.flatten();
+    let short = fewer.as_ref().map_or(short, |fewer| fewer.data(&short));
     let mut taps: Vec<f64> = Vec::new();
     let mut best: Option<(Estimate, bool, f64, Vec<f64>)> = None;
     // Noise that is not white shows only behind a model, and the model only
