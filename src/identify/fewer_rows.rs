@@ -21,10 +21,11 @@ const POINTS: usize = 400;
 const EVERY_MAX: usize = 8;
 const ROWS_MIN: usize = 1500;
 
-/// Both signals behind the low-pass.
+/// The signals behind the low-pass.
 pub struct FewerRows {
     input: Vec<f64>,
     output: Vec<f64>,
+    undisturbed: Option<Vec<f64>>,
     every: usize,
 }
 
@@ -43,6 +44,7 @@ impl FewerRows {
         Some(Self {
             input: behind(data.input, &taps),
             output: behind(data.output, &taps),
+            undisturbed: data.undisturbed.map(|x| behind(x, &taps)),
             every,
         })
     }
@@ -53,6 +55,7 @@ impl FewerRows {
         Data {
             input: &self.input,
             output: &self.output,
+            undisturbed: self.undisturbed.as_deref(),
             every: self.every,
             ..*data
         }
