@@ -24,6 +24,8 @@ pub struct Data<'a> {
     pub early_s: f64,
     /// True for positions as input and output: most of what they are is slow.
     pub positions: bool,
+    /// One of so many samples counts as a row: 1 where all do.
+    pub every: usize,
 }
 
 impl Data<'_> {
@@ -51,6 +53,12 @@ impl Data<'_> {
             Measured::Velocity => 1,
             Measured::Position => 2,
         }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.len().div_ceil(self.every)
     }
 
     /// Number of samples.

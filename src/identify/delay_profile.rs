@@ -11,7 +11,7 @@ use super::output_error::{Effort, Estimate};
 use super::transfer::{Factor, TransferFunction};
 
 /// Steps of each fit: models go on from those of the dead time before.
-const STEPS: usize = 8;
+const STEPS: usize = 14;
 /// Dead times less likely than the best by so much (Akaike's criterion), so many in
 /// a row, end the profile.
 const UNLIKELY: f64 = 20.0;
@@ -92,7 +92,16 @@ pub fn profile(
         unlikely = if is_unlikely { unlikely + 1 } else { 0 };
         delay_s -= bounds.step_s();
     }
-    of_the_mean(&all, bounds)
+    // What a pole takes back a zero has given to noise.
+    let (plain, noisy): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|found| !cancels(&found.transfer));
+    of_the_mean(if plain.is_empty() { &noisy } else { &plain }, bounds)
+}
+
+/// True for a zero that swings beside a pole that leaves nothing of it.
+fn cancels(model: &TransferFunction) -> bool {
+    let is_undone = |zero: &Factor| model.poles.iter().any(|pole| zero.is_undone_by(*pole));
+    model.zeros.iter().any(is_undone)
 }
 
 /// Models that go on to shorter dead times, each from its own on: with all zeros or

@@ -65,6 +65,10 @@ pub struct Flexible {
     pub inertia: Option<Figure>,
     /// Anti-resonances: zeros that make a dip.
     pub zeros: Vec<Root>,
+    /// Zeros of which the recording does not tell whether there are any: their
+    /// frequency is not known to a tenth. The model has them to explain other things,
+    /// such as a delay.
+    pub unclear_zeros: Vec<Root>,
     /// Resonances.
     pub poles: Vec<Root>,
     /// Delay; from a command that is held, its half period of holding too.
@@ -93,6 +97,9 @@ pub struct Flexible {
 /// Damping from which on a pair of zeros makes no dip, and a pair of poles no
 /// peak: 1/√2.
 const DIP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Relative standard error of a frequency from which on a zero is not clear.
+const UNCLEAR: f64 = 0.1;
 
 /// Zeros farther beyond the band do not count as anti-resonances.
 const BEYOND: f64 = 1.05;
@@ -284,6 +291,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         from_command: !prepared.is_force,
         early_s: prepared.early_s,
         positions: prepared.positions,
+        every: 1,
     };
     let find = |choice: &Choice| match choice.method {
         Method::Iv => by_search(&data, &prepared, choice),
@@ -329,6 +337,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     }
     let mut at = 1;
     let mut zeros = Vec::new();
+    let mut unclear_zeros = Vec::new();
     let mut poles = Vec::new();
     let band = std::f64::consts::PI / data.period_s;
     // A zero beyond what the recording shows stands for something else.
@@ -357,7 +366,9 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             let is_zero = index < transfer.zeros.len();
             let band = if is_zero { shown } else { band };
             if damping.abs() < DIP && omega_rad_s < band {
-                if is_zero {
+                if is_zero && std(at) > UNCLEAR {
+                    unclear_zeros.push(root);
+                } else if is_zero {
                     zeros.push(root);
                 } else {
                     poles.push(root);
@@ -366,7 +377,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         }
         at += factor.degree();
     }
-    for list in [&mut zeros, &mut poles] {
+    for list in [&mut zeros, &mut unclear_zeros, &mut poles] {
         list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
     }
     let delay_std = if found.delay_is_free {
@@ -384,6 +395,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             std: std(0) / (gain * gain),
         }),
         zeros,
+        unclear_zeros,
         poles,
         delay_s: Figure {
             value: transfer.delay_s,
@@ -418,6 +430,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         from_command: !prepared.is_force,
         early_s: prepared.early_s,
         positions: prepared.positions,
+        every: 1,
     };
     let fitted = TransferFunction {
         delay_s: model.fitted_delay_s,

@@ -103,7 +103,8 @@ pub fn flexible(axis: &Flexible) -> Judgement {
     if axis.rel_error > 0.9 || axis.inertia.is_some_and(|j| j.value <= 0.0) {
         return Judgement::DoesNotFit;
     }
-    let roots = || axis.zeros.iter().chain(&axis.poles);
+    let zeros = || axis.zeros.iter().chain(&axis.unclear_zeros);
+    let roots = || zeros().chain(&axis.poles);
     let worst = |part: fn(&Root) -> Figure, limit: f64| {
         roots()
             .map(|root| excess(part(root), limit))

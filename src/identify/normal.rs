@@ -27,17 +27,45 @@ pub struct Solution {
     pub rest: f64,
 }
 
-/// The sum of products, in four parts that a processor can work on at once.
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let ((xs, x_rest), (ys, y_rest)) = (x.as_chunks(), y.as_chunks());
-    let mut sums = [0.0; 4];
-    for ([a, b, c, d], [e, f, g, h]) in xs.iter().zip(ys) {
-        let [i, j, k, l] = sums;
-        sums = [i + a * e, j + b * f, k + c * g, l + d * h];
+/// Values that are multiplied and added at a time.
+const LANES: usize = 4;
+type Lanes = [f64; LANES];
+
+fn add(sums: Lanes, x: &Lanes, y: &Lanes) -> Lanes {
+    let ([i, j, k, l], [a, b, c, d], [e, f, g, h]) = (sums, x, y);
+    [i + a * e, j + b * f, k + c * g, l + d * h]
+}
+
+/// Sums of what lanes hold. Not in line: a compiler that sees it joins lanes of
+/// different sums, and shuffles them for each row.
+#[inline(never)]
+fn totals(sums: &[Lanes; 4]) -> [f64; 4] {
+    sums.map(|[a, b, c, d]| (a + b) + (c + d))
+}
+
+/// The sums of products of each of two columns with each of two others, all of one
+/// length. Each value is loaded once for two products, and so many sums run beside
+/// one another that none waits for itself.
+fn products(x: [&[f64]; 2], y: [&[f64]; 2]) -> [[f64; 2]; 2] {
+    let [(a, a_rest), (b, b_rest)] = x.map(<[f64]>::as_chunks);
+    let [(c, c_rest), (d, d_rest)] = y.map(<[f64]>::as_chunks);
+    let [mut e, mut f, mut g, mut h] = [[0.0; LANES]; 4];
+    for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
+        (e, f) = (add(e, a, c), add(f, a, d));
+        (g, h) = (add(g, b, c), add(h, b, d));
     }
-    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
-    let [a, b, c, d] = sums;
-    (a + b) + (c + d) + rest
+    let rest = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+    let [e, f, g, h] = totals(&[e, f, g, h]);
+    [
+        [e + rest(a_rest, c_rest), f + rest(a_rest, d_rest)],
+        [g + rest(b_rest, c_rest), h + rest(b_rest, d_rest)],
+    ]
+}
+
+/// The columns of a pair; of a single one twice the same.
+fn pair<'a>(columns: &[(usize, &'a [f64])]) -> [&'a [f64]; 2] {
+    let ends = [columns.first(), columns.last()];
+    ends.map(|column| column.map_or(&[][..], |(_, x)| *x))
 }
 
 impl Normal {
@@ -71,18 +99,30 @@ impl Normal {
     /// Adds rows by columns: those that are not zero, ascending by their place,
     /// and the right side, all of one length.
     pub fn add_columns(&mut self, columns: &[(usize, &[f64])], right: &[f64]) {
-        for (i, x) in columns {
-            let row = self.products.get_mut(i * (i + 1) / 2..).unwrap_or_default();
-            for (j, y) in columns.iter().take_while(|(j, _)| j <= i) {
-                if let Some(slot) = row.get_mut(*j) {
-                    *slot += dot(x, y);
+        // By pairs; of a single column at the end the second half is not taken.
+        let twos = || columns.chunks(2);
+        for (index, rows) in twos().enumerate() {
+            let x = pair(rows);
+            for others in twos().take(index + 1) {
+                let sums = products(x, pair(others));
+                for ((i, _), sums) in rows.iter().zip(sums) {
+                    let slots = self.products.get_mut(i * (i + 1) / 2..).unwrap_or_default();
+                    for ((j, _), sum) in others.iter().zip(sums).filter(|((j, _), _)| j <= i) {
+                        if let Some(slot) = slots.get_mut(*j) {
+                            *slot += sum;
+                        }
+                    }
                 }
             }
-            if let Some(slot) = self.right.get_mut(*i) {
-                *slot += dot(x, right);
+            let [first, second] = products(x, [right; 2]);
+            for ((i, _), [sum, _]) in rows.iter().zip([first, second]) {
+                if let Some(slot) = self.right.get_mut(*i) {
+                    *slot += sum;
+                }
             }
         }
-        self.total += dot(right, right);
+        let [[total, _], _] = products([right; 2], [right; 2]);
+        self.total += total;
         self.rows += right.len();
     }
 

@@ -6,6 +6,7 @@ use nalgebra::Complex;
 
 use super::data::Data;
 use super::delay_profile::{Bounds, profile};
+use super::fewer_rows::FewerRows;
 use super::mode_starts;
 use super::neighbours::{Given, are_alike, neighbours, restarts};
 use super::noise::{Whiteness, whitening};
@@ -16,7 +17,7 @@ use super::spectrum::{FrequencyResponse, measure};
 use super::transfer::{Factor, TransferFunction};
 
 /// Samples on which models are compared; of commands more, as a sweep shows each
-/// mode but once.
+/// mode but once, and of forces where the first ones show less than all do.
 const COMPARED: usize = 8_000;
 const COMPARED_COMMAND: usize = 16_000;
 /// Samples on which the best of them are; the last fit takes all.
@@ -71,12 +72,13 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     let response = response_of(data, instrument, None)?;
     let band_rad_s = response.shown_rad_s();
     let step_s = data.period_s * mode_starts::delay_step(data.from_command);
-    let compared = if data.from_command {
-        COMPARED_COMMAND
-    } else {
-        COMPARED
-    };
-    let (short, long) = (data.head(compared), data.head(CHOSEN));
+    let compared = compared(data, &response);
+    let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
+    let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
+    let fewer = fewer.flatten();
+    let short = fewer
+        .as_ref()
+        .map_or(all_rows, |fewer| fewer.data(&all_rows));
     let mut taps: Vec<f64> = Vec::new();
     let mut best: Option<(Estimate, bool, f64, Vec<f64>)> = None;
     // Noise that is not white shows only behind a model, and the model only
@@ -88,7 +90,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         let mut starts = coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given));
         if !data.from_command {
             // Without a loop about it what is measured shows the axis itself.
-            starts.extend(response_starts::starts(&short, &response, given));
+            starts.extend(response_starts::starts(&all_rows, &response, given));
         }
         starts.extend(before.cloned());
         let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
@@ -173,6 +175,21 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         whitening: taps,
         response,
     })
+}
+
+/// Samples on which models are compared: the first ones of a force, unless they show
+/// clearly less of the axis than all do, as of a sweep, whose end comes last.
+fn compared(data: &Data<'_>, response: &FrequencyResponse) -> usize {
+    const LESS: f64 = 0.7;
+    if data.from_command {
+        return COMPARED_COMMAND;
+    }
+    let first = data.head(COMPARED);
+    let shown = response_of(&first, first.undisturbed, None);
+    match shown {
+        Some(shown) if shown.band_rad_s() < LESS * response.band_rad_s() => CHOSEN,
+        _ => COMPARED,
+    }
 }
 
 /// The measured response, as of an input that is held; of positions by their second

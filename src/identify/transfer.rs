@@ -75,6 +75,29 @@ impl Factor {
     pub fn oscillates(self) -> bool {
         matches!(self, Self::Pair { damping, .. } if damping.abs() < 1.0)
     }
+
+    /// True for complex roots beside others that leave next to nothing of them: half
+    /// a decibel, where they ring.
+    #[must_use]
+    pub fn is_undone_by(self, other: Self) -> bool {
+        const LEFT: f64 = 0.05;
+        match (self, other) {
+            (
+                Self::Pair {
+                    omega_rad_s,
+                    damping,
+                },
+                Self::Pair {
+                    omega_rad_s: against,
+                    damping: by,
+                },
+            ) => {
+                let apart = libm::hypot(libm::log(omega_rad_s / against), damping - by);
+                apart < LEFT * by.abs().min(1.0)
+            }
+            _ => false,
+        }
+    }
 }
 
 /// A rational transfer function with a delay.
@@ -263,4 +286,30 @@ pub fn factors(roots: &[Complex<f64>], join: bool) -> Vec<Factor> {
 #[must_use]
 pub fn factors_of(p: &[f64], join: bool) -> Option<Vec<Factor>> {
     Some(factors(&roots(p)?, join))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Factor;
+
+    fn pair(omega_rad_s: f64, damping: f64) -> Factor {
+        Factor::Pair {
+            omega_rad_s,
+            damping,
+        }
+    }
+
+    /// A pole beside a zero leaves nothing of it only where both ring alike.
+    #[test]
+    fn what_is_undone() {
+        let zero = pair(250.0, 0.03);
+        assert!(zero.is_undone_by(zero));
+        assert!(zero.is_undone_by(pair(250.3, 0.03)));
+        assert!(!zero.is_undone_by(pair(250.5, 0.03)));
+        assert!(!zero.is_undone_by(pair(250.0, 0.032)));
+        assert!(pair(250.0, 0.3).is_undone_by(pair(252.0, 0.305)));
+        assert!(!zero.is_undone_by(Factor::Real {
+            time_constant_s: 0.004,
+        }));
+    }
 }

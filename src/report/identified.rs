@@ -132,6 +132,10 @@ pub fn flexible_json(
     map.insert("gain".into(), number(Some(axis.transfer.gain)));
     map.insert("rel_error".into(), number(Some(axis.rel_error)));
     map.insert("zeros".into(), axis.zeros.iter().map(root).collect());
+    map.insert(
+        "unclear_zeros".into(),
+        axis.unclear_zeros.iter().map(root).collect(),
+    );
     map.insert("poles".into(), axis.poles.iter().map(root).collect());
     map.insert(
         "numerator".into(),
@@ -309,7 +313,11 @@ pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String
         let _ = writeln!(text, "  anti-resonance    none");
     }
     let turn = 2.0 * std::f64::consts::PI;
-    let lists = [("anti-resonance", &axis.zeros), ("resonance", &axis.poles)];
+    let lists = [
+        ("anti-resonance", &axis.zeros),
+        ("unclear, a zero", &axis.unclear_zeros),
+        ("resonance", &axis.poles),
+    ];
     for (name, root) in lists
         .iter()
         .flat_map(|(name, list)| list.iter().map(move |r| (name, r)))

@@ -113,3 +113,28 @@ fn a_thousand_seeds_are_as_accurate_as_promised() {
         }
     }
 }
+
+/// A sweep shows each mode once: its second half counts as well when models are
+/// compared.
+#[test]
+fn what_a_sweep_shows_last_is_found() {
+    const SECONDS: f64 = 16.0;
+    let ratio = libm::log(120.0 / 2.0);
+    let torque: Vec<f64> = (0..16_000)
+        .map(|k| {
+            let grown = libm::expm1(ratio * f64::from(k) / 16_000.0);
+            libm::sin(std::f64::consts::TAU * 2.0 * SECONDS / ratio * grown)
+        })
+        .collect();
+    for axis in [one_side(), two_sides()] {
+        let recording = noisy_recording(&axis, &torque, 0.05, 1);
+        let found = flexible::identify(&recording, &choice(Method::Iv)).unwrap();
+        for (error, std) in errors(&axis, &found) {
+            assert!(
+                error.abs() < 4.0 * std,
+                "{error} {std} {:?}",
+                found.transfer
+            );
+        }
+    }
+}

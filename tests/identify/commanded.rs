@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use gwatt::identify::flexible::{self, Flexible, Method};
-use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
+use gwatt::identify::{Factor, Judgement, Measured, TransferFunction, judgement, simulate};
 
 use super::{Noise, PERIOD_S, choice, pair, table};
 
@@ -103,4 +103,28 @@ fn loads_are_as_late_as_they_are_and_dead_time_says_how_far_it_is_known() {
         assert!(off_s < 2.0 * found.delay_s.std, "{told}");
         assert!(found.delay_s.std < 2.5 * PERIOD_S, "{told}");
     }
+}
+
+/// What a loop does beyond the band may look like a zero: one of which the recording
+/// does not tell whether it is there is no anti-resonance, and the verdict says that
+/// something is not known.
+#[test]
+fn a_zero_that_is_not_known_does_not_count() {
+    let axis = TransferFunction {
+        gain: 1.0,
+        zeros: Vec::new(),
+        poles: vec![pair(20.0, 1.2), pair(110.0, 0.35)],
+        delay_s: 1.4e-3,
+    };
+    let found = found(&axis, "accel_m_s2", 0.02, 13);
+    assert!(found.zeros.is_empty(), "{:?}", found.zeros);
+    let [unclear] = found.unclear_zeros[..] else {
+        panic!("{:?}", found.transfer);
+    };
+    assert!(unclear.omega_rad_s.std > 0.1 * unclear.omega_rad_s.value);
+    let judged = judgement::flexible(&found);
+    assert!(
+        matches!(judged, Judgement::ExciteLonger { .. }),
+        "{judged:?}"
+    );
 }
