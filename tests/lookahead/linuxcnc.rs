@@ -225,7 +225,17 @@ fn programs_last_as_recorded() {
         G2 X-8.82999 Y-25.16527 I-1.85813 J-13.47979 Z3.5254\n\
         G3 X0.32768 Y-2.18495 I7.33122 J-0.01759 Z-3.5111\n\
         G3 X6.82299 Y0.35839 I3.36619 J1.04173 Z1.8086\nM2\n";
+    // Arcs whose speed the axes limit: joints are decided before the planner has
+    // looked at how sharply they turn.
+    let large_arcs = "G64 P0.05\nF12000 G91\nG3 X44.0976 Y132.86992 I-27.36337 J82.83414\n\
+        G2 X-32.47949 Y89.72221 I38.75899 J64.77068\n\
+        G2 X88.49719 Y-47.79167 I31.15385 J-48.14374\nM2\n";
+    let large_helix = "G64 P0.05\nF12000 G91\nG2 X29.01052 Y63.17119 I85.51389 J-1.02416\n\
+        G3 X41.76509 Y91.16897 I-26.9272 J67.48644\n\
+        G2 X87.20821 Y81.89493 I77.84427 J4.48583 Z-2.594\nM2\n";
     for (program, recorded_s) in [
+        (large_arcs, 3.098),
+        (large_helix, 3.210),
         (fast_arcs, 1.003),
         (fast_helices, 1.511),
         (overlapping_ramps, 1.920),

@@ -4,7 +4,9 @@
 //! blends, with the speeds and accelerations that the planner gives them; how long
 //! an element runs while the one before it still brakes.
 
-use super::super::arc;
+use super::super::arc::{
+    self, LINUXCNC_NORMAL_SHARE as NORMAL_SHARE, LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE,
+};
 use super::super::limits::lower;
 use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
@@ -177,7 +179,7 @@ impl<T: Copy> Pending<T> {
 
     /// The speed that the interpreter asks for: F, as far as the axes and turning in
     /// the plane permit it. Of a helix the planner permits less.
-    fn asked_speed(&self) -> f64 {
+    pub fn asked_speed(&self) -> f64 {
         let element = &self.element;
         let asked = lower(element.feed_mm_s, element.speed_mm_s);
         let Some(curve) = &element.curve else {
@@ -190,7 +192,7 @@ impl<T: Copy> Pending<T> {
             .copied()
             .fold(f64::INFINITY, lower);
         let share = curve.radius_mm * curve.sweep_rad.abs() / element.length_mm;
-        let turning = (arc::LINUXCNC_NORMAL_SHARE * accel * curve.radius_mm).sqrt();
+        let turning = (NORMAL_SHARE * accel * curve.radius_mm).sqrt();
         lower(asked, turning / share)
     }
 
@@ -231,9 +233,11 @@ impl<T: Copy> Pending<T> {
     /// The speed along the mean direction that the planner expects of a parabolic
     /// blend when it chooses one.
     pub fn overlap(&self, next: &Self) -> f64 {
+        // It has not looked at how sharply they turn yet.
         let ramps = [self, next].map(|of| {
-            let (speed, accel) = of.turning(of.max_speed, of.accel());
-            Ramp::new(&of.element, of.length_mm, speed, of.unbent_share() * accel)
+            let share = of.element.curve.map_or(1.0, |_| TANGENTIAL_SHARE);
+            let accel = of.unbent_share() * share * of.accel();
+            Ramp::new(&of.element, of.length_mm, of.asked_speed(), accel)
         });
         let (most, sin) = self.tolerated(next, ramps[0].accel);
         let [first, second] = Ramp::overlap([&ramps[0], &ramps[1]]);

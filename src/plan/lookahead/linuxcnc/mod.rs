@@ -172,7 +172,7 @@ impl<T: Copy> LinuxCnc<T> {
         let blend_speed = fit.as_ref().map_or(0.0, |fit| fit.speed);
         let faster = kink_speed.max(blend_speed);
         // What it comes to at most needs no closer look at most corners.
-        let may_overlap = 0.25 * (before.target_speed() + next.target_speed()) >= faster;
+        let may_overlap = 0.25 * (before.asked_speed() + next.asked_speed()) >= faster;
         if may_overlap && 0.5 * before.overlap(next) >= faster {
             (before.kink_behind, next.kink_before) = kept;
             return Way::Parabolic;
