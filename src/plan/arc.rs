@@ -163,7 +163,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         }
         ArcRule::LinuxCnc => {
             let rise_mm = mv.length_mm * (1.0 - share * share).max(0.0).sqrt();
-            let turning = (LINUXCNC_NORMAL_SHARE * plane_accel * radius).sqrt() / share;
+            let turning = linuxcnc_turning(plane_accel, radius) / share;
             let accel = limits.accel_mm_s2.min(plane_accel / share);
             let speed = limits.speed_mm_s.min(turning);
             let (cut, along) = linuxcnc(speed, accel, radius + rise_mm * rise_mm / radius);
@@ -205,6 +205,11 @@ pub(super) fn excess(machine: &Machine, mv: &Move) -> f64 {
     }
 }
 
+/// The speed at which turning takes its share of `LinuxCNC`'s acceleration, mm/s.
+pub(super) fn linuxcnc_turning(accel: f64, radius_mm: f64) -> f64 {
+    (LINUXCNC_NORMAL_SHARE * accel * radius_mm).sqrt()
+}
+
 /// `LinuxCNC` 2.9: an arc's speed and its acceleration along the path, of those
 /// that it has without its curvature. Of the speed counts the largest that axes
 /// and turning permit, whatever F asks for.
@@ -215,7 +220,7 @@ pub(super) fn excess(machine: &Machine, mv: &Move) -> f64 {
 pub(super) fn linuxcnc(speed: f64, accel: f64, radius_mm: f64) -> (f64, f64) {
     let normal_share = speed * speed / (radius_mm * accel);
     if normal_share > LINUXCNC_NORMAL_SHARE {
-        let turning = (LINUXCNC_NORMAL_SHARE * accel * radius_mm).sqrt();
+        let turning = linuxcnc_turning(accel, radius_mm);
         return (turning, accel * LINUXCNC_TANGENTIAL_SHARE);
     }
     (speed, accel * (1.0 - normal_share * normal_share).sqrt())

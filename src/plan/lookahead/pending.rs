@@ -4,9 +4,7 @@
 //! blends, with the speeds and accelerations that the planner gives them; how long
 //! an element runs while the one before it still brakes.
 
-use super::super::arc::{
-    self, LINUXCNC_NORMAL_SHARE as NORMAL_SHARE, LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE,
-};
+use super::super::arc::{self, LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE};
 use super::super::limits::lower;
 use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
@@ -185,15 +183,11 @@ impl<T: Copy> Pending<T> {
         let Some(curve) = &element.curve else {
             return asked;
         };
-        let limits = curve.plane.map(|axis| element.axis_accel_mm_s2.get(axis));
-        let accel = limits
-            .into_iter()
-            .flatten()
-            .copied()
-            .fold(f64::INFINITY, lower);
+        let limits = curve.plane.iter();
+        let limits = limits.filter_map(|axis| element.axis_accel_mm_s2.get(*axis));
+        let accel = limits.copied().fold(f64::INFINITY, lower);
         let share = curve.radius_mm * curve.sweep_rad.abs() / element.length_mm;
-        let turning = (NORMAL_SHARE * accel * curve.radius_mm).sqrt();
-        lower(asked, turning / share)
+        lower(asked, arc::linuxcnc_turning(accel, curve.radius_mm) / share)
     }
 
     /// Unit direction in which the planner expects an end to pull. An arc pulls in

@@ -82,16 +82,14 @@ impl Corner {
     /// centre by the plane.
     #[inline]
     fn inscribed(&self, limits: Vector) -> f64 {
-        let least2 = 1e-24 * self.across2;
-        let mut most = 0.0;
-        for (limit, part) in limits.into_iter().zip(self.across) {
-            // limit/√(1 − n²) is lowest where this is highest.
-            let along2 = higher(self.across2 - part * part, least2) / (limit * limit);
-            if limit > 0.0 && along2 > most {
-                most = along2;
+        let inverse2 = limits.map(|limit| {
+            if limit > 0.0 {
+                1.0 / (limit * limit)
+            } else {
+                0.0
             }
-        }
-        (self.across2 / most).sqrt()
+        });
+        (self.across2 / steepest(self.across, self.across2, inverse2)).sqrt()
     }
 
     /// The speed that both sides and the plane permit.
@@ -193,6 +191,18 @@ impl Corner {
             accel: rounding.accel,
         }
     }
+}
+
+/// The largest of `n² − n_i²` by the inverse squares of limits, 0 where there is none:
+/// there `limit/√(1 − n_i²/n²)` is lowest, n a normal, its square given as well.
+#[inline]
+pub(super) fn steepest(across: Vector, across2: f64, inverse2: Vector) -> f64 {
+    let least2 = 1e-24 * across2;
+    let mut most = 0.0;
+    for (part, inverse2) in across.into_iter().zip(inverse2) {
+        most = higher(most, higher(across2 - part * part, least2) * inverse2);
+    }
+    most
 }
 
 /// A line gives at most half of its programmed length and what is left of it.

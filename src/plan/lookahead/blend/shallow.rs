@@ -14,12 +14,14 @@
 use super::super::super::arc::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
 use super::super::super::limits::lower;
 use super::super::vector::{Vector, add, cross, dot, sub};
-use super::corner::{Rounding, legs_give};
+use super::corner::{Rounding, legs_give, steepest};
 use super::{ARC_LENGTH_MIN_MM, Axes, Leg};
 
 /// Between these lies the square of the change of direction.
 const CHANGE2_MIN: f64 = 1e-8;
 const TAN2_MAX: f64 = 0.01;
+/// Not above 1 + sin θ there, θ half of the angle inside.
+const ONE_AND_SIN: f64 = 1.99;
 /// What rounding may make of a comparison, as a share.
 const ROUNDING: f64 = 1e-9;
 
@@ -45,22 +47,15 @@ impl Rounded {
         let (sum, change) = (add(u, w), sub(w, u));
         let (sum2, change2) = (dot(sum, sum), dot(change, change));
         let give2 = give_mm * give_mm;
-        // cos θ/(1 − sin θ), with 1 + sin θ above 1.99.
-        let free = 15.84 * tolerance_mm * tolerance_mm > give2 * change2;
+        // cos θ/(1 − sin θ) of the tolerance, cos θ half of the change.
+        let tolerated = 2.0 * ONE_AND_SIN * tolerance_mm;
+        let free = tolerated * tolerated > give2 * change2;
         if change2 < CHANGE2_MIN || change2 > TAN2_MAX * sum2 || !free || speed > axes.least_speed {
             return None;
         }
         let across2 = 0.25 * sum2 * change2;
-        let least2 = 1e-24 * across2;
-        let mut most = 0.0;
-        for (part, inverse) in cross(u, w).into_iter().zip(inverse_accel) {
-            let share2 = across2 - part * part;
-            let share2 = if share2 > least2 { share2 } else { least2 };
-            let along2 = share2 * inverse * inverse;
-            if along2 > most {
-                most = along2;
-            }
-        }
+        let inverse2 = inverse_accel.map(|inverse| inverse * inverse);
+        let most = steepest(cross(u, w), across2, inverse2);
         let speed2 = speed * speed;
         let needed = speed2 * speed2 * most;
         let room = NORMAL_SHARE * give_mm * sum2;
