@@ -16,6 +16,8 @@ const SPEED_MM_S: f64 = 200.0;
 const ACCEL_MM_S2: f64 = 1000.0;
 const MASS_KG: [f64; 3] = [100.0, 80.0, 120.0];
 const COULOMB_N: f64 = 50.0;
+/// LinuxCNC may start too slowly on a loaded host.
+const TRIES: usize = 3;
 /// Chords of a ring; far more, and the blocks are held up by the task that feeds
 /// the planner one block a millisecond.
 const PIECES: [usize; 3] = [60, 150, 200];
@@ -167,15 +169,20 @@ fn own() -> Vec<(String, String)> {
 fn record(shared: &Path, folder: &Path, name: &str, program: &str) -> Option<String> {
     let (source, csv) = (folder.join("program.ngc"), folder.join("out.csv"));
     std::fs::write(&source, program).unwrap();
-    let status = Command::new(shared.join("tools/linuxcnc/simrun.sh"))
-        .args([&source, &csv])
-        .arg("SPEEDUP=10")
-        .status()
-        .ok()?;
-    if !status.success() {
+    for _ in 0..TRIES {
+        // The recording of another program is none of this one.
+        let _ = std::fs::remove_file(&csv);
+        let status = Command::new(shared.join("tools/linuxcnc/simrun.sh"))
+            .args([&source, &csv])
+            .arg("SPEEDUP=10")
+            .status()
+            .ok()?;
+        if status.success() {
+            return std::fs::read_to_string(csv).ok();
+        }
         println!("{name}: LinuxCNC failed");
     }
-    std::fs::read_to_string(csv).ok()
+    None
 }
 
 #[test]
@@ -205,6 +212,7 @@ fn plans_are_what_linuxcnc_does() {
     for (name, program) in &programs {
         let Some(csv) = record(&shared, scratch.path(), name, program) else {
             println!("{name}: no recording");
+            wrong.push(name);
             continue;
         };
         let (plan, run) = (Figures::planned(program), Figures::recorded(&csv));
