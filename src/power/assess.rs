@@ -13,11 +13,10 @@ use super::eye::Eye;
 use super::held::{Held, RIDERS, Rider, moves};
 use super::model::PowerModel;
 use super::motion::Motion;
-use super::robust::Part;
-use super::watch::{Kept, Rating, Watch};
+use super::watch::{Rating, Watch};
 use crate::interpret::{Action, Move, MoveKind};
 use crate::machine::{Machine, PathMode};
-use crate::plan::{Overrides, PathFigures, blended_bound, path_bound, path_figures, plan};
+use crate::plan::{Overrides, PathFigures, path_figures, plan};
 
 /// Judges the moves of one program.
 #[derive(Debug)]
@@ -34,10 +33,10 @@ pub struct Assessor<'m> {
     pub(super) requested: Option<Certificate>,
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
-    held: Option<Box<Held>>,
+    pub(super) held: Option<Box<Held>>,
     /// The one that was held before, and room that is used again.
-    before: Option<Box<Held>>,
-    spare: Option<Box<Held>>,
+    pub(super) before: Option<Box<Held>>,
+    pub(super) spare: Option<Box<Held>>,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
     /// The last move was a dwell.
@@ -301,44 +300,6 @@ impl<'m> Assessor<'m> {
         self.hold(mv, text, assessment, figures.as_ref(), dwelt, sink);
     }
 
-    /// Lets a move wait for its successor; the one that waited is handed on.
-    fn hold(
-        &mut self,
-        mv: &Move,
-        text: &[u8],
-        assessment: Assessment,
-        figures: Option<&PathFigures>,
-        dwelt: bool,
-        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
-    ) {
-        let bound = match figures {
-            Some(path) if mv.arc.is_none() => path_bound(self.machine, mv, path.speed_limit_mm_s),
-            _ => blended_bound(self.machine, mv, self.largest),
-        };
-        let fresh = match self.spare.take() {
-            Some(mut fresh) => {
-                fresh.mv.clone_from(mv);
-                fresh.text.clear();
-                fresh.text.extend_from_slice(text);
-                fresh.assessment = assessment;
-                fresh.bound = bound;
-                fresh.dwelt = dwelt;
-                fresh
-            }
-            None => Box::new(Held {
-                mv: mv.clone(),
-                text: text.to_vec(),
-                assessment,
-                bound,
-                dwelt,
-                riders: Vec::new(),
-            }),
-        };
-        let next = assessment.joined.then(|| fresh.part());
-        self.release(next, false, sink);
-        self.held = Some(fresh);
-    }
-
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         let Some(mut bus) = self.bus.take() else {
@@ -356,62 +317,6 @@ impl<'m> Assessor<'m> {
             ahead.stop(self.machine, &self.model, &mut self.eye);
             ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
         }
-    }
-
-    /// Judges what is held; `next` is the move that it runs into, `dwells`
-    /// whether a dwell follows it.
-    fn release(
-        &mut self,
-        next: Option<Part<'_>>,
-        dwells: bool,
-        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
-    ) {
-        let Some(mut held) = self.held.take() else {
-            return;
-        };
-        let joined = held.assessment.joined;
-        // A rapid between two stops is planned like any other, and so is a
-        // straight feed between two dwells; other feeds in a mode that blends
-        // keep the robust bound.
-        let alone = !joined && next.is_none() && self.requested != Some(Certificate::Robust);
-        if alone && held.mv.kind == MoveKind::Rapid {
-            held.assessment.blended = false;
-            self.eye
-                .alone(self.machine, &self.model, &held.mv, self.largest);
-        } else if alone && dwells && held.dwelt && held.mv.arc.is_none() {
-            let figures = path_figures(self.machine, &held.mv, self.largest);
-            held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
-            self.eye
-                .alone(self.machine, &self.model, &held.mv, self.largest);
-        } else {
-            let demand = {
-                let own = held.part();
-                let before = self.before.as_deref().filter(|_| joined);
-                let window = [before.map_or(own, Held::part), own, next.unwrap_or(own)];
-                self.eye.blended(
-                    self.machine,
-                    &self.model,
-                    &held.mv,
-                    &window,
-                    &mut Kept::default(),
-                    self.largest,
-                );
-                self.model.robust_over(&held.mv, &window, self.want)
-            };
-            held.assessment.demand = Demand {
-                energy_j: held.assessment.demand.energy_j,
-                ..demand
-            };
-            held.assessment.certificate = Certificate::Robust;
-            self.needs_robust |= self.requested == Some(Certificate::Planned);
-        }
-        sink(&held.mv, &held.assessment, &held.text);
-        for rider in &held.riders {
-            self.eye.pass();
-            sink(&rider.mv, &rider.assessment, &rider.text);
-        }
-        held.riders.clear();
-        self.spare = self.before.replace(held);
     }
 
     /// The planned demand, and whether the move may be blended; `figures` are
@@ -457,7 +362,12 @@ impl<'m> Assessor<'m> {
     }
 
     /// The planned demand of any move.
-    fn evaluate(&self, mv: &Move, figures: Option<&PathFigures>, blended: bool) -> Assessment {
+    pub(super) fn evaluate(
+        &self,
+        mv: &Move,
+        figures: Option<&PathFigures>,
+        blended: bool,
+    ) -> Assessment {
         let peak_plan = match figures {
             Some(path) => path.plan(mv.length_mm),
             None => plan(self.machine, mv, self.largest),

@@ -1,9 +1,12 @@
 //! Moves that wait for their successors.
 
-use super::assessment::Assessment;
+use super::assess::Assessor;
+use super::assessment::{Assessment, Certificate};
+use super::demand::Demand;
 use super::robust::Part;
+use super::watch::Kept;
 use crate::interpret::{Move, MoveKind};
-use crate::plan::SpeedBound;
+use crate::plan::{PathFigures, SpeedBound, blended_bound, path_bound, path_figures};
 
 /// Moves of no length in a row that a controller may look across: more than
 /// any queue holds.
@@ -44,4 +47,100 @@ pub(super) struct Rider {
 /// Whether any axis moves.
 pub(super) fn moves(mv: &Move) -> bool {
     mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
+}
+
+impl Assessor<'_> {
+    /// Lets a move wait for its successor; the one that waited is handed on.
+    pub(super) fn hold(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        assessment: Assessment,
+        figures: Option<&PathFigures>,
+        dwelt: bool,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let bound = match figures {
+            Some(path) if mv.arc.is_none() => path_bound(self.machine, mv, path.speed_limit_mm_s),
+            _ => blended_bound(self.machine, mv, self.largest),
+        };
+        let fresh = match self.spare.take() {
+            Some(mut fresh) => {
+                fresh.mv.clone_from(mv);
+                fresh.text.clear();
+                fresh.text.extend_from_slice(text);
+                fresh.assessment = assessment;
+                fresh.bound = bound;
+                fresh.dwelt = dwelt;
+                fresh
+            }
+            None => Box::new(Held {
+                mv: mv.clone(),
+                text: text.to_vec(),
+                assessment,
+                bound,
+                dwelt,
+                riders: Vec::new(),
+            }),
+        };
+        let next = assessment.joined.then(|| fresh.part());
+        self.release(next, false, sink);
+        self.held = Some(fresh);
+    }
+
+    /// Judges what is held; `next` is the move that it runs into, `dwells`
+    /// whether a dwell follows it.
+    pub(super) fn release(
+        &mut self,
+        next: Option<Part<'_>>,
+        dwells: bool,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        let Some(mut held) = self.held.take() else {
+            return;
+        };
+        let joined = held.assessment.joined;
+        // A rapid between two stops is planned like any other, and so is a
+        // straight feed between two dwells; other feeds in a mode that blends
+        // keep the robust bound.
+        let alone = !joined && next.is_none() && self.requested != Some(Certificate::Robust);
+        if alone && held.mv.kind == MoveKind::Rapid {
+            held.assessment.blended = false;
+            self.eye
+                .alone(self.machine, &self.model, &held.mv, self.largest);
+        } else if alone && dwells && held.dwelt && held.mv.arc.is_none() {
+            let figures = path_figures(self.machine, &held.mv, self.largest);
+            held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
+            self.eye
+                .alone(self.machine, &self.model, &held.mv, self.largest);
+        } else {
+            let demand = {
+                let own = held.part();
+                let before = self.before.as_deref().filter(|_| joined);
+                let window = [before.map_or(own, Held::part), own, next.unwrap_or(own)];
+                self.eye.blended(
+                    self.machine,
+                    &self.model,
+                    &held.mv,
+                    &window,
+                    &mut Kept::default(),
+                    self.largest,
+                );
+                self.model.robust_over(&held.mv, &window, self.want)
+            };
+            held.assessment.demand = Demand {
+                energy_j: held.assessment.demand.energy_j,
+                ..demand
+            };
+            held.assessment.certificate = Certificate::Robust;
+            self.needs_robust |= self.requested == Some(Certificate::Planned);
+        }
+        sink(&held.mv, &held.assessment, &held.text);
+        for rider in &held.riders {
+            self.eye.pass();
+            sink(&rider.mv, &rider.assessment, &rider.text);
+        }
+        held.riders.clear();
+        self.spare = self.before.replace(held);
+    }
 }
