@@ -3,6 +3,7 @@
 mod ahead;
 mod blends;
 mod figures;
+mod flow_through;
 mod knobs;
 mod obstacles;
 mod random;

@@ -15,6 +15,15 @@ pub enum Step {
     Action(Action),
 }
 
+impl Step {
+    /// Whether it moves an axis.
+    #[must_use]
+    #[inline]
+    pub fn moves_axes(&self) -> bool {
+        matches!(self, Self::Move(mv) if mv.moves_axes())
+    }
+}
+
 /// The kind of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MoveKind {
@@ -112,6 +121,16 @@ pub struct Move {
     pub path_mode: PathMode,
     /// What may happen to the corner there, if the path does not stop.
     pub corner: Corner,
+}
+
+impl Move {
+    /// Whether any axis moves.
+    #[must_use]
+    #[inline]
+    pub fn moves_axes(&self) -> bool {
+        let stands = self.moving.is_empty() && self.unknown_start.is_empty();
+        !(stands || self.kind == MoveKind::Dwell)
+    }
 }
 
 /// How a corner may be taken without a stop.

@@ -101,6 +101,11 @@ impl<'m, 'r> Analysis<'m, 'r> {
             }
             assessor.want = wanted(tally);
         }
+        let moved = steps.iter().any(Step::moves_axes);
+        assessor.end_line(moved, &mut |mv, assessment, text| {
+            let help = || adviser.help(mv, assessment, &circumstances());
+            tally.take(mv, assessment, text, help);
+        });
         tally.check()
     }
 

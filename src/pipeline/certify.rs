@@ -208,6 +208,8 @@ impl<'m, 'r> Certifier<'m, 'r> {
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
+            let moved = steps.iter().any(Step::moves_axes);
+            assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
     }
 
@@ -223,9 +225,9 @@ impl<'m, 'r> Certifier<'m, 'r> {
         verdict.pass_spindle();
         verdict.done += 1;
         assessor.want = verdict.tally.want();
-        assessor.push(mv, text, &mut |mv, after, text| {
-            verdict.judge(mv, after, text);
-        });
+        let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| verdict.judge(mv, after, text);
+        assessor.push(mv, text, &mut sink);
+        assessor.end_line(mv.moves_axes(), &mut sink);
     }
 
     /// Judges what is left and gives the figures.
@@ -311,6 +313,13 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
     /// Forgets what is judged and takes more.
     pub(super) fn refill(&mut self, more: &mut Vec<Expected>) {
+        // Actions need no judgement: that they were done is enough.
+        let done = self.done;
+        while self.judged < done
+            && matches!(self.originals.get(self.judged), Some(Expected::Action(_)))
+        {
+            self.judged += 1;
+        }
         self.done = self.originals.refill(self.judged, more);
         self.judged = 0;
     }

@@ -21,7 +21,7 @@ const BYTES: usize = 1 << 16;
 /// Batches that may wait.
 const BATCHES: usize = 3;
 
-/// Executed lines, those without steps left out.
+/// Executed lines.
 #[derive(Debug, Default)]
 struct Batch {
     steps: Vec<Step>,
@@ -142,7 +142,7 @@ impl Batch {
 }
 
 /// Executes a program in another thread, and hands over what it comes to: the
-/// names of the files of subprograms so far, and a line with steps. Gives the
+/// names of the files of subprograms so far, and a line. Gives the
 /// program's end back.
 ///
 /// # Errors
@@ -186,9 +186,6 @@ fn execute<'m, R: Read + Seek>(
         if line.files.len() > files {
             batch.files.extend(line.files.iter().skip(files).cloned());
             files = line.files.len();
-        }
-        if line.steps.is_empty() {
-            continue;
         }
         batch.push(&mut line);
         if batch.is_full() {

@@ -249,6 +249,10 @@ impl<'m, 'p> Original<'m, 'p> {
                         Step::Action(action) => assessor.act(action, &mut sink),
                     }
                 }
+                let moved = line.steps.iter().any(Step::moves_axes);
+                assessor.end_line(moved, &mut |mv, assessment, _| {
+                    waiting.judge(mv, assessment);
+                });
             } else {
                 assessor.finish(&mut |mv, assessment, _| waiting.judge(mv, assessment));
                 more = false;
@@ -342,6 +346,8 @@ fn certify(
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
+            let moved = line.steps.iter().any(Step::moves_axes);
+            assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
         verdict.check()?;
     }

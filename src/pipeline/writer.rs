@@ -232,6 +232,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 self.batch.pass(line.text.len(), mv, assessment);
                 self.start_s += assessment.duration_s;
                 self.mode = mv.path_mode;
+                self.assessor.end_line(mv.moves_axes(), &mut |_, _, _| {});
                 return Ok(true);
             }
         }
@@ -248,6 +249,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
             self.decide_at_once(&mut entry, judged);
+            let moved = entry.steps.iter().any(Step::moves_axes);
+            self.assessor.end_line(moved, &mut |_, _, _| {});
             self.ready = Some(entry);
             return Ok(true);
         }
@@ -269,9 +272,12 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let Some(entry) = entries.back() else {
             return Ok(true);
         };
-        for (index, step) in entry.steps.iter().enumerate() {
+        let moved = entry.steps.iter().any(Step::moves_axes);
+        // Behind the last step the line ends.
+        let steps = entry.steps.iter().map(Some).chain([None]);
+        for (index, step) in steps.enumerate() {
             assessor.want = if self.exact { Want::ALL } else { tally.want() };
-            if let Step::Move(mv) = step {
+            if let Some(Step::Move(mv)) = step {
                 self.mode = mv.path_mode;
                 flights.push_back(Flight {
                     entry: number,
@@ -297,8 +303,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 }
             };
             match step {
-                Step::Move(mv) => assessor.push(mv, entry.text_of(mv), &mut sink),
-                Step::Action(action) => assessor.act(action, &mut sink),
+                Some(Step::Move(mv)) => assessor.push(mv, entry.text_of(mv), &mut sink),
+                Some(Step::Action(action)) => assessor.act(action, &mut sink),
+                None => assessor.end_line(moved, &mut sink),
             }
         }
         Ok(true)

@@ -10,7 +10,8 @@ use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
 use super::eye::Eye;
-use super::held::{Held, RIDERS, Rider, moves};
+use super::held::{Behind, Held, Rider};
+use super::idle::Idle;
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::watch::{Rating, Watch};
@@ -37,6 +38,7 @@ pub struct Assessor<'m> {
     /// The one that was held before, and room that is used again.
     pub(super) before: Option<Box<Held>>,
     pub(super) spare: Option<Box<Held>>,
+    pub(super) idle: Idle,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
     /// The last move was a dwell.
@@ -82,6 +84,7 @@ impl<'m> Assessor<'m> {
             held: None,
             before: None,
             spare: None,
+            idle: Idle::default(),
             needs_robust: false,
             dwelt: false,
             ahead,
@@ -144,7 +147,7 @@ impl<'m> Assessor<'m> {
     #[must_use]
     pub fn waits(&self, mv: &Move) -> bool {
         let open = self.ahead.as_ref().is_some_and(|ahead| ahead.is_open());
-        open || self.held.is_some() || self.may_blend(mv)
+        open || self.last_held().is_some() || self.may_blend(mv)
     }
 
     /// Takes something that moves no axis: it may stop the motion. Hands on what
@@ -268,15 +271,14 @@ impl<'m> Assessor<'m> {
         let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
-            .held
-            .as_ref()
+            .last_held()
             .is_some_and(|held| self.joins(&held.mv, mv));
+        self.idle.follow(mv);
         let mut assessment = self.alone(mv, figures.as_ref());
         assessment.joined = joined;
         if let Some(held) = &mut self.held
             && mv.kind != MoveKind::Dwell
-            && !moves(mv)
-            && held.riders.len() < RIDERS
+            && !mv.moves_axes()
         {
             assessment.joined = true;
             held.riders.push(Rider {
@@ -288,7 +290,8 @@ impl<'m> Assessor<'m> {
         }
         if !(assessment.blended || joined) {
             if self.held.is_some() {
-                self.release(None, mv.kind == MoveKind::Dwell, sink);
+                let dwells = mv.kind == MoveKind::Dwell;
+                self.release(if dwells { Behind::Dwell } else { Behind::Stop }, sink);
             }
             let figures = figures.as_ref();
             self.eye
@@ -312,7 +315,7 @@ impl<'m> Assessor<'m> {
     }
 
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        self.release(None, false, sink);
+        self.release(Behind::Stop, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(self.machine, &self.model, &mut self.eye);
             ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);

@@ -3,14 +3,10 @@
 use super::assess::Assessor;
 use super::assessment::{Assessment, Certificate};
 use super::demand::Demand;
-use super::robust::Part;
+use super::robust::{Extremes, Part};
 use super::watch::Kept;
 use crate::interpret::{Move, MoveKind};
 use crate::plan::{PathFigures, SpeedBound, blended_bound, path_bound, path_figures};
-
-/// Moves of no length in a row that a controller may look across: more than
-/// any queue holds.
-pub(super) const RIDERS: usize = 4096;
 
 /// A move that waits for its successor.
 #[derive(Debug)]
@@ -44,9 +40,17 @@ pub(super) struct Rider {
     pub assessment: Assessment,
 }
 
-/// Whether any axis moves.
-pub(super) fn moves(mv: &Move) -> bool {
-    mv.kind != MoveKind::Dwell && !(mv.moving.is_empty() && mv.unknown_start.is_empty())
+/// What stands behind a move that waits.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Behind<'a> {
+    /// A stop.
+    Stop,
+    /// A dwell.
+    Dwell,
+    /// A move that it runs into.
+    Move(Part<'a>),
+    /// So much that moves no axis that it may have stopped.
+    Doubt,
 }
 
 impl Assessor<'_> {
@@ -83,17 +87,20 @@ impl Assessor<'_> {
                 riders: Vec::new(),
             }),
         };
-        let next = assessment.joined.then(|| fresh.part());
-        self.release(next, false, sink);
+        let joined = assessment.joined;
+        let behind = if joined {
+            Behind::Move(fresh.part())
+        } else {
+            Behind::Stop
+        };
+        self.release(behind, sink);
         self.held = Some(fresh);
     }
 
-    /// Judges what is held; `next` is the move that it runs into, `dwells`
-    /// whether a dwell follows it.
+    /// Judges what is held.
     pub(super) fn release(
         &mut self,
-        next: Option<Part<'_>>,
-        dwells: bool,
+        behind: Behind<'_>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let Some(mut held) = self.held.take() else {
@@ -103,12 +110,13 @@ impl Assessor<'_> {
         // A rapid between two stops is planned like any other, and so is a
         // straight feed between two dwells; other feeds in a mode that blends
         // keep the robust bound.
-        let alone = !joined && next.is_none() && self.requested != Some(Certificate::Robust);
+        let stops = matches!(behind, Behind::Stop | Behind::Dwell);
+        let alone = !joined && stops && self.requested != Some(Certificate::Robust);
         if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
             self.eye
                 .alone(self.machine, &self.model, &held.mv, self.largest);
-        } else if alone && dwells && held.dwelt && held.mv.arc.is_none() {
+        } else if alone && matches!(behind, Behind::Dwell) && held.dwelt && held.mv.arc.is_none() {
             let figures = path_figures(self.machine, &held.mv, self.largest);
             held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
             self.eye
@@ -117,7 +125,11 @@ impl Assessor<'_> {
             let demand = {
                 let own = held.part();
                 let before = self.before.as_deref().filter(|_| joined);
-                let window = [before.map_or(own, Held::part), own, next.unwrap_or(own)];
+                let next = match behind {
+                    Behind::Move(next) => next,
+                    _ => own,
+                };
+                let window = [before.map_or(own, Held::part), own, next];
                 self.eye.blended(
                     self.machine,
                     &self.model,
@@ -136,6 +148,13 @@ impl Assessor<'_> {
             self.needs_robust |= self.requested == Some(Certificate::Planned);
         }
         sink(&held.mv, &held.assessment, &held.text);
+        if matches!(behind, Behind::Doubt)
+            && let Some(before) = self.before.as_deref().filter(|_| joined)
+        {
+            // All of them may run into what nobody waited for.
+            let both = Extremes::of(&[before.part(), held.part()]);
+            (held.bound, held.mv.accel_mm_s2) = (both.bound, both.accel_mm_s2);
+        }
         for rider in &held.riders {
             self.eye.pass();
             sink(&rider.mv, &rider.assessment, &rider.text);

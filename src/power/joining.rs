@@ -3,7 +3,6 @@
 use super::ahead::{Role, role};
 use super::assess::Assessor;
 use super::assessment::Certificate;
-use super::held::moves;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{PathMode, RapidJoint};
 
@@ -11,7 +10,7 @@ impl Assessor<'_> {
     /// Whether what comes behind a move may change how it runs: it may be blended with
     /// that, or be an arc that `LinuxCNC` runs otherwise where nothing comes.
     pub(super) fn may_blend(&self, mv: &Move) -> bool {
-        if !moves(mv) {
+        if !mv.moves_axes() {
             return false;
         }
         let (planner, ahead) = (&self.machine.controller.planner, self.ahead.as_ref());
@@ -30,7 +29,7 @@ impl Assessor<'_> {
     /// Whether the controller may run from `first` into `second` without a stop.
     #[must_use]
     pub fn joins(&self, first: &Move, second: &Move) -> bool {
-        if !moves(first) || !moves(second) {
+        if !first.moves_axes() || !second.moves_axes() {
             return false;
         }
         if self.requested == Some(Certificate::Robust) {

@@ -25,6 +25,7 @@ mod demand;
 mod effect;
 mod eye;
 mod held;
+mod idle;
 mod independent;
 mod instant;
 mod interval;

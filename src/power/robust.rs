@@ -27,6 +27,33 @@ pub(super) struct Part<'a> {
     pub accel_mm_s2: &'a AxisValues,
 }
 
+/// The same of several moves.
+#[derive(Debug)]
+pub(super) struct Extremes {
+    pub bound: SpeedBound,
+    pub accel_mm_s2: AxisValues,
+}
+
+impl Extremes {
+    pub fn of(parts: &[Part<'_>]) -> Self {
+        let (mut bound, mut accel_mm_s2) = (SpeedBound::default(), [0.0_f64; AXES]);
+        for part in parts {
+            bound.include(part.bound);
+            for (largest, own) in accel_mm_s2.iter_mut().zip(part.accel_mm_s2) {
+                *largest = largest.max(*own);
+            }
+        }
+        Self { bound, accel_mm_s2 }
+    }
+
+    pub fn part(&self) -> Part<'_> {
+        Part {
+            bound: &self.bound,
+            accel_mm_s2: &self.accel_mm_s2,
+        }
+    }
+}
+
 impl PowerModel {
     /// The robust bound of a move (of which only the switched loads are read):
     /// `bound` and `accel_mm_s2` are the largest over the block and both its
@@ -51,13 +78,7 @@ impl PowerModel {
         {
             return demand;
         }
-        let (mut bound, mut accel_mm_s2) = (SpeedBound::default(), [0.0_f64; AXES]);
-        for part in parts {
-            bound.include(part.bound);
-            for (largest, own) in accel_mm_s2.iter_mut().zip(part.accel_mm_s2) {
-                *largest = largest.max(*own);
-            }
-        }
+        let Extremes { bound, accel_mm_s2 } = Extremes::of(parts);
         self.robust(mv, &bound, &accel_mm_s2)
     }
 
@@ -111,13 +132,7 @@ impl PowerModel {
         let Some(converter) = self.converters.get(converter) else {
             return [f64::INFINITY; 2];
         };
-        let (mut bound, mut accel_mm_s2) = (SpeedBound::default(), [0.0_f64; AXES]);
-        for part in parts {
-            bound.include(part.bound);
-            for (largest, own) in accel_mm_s2.iter_mut().zip(part.accel_mm_s2) {
-                *largest = largest.max(*own);
-            }
-        }
+        let Extremes { bound, accel_mm_s2 } = Extremes::of(parts);
         let totals = self.robust_totals(converter, mv, &bound, &accel_mm_s2);
         [totals.peak_w, totals.regen_w]
     }

@@ -2,9 +2,10 @@
 
 use std::io::Cursor;
 
+use gwatt::interpret::Move;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Certificate, Options, Row, analyze, moves};
-use gwatt::power::{Assessor, Want};
+use gwatt::power::{Assessment, Assessor, Want};
 
 use crate::rows::Rows;
 
@@ -43,19 +44,65 @@ fn behind_a_stop_nothing_is_left_of_what_is_not_certain() {
     assert_eq!(rapids(&moving), rapids(&dwelling));
 }
 
-/// A controller's queue is empty before thousands of blocks of no length end.
+/// Lines behind which a controller's queue may be empty, or not.
+const IDLE: [&str; 4] = ["X20\n", "(a remark)\n", "F1200\n", "T1\n"];
+
 #[test]
 fn motion_does_not_wait_for_ever() {
-    let certificates = |idle: usize| {
-        let idle = "X20\n".repeat(idle);
+    let certificates = |line: &str, count: usize| {
+        let idle = line.repeat(count);
         let program = format!("G21 G90 G94 G64 F1200\nG1 X20\n{idle}X40\nX60\nM2\n");
         let rows = rows(&program);
         let rows = rows.iter().filter(|row| row.duration_s > 0.0);
         rows.map(|row| row.certificate).collect::<Vec<_>>()
     };
     let [robust, planned] = [Certificate::Robust, Certificate::Planned];
-    assert_eq!(certificates(4000), [planned, planned, planned]);
-    assert_eq!(certificates(5000), [robust, robust, robust]);
+    for line in IDLE {
+        assert_eq!(certificates(line, 4095), [planned, planned, planned]);
+        assert_eq!(certificates(line, 4096), [robust, robust, robust]);
+    }
+}
+
+/// With a stop there and without one.
+#[test]
+fn what_nobody_waits_for_is_not_read_too_low() {
+    for (machine, certificate) in [
+        ("linuxcnc-mill", None),
+        ("router-48v", None),
+        ("linuxcnc-mill", Some(Certificate::Robust)),
+        ("three-axis", None),
+    ] {
+        let peaks = |between: &str| {
+            let program = format!(
+                "G21 G90 G94 G64 F3000\nG1 X0.1\nX1 Y0.2\n{between}Y1\nG0 X5 Y7\n{between}\
+                 X9\n{between}G2 X12 Y10 I3 J0\n{between}G1 Z5\nM2\n"
+            );
+            let (machine, _) = Machine::load(machine).expect("an embedded machine");
+            let options = Options {
+                certificate,
+                ..Options::default()
+            };
+            let mut rows = Rows::default();
+            analyze(Cursor::new(program), &machine, &options, Some(&mut rows)).expect("a program");
+            let moves = rows.0.iter().filter(|row| row.duration_s > 0.0);
+            moves
+                .map(|row| [row.peak_w, row.regen_w])
+                .collect::<Vec<_>>()
+        };
+        let (waited, stopped) = (peaks(""), peaks("G4 P0\n"));
+        for idle in ["(a remark)\n", "F3000\n", "T1\n"] {
+            let doubted = peaks(&idle.repeat(5000));
+            assert_eq!(doubted.len(), waited.len());
+            for (index, own) in doubted.iter().enumerate() {
+                // What two moves come to together may be the second one's.
+                let next = doubted.get(index + 1).unwrap_or(own);
+                for (at, (own, next)) in own.iter().zip(next).enumerate() {
+                    assert!(*own >= stopped[index][at], "{machine}, move {index}");
+                    assert!(own.max(*next) >= waited[index][at], "{machine}, {index}");
+                }
+            }
+        }
+    }
 }
 
 /// Neither blocks of no length, nor moves whose way is not modelled.
@@ -78,7 +125,9 @@ fn moves_are_handed_on_as_the_program_goes() {
             &machine,
             &Options::default(),
             &mut |mv, _| {
-                assessor.push(mv, b"", &mut |_, _, _| handed_on += 1);
+                let mut hand_on = |_: &Move, _: &Assessment, _: &[u8]| handed_on += 1;
+                assessor.push(mv, b"", &mut hand_on);
+                assessor.end_line(mv.moves_axes(), &mut hand_on);
                 pushed += 1;
                 assert!(pushed - handed_on <= most, "{line}: {pushed}, {handed_on}");
                 Ok(())

@@ -10,7 +10,7 @@ use crate::power::assessment::{Assessment, Certificate};
 use crate::power::demand::Demand;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
-use crate::power::robust::Part;
+use crate::power::robust::{Extremes, Part};
 
 impl Ahead {
     /// Hands on the moves that are finished, and whose neighbours are. All, when
@@ -69,13 +69,18 @@ impl Ahead {
                 }
             } else {
                 let overrides = self.largest.overrides;
-                own.bound([before, next], machine, model, eye, overrides);
+                let unwaited = &mut self.unwaited;
+                own.bound([before, next], unwaited, machine, model, eye, overrides);
+                if !(next.is_none() && self.at_rest && self.in_doubt) {
+                    self.unwaited = None;
+                }
             }
             sink(&own.mv, &own.assessment, &own.text);
             self.open.leave();
         }
-        if self.at_rest {
+        if self.at_rest && !self.in_doubt {
             self.open.begin_at_rest();
+            self.unwaited = None;
         }
     }
 
@@ -93,10 +98,12 @@ impl Ahead {
 }
 
 impl Open {
-    /// Gives it the robust bound, with those before and behind it.
+    /// Gives it the robust bound, with those before and behind it; before it there may
+    /// be what did not wait for it, in place of which all three stand then.
     fn bound(
         &mut self,
         [before, next]: [Option<&Self>; 2],
+        unwaited: &mut Option<Extremes>,
         machine: &Machine,
         model: &PowerModel,
         eye: &mut Eye,
@@ -112,9 +119,12 @@ impl Open {
                 bound,
                 accel_mm_s2: &beside[index].mv.accel_mm_s2,
             };
-            let window = [part(first, 0), part(own, 1), part(last, 2)];
+            let first = unwaited.as_ref().map_or(part(first, 0), Extremes::part);
+            let window = [first, part(own, 1), part(last, 2)];
             eye.blended(machine, model, &self.mv, &window, &mut kept, largest);
-            model.robust_over(&self.mv, &window, self.want)
+            let demand = model.robust_over(&self.mv, &window, self.want);
+            *unwaited = Some(Extremes::of(&window));
+            demand
         };
         // Chords of a small arc may ask for more than the axes' limits.
         demand.include(&self.assessment.demand);

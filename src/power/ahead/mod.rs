@@ -21,8 +21,8 @@ mod queue;
 use super::assessment::Assessment;
 use super::demand::Want;
 use super::eye::Eye;
-use super::held::RIDERS;
 use super::model::PowerModel;
+use super::robust::Extremes;
 use crate::interpret::Move;
 use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
@@ -49,6 +49,9 @@ pub(super) struct Ahead {
     /// What the motion reaches at least, from rest where it was in doubt last,
     /// mm²/s²; nothing once that is as fast as planned.
     reach2: Option<f64>,
+    /// What was handed on last, and what before that, where nobody waited for what
+    /// may be blended with it.
+    unwaited: Option<Extremes>,
 }
 
 /// A planner and how far it has come.
@@ -96,6 +99,7 @@ impl Ahead {
             at_rest: true,
             in_doubt: false,
             reach2: None,
+            unwaited: None,
         }
     }
 
@@ -104,9 +108,9 @@ impl Ahead {
         self.largest.planner.slows_last_arcs()
     }
 
-    /// Whether a move waits.
+    /// Whether a move waits, or the next one may be blended with the last.
     pub fn is_open(&self) -> bool {
-        !self.open.is_empty()
+        self.in_doubt || !self.open.is_empty()
     }
 
     /// Adds a move that has a path which the rules speak of; false, and nothing
@@ -172,9 +176,6 @@ impl Ahead {
         self.catch_up(machine);
         if role(machine, mv) == Role::Nothing {
             self.open.push(mv, text, want).assessment = assessment;
-            if self.open.len() > RIDERS && !self.at_rest {
-                return self.run_dry(model, eye);
-            }
             return self.pump(model, eye);
         }
         self.brake_in_doubt(model, eye);
@@ -196,14 +197,18 @@ impl Ahead {
         eye.show(machine, mv, side.overrides);
     }
 
-    /// Too many moves of no length in a row: the queue is empty before they end, and
-    /// where the motion stops is not certain.
-    #[cold]
-    fn run_dry(&mut self, model: &PowerModel, eye: &mut Eye) {
+    /// Where the motion stops behind the last move, or whether it does, cannot be
+    /// waited for.
+    pub fn run_dry(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+        if self.at_rest {
+            return;
+        }
+        let stops = self.rests();
+        self.catch_up(machine);
         self.brake_in_doubt(model, eye);
         self.stop_planners();
         self.rest(model, eye);
-        self.in_doubt = true;
+        self.in_doubt = !stops;
     }
 
     /// The motion stops behind the last move.
