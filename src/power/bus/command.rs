@@ -8,6 +8,9 @@ use crate::power::Assessment;
 use crate::power::spindle_trace::SpindleSpan;
 use crate::power::surface_speed::Surface;
 
+/// Commands that wait before it is looked whether they still must.
+const QUEUE: usize = 4096;
+
 /// A command that waits for the moves before it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Queued {
@@ -40,6 +43,9 @@ impl SpindleBus<'_> {
                 after: self.pushed,
                 action: *action,
             });
+            if self.queue.len() > QUEUE {
+                self.catch_up();
+            }
             self.reserve_w = [f64::INFINITY; 2];
         }
     }
