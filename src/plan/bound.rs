@@ -8,7 +8,7 @@
 use super::arc::{axis_speed, excess, plane_share, tangent_ranges};
 use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
 use super::trajectory::{Caps, Overrides};
-use crate::interpret::{FeedMode, Move, MoveKind};
+use crate::interpret::{Arc, FeedMode, Move, MoveKind};
 use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
 
 /// Largest speed of each axis, mm/s or degrees/s, not negative.
@@ -96,6 +96,20 @@ pub fn path_bound(machine: &Machine, mv: &Move, v: f64) -> SpeedBound {
     bound
 }
 
+/// The largest share of its path speed that each axis takes, on a path begun at a
+/// known place, of a length: a line, an arc or a helix.
+#[must_use]
+pub fn path_shares(mv: &Move) -> SpeedBound {
+    let mut shares = SpeedBound::default();
+    for axis in mv.moving.iter().filter(|axis| !in_plane(mv, *axis)) {
+        shares.raise(axis, (mv.end[axis] - mv.start[axis]) / mv.length_mm);
+    }
+    if let Some(arc) = &mv.arc {
+        raise_plane(mv, arc, 1.0, &mut shares);
+    }
+    shares
+}
+
 /// Path speed in mm/s (degrees/s) to which [`blended_bound`] belongs.
 #[must_use]
 pub fn blended_speed(machine: &Machine, mv: &Move, overrides: Overrides) -> f64 {
@@ -127,11 +141,16 @@ fn along(
         }
     }
     if let Some(arc) = &mv.arc {
-        let v = v * plane_share(mv, arc);
-        for (axis, range) in arc.plane.into_iter().zip(tangent_ranges(arc)) {
-            bound.raise(axis, v * range.max.max(0.0));
-            bound.raise(axis, v * range.min.min(0.0));
-        }
+        raise_plane(mv, arc, v, bound);
+    }
+}
+
+/// The bounds of the axes of an arc's plane at the path speed `v`.
+fn raise_plane(mv: &Move, arc: &Arc, v: f64, bound: &mut SpeedBound) {
+    let v = v * plane_share(mv, arc);
+    for (axis, range) in arc.plane.into_iter().zip(tangent_ranges(arc)) {
+        bound.raise(axis, v * range.max.max(0.0));
+        bound.raise(axis, v * range.min.min(0.0));
     }
 }
 
