@@ -75,7 +75,7 @@ fn block(kind: u8, [x, y, z]: [f64; 3], turn: f64) -> String {
 
 proptest! {
     /// What is shown of the motion, both moves at once among it, is nowhere above the
-    /// peaks of the moves it belongs to, and often close to them.
+    /// peaks of the moves it belongs to, and these are no idle bounds.
     #[test]
     fn peaks_hold_for_both_at_once(
         blocks in prop::collection::vec(
