@@ -20,6 +20,10 @@ use crate::machine::{AXES, AxisValues};
 use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{PathShares, Profile, SpeedBound, State};
 
+/// Slices of the time that two moves share, of which one turns: over each the
+/// directions change little.
+const SLICES: u32 = 8;
+
 /// A piece of path that may share its time with another one.
 #[derive(Debug, Clone)]
 pub(super) struct Ride {
@@ -77,20 +81,38 @@ impl Ride {
 pub(super) fn tandem_demand(
     model: &PowerModel,
     mv: &Move,
-    [first, second]: [&Ride; 2],
+    rides: [&Ride; 2],
     overlap_s: f64,
 ) -> Demand {
-    let lasts_s = first.profile.duration_s();
-    let from_s = lasts_s - overlap_s;
-    let shares = [first.shares(from_s, lasts_s), second.shares(0.0, overlap_s)];
-    let instants = first.switches_s().map(|t| t - from_s);
-    let instants = instants.chain(second.switches_s()).chain([0.0, overlap_s]);
+    let turns = rides.iter().any(|ride| ride.path.arc.is_some());
+    let slices = if turns { SLICES } else { 1 };
+    let at = |slice: u32| overlap_s * f64::from(slice) / f64::from(slices);
+    let mut demand = Demand::NONE;
+    for slice in 0..slices {
+        let (bound, accels) = extremes(rides, overlap_s, [at(slice), at(slice + 1)]);
+        demand.include(&model.robust(mv, &bound, &accels));
+    }
+    demand
+}
+
+/// The largest speeds and accelerations of the axes between two instants of the time
+/// that they share.
+fn extremes(
+    rides: [&Ride; 2],
+    overlap_s: f64,
+    [from_s, to_s]: [f64; 2],
+) -> (SpeedBound, AxisValues) {
+    let begins_s = [rides[0].profile.duration_s() - overlap_s, 0.0];
+    let switches = rides.iter().zip(begins_s);
+    let switches =
+        switches.flat_map(|(ride, begins_s)| ride.switches_s().map(move |t| t - begins_s));
+    let instants = switches.chain([from_s, to_s]);
+    let both = [0, 1].map(|i| rides[i].shares(begins_s[i] + from_s, begins_s[i] + to_s));
     let (mut bound, mut tops) = (SpeedBound::default(), [0.0_f64; 2]);
-    for t in instants.filter(|t| (0.0..=overlap_s).contains(t)) {
-        let states = [first.state(from_s + t), second.state(t)];
-        let speeds = states.map(|state| state.velocity_mm_s);
+    for t in instants.filter(|t| (from_s..=to_s).contains(t)) {
+        let speeds = [0, 1].map(|i| rides[i].state(begins_s[i] + t).velocity_mm_s);
         tops = [tops[0].max(speeds[0]), tops[1].max(speeds[1])];
-        let [a, b] = shares.each_ref().map(|shares| &shares.along);
+        let [a, b] = both.each_ref().map(|shares| &shares.along);
         for axis in 0..AXES {
             let sum = |a: &AxisValues, b: &AxisValues| a[axis] * speeds[0] + b[axis] * speeds[1];
             bound.positive[axis] = bound.positive[axis].max(sum(&a.positive, &b.positive));
@@ -98,7 +120,7 @@ pub(super) fn tandem_demand(
         }
     }
     let mut accels = [0.0; AXES];
-    for ((ride, shares), top) in [first, second].into_iter().zip(&shares).zip(tops) {
+    for ((ride, shares), top) in rides.into_iter().zip(&both).zip(tops) {
         let SpeedBound {
             positive, negative, ..
         } = &shares.along;
@@ -107,5 +129,5 @@ pub(super) fn tandem_demand(
             *accel += along + shares.across[axis] * top * top;
         }
     }
-    model.robust(mv, &bound, &accels)
+    (bound, accels)
 }
