@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod commanded;
+mod positions;
 mod power_log;
 mod readers;
 mod refusals;

@@ -26,6 +26,9 @@ pub struct Data<'a> {
     pub positions: bool,
     /// One of so many samples counts as a row: 1 where all do.
     pub every: usize,
+    /// What leaky integrators, through which both signals went, lose from sample to
+    /// sample; 0 without them.
+    pub leak: f64,
 }
 
 impl Data<'_> {
@@ -52,6 +55,16 @@ impl Data<'_> {
             Measured::Direct => 0,
             Measured::Velocity => 1,
             Measured::Position => 2,
+        }
+    }
+
+    /// How many integrators' first values fade within the signals.
+    #[must_use]
+    pub fn fading(&self) -> usize {
+        if self.leak > 0.0 {
+            self.measured.integrators()
+        } else {
+            0
         }
     }
 

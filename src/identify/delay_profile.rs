@@ -187,3 +187,32 @@ fn of_the_mean(all: &[Estimate], bounds: Bounds) -> Option<Profile> {
         doubt_s: variance.sqrt(),
     })
 }
+
+/// How far the delays of models that explain the recording as well are apart from
+/// that of the best, s: each counts by how likely it makes the recording.
+#[must_use]
+pub fn doubt_s(tried: &[Estimate]) -> f64 {
+    let Some(best) = tried
+        .iter()
+        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))
+    else {
+        return 0.0;
+    };
+    let mut kinds: Vec<(f64, f64)> = Vec::new();
+    for found in tried {
+        let (delay_s, likelihood) = (found.transfer.delay_s, found.likelihood());
+        match kinds.iter_mut().find(|(delay, _)| *delay == delay_s) {
+            Some((_, least)) => *least = least.min(likelihood),
+            None => kinds.push((delay_s, likelihood)),
+        }
+    }
+    let least = kinds.iter().map(|(_, x)| *x).fold(f64::MAX, f64::min);
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (delay_s, likelihood) in kinds {
+        let weight = libm::exp(0.5 * (least - likelihood));
+        let apart = delay_s - best.transfer.delay_s;
+        sum += weight * apart * apart;
+        weights += weight;
+    }
+    (sum / weights).sqrt()
+}

@@ -4,7 +4,9 @@ use super::arx;
 use super::column::{Kind, Quantity};
 use super::command_input::CommandInput;
 use super::data::Data;
-use super::methods::{Modelled, as_it_is, by_arx, by_response, by_search, by_subspace};
+use super::disturbance::as_it_is;
+use super::leaky::Leaky;
+use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
 use super::neighbours::Given;
 use super::noise::Whiteness;
 use super::output_error::residuals;
@@ -76,12 +78,16 @@ pub struct Flexible {
     /// The delay that was fitted, s: from a command it is longer by half a
     /// period or a whole one, as the input was taken early.
     pub fitted_delay_s: f64,
-    /// Norm of what is left by norm of the output.
+    /// Norm of what is left by norm of the output; of a position or speed the smaller
+    /// one of its differences, and behind leaky integrators.
     pub rel_error: f64,
     /// Whiteness of what is left, behind the filter for coloured noise.
     pub whiteness: Whiteness,
     /// Order of that filter; 0 for white noise.
     pub noise_order: usize,
+    /// What leaky integrators lose from sample to sample, through which a position or
+    /// speed and the force went to be compared; 0 without them.
+    pub leak: f64,
     /// The measured response.
     pub response: FrequencyResponse,
     /// Input and output, by name.
@@ -292,6 +298,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         early_s: prepared.early_s,
         positions: prepared.positions,
         every: 1,
+        leak: 0.0,
     };
     let find = |choice: &Choice| match choice.method {
         Method::Iv => by_search(&data, &prepared, choice),
@@ -309,18 +316,29 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     describe(found, &data, &prepared)
 }
 
-fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
-    let estimate = &found.estimate;
-    let mut transfer = estimate.transfer.clone();
-    let fitted_delay_s = transfer.delay_s;
-    let left = residuals(data, estimate).unwrap_or_default();
+/// Norm of what is left by norm of the output, means taken off.
+fn share(data: &Data<'_>, left: &[f64]) -> f64 {
     let power = |x: &[f64]| -> f64 {
         let n = x.len().max(1) as f64;
         let mean = x.iter().sum::<f64>() / n;
         x.iter().map(|x| (x - mean) * (x - mean)).sum()
     };
-    let rest = power(&left);
-    let all = power(prepared.output.get(data.skip()..).unwrap_or_default());
+    let all = power(data.output.get(data.skip()..).unwrap_or_default());
+    (power(left) / all).sqrt()
+}
+
+fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
+    let leaky = found.noise.held(data);
+    let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
+    let estimate = &found.estimate;
+    let mut transfer = estimate.transfer.clone();
+    let fitted_delay_s = transfer.delay_s;
+    let left = residuals(&compared, estimate).unwrap_or_default();
+    let mut rel_error = share(&compared, &left);
+    if leaky.is_some() {
+        let plain = as_it_is(data, &transfer).and_then(|plain| residuals(data, &plain));
+        rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
+    }
     let std = |index: usize| {
         if found.has_errors {
             estimate.std(index).unwrap_or(f64::NAN)
@@ -401,9 +419,10 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             value: transfer.delay_s,
             std: delay_std,
         },
-        rel_error: (rest / all).sqrt(),
-        whiteness: Whiteness::of(&filtered(&left, &found.whitening), LAGS),
-        noise_order: found.whitening.len(),
+        rel_error,
+        whiteness: Whiteness::of(&filtered(&left, &found.noise.taps), LAGS),
+        noise_order: found.noise.taps.len(),
+        leak: found.noise.leak,
         response: found.response,
         signals: prepared.names.clone(),
         samples: data.len(),
@@ -431,19 +450,24 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         early_s: prepared.early_s,
         positions: prepared.positions,
         every: 1,
+        leak: 0.0,
     };
     let fitted = TransferFunction {
         delay_s: model.fitted_delay_s,
         ..model.transfer.clone()
     };
-    let simulated = as_it_is(&data, &fitted).and_then(|e| residuals(&data, &e));
-    let left = simulated.ok_or_else(|| {
+    let share = |data: &Data<'_>| {
+        let left = as_it_is(data, &fitted).and_then(|found| residuals(data, &found))?;
+        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        Some(norm(&left) / norm(data.output.get(data.skip()..)?))
+    };
+    let leaky = (model.leak > 0.0).then(|| Leaky::of(&data, model.leak));
+    let leaky = leaky.and_then(|leaky| share(&leaky.data(&data)));
+    let least = share(&data).map(|plain| plain.min(leaky.unwrap_or(plain)));
+    least.ok_or_else(|| {
         Trouble::new(
             "the model cannot be simulated on the second recording",
             "record both at the same rate",
         )
-    })?;
-    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let measured = prepared.output.get(data.skip()..).unwrap_or_default();
-    Ok(norm(&left) / norm(measured))
+    })
 }

@@ -2,9 +2,10 @@
 
 use super::arx;
 use super::data::Data;
+use super::disturbance::{Noise, as_it_is};
 use super::flexible::{Choice, Prepared};
 use super::neighbours::{LAG_MAX, ORDER_MAX};
-use super::output_error::{Effort, Estimate, refine};
+use super::output_error::Estimate;
 use super::response_fit::{self, ResponseFit};
 use super::search::{response_of, search};
 use super::spectrum::FrequencyResponse;
@@ -17,7 +18,7 @@ pub(super) struct Modelled {
     pub(super) delay_is_free: bool,
     /// How far the delay is in doubt besides, s.
     pub(super) delay_doubt_s: f64,
-    pub(super) whitening: Vec<f64>,
+    pub(super) noise: Noise,
     pub(super) response: FrequencyResponse,
     pub(super) has_errors: bool,
 }
@@ -28,23 +29,10 @@ pub(super) fn by_search(data: &Data<'_>, prepared: &Prepared, choice: &Choice) -
         estimate: found.estimate,
         delay_is_free: found.delay_is_free,
         delay_doubt_s: found.delay_doubt_s,
-        whitening: found.whitening,
+        noise: found.noise,
         response: found.response,
         has_errors: true,
     })
-}
-
-/// The model as it is, with its offset and first state.
-pub(super) fn as_it_is(data: &Data<'_>, transfer: &TransferFunction) -> Option<Estimate> {
-    let effort = Effort {
-        steps: 0,
-        to_beat: f64::MAX,
-    };
-    let open = Data {
-        undisturbed: None,
-        ..*data
-    };
-    refine(&open, transfer, false, &[], effort)
 }
 
 pub(super) fn by_response(
@@ -86,7 +74,7 @@ pub(super) fn by_response(
         estimate,
         delay_is_free: false,
         delay_doubt_s: 0.0,
-        whitening: Vec::new(),
+        noise: Noise::default(),
         response,
         has_errors: true,
     })
@@ -191,7 +179,7 @@ fn finish_plain(
         estimate: as_it_is(data, &transfer)?,
         delay_is_free: false,
         delay_doubt_s: 0.0,
-        whitening: Vec::new(),
+        noise: Noise::default(),
         response: response_of(data, prepared.excitation.as_deref(), None)?,
         has_errors: false,
     })

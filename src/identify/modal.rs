@@ -66,6 +66,7 @@ impl Lines {
                 columns.push(self.column(&seen));
             }
         }
+        columns.extend(self.ends());
         if taps == 1 {
             columns.push(self.column(&self.driven(&hold.at_sample(), lag)));
         } else {

@@ -26,6 +26,12 @@ const STEPS_MAX: usize = 40;
 /// search: far below what noise decides.
 const ENOUGH: f64 = 1e-3;
 
+/// Damping of a first step. In positions, most of which is slow, everything but the
+/// gain hangs together: less is much there, and the last fit comes from nearby.
+const DAMPING: f64 = 1e-4;
+const DAMPING_LEAKY: f64 = 1e-7;
+const DAMPING_LAST: f64 = 1e-12;
+
 /// So near to the criterion that is to be beaten, a fit is given this many times
 /// the steps.
 const NEAR: f64 = 20.0;
@@ -166,6 +172,11 @@ pub fn refine(
         period_s: raw.period_s,
         from_command: raw.from_command,
         power: raw.output.iter().map(|y| y * y).sum(),
+        damping: match effort.steps {
+            _ if raw.leak == 0.0 => DAMPING,
+            STEPS_MAX => DAMPING_LAST,
+            _ => DAMPING_LEAKY,
+        },
         samples: raw.len(),
     };
     let Descent {
@@ -198,6 +209,8 @@ struct Task<'a> {
     /// Sum of squares of the output.
     power: f64,
     samples: usize,
+    /// Of the first step.
+    damping: f64,
 }
 
 /// Where a descent came to.
@@ -213,7 +226,7 @@ impl Task<'_> {
         let mut normal = (self.gather)(&transfer)?;
         let count = parameters(&transfer, self.delay_is_free).len();
         let mut least = rest(&normal, count)?.rest;
-        let mut damping = 1e-4;
+        let mut damping = self.damping;
         let mut steps = 0;
         for round in 0..LONGER * effort.steps {
             // What is missing, in units of the criterion: what is near is worth more.

@@ -5,11 +5,12 @@
 use nalgebra::Complex;
 
 use super::data::Data;
-use super::delay_profile::{Bounds, profile};
+use super::delay_profile::{Bounds, doubt_s, profile};
+use super::disturbance::{Noise, next_noise};
 use super::fewer_rows::FewerRows;
 use super::mode_starts;
 use super::neighbours::{Given, are_alike, neighbours, restarts};
-use super::noise::{Whiteness, whitening};
+use super::noise::Whiteness;
 use super::output_error::{Effort, Estimate, refine, residuals};
 use super::response_starts;
 use super::spectral_lines::Lines;
@@ -23,7 +24,7 @@ const COMPARED_COMMAND: usize = 16_000;
 /// Samples on which the best of them are; the last fit takes all.
 const CHOSEN: usize = 24_000;
 /// Lines on which modes are looked for, about.
-const COARSE: usize = 700;
+pub const COARSE: usize = 700;
 /// Models of different kinds that are gone on with.
 const KEPT: usize = 5;
 /// A model better by this much is gone on from without looking at others.
@@ -34,7 +35,7 @@ const CLEAR_DELAY: f64 = 10.0;
 /// A model better by less is the same one.
 const WORTH: f64 = 0.5;
 /// Steps of each fit on the way.
-const SEARCH_STEPS: usize = 20;
+pub const SEARCH_STEPS: usize = 20;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
 const STEPS_MAX: usize = 500;
@@ -47,7 +48,7 @@ const ROUNDS_OF_NOISE: usize = 4;
 /// Steps from model to model at most.
 const ROUNDS_MAX: usize = 12;
 /// Order of the filter that makes noise white, at most.
-const WHITENING_MAX: usize = 40;
+pub const WHITENING_MAX: usize = 40;
 /// Lags over which residuals are tested.
 pub const LAGS: usize = 40;
 
@@ -60,8 +61,8 @@ pub struct Found {
     pub delay_is_free: bool,
     /// How far it is in doubt besides, s: other models have other delays.
     pub delay_doubt_s: f64,
-    /// Taps of the filter that made the noise white.
-    pub whitening: Vec<f64>,
+    /// What made the noise white.
+    pub noise: Noise,
     /// The measured frequency response.
     pub response: FrequencyResponse,
 }
@@ -73,56 +74,51 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     let band_rad_s = response.shown_rad_s();
     let step_s = data.period_s * mode_starts::delay_step(data.from_command);
     let compared = compared(data, &response);
-    let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
-    let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
-    let fewer = fewer.flatten();
-    let short = fewer
-        .as_ref()
-        .map_or(all_rows, |fewer| fewer.data(&all_rows));
-    let mut taps: Vec<f64> = Vec::new();
-    let mut best: Option<(Estimate, bool, f64, Vec<f64>)> = None;
+    let is_integrated = !data.from_command && data.measured.integrators() > 0;
+    let raw = data;
+    let (mut noise, mut first_starts) = (Noise::default(), None);
+    if is_integrated {
+        let (first, starts) = Noise::first(raw, raw.head(COMPARED), band_rad_s, given);
+        (noise, first_starts) = (first, Some(starts));
+    }
+    let mut best: Option<(Estimate, bool, f64, Noise)> = None;
     // Noise that is not white shows only behind a model, and the model only
     // when the noise is known: a few rounds settle both, each from where the one
     // before came to.
     for _ in 0..ROUNDS_OF_NOISE {
         let before = best.as_ref().map(|(best, ..)| &best.transfer);
-        let coarse = Lines::new(data, &taps, band_rad_s, COARSE);
-        let mut starts = coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given));
+        let leaky = noise.held(raw);
+        let data = &leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
+        let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
+        let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
+        let fewer = fewer.flatten();
+        let short = fewer
+            .as_ref()
+            .map_or(all_rows, |fewer| fewer.data(&all_rows));
+        let taps = &noise.taps;
+        let mut starts = first_starts.take().unwrap_or_else(|| {
+            let coarse = Lines::new(raw, &noise, band_rad_s, COARSE);
+            coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given))
+        });
         if !data.from_command {
             // Without a loop about it what is measured shows the axis itself.
             starts.extend(response_starts::starts(&all_rows, &response, given));
         }
         starts.extend(before.cloned());
         let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            refine(&short, start, delay_is_free, &taps, effort)
+            refine(&short, start, delay_is_free, taps, effort)
         };
         let fit_long = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            refine(&long, start, delay_is_free, &taps, effort)
+            refine(&long, start, delay_is_free, taps, effort)
         };
-        let budget = if before.is_some() {
-            (STEPS_LAST, STEPS_LAST)
-        } else if data.from_command {
-            (STEPS_COMMAND, 0)
-        } else {
-            (STEPS_MAX, 3 * STEPS_LAST)
-        };
+        let budget = budget(before.is_none(), data.from_command);
         let mut tried = ladder(&fit, data, step_s, &response, given, &starts, budget);
         let mut others = doubt_s(&tried);
         if data.from_command && given.delay_s.is_none() {
-            let bounds = Bounds {
-                least_s: data.early_s,
-                step_periods: mode_starts::delay_step(true),
-                period_s: data.period_s,
-                band_rad_s,
-            };
-            let fit = |start: &TransferFunction, effort: Effort| {
-                let is_given = given.order.is_none_or(|order| start.order() == order)
-                    && given.zeros.is_none_or(|zeros| start.zero_count() == zeros);
-                is_given.then(|| fit(start, false, effort)).flatten()
-            };
-            if let Some(found) = profile(fit, tried.clone(), bounds) {
-                others = libm::hypot(found.doubt_s, step_s / 12.0_f64.sqrt());
-                tried = vec![found.estimate];
+            let profiled = by_profile(&fit, data, given, band_rad_s, tried.clone());
+            if let Some((found, apart_s)) = profiled {
+                others = libm::hypot(apart_s, step_s / 12.0_f64.sqrt());
+                tried = vec![found];
             }
         }
         let effort = Effort {
@@ -134,7 +130,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
             if short.len() == data.len() {
                 Some(found)
             } else {
-                refine(&long, &found.transfer, false, &taps, effort)
+                refine(&long, &found.transfer, false, taps, effort)
             }
         };
         let Some(found) = best_of(best_of(tried).filter_map(again).collect()).next() else {
@@ -152,29 +148,67 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         };
         let left = residuals(&long, &found)?;
         let exact = found.rest <= 1e-12 * found.power;
-        let is_white = || Whiteness::of(filtered(&left, &taps).as_slice(), LAGS).is_white();
-        let next = (!exact && !is_white()).then(|| whitening(&left, WHITENING_MAX));
-        best = Some((found, delay_is_free, delay_doubt_s, taps));
-        match next {
-            Some(next) => taps = next,
+        let is_white = || Whiteness::of(filtered(&left, taps).as_slice(), LAGS).is_white();
+        let next = (!exact && !is_white()).then(|| {
+            let head = is_integrated.then(|| raw.head(compared));
+            next_noise(head.as_ref(), &found.transfer, &noise, &left)
+        });
+        best = Some((found, delay_is_free, delay_doubt_s, noise.clone()));
+        match next.flatten() {
+            Some(next) => noise = next,
             None => break,
         }
     }
-    let (short_estimate, delay_is_free, delay_doubt_s, taps) = best?;
+    let (short_estimate, delay_is_free, delay_doubt_s, noise) = best?;
+    let noise = noise.closer(raw, &short_estimate.transfer);
+    let leaky = noise.held(raw);
     let estimate = refine(
-        data,
+        &leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw)),
         &short_estimate.transfer,
         delay_is_free,
-        &taps,
+        &noise.taps,
         Effort::FULL,
     )?;
     Some(Found {
         estimate,
         delay_is_free,
         delay_doubt_s,
-        whitening: taps,
+        noise,
         response,
     })
+}
+
+/// Steps of the first round or a later one, and those to spare.
+fn budget(is_first: bool, from_command: bool) -> (usize, usize) {
+    match (is_first, from_command) {
+        (false, _) => (STEPS_LAST, STEPS_LAST),
+        (true, true) => (STEPS_COMMAND, 0),
+        (true, false) => (STEPS_MAX, 3 * STEPS_LAST),
+    }
+}
+
+/// The model behind a command by the profile of its dead time, and how far that is in
+/// doubt, s.
+fn by_profile(
+    fit: &Fit<'_>,
+    data: &Data<'_>,
+    given: Given,
+    band_rad_s: f64,
+    tried: Vec<Estimate>,
+) -> Option<(Estimate, f64)> {
+    let bounds = Bounds {
+        least_s: data.early_s,
+        step_periods: mode_starts::delay_step(true),
+        period_s: data.period_s,
+        band_rad_s,
+    };
+    let fit = |start: &TransferFunction, effort: Effort| {
+        let is_given = given.order.is_none_or(|order| start.order() == order)
+            && given.zeros.is_none_or(|zeros| start.zero_count() == zeros);
+        is_given.then(|| fit(start, false, effort)).flatten()
+    };
+    let found = profile(fit, tried, bounds)?;
+    Some((found.estimate, found.doubt_s))
 }
 
 /// Samples on which models are compared: the first ones of a force, unless they show
@@ -411,34 +445,6 @@ fn lacks(model: &TransferFunction, needed: &[(bool, Factor)]) -> bool {
 
 fn is_better(found: &Estimate, than: Option<&Estimate>) -> bool {
     than.is_none_or(|than| found.criterion() < than.criterion())
-}
-
-/// How far the delays of models that explain the recording as well are apart from
-/// that of the best, s: each counts by how likely it makes the recording.
-fn doubt_s(tried: &[Estimate]) -> f64 {
-    let Some(best) = tried
-        .iter()
-        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))
-    else {
-        return 0.0;
-    };
-    let mut kinds: Vec<(f64, f64)> = Vec::new();
-    for found in tried {
-        let (delay_s, likelihood) = (found.transfer.delay_s, found.likelihood());
-        match kinds.iter_mut().find(|(delay, _)| *delay == delay_s) {
-            Some((_, least)) => *least = least.min(likelihood),
-            None => kinds.push((delay_s, likelihood)),
-        }
-    }
-    let least = kinds.iter().map(|(_, x)| *x).fold(f64::MAX, f64::min);
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for (delay_s, likelihood) in kinds {
-        let weight = libm::exp(0.5 * (least - likelihood));
-        let apart = delay_s - best.transfer.delay_s;
-        sum += weight * apart * apart;
-        weights += weight;
-    }
-    (sum / weights).sqrt()
 }
 
 /// The delay set free, if that is clearly worth a parameter: beside a fast zero

@@ -5,11 +5,12 @@
 //! on several at once.
 
 use super::data::Data;
+use super::leaky::Fading;
 use super::normal::Normal;
 use super::parallel::{Parallel, TAPS};
 use super::parameters::{parameters, probes, with};
 use super::state_space::Measured;
-use super::stretch::{Bank, Free, ROWS, Stride, Terms, combine, stretches};
+use super::stretch::{Bank, Column, Free, ROWS, Stride, Terms, combine, stretches};
 use super::transfer::TransferFunction;
 
 /// A model with the derivatives of its coefficients.
@@ -102,8 +103,8 @@ impl Derivatives {
 }
 
 /// Normal equations of a step from a model: a column for each parameter, one for
-/// each state of the first row that counts, and one for an offset. The rows
-/// before `first` do not count.
+/// each state of the first row that counts and of leaky integrators, and one for an
+/// offset. The rows before `first` do not count.
 #[must_use]
 pub fn gather(
     data: &Data<'_>,
@@ -117,7 +118,7 @@ pub fn gather(
     let terms = derivatives.columns(&bank);
     let output = bank.output(base);
     let count = terms.len();
-    let width = count + base.order() + 1;
+    let width = count + base.order() + data.fading() + 1;
     let mut normal = Normal::new(width);
     let mut columns = vec![[0.0; ROWS]; width];
     *columns.last_mut()? = [1.0; ROWS];
@@ -126,6 +127,7 @@ pub fn gather(
     let driven = data.undisturbed.unwrap_or(data.input);
     let mut open = data.undisturbed.map(|_| Bank::new(base, data.every, &[]));
     let mut free = Free::new(base, data.every);
+    let mut fading = Fading::new(data);
     let first = first.div_ceil(data.every);
     for (from, rows) in stretches(first, data.rows()) {
         bank.run(driven, from, rows);
@@ -149,6 +151,11 @@ pub fn gather(
                 (Some(column), Some(slot), _) => *slot = *column,
                 (None, _, Some(over)) => *over = true,
                 _ => {}
+            }
+        });
+        fading.next(rows, |index, column| {
+            if let Some(slot) = columns.get_mut(count + base.order() + index) {
+                *slot = *column;
             }
         });
         let mut gaps = [0.0; ROWS];
@@ -183,6 +190,7 @@ pub fn differences(
     let mut bank = Bank::new(&base, 1, &[]);
     let terms = bank.output(&base);
     let mut free = Free::new(&base, 1);
+    let mut fading = Fading::new(data);
     let mut out = vec![0.0; data.len()];
     for (from, rows) in stretches(first, data.len()) {
         bank.run(data.input, from, rows);
@@ -191,13 +199,19 @@ pub fn differences(
         }
         let mut simulated = [0.0; ROWS];
         combine(&mut simulated, &terms, bank.signals());
-        free.next(rows, |index, column| {
-            if let (Some(column), Some(state)) = (column, state.get(index)) {
+        let mut add = |index: usize, column: &Column| {
+            if let Some(state) = state.get(index) {
                 for (sum, x) in simulated.iter_mut().zip(column) {
                     *sum += state * x;
                 }
             }
+        };
+        free.next(rows, |index, column| {
+            if let Some(column) = column {
+                add(index, column);
+            }
         });
+        fading.next(rows, |index, column| add(base.order() + index, column));
         let measured = data.output.get(from..from + rows)?.iter();
         let slots = out.get_mut(from..from + rows)?;
         for ((slot, y), simulated) in slots.iter_mut().zip(measured).zip(&simulated) {

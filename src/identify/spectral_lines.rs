@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use nalgebra::Complex;
 
 use super::data::Data;
+use super::disturbance::Noise;
 use super::neighbours::LAG_MAX;
 use super::parallel::{Hold, Section, TAPS};
 use super::spectrum::transform_of;
@@ -49,13 +50,15 @@ pub struct Lines {
     pub from_command: bool,
     /// The shortest delay, s.
     pub early_s: f64,
+    /// First samples of differences to which the ends of a noisy signal add.
+    ends: usize,
 }
 
 impl Lines {
-    /// Of a recording, behind the filter that makes its noise white, up to a little
+    /// Of a recording as it is, behind what makes its noise white, up to a little
     /// beyond a band. `None` when there is too little.
     #[must_use]
-    pub fn new(data: &Data<'_>, whitening: &[f64], band_rad_s: f64, most: usize) -> Option<Self> {
+    pub fn new(data: &Data<'_>, noise: &Noise, band_rad_s: f64, most: usize) -> Option<Self> {
         let skip = data.skip();
         // A length that Fourier transforms like.
         let count = data.len().checked_sub(skip)? / 40 * 40;
@@ -78,12 +81,14 @@ impl Lines {
         let used: Vec<usize> = thinned(lines, most).iter().map(|line| line + 1).collect();
         let pick = |x: &[C]| -> Vec<C> { used.iter().map(|line| at(x, *line)).collect() };
         let theta: Vec<f64> = used.iter().map(|line| *line as f64 * turn).collect();
+        let times = data.measured.integrators();
+        let held = |theta: f64| integrators(noise.leak, times, theta);
         // Parseval: a line and its image, each a sum over all samples.
         let share = (2.0 / count as f64).sqrt();
         let mut out = Self {
             weight: theta
                 .iter()
-                .map(|theta| share * response(whitening, *theta))
+                .map(|theta| share * response(&noise.taps, *theta) * held(*theta))
                 .collect(),
             inputs: late.iter().map(|x| pick(x)).collect(),
             output: Vec::new(),
@@ -96,6 +101,7 @@ impl Lines {
             samples: count,
             from_command: data.from_command,
             early_s: data.early_s,
+            ends: if noise.leak > 0.0 { times } else { 0 },
         };
         out.output = out.column(&pick(&output));
         out.power = out.output.iter().map(|x| x * x).sum();
@@ -156,6 +162,18 @@ impl Lines {
         let pairs = || x.iter().zip(&self.weight);
         let re = pairs().map(|(x, w)| x.re * w);
         re.chain(pairs().map(|(x, w)| x.im * w)).collect()
+    }
+
+    /// What the differences of noise, which does not end where it began, add: something
+    /// at each of the first samples.
+    #[must_use]
+    pub fn ends(&self) -> Vec<Vec<f64>> {
+        let late = |samples: usize| -> Vec<f64> {
+            let turned = self.theta.iter();
+            let turned = turned.map(|theta| on_circle(-theta * samples as f64));
+            self.column(&turned.collect::<Vec<C>>())
+        };
+        (0..self.ends).map(late).collect()
     }
 
     /// The input as taps weigh it, `lag` periods late.
@@ -297,4 +315,13 @@ fn response(taps: &[f64], theta: f64) -> f64 {
         sum += on_circle(-theta * (index + 1) as f64) * *tap;
     }
     sum.norm()
+}
+
+/// Size of the response of leaky integrators; 1 without them.
+fn integrators(leak: f64, times: usize, theta: f64) -> f64 {
+    if leak == 0.0 {
+        return 1.0;
+    }
+    let each = (C::new(1.0, 0.0) - on_circle(-theta) * (1.0 - leak)).norm_sqr();
+    libm::pow(each, -0.5 * times as f64)
 }
