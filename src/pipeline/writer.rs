@@ -198,7 +198,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         deliver(&mut self.batch)
     }
 
-    /// Reads a block, lets it wait, and judges its moves.
+    /// Reads a block, and judges its moves or lets it wait.
     fn read_block(&mut self) -> Result<bool, Failure> {
         let Some(mut line) = self.front.next_line()? else {
             return Ok(false);
@@ -252,8 +252,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             let moved = entry.steps.iter().any(Step::moves_axes);
             self.assessor.end_line(moved, &mut |_, _, _| {});
             self.ready = Some(entry);
-            return Ok(true);
+        } else {
+            self.judge_waiting(entry);
         }
+        Ok(true)
+    }
+
+    /// Lets a block wait, and judges its moves.
+    fn judge_waiting(&mut self, entry: Box<Entry>) {
         let number = self.first + self.entries.len() as u64;
         self.entries.push_back(entry);
         let Self {
@@ -269,9 +275,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             ..
         } = self;
         let entries = &*entries;
-        let Some(entry) = entries.back() else {
-            return Ok(true);
-        };
+        let Some(entry) = entries.back() else { return };
         let moved = entry.steps.iter().any(Step::moves_axes);
         // Behind the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
@@ -308,7 +312,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 None => assessor.end_line(moved, &mut sink),
             }
         }
-        Ok(true)
     }
 
     /// Judges and decides the moves of a block none of which has to wait; of a
