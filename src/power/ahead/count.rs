@@ -160,7 +160,7 @@ impl Ahead {
                 open.alone = false;
             }
         }
-        self.last_ride = Some(Box::new(ride));
+        self.last_ride = Some(ride);
     }
 
     /// Whether a piece runs as planned whatever happened where the motion was in

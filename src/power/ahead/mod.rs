@@ -54,7 +54,7 @@ pub(super) struct Ahead {
     /// may be blended with it.
     unwaited: Option<Extremes>,
     /// The last piece, where the next one may run already while it does.
-    last_ride: Option<Box<Ride>>,
+    last_ride: Option<Ride>,
 }
 
 /// A planner and how far it has come.
