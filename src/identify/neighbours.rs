@@ -75,7 +75,7 @@ pub fn neighbours(
     let mut out = reflected(from, given, period_s);
     out.extend(as_delay(from, given, period_s));
     if given.order.is_none() {
-        out.extend(cancelled(from));
+        out.extend(cancelled(from, NEAR));
         out.extend(without_mode(from, far_zero, true));
         let lean = lean(from, response.band_rad_s());
         if lean.order() < from.order() {
@@ -135,14 +135,17 @@ pub fn neighbours(
     out
 }
 
-/// Without a pole and a zero that stand for nothing beside one another.
-fn cancelled(from: &TransferFunction) -> Vec<TransferFunction> {
-    const NEAR: f64 = 0.2;
+/// A pole and a zero so near, as a share, may stand for nothing beside one another.
+const NEAR: f64 = 0.2;
+
+/// Without a pole and a zero that are as near to each other as that.
+#[must_use]
+pub fn cancelled(from: &TransferFunction, near: f64) -> Vec<TransferFunction> {
     let mut out = Vec::new();
     for (index, pole) in from.poles.iter().enumerate() {
         let is_near = |zero: &Factor| {
             let apart = libm::log(zero.corner_rad_s() / pole.corner_rad_s());
-            zero.degree() == pole.degree() && apart.abs() < NEAR
+            zero.degree() == pole.degree() && apart.abs() < near
         };
         if let Some(at) = from.zeros.iter().position(is_near) {
             let mut less = from.clone();

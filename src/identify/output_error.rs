@@ -196,6 +196,11 @@ pub fn refine(
         };
         let normal = gather(&open, &estimate.transfer, delay_is_free, raw.skip())?;
         (estimate.state, estimate.offset) = nuisance(&rest(&normal, estimate.count)?);
+    } else if raw.leak > 0.0 && raw.every == 1 {
+        // Beside what fades, squares have lost the digits of what is left.
+        let left: f64 = residuals(raw, &estimate)?.iter().map(|x| x * x).sum();
+        estimate.covariance *= left / estimate.rest;
+        estimate.rest = left;
     }
     Some(estimate)
 }

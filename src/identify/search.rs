@@ -9,7 +9,7 @@ use super::delay_profile::{Bounds, doubt_s, profile};
 use super::disturbance::{Noise, next_noise};
 use super::fewer_rows::FewerRows;
 use super::mode_starts;
-use super::neighbours::{Given, are_alike, neighbours, restarts};
+use super::neighbours::{Given, are_alike, cancelled, neighbours, restarts};
 use super::noise::Whiteness;
 use super::output_error::{Effort, Estimate, refine, residuals};
 use super::response_starts;
@@ -34,6 +34,8 @@ const CLEAR: f64 = 4.0;
 const CLEAR_DELAY: f64 = 10.0;
 /// A model better by less is the same one.
 const WORTH: f64 = 0.5;
+/// A pole and a zero no farther apart, as a share, are one.
+const ONE: f64 = 0.02;
 /// Steps of each fit on the way.
 pub const SEARCH_STEPS: usize = 20;
 /// Steps of all of them at most: a recording that no model explains to its last
@@ -161,14 +163,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
     }
     let (short_estimate, delay_is_free, delay_doubt_s, noise) = best?;
     let noise = noise.closer(raw, &short_estimate.transfer);
-    let leaky = noise.held(raw);
-    let estimate = refine(
-        &leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw)),
-        &short_estimate.transfer,
-        delay_is_free,
-        &noise.taps,
-        Effort::FULL,
-    )?;
+    let estimate = on_all(raw, &short_estimate.transfer, delay_is_free, &noise, given)?;
     Some(Found {
         estimate,
         delay_is_free,
@@ -176,6 +171,29 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         noise,
         response,
     })
+}
+
+/// The last fit, on all samples.
+fn on_all(
+    raw: &Data<'_>,
+    found: &TransferFunction,
+    delay_is_free: bool,
+    noise: &Noise,
+    given: Given,
+) -> Option<Estimate> {
+    let leaky = noise.held(raw);
+    let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
+    let fit =
+        |from: &TransferFunction| refine(&data, from, delay_is_free, &noise.taps, Effort::FULL);
+    let mut best = fit(found)?;
+    if leaky.is_some() && given.order.is_none() && given.zeros.is_none() {
+        // What stood for noise as it was supposed at first stands for nothing now.
+        for less in cancelled(&best.transfer, ONE) {
+            let less = fit(&less).filter(|less| less.criterion() <= best.criterion());
+            best = less.unwrap_or(best);
+        }
+    }
+    Some(best)
 }
 
 /// Steps of the first round or a later one, and those to spare.
