@@ -49,7 +49,7 @@ pub(super) struct TangentRange {
 
 impl TangentRange {
     /// The largest size.
-    pub fn largest(self) -> f64 {
+    fn largest(self) -> f64 {
         self.max.max(-self.min)
     }
 }
