@@ -31,6 +31,37 @@ pub struct Data<'a> {
     pub leak: f64,
 }
 
+/// Signals of a recording behind a filter: all go through the same one, which leaves a
+/// model between them as it is.
+pub struct Signals {
+    pub input: Vec<f64>,
+    pub output: Vec<f64>,
+    pub undisturbed: Option<Vec<f64>>,
+}
+
+impl Signals {
+    /// Those of `data` behind `filter`.
+    #[must_use]
+    pub fn behind(data: &Data<'_>, filter: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        Self {
+            input: filter(data.input),
+            output: filter(data.output),
+            undisturbed: data.undisturbed.map(filter),
+        }
+    }
+
+    /// What was recorded, with these signals.
+    #[must_use]
+    pub fn data<'a>(&'a self, data: &Data<'a>) -> Data<'a> {
+        Data {
+            input: &self.input,
+            output: &self.output,
+            undisturbed: self.undisturbed.as_deref(),
+            ..*data
+        }
+    }
+}
+
 impl Data<'_> {
     /// The first samples only.
     #[must_use]

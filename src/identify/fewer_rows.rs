@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use super::data::Data;
+use super::data::{Data, Signals};
 
 /// The share of the band up to Nyquist's frequency over which the low-pass falls, to
 /// either side of it.
@@ -23,9 +23,7 @@ const ROWS_MIN: usize = 1500;
 
 /// The signals behind the low-pass.
 pub struct FewerRows {
-    input: Vec<f64>,
-    output: Vec<f64>,
-    undisturbed: Option<Vec<f64>>,
+    signals: Signals,
     every: usize,
 }
 
@@ -42,9 +40,7 @@ impl FewerRows {
         }
         let taps = low_pass(every);
         Some(Self {
-            input: behind(data.input, &taps),
-            output: behind(data.output, &taps),
-            undisturbed: data.undisturbed.map(|x| behind(x, &taps)),
+            signals: Signals::behind(data, |x| behind(x, &taps)),
             every,
         })
     }
@@ -53,11 +49,8 @@ impl FewerRows {
     #[must_use]
     pub fn data<'a>(&'a self, data: &Data<'a>) -> Data<'a> {
         Data {
-            input: &self.input,
-            output: &self.output,
-            undisturbed: self.undisturbed.as_deref(),
             every: self.every,
-            ..*data
+            ..self.signals.data(data)
         }
     }
 }

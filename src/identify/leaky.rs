@@ -10,15 +10,13 @@
 //! What they held at the first sample (the position, the speed) fades with `aᵏ` and
 //! `k·aᵏ`; it is fitted beside the model.
 
-use super::data::Data;
+use super::data::{Data, Signals};
 use super::normal::Normal;
 use super::stretch::{Column, ROWS};
 
 /// The signals behind leaky integrators.
 pub struct Leaky {
-    input: Vec<f64>,
-    output: Vec<f64>,
-    undisturbed: Option<Vec<f64>>,
+    signals: Signals,
     leak: f64,
 }
 
@@ -34,9 +32,7 @@ impl Leaky {
             x
         };
         let mut out = Self {
-            input: held(data.input),
-            output: held(data.output),
-            undisturbed: data.undisturbed.map(held),
+            signals: Signals::behind(data, held),
             leak,
         };
         out.level(data);
@@ -47,11 +43,8 @@ impl Leaky {
     #[must_use]
     pub fn data<'a>(&'a self, data: &Data<'a>) -> Data<'a> {
         Data {
-            input: &self.input,
-            output: &self.output,
-            undisturbed: self.undisturbed.as_deref(),
             leak: self.leak,
-            ..*data
+            ..self.signals.data(data)
         }
     }
 
@@ -63,7 +56,7 @@ impl Leaky {
             ..*data
         };
         let skip = data.skip();
-        let count = self.output.len().saturating_sub(skip);
+        let count = self.signals.output.len().saturating_sub(skip);
         let columns = || {
             let mut fading = Fading::new(&data);
             let mut from = 0;
@@ -84,14 +77,22 @@ impl Leaky {
             let columns = columns.iter().enumerate();
             let columns = columns.filter_map(|(at, column)| Some((at, column.get(..rows)?)));
             let columns: Vec<(usize, &[f64])> = columns.collect();
-            let part = self.output.get(from..from + rows).unwrap_or_default();
+            let part = self
+                .signals
+                .output
+                .get(from..from + rows)
+                .unwrap_or_default();
             normal.add_columns(&columns, part);
         }
         let Some(solution) = normal.solve_from(0, 1e-12) else {
             return;
         };
         for (from, rows, columns) in columns() {
-            let part = self.output.get_mut(from..from + rows).unwrap_or_default();
+            let part = self
+                .signals
+                .output
+                .get_mut(from..from + rows)
+                .unwrap_or_default();
             for (column, factor) in columns.iter().zip(solution.x.iter()) {
                 for (slot, x) in part.iter_mut().zip(column) {
                     *slot -= factor * x;
@@ -100,7 +101,7 @@ impl Leaky {
         }
         // Before the first differences it ran on as behind them: a step would ring.
         for at in (0..skip).rev() {
-            if let Some([before, next, other]) = self.output.get_mut(at..at + 3) {
+            if let Some([before, next, other]) = self.signals.output.get_mut(at..at + 3) {
                 *before = 2.0 * *next - *other;
             }
         }

@@ -15,7 +15,7 @@
 
 use nalgebra::DMatrix;
 
-use super::data::Data;
+use super::data::{Data, Signals};
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
 use super::sensitivity::{differences, gather};
@@ -149,17 +149,9 @@ pub fn refine(
 ) -> Option<Estimate> {
     // What is filtered before and behind a model is the same: the signals are
     // filtered once.
-    let filtered = |x: &[f64]| whitened(x, whitening);
-    let input = filtered(data.input);
-    let output = filtered(data.output);
-    let undisturbed = data.undisturbed.map(filtered);
+    let signals = Signals::behind(data, |x| whitened(x, whitening));
     let raw = data;
-    let data = &Data {
-        input: &input,
-        output: &output,
-        undisturbed: undisturbed.as_deref(),
-        ..*raw
-    };
+    let data = &signals.data(raw);
     let left_out = whitening.len() + data.skip();
     // The search goes down on squares; instruments come at its end.
     let open = Data {

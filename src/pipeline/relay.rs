@@ -142,8 +142,7 @@ impl Batch {
 }
 
 /// Executes a program in another thread, and hands over what it comes to: the
-/// names of the files of subprograms so far, and a line. Gives the
-/// program's end back.
+/// names of the files of subprograms so far, and a line. Gives the program's end back.
 ///
 /// # Errors
 /// Those of `each`, and of the program otherwise.

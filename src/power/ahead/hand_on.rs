@@ -98,8 +98,9 @@ impl Ahead {
 }
 
 impl Open {
-    /// Gives it the robust bound, with those before and behind it; before it there may
-    /// be what did not wait for it, in place of which all three stand then.
+    /// Gives it the robust bound, with those before and behind it. `unwaited` stands in
+    /// place of the one before, where that did not wait for it, and is then what this
+    /// bound covers.
     fn bound(
         &mut self,
         [before, next]: [Option<&Self>; 2],
