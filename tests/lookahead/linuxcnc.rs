@@ -250,6 +250,37 @@ fn programs_last_as_recorded() {
 }
 
 #[test]
+fn parabolic_blends_are_chosen_as_recorded() {
+    // Where what follows may take half of each element, they get to less.
+    let long_enough = "G64\nG91 F8000\nG3 X9.1512 Y-2.36367 I4.41984 J-1.78488\n\
+        G1 X0.8333 Y21.8881\nG3 X8.51999 Y-6.05773 I5.38156 J-1.45142\nM2\n";
+    // A blend as short as its speed over one cycle is slower than that.
+    let shorter_than_a_cycle = "G64 P0.01\nG91 F8000\n\
+        G2 X11.69255 Y16.13696 I5.04367 J8.65003\nG1 X1.4127 Y-1.3577\nM2\n";
+    // Slower than a kink: it decides again, with what a kink leaves of the arc's
+    // acceleration.
+    let decided_twice = "G64 P0.05 Q0\nG91 F4000\nG3 X-9.40799 Y-7.62254 I-8.65398 J1.06393\n\
+        G1 X0.4095 Y-0.0326\nX1.1973 Y-0.0452\nM2\n";
+    // With nothing behind it the line gets to less until it is run.
+    let last = "G64\nG91 F6000\nG2 X10.30608 Y-21.74059 I4.22459 J-11.31042 Z2.1897\n\
+        F8000\nG1 X-19.6491 Y-11.7835\nM2\n";
+    for (program, recorded_s) in [
+        (long_enough, 1.032),
+        (shorter_than_a_cycle, 0.804),
+        (decided_twice, 1.015),
+        (last, 0.899),
+    ] {
+        let planned_s = total_s(&planned(program));
+        // Two cycles: it begins and ends with what is less than one.
+        let off_s = planned_s - recorded_s;
+        assert!(
+            off_s.abs() <= 2.1e-3,
+            "{program}{planned_s} s, not {recorded_s}"
+        );
+    }
+}
+
+#[test]
 fn a_lower_feed_behind_a_blend_is_seen_too_late() {
     // The planner looks back with the speeds that the machine permits: recorded were
     // 92.3 mm/s less than a cycle of braking behind the start of the line, and then

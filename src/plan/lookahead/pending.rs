@@ -225,27 +225,38 @@ impl<T: Copy> Pending<T> {
     }
 
     /// The speed along the mean direction that the planner expects of a parabolic
-    /// blend when it chooses one.
-    pub fn overlap(&self, next: &Self) -> f64 {
-        // It has not looked at how sharply they turn yet.
-        let ramps = [self, next].map(|of| {
-            let share = of.element.curve.map_or(1.0, |_| TANGENTIAL_SHARE);
-            let accel = of.unbent_share() * share * of.accel();
-            Ramp::new(&of.element, of.length_mm, of.asked_speed(), accel)
-        });
-        let (most, sin) = self.tolerated(next, ramps[0].accel);
-        let [first, second] = Ramp::overlap([&ramps[0], &ramps[1]]);
+    /// blend when it chooses one; with the `whole` acceleration of this element, if no
+    /// parabolic blend before it takes half of that.
+    pub fn overlap(&self, next: &Self, whole: bool) -> f64 {
+        let share = if whole && !self.parabolic { 2.0 } else { 1.0 } * self.unbent_share();
+        let first = self.unseen(self.asked_speed(), share);
+        let second = next.unseen(next.asked_speed(), next.unbent_share());
+        let (most, sin) = self.tolerated(next, first.accel);
+        let [first, second] = Ramp::overlap([&first, &second]);
         0.5 * sin * (first.min(most) + second.min(most))
     }
 
-    /// How long it runs while the element before it brakes, s.
-    pub fn overlap_s(&self) -> f64 {
+    /// How long it runs while the element before it brakes, s. It is the `last` where
+    /// nothing waits behind it: then it has not been looked at closely.
+    pub fn overlap_s(&self, last: bool) -> f64 {
         let Some(braking) = &self.braking else {
             return 0.0;
         };
+        if last {
+            return braking.lasts_s(&self.unseen(self.max_speed, self.unbent_share()));
+        }
         let accel = self.unbent_share() * self.accel();
         let (speed, accel) = self.turning(self.max_speed, accel);
         braking.lasts_s(&Ramp::new(&self.element, self.length_mm, speed, accel))
+    }
+
+    /// Its ramp before it is known how sharply it turns, and how much of it, up to one
+    /// half, what follows takes.
+    fn unseen(&self, max_speed: f64, share: f64) -> Ramp {
+        let along = self.element.curve.map_or(1.0, |_| TANGENTIAL_SHARE);
+        let accel = share * along * self.accel();
+        let peak = (0.5 * accel * self.length_mm).sqrt();
+        Ramp::new(&self.element, self.length_mm, max_speed.min(peak), accel)
     }
 
     /// Whether axes other than X, Y and Z move.

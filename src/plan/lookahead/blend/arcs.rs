@@ -1,5 +1,6 @@
 //! Blends that touch arcs.
 
+use super::super::super::arc::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
 use super::super::vector::{Vector, add, angle, cross, dot, length, scale, sub, unit};
 use super::corner::legs_give;
 use super::{ANGLE_MIN, ARC_LENGTH_MIN_MM, Axes, Circle, Corner, Fit, Side};
@@ -7,6 +8,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Smallest half angle between two arcs.
 const ARCS_ANGLE_MIN: f64 = PI / 12.0;
+/// Share of its acceleration that a blend may take, over one servo cycle, where its
+/// direction is not that of the arc that it touches.
+const KINK_SHARE: f64 = 0.25;
 
 /// How an arc enters the fit: the blend lies inside its circle, how much of it
 /// the blend may take, and the length that this stands for.
@@ -36,7 +40,13 @@ impl Bent {
 
 /// The blend of a joint with an arc, if there is one that fits; `corner` is that of
 /// the tangents.
-pub(super) fn fit(corner: Corner, sides: [&Side; 2], axes: &Axes, accel: Vector) -> Option<Fit> {
+pub(super) fn fit(
+    corner: Corner,
+    sides: [&Side; 2],
+    axes: &Axes,
+    accel: Vector,
+    cycle_s: f64,
+) -> Option<Fit> {
     let legs = sides.map(|side| &side.leg);
     let binormal = corner.binormal();
     let bisector = unit(sub(legs[1].tangent, legs[0].tangent))?;
@@ -65,18 +75,30 @@ pub(super) fn fit(corner: Corner, sides: [&Side; 2], axes: &Axes, accel: Vector)
     let corner = corner.with(least);
     let rounding = corner.round(legs, most_mm, axes, accel, false)?;
     let lines = corner.fit(legs, &rounding);
-    onto_arcs(lines, sides, &bent, binormal, bisector, tolerance)
+    let kink_rad = KINK_SHARE * NORMAL_SHARE * lines.accel * cycle_s / lines.speed;
+    let way = Way {
+        binormal,
+        bisector,
+        tolerance,
+        kink_rad,
+    };
+    onto_arcs(lines, sides, &bent, &way)
+}
+
+/// What a blend of arcs keeps to.
+struct Way {
+    /// Normal of its plane, and where in it the inside of the corner lies.
+    binormal: Vector,
+    bisector: Vector,
+    /// How far the joint may be left.
+    tolerance: f64,
+    /// The largest change of direction where it touches.
+    kink_rad: f64,
 }
 
 /// Moves a blend that was fitted to lines so that it touches the arcs.
-fn onto_arcs(
-    mut fit: Fit,
-    sides: [&Side; 2],
-    bent: &[Option<Bent>; 2],
-    binormal: Vector,
-    bisector: Vector,
-    tolerance: f64,
-) -> Option<Fit> {
+fn onto_arcs(mut fit: Fit, sides: [&Side; 2], bent: &[Option<Bent>; 2], way: &Way) -> Option<Fit> {
+    let (binormal, bisector) = (way.binormal, way.bisector);
     let r = fit.radius;
     // Distance between the centres of blend and arc.
     let apart = |i: usize| -> Option<f64> {
@@ -117,7 +139,7 @@ fn onto_arcs(
         }
         (None, None) => return None,
     };
-    if length(center) - r > tolerance {
+    if length(center) - r > way.tolerance {
         return None;
     }
     for (i, side) in sides.iter().enumerate() {
@@ -130,22 +152,38 @@ fn onto_arcs(
             fit.trims[i] = trim;
         }
     }
-    let touch = |i: usize, sign: f64| -> Option<Vector> {
-        Some(match &sides[i].circle {
-            None => scale(sides[i].leg.tangent, sign * fit.trims[i]),
-            Some(circle) => {
-                let out = unit(sub(center, circle.center))?;
-                add(circle.center, scale(out, circle.radius))
-            }
-        })
-    };
-    let (from, to) = (touch(0, -1.0)?, touch(1, 1.0)?);
-    let (out, back) = (unit(sub(from, center))?, unit(sub(to, center))?);
+    let ends = [sides[0].along(-fit.trims[0]), sides[1].along(fit.trims[1])];
+    let spokes = ends.map(|(at, _)| sub(at, center));
+    let [out, back] = [unit(spokes[0])?, unit(spokes[1])?];
     fit.sweep = angle(out, back);
-    fit.radius = length(sub(from, center));
+    fit.radius = length(spokes[0]);
+    let opens = (length(spokes[1]) - fit.radius) / fit.sweep;
+    for (i, (spoke, out)) in spokes.into_iter().zip([out, back]).enumerate() {
+        let tangent = unit(add(cross(binormal, spoke), scale(out, opens)))?;
+        if sides[i].circle.is_some() && angle(tangent, ends[i].1) > way.kink_rad {
+            return None;
+        }
+    }
     fit.normal = scale(out, -1.0);
     fit.tangent = cross(binormal, out);
     (fit.radius * fit.sweep >= ARC_LENGTH_MIN_MM).then_some(fit)
+}
+
+impl Side {
+    /// Where it is so far behind the joint, mm of a line, rad of an arc, and its
+    /// direction there.
+    fn along(&self, by: f64) -> (Vector, Vector) {
+        let tangent = self.leg.tangent;
+        let Some(circle) = &self.circle else {
+            return (scale(tangent, by), tangent);
+        };
+        let (sin, cos) = libm::sincos(by);
+        let flat = scale(cross(circle.center, circle.normal), 1.0 / circle.radius);
+        let out = scale(circle.center, -1.0 / circle.radius);
+        let spoke = add(scale(out, cos), scale(flat, sin));
+        let at = add(circle.center, scale(spoke, circle.radius));
+        (at, sub(scale(flat, cos), scale(out, sin)))
+    }
 }
 
 /// Centre of a circle of radius `r` that touches a line through the joint on

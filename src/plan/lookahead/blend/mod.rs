@@ -125,15 +125,15 @@ impl Leg {
     }
 }
 
-/// The blend of a joint, if there is one that fits.
-pub(super) fn fit(sides: [&Side; 2], axes: &Axes, accel: Vector) -> Option<Fit> {
+/// The blend of a joint, if there is one that fits; `cycle_s` is the servo's.
+pub(super) fn fit(sides: [&Side; 2], axes: &Axes, accel: Vector, cycle_s: f64) -> Option<Fit> {
     let legs = sides.map(|side| &side.leg);
     let corner = Corner::of(legs[0].tangent, legs[1].tangent)?;
     if sides.iter().all(|side| side.circle.is_none()) {
         let rounding = corner.round_lines(legs, axes, accel)?;
         return Some(corner.fit(legs, &rounding));
     }
-    arcs::fit(corner, sides, axes, accel)
+    arcs::fit(corner, sides, axes, accel, cycle_s)
 }
 
 /// The inside angle of a corner.

@@ -168,22 +168,39 @@ impl<T: Copy> LinuxCnc<T> {
             return Way::Stop;
         }
         let kink_speed = v * self.kink_ratio / share;
-        let fit = fit([&first, &second], &self.axes, accel);
-        let blend_speed = fit.as_ref().map_or(0.0, |fit| fit.speed);
+        let fit = fit([&first, &second], &self.axes, accel, self.cycle_s);
+        // A blend lasts a cycle at least.
+        let blend_speed = fit.as_ref().map_or(0.0, |fit| {
+            let length_mm = self.lead_mm(before, fit).unwrap_or(0.0) + fit.radius * fit.sweep;
+            fit.speed.min(length_mm / self.cycle_s)
+        });
         let faster = kink_speed.max(blend_speed);
         // What it comes to at most needs no closer look at most corners.
         let may_overlap = 0.25 * (before.asked_speed() + next.asked_speed()) >= faster;
-        if may_overlap && 0.5 * before.overlap(next) >= faster {
+        let overlaps = |whole| may_overlap && 0.5 * before.overlap(next, whole) >= faster;
+        // Where it could have laid a blend and takes none, it decides once more, and has
+        // given the first element its whole acceleration back by then.
+        let twice = fit.is_some() && blend_speed <= kink_speed;
+        if overlaps(false) || twice && overlaps(true) {
             (before.kink_behind, next.kink_before) = kept;
             return Way::Parabolic;
         }
         match fit {
-            Some(fit) if blend_speed > kink_speed => {
+            Some(fit) if !twice => {
                 (before.kink_behind, next.kink_before) = (0.0, 0.0);
                 Way::Blend(fit)
             }
             _ => Way::Pass(kink_speed),
         }
+    }
+
+    /// What is left of the element before a blend, if that is too short to stand alone
+    /// and leads into it.
+    fn lead_mm(&self, before: &Pending<T>, fit: &Fit) -> Option<f64> {
+        let left_mm = before.length_mm - fit.trims[0];
+        let short = left_mm / fit.speed < self.gap_cycles * self.cycle_s;
+        let alone = before.element.curve.is_some() || before.parabolic;
+        (short && !alone).then_some(left_mm.max(0.0))
     }
 
     /// Lays a blend between two elements.
@@ -194,17 +211,17 @@ impl<T: Copy> LinuxCnc<T> {
         fit: &Fit,
         window: &mut Window<Load<T>>,
     ) {
+        let lead_mm = self.lead_mm(before, fit);
         before.trim(fit.trims[0], false);
         next.trim(fit.trims[1], true);
         let tag = before.element.tag;
-        let short = before.length_mm / fit.speed < self.gap_cycles * self.cycle_s;
-        let consumed = short && before.element.curve.is_none() && !before.parabolic;
-        let (lead_mm, entry2) = if consumed {
-            (before.length_mm.max(0.0), Some(before.entry2))
+        let last_max2 = if lead_mm.is_some() {
+            before.entry2
         } else {
             self.hand_over(before, window, false);
-            (0.0, None)
+            self.last_max2
         };
+        let (consumed, lead_mm) = (lead_mm.is_some(), lead_mm.unwrap_or(0.0));
         let length_mm = lead_mm + fit.radius * fit.sweep;
         let mut max = fit.speed;
         if length_mm > 0.0 {
@@ -234,7 +251,7 @@ impl<T: Copy> LinuxCnc<T> {
         } else {
             max * max
         };
-        let entry2 = max2.min(entry2.unwrap_or(self.last_max2));
+        let entry2 = max2.min(last_max2);
         let accel = fit.accel * TANGENTIAL_SHARE;
         let mut node = Node::new(length_mm, top2, accel, entry2, load);
         node.block = false;
@@ -298,7 +315,7 @@ impl<T: Copy> LinuxCnc<T> {
             piece: of.piece(),
             certain: !of.parabolic,
             rests: of.rests,
-            overlap_s: of.overlap_s(),
+            overlap_s: of.overlap_s(last),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let parabolic = matches!(of.element.joint, Joint::Blend { .. });
