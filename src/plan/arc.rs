@@ -49,7 +49,7 @@ pub(super) struct TangentRange {
 
 impl TangentRange {
     /// The largest size.
-    fn largest(self) -> f64 {
+    pub fn largest(self) -> f64 {
         self.max.max(-self.min)
     }
 }

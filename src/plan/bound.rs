@@ -8,8 +8,9 @@
 use super::arc::{axis_speed, excess, plane_share, tangent_ranges};
 use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
 use super::trajectory::{Caps, Overrides};
-use crate::interpret::{FeedMode, Move, MoveKind};
+use crate::interpret::{Arc, FeedMode, Move, MoveKind};
 use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
+use std::f64::consts::FRAC_PI_2;
 
 /// Largest speed of each axis, mm/s or degrees/s, not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -96,6 +97,49 @@ pub fn path_bound(machine: &Machine, mv: &Move, v: f64) -> SpeedBound {
     bound
 }
 
+/// What a stretch of a path asks of its axes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PathShares {
+    /// The largest share of the path speed, and of the acceleration along it, that
+    /// each axis takes in either direction.
+    pub along: SpeedBound,
+    /// The largest part of the squared path speed that it takes as acceleration, since
+    /// the path turns, 1/mm.
+    pub across: AxisValues,
+}
+
+impl PathShares {
+    /// Of a path begun at a known place, of a length (a line, an arc or a helix): the
+    /// stretch between two places on it, mm.
+    #[must_use]
+    pub fn of(mv: &Move, [from_mm, to_mm]: [f64; 2]) -> Self {
+        let mut shares = Self::default();
+        for axis in mv.moving.iter().filter(|axis| !in_plane(mv, *axis)) {
+            let share = (mv.end[axis] - mv.start[axis]) / mv.length_mm;
+            shares.along.raise(axis, share);
+        }
+        if let Some(arc) = &mv.arc {
+            let turned = |mm: f64| arc.sweep_rad * (mm / mv.length_mm);
+            let stretch = Arc {
+                start_angle_rad: arc.start_angle_rad + turned(from_mm),
+                sweep_rad: turned(to_mm - from_mm),
+                ..*arc
+            };
+            let share = plane_share(mv, arc);
+            raise_plane(&stretch, share, &mut shares.along);
+            // Towards the centre is a quarter of a turn on.
+            let inward = Arc {
+                start_angle_rad: stretch.start_angle_rad + FRAC_PI_2.copysign(arc.sweep_rad),
+                ..stretch
+            };
+            for (axis, range) in arc.plane.into_iter().zip(tangent_ranges(&inward)) {
+                shares.across[axis] = range.largest() * share * share / arc.radius_mm;
+            }
+        }
+        shares
+    }
+}
+
 /// Path speed in mm/s (degrees/s) to which [`blended_bound`] belongs.
 #[must_use]
 pub fn blended_speed(machine: &Machine, mv: &Move, overrides: Overrides) -> f64 {
@@ -127,11 +171,15 @@ fn along(
         }
     }
     if let Some(arc) = &mv.arc {
-        let v = v * plane_share(mv, arc);
-        for (axis, range) in arc.plane.into_iter().zip(tangent_ranges(arc)) {
-            bound.raise(axis, v * range.max.max(0.0));
-            bound.raise(axis, v * range.min.min(0.0));
-        }
+        raise_plane(arc, v * plane_share(mv, arc), bound);
+    }
+}
+
+/// The bounds of the axes of an arc's plane at the speed `v` in it.
+fn raise_plane(arc: &Arc, v: f64, bound: &mut SpeedBound) {
+    for (axis, range) in arc.plane.into_iter().zip(tangent_ranges(arc)) {
+        bound.raise(axis, v * range.max.max(0.0));
+        bound.raise(axis, v * range.min.min(0.0));
     }
 }
 

@@ -21,7 +21,7 @@ mod spindle;
 mod track;
 mod trajectory;
 
-pub use bound::{SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
+pub use bound::{PathShares, SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Profile, State};
 pub use s_curve::Section;

@@ -212,6 +212,7 @@ mod tests {
                 certain: true,
                 rests: false,
                 overlap_s: 0.0,
+                overlaps: false,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);
             let (mut peaks, mut energy_j) = ([0.0_f64; 2], 0.0);
@@ -275,6 +276,7 @@ mod tests {
                 certain: true,
                 rests: false,
                 overlap_s: 0.0,
+                overlaps: false,
             };
             let exact = piece_demand(&model, &mv, &planned, Want::PEAKS);
             let extremes = [planned.top_speed_mm_s(), planned.largest_accel_mm_s2()];

@@ -134,10 +134,11 @@ fn lines_within_q_become_one() {
 }
 
 #[test]
-fn a_blend_that_is_not_modelled_exactly_is_not_certain() {
+fn ramps_that_overlap_are_told() {
     // A helix and a line are not in one plane: LinuxCNC overlaps their ramps.
     let (pieces, _) = planned("G64 P0.05\nG1 X20 F3000\nG3 X20 Y0 Z-5 I-10 J0\nM2\n");
-    assert!(pieces.iter().all(|piece| !piece.certain));
+    assert!(pieces.iter().all(|piece| piece.certain && piece.overlaps));
+    assert!(pieces[0].overlap_s == 0.0 && pieces[1].overlap_s > 0.0);
 }
 
 #[test]

@@ -80,6 +80,8 @@ pub struct Planned<T> {
     pub rests: bool,
     /// How long it runs already while the piece before it comes to rest, s.
     pub overlap_s: f64,
+    /// True where it or the piece behind it may do so: beside a parabolic blend.
+    pub overlaps: bool,
 }
 
 impl<T> Planned<T> {
@@ -156,6 +158,7 @@ pub(super) struct Load<T> {
     pub certain: bool,
     pub rests: bool,
     pub overlap_s: f64,
+    pub overlaps: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -276,6 +279,7 @@ impl<T: Copy> PathPlanner<T> {
             certain: true,
             rests: false,
             overlap_s: 0.0,
+            overlaps: false,
         };
         let top2 = after.top_mm_s * after.top_mm_s;
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
@@ -366,6 +370,7 @@ impl<T> Planned<T> {
             certain: span.certain && span.payload.certain,
             rests: span.payload.rests,
             overlap_s: span.payload.overlap_s,
+            overlaps: span.payload.overlaps,
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::power::demand::Demand;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 use crate::power::piece::{is_quiet, piece_demand};
+use crate::power::tandem::{Ride, tandem_demand};
 
 impl Ahead {
     /// Counts a piece of path.
@@ -56,9 +57,11 @@ impl Ahead {
             open.rests |= planned.rests;
             open.assessment.fastest_s += duration_s;
             open.assessment.top_speed_mm_s = open.assessment.top_speed_mm_s.max(top_speed_mm_s);
-            let doubtful = open.in_doubt || self.reach2.is_some() || !planned.certain;
+            let doubtful =
+                open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;
             if doubtful {
-                let certain = self.is_certain(planned, number, number);
+                self.ride(model, planned);
+                let certain = self.is_certain(eye, planned, number, number);
                 if let Some(open) = self.open.get_mut(number) {
                     open.certain &= certain;
                 }
@@ -92,7 +95,10 @@ impl Ahead {
         } else {
             piece_demand(model, &open.mv, planned, open.want)
         };
-        let certain = !peaks || self.is_certain(planned, from, to);
+        if peaks {
+            self.ride(model, planned);
+        }
+        let certain = !peaks || self.is_certain(eye, planned, from, to);
         // Half of a blend belongs to what is behind it, if that is another move: it
         // may lie between two chords of one arc.
         let halves = if to == own { 1.0 } else { 0.5 };
@@ -131,9 +137,35 @@ impl Ahead {
         }
     }
 
+    /// A piece that may share its time with another one, and what both ask for
+    /// together.
+    fn ride(&mut self, model: &PowerModel, planned: &Planned<u64>) {
+        let last = self.last_ride.take();
+        let open = self.open.get(planned.tag).filter(|_| planned.overlaps);
+        let Some(ride) = open.and_then(|open| Ride::of(&open.mv, planned)) else {
+            return;
+        };
+        if let Some(last) = last.filter(|_| planned.overlap_s > 0.0)
+            && let Some(open) = self.open.get(planned.tag)
+        {
+            let demand = tandem_demand(model, &open.mv, [&last, &ride], planned.overlap_s);
+            for number in last.moves[0]..=ride.moves[1] {
+                if let Some(open) = self.open.get_mut(number) {
+                    open.assessment.demand.include(&demand);
+                }
+            }
+        }
+        for number in ride.moves[0]..=ride.moves[1] {
+            if let Some(open) = self.open.get_mut(number) {
+                open.alone = false;
+            }
+        }
+        self.last_ride = Some(ride);
+    }
+
     /// Whether a piece runs as planned whatever happened where the motion was in
     /// doubt before it.
-    fn is_certain(&mut self, planned: &Planned<u64>, from: u64, to: u64) -> bool {
+    fn is_certain(&mut self, eye: &Eye, planned: &Planned<u64>, from: u64, to: u64) -> bool {
         let blend = matches!(planned.piece, Piece::Blend(_));
         for number in from..=to {
             if let Some(open) = self.open.get_mut(number)
@@ -145,7 +177,9 @@ impl Ahead {
             }
         }
         let end2 = planned.speeds2.end;
-        if !planned.certain {
+        // Limits over time take one move after the other.
+        let in_turn = !(planned.overlaps && eye.watch.is_some());
+        if !(planned.certain && in_turn) {
             self.reach2 = (end2 > 0.0).then_some(0.0);
             return false;
         }

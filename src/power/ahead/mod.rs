@@ -23,6 +23,7 @@ use super::demand::Want;
 use super::eye::Eye;
 use super::model::PowerModel;
 use super::robust::Extremes;
+use super::tandem::Ride;
 use crate::interpret::Move;
 use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
@@ -52,6 +53,8 @@ pub(super) struct Ahead {
     /// What was handed on last, and what before that, where nobody waited for what
     /// may be blended with it.
     unwaited: Option<Extremes>,
+    /// The last piece, where the next one may run already while it does.
+    last_ride: Option<Ride>,
 }
 
 /// A planner and how far it has come.
@@ -100,6 +103,7 @@ impl Ahead {
             in_doubt: false,
             reach2: None,
             unwaited: None,
+            last_ride: None,
         }
     }
 

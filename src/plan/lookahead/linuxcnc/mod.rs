@@ -243,6 +243,7 @@ impl<T: Copy> LinuxCnc<T> {
             certain: true,
             rests: false,
             overlap_s: 0.0,
+            overlaps: false,
         };
         let jerk = before.element.jerk_mm_s3.min(next.element.jerk_mm_s3);
         let top2 = top * top;
@@ -313,9 +314,11 @@ impl<T: Copy> LinuxCnc<T> {
             first: of.first,
             next: None,
             piece: of.piece(),
-            certain: !of.parabolic,
+            // With limits of jerk it is not modelled.
+            certain: !of.parabolic || of.element.jerk_mm_s3 == f64::INFINITY,
             rests: of.rests,
             overlap_s: of.overlap_s(last),
+            overlaps: of.parabolic,
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let parabolic = matches!(of.element.joint, Joint::Blend { .. });
