@@ -265,7 +265,11 @@ fn parabolic_blends_are_chosen_as_recorded() {
     // With nothing behind it the line gets to less until it is run.
     let last = "G64\nG91 F6000\nG2 X10.30608 Y-21.74059 I4.22459 J-11.31042 Z2.1897\n\
         F8000\nG1 X-19.6491 Y-11.7835\nM2\n";
+    // Only the mode of the next element itself takes half of what that accelerates by.
+    let before_exact_stop = "G64 P0.01\nG91 F8000\nG2 X-11.279 Y-4.8786 I-6.31001 J-0.88908\n\
+        G61.1 G3 X8.0517 Y-5.6446 I7.07531 J1.52757\nM2\n";
     for (program, recorded_s) in [
+        (before_exact_stop, 0.930),
         (long_enough, 1.032),
         (shorter_than_a_cycle, 0.804),
         (decided_twice, 1.015),

@@ -190,10 +190,10 @@ impl<T: Copy> Pending<T> {
         lower(asked, arc::linuxcnc_turning(accel, curve.radius_mm) / share)
     }
 
-    /// Unit direction in which the planner expects an end to pull. An arc pulls in
-    /// its plane; at its start it turns towards the centre, by what half of the
+    /// Unit direction in which the planner expects an end to pull, with a share of its
+    /// acceleration. An arc pulls in its plane; at its start it turns towards the centre, by what half of the
     /// speed asked for needs.
-    fn pull(&self, at_end: bool) -> Option<Vector> {
+    fn pull(&self, at_end: bool, share: f64) -> Option<Vector> {
         let side = self.side(at_end)?;
         let Some(circle) = &side.circle else {
             return Some(side.leg.tangent);
@@ -205,13 +205,14 @@ impl<T: Copy> Pending<T> {
         }
         let half = 0.5 * self.asked_speed();
         let inward = scale(unit(circle.center)?, half * half / circle.radius);
-        unit(add(scale(flat, self.unbent_share() * self.accel()), inward))
+        unit(add(scale(flat, share * self.accel()), inward))
     }
 
     /// The speed that the tolerance permits in a parabolic blend, and the sine of
-    /// half the angle inside its corner.
-    fn tolerated(&self, next: &Self, accel: f64) -> (f64, f64) {
-        let (Some(first), Some(second)) = (self.pull(true), next.pull(false)) else {
+    /// half the angle inside its corner; `accel` of the first element, of the next one
+    /// a share of its own.
+    fn tolerated(&self, next: &Self, accel: f64, share: f64) -> (f64, f64) {
+        let (Some(first), Some(second)) = (self.pull(true, 1.0), next.pull(false, share)) else {
             return (f64::INFINITY, 0.0);
         };
         let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
@@ -228,10 +229,14 @@ impl<T: Copy> Pending<T> {
     /// blend when it chooses one; with the `whole` acceleration of this element, if no
     /// parabolic blend before it takes half of that.
     pub fn overlap(&self, next: &Self, whole: bool) -> f64 {
-        let share = if whole && !self.parabolic { 2.0 } else { 1.0 } * self.unbent_share();
-        let first = self.unseen(self.asked_speed(), share);
-        let second = next.unseen(next.asked_speed(), next.unbent_share());
-        let (most, sin) = self.tolerated(next, first.accel);
+        let twice = |yes| if yes { 2.0 } else { 1.0 };
+        let whole = twice(whole && !self.parabolic);
+        // So far only its own mode may take half of the next one's.
+        let next_whole = twice(!matches!(next.element.joint, Joint::Blend { .. }));
+        let share = next_whole * next.unbent_share();
+        let first = self.unseen(self.asked_speed(), whole * self.unbent_share());
+        let second = next.unseen(next.asked_speed(), share);
+        let (most, sin) = self.tolerated(next, first.accel, share);
         let [first, second] = Ramp::overlap([&first, &second]);
         0.5 * sin * (first.min(most) + second.min(most))
     }
@@ -311,7 +316,7 @@ impl Braking {
         let (speed, accel) = before.turning(before.max_speed, accel);
         Self {
             ramp: Ramp::new(&before.element, before.length_mm, speed, accel),
-            most: before.tolerated(next, accel).0,
+            most: before.tolerated(next, accel, next.unbent_share()).0,
         }
     }
 
