@@ -172,9 +172,11 @@ fn record(shared: &Path, folder: &Path, name: &str, program: &str) -> Option<Str
     for _ in 0..TRIES {
         // The recording of another program is none of this one.
         let _ = std::fs::remove_file(&csv);
+        // What LinuxCNC's task waits for at words it does not wait for any faster.
+        let speedup = if name.starts_with("words") { 2 } else { 10 };
         let status = Command::new(shared.join("tools/linuxcnc/simrun.sh"))
             .args([&source, &csv])
-            .arg("SPEEDUP=10")
+            .arg(format!("SPEEDUP={speedup}"))
             .status()
             .ok()?;
         if status.success() {
