@@ -228,7 +228,7 @@ fn a_thread_between_feeds_and_its_neighbours_get_the_robust_bound() {
 fn corners_are_rounded_with_the_tolerance_of_power_on() {
     let durations = |tolerance_mm: f64, words: &str| -> Vec<f64> {
         let mut machine = LINUXCNC.machine();
-        assert_eq!(machine.controller.language.power_on_tolerance_mm, 0.0);
+        assert_eq!(machine.controller.language.power_on_tolerance_mm, 0.0254);
         machine.controller.language.power_on_tolerance_mm = tolerance_mm;
         let program = format!("G21 G90 {words}\nG1 X20 F6000\nG1 Y20\nG1 X0\nM2\n");
         let rows = rows(&machine, LINUXCNC.options, &program);
