@@ -7,7 +7,10 @@
 //!
 //! A joint is passed without a blend where the step of velocity, over one servo
 //! cycle, takes no more than `kink_ratio` of an axis' acceleration; both
-//! elements give that share up. Facts from `tp.c`, `tc.c` and measurements.
+//! elements give that share up. Elsewhere the fastest of three is taken: so slow that
+//! the step takes no more, a blend, or half of the speed of a parabolic blend, in
+//! which the next element begins while the last one brakes, each with half of its
+//! acceleration. Facts from `tp.c`, `tc.c` and measurements.
 
 mod glide;
 
