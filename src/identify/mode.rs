@@ -46,34 +46,36 @@ fn best_of(
     let strongest = response.response.iter().map(C::norm_sqr);
     let rounding = 1e-16 * strongest.fold(f64::MIN_POSITIVE, f64::max);
     let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(rounding);
-    let points: Vec<(C, C, f64)> = response
+    let mut points = Points::default();
+    for ((f, g), variance) in response
         .frequency_hz
         .iter()
         .zip(&response.response)
         .zip(&response.variance)
         .filter(|((f, _), _)| **f * period_s < BAND)
-        .map(|((f, g), variance)| {
-            let s = C::new(0.0, 2.0 * PI * f * period_s);
-            // The hold delays by half a period and the delay by the rest.
-            let phase = s.im * (transfer.delay_s / period_s + 0.5);
-            let (sin, cos) = libm::sincos(phase);
-            let bare = *g * C::new(cos, sin);
-            let (ms, mc) = libm::sincos(s.im * transfer.delay_s / period_s);
-            let model = transfer.at_hz(*f) * C::new(mc, ms);
-            (s, bare - model, 1.0 / variance.max(floor))
-        })
-        .filter(|(_, gap, weight)| gap.re.is_finite() && weight.is_finite())
-        .collect();
-    let (first, last) = (points.first()?.0.im, points.last()?.0.im);
+    {
+        let theta = 2.0 * PI * f * period_s;
+        // The hold delays by half a period and the delay by the rest.
+        let phase = theta * (transfer.delay_s / period_s + 0.5);
+        let (sin, cos) = libm::sincos(phase);
+        let bare = *g * C::new(cos, sin);
+        let (ms, mc) = libm::sincos(theta * transfer.delay_s / period_s);
+        let model = transfer.at_hz(*f) * C::new(mc, ms);
+        points.push(theta, bare - model, 1.0 / variance.max(floor));
+    }
+    let (first, last) = (*points.theta.first()?, *points.theta.last()?);
     let mut best: Option<(f64, Factor, f64, f64)> = None;
     let mut omega = first;
+    let mut share = Vec::new();
     while omega < last {
+        share.clear();
+        share.extend(points.theta.iter().map(|theta| theta / omega));
         for &damping in dampings {
             let pole = Factor::Pair {
                 omega_rad_s: omega,
                 damping,
             };
-            if let Some((gain, a, b)) = amplitude(&points, omega, damping)
+            if let Some((gain, a, b)) = points.amplitude(&share, damping)
                 && best.as_ref().is_none_or(|(most, ..)| gain > *most)
             {
                 best = Some((gain, pole, a, b));
@@ -85,27 +87,81 @@ fn best_of(
     join(transfer, pole, [a, b], period_s)
 }
 
-/// How much of the gap such a mode explains, and its a and b; ω in rad per
-/// period.
-fn amplitude(points: &[(C, C, f64)], omega: f64, damping: f64) -> Option<(f64, f64, f64)> {
-    let (mut aa, mut ab, mut bb, mut ra, mut rb) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (s, gap, weight) in points {
-        let x = s / omega;
-        let one = C::new(1.0, 0.0) / (x * x + x * (2.0 * damping) + 1.0);
-        let two = x * one;
-        aa += weight * one.norm_sqr();
-        bb += weight * two.norm_sqr();
-        ab += weight * (one * two.conj()).re;
-        ra += weight * (one.conj() * gap).re;
-        rb += weight * (two.conj() * gap).re;
+/// Points that are worked on at a time.
+const LANES: usize = 8;
+type Lanes = [f64; LANES];
+
+/// What a model leaves of the response, by frequency.
+#[derive(Default)]
+struct Points {
+    /// rad per period.
+    theta: Vec<f64>,
+    re: Vec<f64>,
+    im: Vec<f64>,
+    weight: Vec<f64>,
+}
+
+impl Points {
+    fn push(&mut self, theta: f64, gap: C, weight: f64) {
+        if gap.re.is_finite() && weight.is_finite() {
+            self.theta.push(theta);
+            self.re.push(gap.re);
+            self.im.push(gap.im);
+            self.weight.push(weight);
+        }
     }
-    let determinant = aa * bb - ab * ab;
-    if determinant.is_nan() || determinant <= 1e-12 * aa * bb {
-        return None;
+
+    /// How much of the gap such a mode explains, and its a and b; the frequencies in
+    /// shares of its ω.
+    fn amplitude(&self, shares: &[f64], damping: f64) -> Option<(f64, f64, f64)> {
+        // The squares and the product of both parts, and what they have in common
+        // with the gap.
+        let mut sums = [0.0; 5];
+        let lanes = |x: &[f64], from: usize| {
+            let mut out = [0.0; LANES];
+            for (slot, x) in out.iter_mut().zip(x.get(from..).unwrap_or_default()) {
+                *slot = *x;
+            }
+            out
+        };
+        for from in (0..self.theta.len()).step_by(LANES) {
+            let gap = [&self.re, &self.im].map(|x| lanes(x, from));
+            let parts = parts(lanes(shares, from), gap, lanes(&self.weight, from), damping);
+            for (sum, parts) in sums.iter_mut().zip(&parts) {
+                // One by one, as they come: what no point stands for counts nothing.
+                for part in parts {
+                    *sum += part;
+                }
+            }
+        }
+        let [aa, bb, ab, ra, rb] = sums;
+        let determinant = aa * bb - ab * ab;
+        if determinant.is_nan() || determinant <= 1e-12 * aa * bb {
+            return None;
+        }
+        let a = (ra * bb - rb * ab) / determinant;
+        let b = (rb * aa - ra * ab) / determinant;
+        Some((a * ra + b * rb, a, b))
     }
-    let a = (ra * bb - rb * ab) / determinant;
-    let b = (rb * aa - ra * ab) / determinant;
-    Some((a * ra + b * rb, a, b))
+}
+
+/// What some points add to the sums. With `x = j·y` the parts of a mode are
+/// `1/(1 + 2ζ·x + x²)` and x times that.
+fn parts(y: Lanes, [re, im]: [Lanes; 2], weight: Lanes, damping: f64) -> [Lanes; 5] {
+    let mut out = [[0.0; LANES]; 5];
+    let [aa, bb, ab, ra, rb] = &mut out;
+    for k in 0..LANES {
+        let (c, d) = (1.0 - y[k] * y[k], y[k] * (2.0 * damping));
+        let norm = c * c + d * d;
+        let (p, q) = (c / norm, -d / norm);
+        let (r, s) = (-(y[k] * q), y[k] * p);
+        aa[k] = weight[k] * (p * p + q * q);
+        bb[k] = weight[k] * (r * r + s * s);
+        ab[k] = weight[k] * (p * r + q * s);
+        ra[k] = weight[k] * (p * re[k] + q * im[k]);
+        rb[k] = weight[k] * (r * re[k] + s * im[k]);
+    }
+    out
 }
 
 /// `G + (a + b·s/ω)/(pole)` as one fraction; the pole in rad per period.

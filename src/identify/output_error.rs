@@ -119,13 +119,17 @@ impl Effort {
 /// A signal behind the whitening filter, as long as it was; before its first
 /// sample there was nothing.
 fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
-    (0..x.len())
-        .map(|k| {
-            let past = x.get(..k).unwrap_or_default().iter().rev();
-            let sum: f64 = past.zip(taps).map(|(x, tap)| x * tap).sum();
-            sum + x.get(k).copied().unwrap_or_default()
-        })
-        .collect()
+    let mut out = vec![0.0; x.len()];
+    for (index, tap) in taps.iter().enumerate() {
+        let later = out.get_mut(index + 1..).unwrap_or_default();
+        for (sum, x) in later.iter_mut().zip(x) {
+            *sum += x * tap;
+        }
+    }
+    for (sum, x) in out.iter_mut().zip(x) {
+        *sum += x;
+    }
+    out
 }
 
 /// The sum of squares that is left when offset and first state fit best.
@@ -147,54 +151,97 @@ pub fn refine(
     whitening: &[f64],
     effort: Effort,
 ) -> Option<Estimate> {
-    // What is filtered before and behind a model is the same: the signals are
-    // filtered once.
-    let signals = Signals::behind(data, |x| whitened(x, whitening));
-    let raw = data;
-    let data = &signals.data(raw);
-    let left_out = whitening.len() + data.skip();
-    // The search goes down on squares; instruments come at its end.
-    let open = Data {
-        undisturbed: None,
-        ..*data
-    };
-    let task = Task {
-        gather: &|model: &TransferFunction| gather(&open, model, delay_is_free, left_out),
-        delay_is_free,
-        period_s: raw.period_s,
-        from_command: raw.from_command,
-        power: raw.output.iter().map(|y| y * y).sum(),
-        damping: match effort.steps {
-            _ if raw.leak == 0.0 => DAMPING,
-            STEPS_MAX => DAMPING_LAST,
-            _ => DAMPING_LEAKY,
-        },
-        samples: raw.len(),
-    };
-    let Descent {
-        mut transfer,
-        mut normal,
-        steps,
-    } = task.descend(start, effort)?;
-    if data.undisturbed.is_some() {
-        (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
+    let fitting = Fitting::new(*data, whitening);
+    fitting.settled(fitting.refine(start, delay_is_free, effort)?)
+}
+
+/// Fits of models to one recording.
+pub struct Fitting<'a> {
+    raw: Data<'a>,
+    /// What is filtered before and behind a model is the same: the signals are
+    /// filtered once.
+    signals: Signals,
+    taps: &'a [f64],
+    /// Sum of squares of the output.
+    power: f64,
+}
+
+impl<'a> Fitting<'a> {
+    /// To these signals behind the filter of these taps.
+    #[must_use]
+    pub fn new(raw: Data<'a>, taps: &'a [f64]) -> Self {
+        Self {
+            signals: Signals::behind(&raw, |x| whitened(x, taps)),
+            power: raw.output.iter().map(|y| y * y).sum(),
+            raw,
+            taps,
+        }
     }
-    let mut estimate = task.finish(transfer, &normal, steps)?;
-    if !whitening.is_empty() {
-        // Offset and first state of the signals as they are.
+
+    /// Fits a model as [`refine()`] does; what it began with is to be [`settled`]
+    /// yet.
+    ///
+    /// [`settled`]: Self::settled
+    #[must_use]
+    pub fn refine(
+        &self,
+        start: &TransferFunction,
+        delay_is_free: bool,
+        effort: Effort,
+    ) -> Option<Estimate> {
+        let raw = &self.raw;
+        let data = &self.signals.data(raw);
+        let left_out = self.taps.len() + data.skip();
+        // The search goes down on squares; instruments come at its end.
         let open = Data {
             undisturbed: None,
-            ..*raw
+            ..*data
         };
-        let normal = gather(&open, &estimate.transfer, delay_is_free, raw.skip())?;
-        (estimate.state, estimate.offset) = nuisance(&rest(&normal, estimate.count)?);
-    } else if raw.leak > 0.0 && raw.every == 1 {
-        // Beside what fades, squares have lost the digits of what is left.
-        let left: f64 = residuals(raw, &estimate)?.iter().map(|x| x * x).sum();
-        estimate.covariance *= left / estimate.rest;
-        estimate.rest = left;
+        let task = Task {
+            gather: &|model: &TransferFunction| gather(&open, model, delay_is_free, left_out),
+            delay_is_free,
+            period_s: raw.period_s,
+            from_command: raw.from_command,
+            power: self.power,
+            damping: match effort.steps {
+                _ if raw.leak == 0.0 => DAMPING,
+                STEPS_MAX => DAMPING_LAST,
+                _ => DAMPING_LEAKY,
+            },
+            samples: raw.len(),
+        };
+        let Descent {
+            mut transfer,
+            mut normal,
+            steps,
+        } = task.descend(start, effort)?;
+        if data.undisturbed.is_some() {
+            (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
+        }
+        let mut estimate = task.finish(transfer, &normal, steps)?;
+        if self.taps.is_empty() && raw.leak > 0.0 && raw.every == 1 {
+            // Beside what fades, squares have lost the digits of what is left.
+            let left: f64 = residuals(raw, &estimate)?.iter().map(|x| x * x).sum();
+            estimate.covariance *= left / estimate.rest;
+            estimate.rest = left;
+        }
+        Some(estimate)
     }
-    Some(estimate)
+
+    /// With offset and first state of the signals as they are.
+    #[must_use]
+    pub fn settled(&self, mut estimate: Estimate) -> Option<Estimate> {
+        if !self.taps.is_empty() {
+            let open = Data {
+                undisturbed: None,
+                ..self.raw
+            };
+            let delay_is_free = estimate.count > parameters(&estimate.transfer, false).len();
+            let normal = gather(&open, &estimate.transfer, delay_is_free, self.raw.skip())?;
+            (estimate.state, estimate.offset) = nuisance(&rest(&normal, estimate.count)?);
+        }
+        Some(estimate)
+    }
 }
 
 /// What is fitted.

@@ -12,12 +12,7 @@ use super::transfer::TransferFunction;
 /// best delay and the one a period shorter (with a held input, a model without
 /// direct path may as well be one with it, a period later).
 #[must_use]
-pub fn starts(
-    data: &Data<'_>,
-    response: &FrequencyResponse,
-    given: Given,
-) -> Vec<TransferFunction> {
-    let t = data.period_s;
+pub fn starts(response: &FrequencyResponse, given: Given, t: f64) -> Vec<TransferFunction> {
     let lags: Vec<usize> = match given.delay_s {
         Some(delay) => vec![libm::round(delay / t) as usize],
         None => (0..=LAG_MAX).collect(),
@@ -48,12 +43,12 @@ pub fn starts(
             delay_s: given.delay_s.unwrap_or(transfer.delay_s),
             ..transfer
         })
-        .chain(from_subspace(data, given))
         .collect()
 }
 
 /// Models from subspaces of the data: good where there is little noise.
-fn from_subspace(data: &Data<'_>, given: Given) -> Vec<TransferFunction> {
+#[must_use]
+pub fn from_subspace(data: &Data<'_>, given: Given) -> Vec<TransferFunction> {
     let Some(subspace) = Subspace::new(data.input, data.output) else {
         return Vec::new();
     };

@@ -11,7 +11,7 @@ use super::fewer_rows::FewerRows;
 use super::mode_starts;
 use super::neighbours::{Given, are_alike, cancelled, neighbours, restarts};
 use super::noise::Whiteness;
-use super::output_error::{Effort, Estimate, refine, residuals};
+use super::output_error::{Effort, Estimate, Fitting, refine, residuals};
 use super::response_starts;
 use super::spectral_lines::Lines;
 use super::spectrum::{FrequencyResponse, measure};
@@ -83,6 +83,8 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         let (first, starts) = Noise::first(raw, raw.head(COMPARED), band_rad_s, given);
         (noise, first_starts) = (first, Some(starts));
     }
+    // The response says the same whatever the noise is taken for.
+    let mut shown: Option<Vec<TransferFunction>> = None;
     let mut best: Option<(Estimate, bool, f64, Noise)> = None;
     // Noise that is not white shows only behind a model, and the model only
     // when the noise is known: a few rounds settle both, each from where the one
@@ -104,14 +106,20 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         });
         if !data.from_command {
             // Without a loop about it what is measured shows the axis itself.
-            starts.extend(response_starts::starts(&all_rows, &response, given));
+            let shown = shown
+                .get_or_insert_with(|| response_starts::starts(&response, given, data.period_s));
+            starts.extend(shown.iter().cloned());
+            starts.extend(response_starts::from_subspace(&all_rows, given));
         }
         starts.extend(before.cloned());
+        let on_short = Fitting::new(short, taps);
         let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            refine(&short, start, delay_is_free, taps, effort)
+            on_short.refine(start, delay_is_free, effort)
         };
+        let on_long = (short.len() != data.len()).then(|| Fitting::new(long, taps));
+        let on_long = on_long.as_ref().unwrap_or(&on_short);
         let fit_long = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            refine(&long, start, delay_is_free, taps, effort)
+            on_long.refine(start, delay_is_free, effort)
         };
         let budget = budget(before.is_none(), data.from_command);
         let mut tried = ladder(&fit, data, step_s, &response, given, &starts, budget);
@@ -132,7 +140,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
             if short.len() == data.len() {
                 Some(found)
             } else {
-                refine(&long, &found.transfer, false, taps, effort)
+                on_long.refine(&found.transfer, false, effort)
             }
         };
         let Some(found) = best_of(best_of(tried).filter_map(again).collect()).next() else {
@@ -148,6 +156,7 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
             Some(_) => 0.0,
             None => libm::hypot(others, alone_s),
         };
+        let found = on_long.settled(found)?;
         let left = residuals(&long, &found)?;
         let exact = found.rest <= 1e-12 * found.power;
         let is_white = || Whiteness::of(filtered(&left, taps).as_slice(), LAGS).is_white();
