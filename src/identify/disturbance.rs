@@ -6,12 +6,13 @@
 //! autoregressive filter makes the rest white.
 
 use super::data::Data;
+use super::ladder::SEARCH_STEPS;
 use super::leaky::Leaky;
 use super::mode_starts;
 use super::neighbours::Given;
-use super::noise::{Whiteness, predicting, whitening};
+use super::noise::{Whiteness, predicting};
 use super::output_error::{Effort, Estimate, refine, residuals};
-use super::search::{COARSE, LAGS, SEARCH_STEPS, WHITENING_MAX};
+use super::search::{COARSE, LAGS};
 use super::spectral_lines::Lines;
 use super::transfer::TransferFunction;
 
@@ -229,22 +230,4 @@ fn leaks(samples: usize) -> impl Iterator<Item = f64> {
     let least = LASTS / samples.max(1) as f64;
     let all = LEAKS.into_iter().filter(move |leak| *leak > least);
     std::iter::once(0.0).chain(all).chain([least])
-}
-
-/// The noise for the next round: of a position or speed that of these first samples, if
-/// it is better than what was supposed.
-#[must_use]
-pub fn next_noise(
-    integrated: Option<&Data<'_>>,
-    transfer: &TransferFunction,
-    now: &Noise,
-    left: &[f64],
-) -> Option<Noise> {
-    match integrated {
-        Some(head) => Noise::beside(head, transfer, WHITENING_MAX, Some(now)),
-        None => Some(Noise {
-            leak: 0.0,
-            taps: whitening(left, WHITENING_MAX),
-        }),
-    }
 }

@@ -25,6 +25,8 @@ mod discrete;
 mod disturbance;
 mod fewer_rows;
 mod filter;
+mod integrated;
+mod ladder;
 mod leaky;
 mod methods;
 mod modal;

@@ -6,49 +6,40 @@ use nalgebra::Complex;
 
 use super::data::Data;
 use super::delay_profile::{Bounds, doubt_s, profile};
-use super::disturbance::{Noise, next_noise};
+use super::disturbance::Noise;
 use super::fewer_rows::FewerRows;
+use super::integrated;
+use super::ladder::{Fit, Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
 use super::mode_starts;
-use super::neighbours::{Given, are_alike, cancelled, neighbours, restarts};
-use super::noise::Whiteness;
-use super::output_error::{Effort, Estimate, Fitting, refine, residuals};
+use super::neighbours::{Given, cancelled};
+use super::noise::{Whiteness, whitening};
+use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts;
 use super::spectral_lines::Lines;
 use super::spectrum::{FrequencyResponse, measure};
-use super::transfer::{Factor, TransferFunction};
+use super::transfer::TransferFunction;
 
 /// Samples on which models are compared; of commands more, as a sweep shows each
 /// mode but once, and of forces where the first ones show less than all do.
-const COMPARED: usize = 8_000;
+pub const COMPARED: usize = 8_000;
 const COMPARED_COMMAND: usize = 16_000;
 /// Samples on which the best of them are; the last fit takes all.
-const CHOSEN: usize = 24_000;
+pub const CHOSEN: usize = 24_000;
+/// A pole and a zero no farther apart, as a share, are one.
+const ONE: f64 = 0.02;
 /// Lines on which modes are looked for, about.
 pub const COARSE: usize = 700;
-/// Models of different kinds that are gone on with.
-const KEPT: usize = 5;
-/// A model better by this much is gone on from without looking at others.
-const CLEAR: f64 = 4.0;
 /// By how much a delay between samples has to be better than one of whole
 /// periods.
 const CLEAR_DELAY: f64 = 10.0;
-/// A model better by less is the same one.
-const WORTH: f64 = 0.5;
-/// A pole and a zero no farther apart, as a share, are one.
-const ONE: f64 = 0.02;
-/// Steps of each fit on the way.
-pub const SEARCH_STEPS: usize = 20;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
-const STEPS_MAX: usize = 500;
-const STEPS_LAST: usize = 200;
+pub const STEPS_MAX: usize = 500;
 /// The same for commands, of which more samples are looked at, and whose dead time
 /// is sought afterwards.
 const STEPS_COMMAND: usize = 50;
 /// Rounds of model and noise.
-const ROUNDS_OF_NOISE: usize = 4;
-/// Steps from model to model at most.
-const ROUNDS_MAX: usize = 12;
+pub const ROUNDS_OF_NOISE: usize = 4;
 /// Order of the filter that makes noise white, at most.
 pub const WHITENING_MAX: usize = 40;
 /// Lags over which residuals are tested.
@@ -73,44 +64,67 @@ pub struct Found {
 #[must_use]
 pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
     let response = response_of(data, instrument, None)?;
+    let compared = compared(data, &response);
+    let chosen = if !data.from_command && data.measured.integrators() > 0 {
+        integrated::choose(data, &response, compared, given)?
+    } else {
+        choose(data, &response, compared, given)?
+    };
+    let (estimate, noise) = on_all(data, &chosen, given)?;
+    Some(Found {
+        estimate,
+        delay_is_free: chosen.delay_is_free,
+        delay_doubt_s: chosen.delay_doubt_s,
+        noise,
+        response,
+    })
+}
+
+/// A model that was chosen on some of the samples.
+pub struct Chosen {
+    /// The model.
+    pub found: Estimate,
+    /// Whether the delay was fitted.
+    pub delay_is_free: bool,
+    /// How far it is in doubt besides, s.
+    pub delay_doubt_s: f64,
+    /// What made the noise white.
+    pub noise: Noise,
+}
+
+fn choose(
+    data: &Data<'_>,
+    response: &FrequencyResponse,
+    compared: usize,
+    given: Given,
+) -> Option<Chosen> {
     let band_rad_s = response.shown_rad_s();
     let step_s = data.period_s * mode_starts::delay_step(data.from_command);
-    let compared = compared(data, &response);
-    let is_integrated = !data.from_command && data.measured.integrators() > 0;
-    let raw = data;
-    let (mut noise, mut first_starts) = (Noise::default(), None);
-    if is_integrated {
-        let (first, starts) = Noise::first(raw, raw.head(COMPARED), band_rad_s, given);
-        (noise, first_starts) = (first, Some(starts));
-    }
-    // The response says the same whatever the noise is taken for.
-    let mut shown: Option<Vec<TransferFunction>> = None;
-    let mut best: Option<(Estimate, bool, f64, Noise)> = None;
+    let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
+    let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
+    let fewer = fewer.flatten();
+    let short = fewer
+        .as_ref()
+        .map_or(all_rows, |fewer| fewer.data(&all_rows));
+    let shown = if data.from_command {
+        Vec::new()
+    } else {
+        // Without a loop about it what is measured shows the axis itself.
+        let mut shown = response_starts::starts(response, given, data.period_s);
+        shown.extend(response_starts::from_subspace(&all_rows, given));
+        shown
+    };
+    let mut noise = Noise::default();
+    let mut best: Option<Chosen> = None;
     // Noise that is not white shows only behind a model, and the model only
     // when the noise is known: a few rounds settle both, each from where the one
     // before came to.
     for _ in 0..ROUNDS_OF_NOISE {
-        let before = best.as_ref().map(|(best, ..)| &best.transfer);
-        let leaky = noise.held(raw);
-        let data = &leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
-        let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
-        let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
-        let fewer = fewer.flatten();
-        let short = fewer
-            .as_ref()
-            .map_or(all_rows, |fewer| fewer.data(&all_rows));
+        let before = best.as_ref().map(|best| &best.found.transfer);
         let taps = &noise.taps;
-        let mut starts = first_starts.take().unwrap_or_else(|| {
-            let coarse = Lines::new(raw, &noise, band_rad_s, COARSE);
-            coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given))
-        });
-        if !data.from_command {
-            // Without a loop about it what is measured shows the axis itself.
-            let shown = shown
-                .get_or_insert_with(|| response_starts::starts(&response, given, data.period_s));
-            starts.extend(shown.iter().cloned());
-            starts.extend(response_starts::from_subspace(&all_rows, given));
-        }
+        let coarse = Lines::new(data, &noise, band_rad_s, COARSE);
+        let mut starts = coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given));
+        starts.extend(shown.iter().cloned());
         starts.extend(before.cloned());
         let on_short = Fitting::new(short, taps);
         let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
@@ -121,8 +135,16 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         let fit_long = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
             on_long.refine(start, delay_is_free, effort)
         };
-        let budget = budget(before.is_none(), data.from_command);
-        let mut tried = ladder(&fit, data, step_s, &response, given, &starts, budget);
+        let ladder = Ladder {
+            fit: &fit,
+            early_s: data.early_s,
+            step_s,
+            period_s: data.period_s,
+            response,
+            given,
+        };
+        let reach = reach(before.is_none(), data.from_command);
+        let mut tried = ladder.climb(ladder.fitted(&starts, false), reach);
         let mut others = doubt_s(&tried);
         if data.from_command && given.delay_s.is_none() {
             let profiled = by_profile(&fit, data, given, band_rad_s, tried.clone());
@@ -159,41 +181,37 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         let found = on_long.settled(found)?;
         let left = residuals(&long, &found)?;
         let exact = found.rest <= 1e-12 * found.power;
-        let is_white = || Whiteness::of(filtered(&left, taps).as_slice(), LAGS).is_white();
-        let next = (!exact && !is_white()).then(|| {
-            let head = is_integrated.then(|| raw.head(compared));
-            next_noise(head.as_ref(), &found.transfer, &noise, &left)
+        let is_settled = exact || is_white(&left, taps);
+        best = Some(Chosen {
+            found,
+            delay_is_free,
+            delay_doubt_s,
+            noise: noise.clone(),
         });
-        best = Some((found, delay_is_free, delay_doubt_s, noise.clone()));
-        match next.flatten() {
-            Some(next) => noise = next,
-            None => break,
+        if is_settled {
+            break;
         }
+        noise.taps = whitening(&left, WHITENING_MAX);
     }
-    let (short_estimate, delay_is_free, delay_doubt_s, noise) = best?;
-    let noise = noise.closer(raw, &short_estimate.transfer);
-    let estimate = on_all(raw, &short_estimate.transfer, delay_is_free, &noise, given)?;
-    Some(Found {
-        estimate,
-        delay_is_free,
-        delay_doubt_s,
-        noise,
-        response,
-    })
+    best
 }
 
-/// The last fit, on all samples.
-fn on_all(
-    raw: &Data<'_>,
-    found: &TransferFunction,
-    delay_is_free: bool,
-    noise: &Noise,
-    given: Given,
-) -> Option<Estimate> {
+/// True where a filter makes white what is left.
+#[must_use]
+pub fn is_white(left: &[f64], taps: &[f64]) -> bool {
+    Whiteness::of(&filtered(left, taps), LAGS).is_white()
+}
+
+/// The last fit, on all samples, and the noise that goes with it.
+fn on_all(raw: &Data<'_>, chosen: &Chosen, given: Given) -> Option<(Estimate, Noise)> {
+    let found = &chosen.found.transfer;
+    let noise = chosen.noise.clone().closer(raw, found);
     let leaky = noise.held(raw);
     let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
-    let fit =
-        |from: &TransferFunction| refine(&data, from, delay_is_free, &noise.taps, Effort::FULL);
+    let fitting = Fitting::new(data, &noise.taps);
+    let fit = |from: &TransferFunction| {
+        fitting.settled(fitting.refine(from, chosen.delay_is_free, Effort::FULL)?)
+    };
     let mut best = fit(found)?;
     if leaky.is_some() && given.order.is_none() && given.zeros.is_none() {
         // What stood for noise as it was supposed at first stands for nothing now.
@@ -202,15 +220,20 @@ fn on_all(
             best = less.unwrap_or(best);
         }
     }
-    Some(best)
+    Some((best, noise))
 }
 
-/// Steps of the first round or a later one, and those to spare.
-fn budget(is_first: bool, from_command: bool) -> (usize, usize) {
-    match (is_first, from_command) {
+/// How far the first round or a later one goes.
+fn reach(is_first: bool, from_command: bool) -> Reach {
+    let (steps, spare) = match (is_first, from_command) {
         (false, _) => (STEPS_LAST, STEPS_LAST),
         (true, true) => (STEPS_COMMAND, 0),
         (true, false) => (STEPS_MAX, 3 * STEPS_LAST),
+    };
+    Reach {
+        steps,
+        spare,
+        is_known: false,
     }
 }
 
@@ -299,185 +322,10 @@ pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Fits a model from a start, with its delay or without.
-type Fit<'a> = dyn Fn(&TransferFunction, bool, Effort) -> Option<Estimate> + 'a;
-
-/// The best of models, one of each kind, the very best first.
-fn best_of(mut found: Vec<Estimate>) -> impl Iterator<Item = Estimate> {
-    found.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
-    let mut kept: Vec<Estimate> = Vec::new();
-    for found in found {
-        let is_known = kept
-            .iter()
-            .any(|other| is_of_kind(&found.transfer, &other.transfer));
-        if !is_known && kept.len() < KEPT {
-            kept.push(found);
-        }
-    }
-    kept.into_iter()
-}
-
-/// True for models with as many zeros and poles at about the same places, and with
-/// the same delay.
-fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
-    const NEAR: f64 = 0.2;
-    let corners = |list: &[Factor]| -> Vec<f64> {
-        let mut corners: Vec<f64> = list.iter().map(|x| x.corner_rad_s()).collect();
-        corners.sort_by(f64::total_cmp);
-        corners
-    };
-    let are_near = |a: &[Factor], b: &[Factor]| {
-        let (a, b) = (corners(a), corners(b));
-        let apart = |(a, b): (&f64, &f64)| libm::log(a / b).abs() < NEAR;
-        a.len() == b.len() && a.iter().zip(&b).all(apart)
-    };
-    a.delay_s == b.delay_s && are_near(&a.zeros, &b.zeros) && are_near(&a.poles, &b.poles)
-}
-
-/// All models that were tried on the way from the best of the starts to what no
-/// neighbour is better than.
-fn ladder(
-    fit: &Fit<'_>,
-    data: &Data<'_>,
-    step_s: f64,
-    response: &FrequencyResponse,
-    given: Given,
-    starts: &[TransferFunction],
-    (mut left, mut spare): (usize, usize),
-) -> Vec<Estimate> {
-    let period_s = data.period_s;
-    let is_possible = |start: &TransferFunction| start.delay_s > data.early_s - 1e-6 * period_s;
-    let mut all: Vec<Estimate> = Vec::new();
-    let mut best: Option<Estimate> = None;
-    for start in starts.iter().filter(|start| is_possible(start)) {
-        let effort = Effort {
-            steps: SEARCH_STEPS,
-            to_beat: f64::MAX,
-        };
-        if let Some(found) = fit(start, false, effort) {
-            all.push(found.clone());
-            if is_better(&found, best.as_ref()) {
-                best = Some(found);
-            }
-        }
-    }
-    let Some(mut best) = best else {
-        return all;
-    };
-    // Where the first model is taken from, what shows is mostly right, and the
-    // rest not.
-    let mut is_restarted = true;
-    let mut idle = 0;
-    let mut tried = vec![best.transfer.clone()];
-    for _ in 0..ROUNDS_MAX {
-        let mut top: Option<Estimate> = None;
-        let needed = needed(&best, response.band_rad_s());
-        let next = if is_restarted {
-            restarts(&best.transfer, response, given, period_s)
-        } else {
-            neighbours(&best.transfer, response, given, period_s, step_s)
-        };
-        for start in next {
-            if left == 0 {
-                break;
-            }
-            if tried.iter().any(|other| are_alike(other, &start))
-                || lacks(&start, &needed)
-                || !is_possible(&start)
-            {
-                continue;
-            }
-            tried.push(start.clone());
-            let effort = Effort {
-                steps: SEARCH_STEPS,
-                to_beat: top.as_ref().unwrap_or(&best).criterion(),
-            };
-            let found = fit(&start, false, effort);
-            left = left.saturating_sub(found.as_ref().map_or(1, |found| found.steps));
-            if let Some(found) = found {
-                all.push(found.clone());
-                if is_better(&found, top.as_ref()) {
-                    let is_clear = found.criterion() < best.criterion() - CLEAR;
-                    top = Some(found);
-                    if is_clear {
-                        break;
-                    }
-                }
-            }
-        }
-        // Something is left for what comes next, to leave a wrong path.
-        let more = STEPS_LAST.saturating_sub(left).min(spare);
-        left += more;
-        spare -= more;
-        let before = best.criterion();
-        if let Some(top) = top.filter(|top| is_better(top, Some(&best))) {
-            tried.push(top.transfer.clone());
-            best = top;
-        }
-        if best.criterion() < before - WORTH {
-            is_restarted = false;
-            idle = 0;
-        } else if idle == 1 {
-            break;
-        } else {
-            is_restarted = !is_restarted;
-            idle = 1;
-        }
-    }
-    all
-}
-
-/// Zeros and poles that ring and are known well: without one of them no model fits as well.
-/// One that another one nearly cancels is not, nor one beyond the band, which may
-/// stand for noise.
-fn needed(found: &Estimate, band_rad_s: f64) -> Vec<(bool, Factor)> {
-    const KNOWN: f64 = 0.05;
-    const BEYOND: f64 = 1.2;
-    const CANCELS: f64 = 0.05;
-    let model = &found.transfer;
-    let others = |is_zero: bool| {
-        let others = if is_zero { &model.poles } else { &model.zeros };
-        others.iter().filter(|other| other.degree() == 2)
-    };
-    let is_near =
-        |a: &Factor, b: &Factor| libm::log(a.corner_rad_s() / b.corner_rad_s()).abs() < CANCELS;
-    let mut at = 1;
-    let mut out = Vec::new();
-    for (index, factor) in model.zeros.iter().chain(&model.poles).enumerate() {
-        if let Factor::Pair { damping, .. } = factor
-            && damping.abs() < 0.25
-            && factor.corner_rad_s() < BEYOND * band_rad_s
-            && !others(index < model.zeros.len()).any(|other| is_near(other, factor))
-            && found.std(at).is_some_and(|std| std < KNOWN)
-            && found.std(at + 1).is_some_and(|std| std < KNOWN)
-        {
-            out.push((index < model.zeros.len(), *factor));
-        }
-        at += factor.degree();
-    }
-    out
-}
-
-/// True for a model that has nothing near to one of those.
-fn lacks(model: &TransferFunction, needed: &[(bool, Factor)]) -> bool {
-    const NEAR: f64 = 0.3;
-    needed.iter().any(|(is_zero, factor)| {
-        let have = if *is_zero { &model.zeros } else { &model.poles };
-        !have.iter().any(|other| {
-            let apart = libm::log(other.corner_rad_s() / factor.corner_rad_s());
-            other.degree() == factor.degree() && apart.abs() < NEAR
-        })
-    })
-}
-
-fn is_better(found: &Estimate, than: Option<&Estimate>) -> bool {
-    than.is_none_or(|than| found.criterion() < than.criterion())
-}
-
 /// The delay set free, if that is clearly worth a parameter: beside a fast zero
 /// and a fast pole it makes all of them uncertain. Where it stays as it was, also
 /// how uncertain it would be, s.
-fn any_delay(fit: &Fit<'_>, t: f64, best: Estimate) -> (Estimate, bool, f64) {
+pub fn any_delay(fit: &Fit<'_>, t: f64, best: Estimate) -> (Estimate, bool, f64) {
     let mut alone_s = 0.0;
     for part in [0.3, -0.3] {
         let mut start = best.transfer.clone();
