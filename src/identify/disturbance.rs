@@ -199,6 +199,20 @@ impl Noise {
         best
     }
 
+    /// A criterion of this noise and a model together, the smaller, the better; with the
+    /// model, moved to where it suits the noise.
+    #[must_use]
+    pub fn with(&self, data: &Data<'_>, transfer: &TransferFunction) -> Option<(f64, Estimate)> {
+        let leaky = self.held(data);
+        let data = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
+        let (noise, found) = self.criterion(&data, transfer)?;
+        let n = data.len() as f64;
+        Some((
+            noise + found.count as f64 * libm::log(n) + found.charge,
+            found,
+        ))
+    }
+
     fn leaking(leak: f64) -> Self {
         Self {
             leak,

@@ -3,22 +3,32 @@
 //!
 //! The models that a search starts from are mostly near to what is sought, though the
 //! noise is known but roughly: beside the best of them it is taken anew, and the search
-//! goes on behind that. What is found may show still other noise: then the search goes
-//! on from there, among neighbours.
+//! goes on behind that. What is found may show still other noise, or may have modes that
+//! stand for noise: then the search goes on from there, among neighbours.
 
+use std::f64::consts::PI;
+
+use super::any_delay::{Timed, timed};
 use super::data::Data;
 use super::delay_profile::doubt_s;
 use super::disturbance::{Noise, as_it_is};
 use super::fewer_rows::FewerRows;
-use super::ladder::{Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
-use super::neighbours::Given;
+use super::ladder::{Anew, Ladder, Reach, STEPS_LAST, best_of};
+use super::neighbours::{Given, simpler};
 use super::output_error::{Effort, Estimate, Fitting, residuals};
-use super::response_starts;
-use super::search::{
-    CHOSEN, COMPARED, Chosen, ROUNDS_OF_NOISE, STEPS_MAX, WHITENING_MAX, any_delay, is_white,
-};
+use super::response_starts::from_subspace;
+use super::search::{CHOSEN, COMPARED, Chosen, ROUNDS_OF_NOISE, WHITENING_MAX, is_white};
 use super::spectrum::FrequencyResponse;
 use super::transfer::TransferFunction;
+
+/// What swings so many times only while a recording lasts may be a disturbance.
+const SLOW: f64 = 20.0;
+/// Simpler models beside which the noise is taken.
+const SIMPLE: usize = 2;
+/// Steps of all fits of the first search, and as many to spare.
+const STEPS: usize = 300;
+/// Steps of a model on more samples.
+const STEPS_AGAIN: usize = 10;
 
 /// The model and the noise, chosen on some of the samples; the models are compared on
 /// `compared` of them.
@@ -31,98 +41,193 @@ pub fn choose(
 ) -> Option<Chosen> {
     let band_rad_s = response.shown_rad_s();
     let (mut noise, mut starts) = Noise::first(raw, raw.head(COMPARED), band_rad_s, given);
-    starts.extend(response_starts::starts(response, given, raw.period_s));
-    let mut chosen: Option<Chosen> = None;
+    let mut is_simple = false;
     for round in 0..=ROUNDS_OF_NOISE {
         let leaky = noise.held(raw);
-        let data = &leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
-        let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
-        let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
+        let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
+        let rows = data.head(compared);
+        let fewer = (compared > COMPARED).then(|| FewerRows::of(&rows, band_rad_s));
         let fewer = fewer.flatten();
-        let short = fewer
-            .as_ref()
-            .map_or(all_rows, |fewer| fewer.data(&all_rows));
-        if round == 0 {
-            starts.extend(response_starts::from_subspace(&all_rows, given));
-        }
-        let on_short = Fitting::new(short, &noise.taps);
-        let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            on_short.refine(start, delay_is_free, effort)
-        };
-        let ladder = Ladder {
-            fit: &fit,
-            early_s: data.early_s,
-            step_s: data.period_s,
-            period_s: data.period_s,
+        let short = fewer.as_ref().map_or(rows, |fewer| fewer.data(&rows));
+        let stage = Stage {
+            raw: raw.head(compared),
+            data,
+            rows,
+            fitting: Fitting::new(short, &noise.taps),
+            is_all: short.len() == data.len(),
+            noise: &noise,
             response,
             given,
         };
-        let next_noise = |found: &Estimate| {
-            let head = raw.head(compared);
-            other_noise(&head, &all_rows, found, &noise)
-        };
-        let mut tried = ladder.fitted(&starts, round > 0);
         if round == 0 {
-            let best = best_of(tried.clone()).next()?;
-            if let Some(next) = next_noise(&best) {
-                noise = next;
-                starts = best_of(tried).map(|found| found.transfer).collect();
-                continue;
+            starts.extend(from_subspace(&rows, given));
+        }
+        let next = match stage.go_on(round, &starts, &mut is_simple)? {
+            Next::Chosen(chosen) => return Some(*chosen),
+            Next::Noise(next, from) => {
+                starts = from;
+                next
             }
+        };
+        noise = next;
+    }
+    None
+}
+
+/// What comes behind a search.
+enum Next {
+    /// Another one, behind other noise, from these models.
+    Noise(Noise, Vec<TransferFunction>),
+    /// Nothing: what was found.
+    Chosen(Box<Chosen>),
+}
+
+/// A search behind one noise.
+struct Stage<'a> {
+    /// The samples on which models are compared, as they were recorded.
+    raw: Data<'a>,
+    /// All samples, and those, behind what holds the noise.
+    data: Data<'a>,
+    rows: Data<'a>,
+    /// Fits of models that are compared, and whether to all samples.
+    fitting: Fitting<'a>,
+    is_all: bool,
+    noise: &'a Noise,
+    response: &'a FrequencyResponse,
+    given: Given,
+}
+
+impl Stage<'_> {
+    fn go_on(
+        &self,
+        round: usize,
+        starts: &[TransferFunction],
+        is_simple: &mut bool,
+    ) -> Option<Next> {
+        let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
+            self.fitting.refine(start, delay_is_free, effort)
+        };
+        let ladder = Ladder {
+            fit: &fit,
+            early_s: self.data.early_s,
+            step_s: self.data.period_s,
+            period_s: self.data.period_s,
+            response: self.response,
+            given: self.given,
+        };
+        let mut tried = ladder.fitted(starts, round > 0);
+        if round == 0 {
+            let best = self
+                .timed(&self.fitting, best_of(tried.clone()).next()?)
+                .found;
+            if let Some(next) = self.other_noise(&best) {
+                let others = best_of(tried).map(|found| found.transfer);
+                let starts = std::iter::once(best.transfer).chain(others).collect();
+                return Some(Next::Noise(next, starts));
+            }
+            tried.push(best);
         }
         tried = ladder.climb(tried, reach(round < 2));
-        let others = doubt_s(&tried);
-        let free = |found: Estimate, fitting: &Fitting<'_>| match given.delay_s {
-            Some(_) => (found, false, 0.0),
-            None => {
-                let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-                    fitting.refine(start, delay_is_free, effort)
-                };
-                any_delay(&fit, data.period_s, found)
+        let best = self.timed(&self.fitting, best_of(tried.clone()).next()?);
+        if round < ROUNDS_OF_NOISE {
+            if let Some(next) = self.other_noise(&best.found) {
+                return Some(Next::Noise(next, vec![best.found.transfer]));
             }
-        };
-        let best = best_of(tried.clone()).next()?;
-        let (best, ..) = free(best, &on_short);
-        let mut next = next_noise(&best);
-        if next.is_none() || round == ROUNDS_OF_NOISE {
-            let on_long = (short.len() != data.len()).then(|| Fitting::new(long, &noise.taps));
-            let on_long = on_long.as_ref().unwrap_or(&on_short);
-            let found = if short.len() == data.len() {
-                best
-            } else {
-                best_again(on_long, tried)?
-            };
-            let (found, delay_is_free, alone_s) = free(found, on_long);
-            let found = on_long.settled(found)?;
-            chosen = Some(Chosen {
-                found,
-                delay_is_free,
-                delay_doubt_s: given.delay_s.map_or(libm::hypot(others, alone_s), |_| 0.0),
-                noise: noise.clone(),
-            });
-            next = None;
-        } else {
-            starts = vec![best.transfer];
+            if !*is_simple {
+                *is_simple = true;
+                if let Some((next, less)) = self.simple(&best.found) {
+                    return Some(Next::Noise(next, vec![less]));
+                }
+            }
         }
-        match next {
-            Some(next) => noise = next,
-            None => break,
+        self.chosen(tried, best)
+    }
+
+    /// A model with its delay.
+    fn timed(&self, fitting: &Fitting<'_>, found: Estimate) -> Timed {
+        match self.given.delay_s {
+            None => timed(fitting, self.data.period_s, found),
+            Some(_) => Timed {
+                found,
+                is_free: false,
+                alone_s: 0.0,
+            },
         }
     }
-    chosen
+
+    /// The noise beside a model, where it is clearly other noise than was supposed.
+    fn other_noise(&self, found: &Estimate) -> Option<Noise> {
+        let plain = as_it_is(&self.rows, &found.transfer)?;
+        let left = residuals(&self.rows, &plain)?;
+        let exact = found.rest <= 1e-12 * found.power;
+        if exact || is_white(&left, &self.noise.taps) {
+            return None;
+        }
+        Noise::beside(&self.raw, &found.transfer, WHITENING_MAX, Some(self.noise))
+    }
+
+    /// A simpler model with the noise beside it, where both together explain the
+    /// recording better: slow modes may stand for what disturbs the axis, and lags for a
+    /// part of a period of delay.
+    fn simple(&self, best: &Estimate) -> Option<(Noise, TransferFunction)> {
+        let raw = &self.raw;
+        let slow_rad_s = SLOW * 2.0 * PI / (raw.len() as f64 * raw.period_s);
+        let band_rad_s = self.response.band_rad_s();
+        let less = simpler(
+            &best.transfer,
+            band_rad_s,
+            slow_rad_s,
+            self.given,
+            raw.period_s,
+        );
+        let fitted = less.iter().filter_map(|less| {
+            let is_free = self.given.delay_s.is_none();
+            let found = self.fitting.refine(less, is_free, Effort::FULL)?;
+            Some(self.timed(&self.fitting, found).found)
+        });
+        let with_noise = |less: Estimate| {
+            let noise = Noise::beside(raw, &less.transfer, WHITENING_MAX, None)?;
+            let (criterion, less) = noise.with(raw, &less.transfer)?;
+            Some((criterion, noise, less.transfer))
+        };
+        let found = best_of(fitted.collect())
+            .take(SIMPLE)
+            .filter_map(with_noise)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let (criterion, noise, less) = found?;
+        let (now, _) = self.noise.with(raw, &best.transfer)?;
+        (criterion < now).then_some((noise, less))
+    }
+
+    /// The best model on more samples, and how far its delay is in doubt.
+    fn chosen(&self, tried: Vec<Estimate>, best: Timed) -> Option<Next> {
+        let others = doubt_s(&tried);
+        let long = (!self.is_all).then(|| Fitting::new(self.data.head(CHOSEN), &self.noise.taps));
+        let (fitting, best) = match &long {
+            None => (&self.fitting, best),
+            Some(long) => (long, self.timed(long, best_again(long, tried)?)),
+        };
+        let doubt_s = libm::hypot(others, best.alone_s);
+        Some(Next::Chosen(Box::new(Chosen {
+            found: fitting.settled(best.found)?,
+            delay_is_free: best.is_free,
+            delay_doubt_s: self.given.delay_s.map_or(doubt_s, |_| 0.0),
+            noise: self.noise.clone(),
+        })))
+    }
 }
 
 /// How far the first search goes, or a later one from what it found.
 fn reach(is_first: bool) -> Reach {
-    let (steps, spare) = if is_first {
-        (STEPS_MAX, 3 * STEPS_LAST)
+    let (steps, anew) = if is_first {
+        (STEPS, Anew::Behind)
     } else {
-        (STEPS_LAST, STEPS_LAST)
+        (STEPS_LAST, Anew::Unless)
     };
     Reach {
         steps,
-        spare,
-        is_known: !is_first,
+        spare: steps,
+        anew,
     }
 }
 
@@ -131,7 +236,7 @@ fn best_again(fitting: &Fitting<'_>, tried: Vec<Estimate>) -> Option<Estimate> {
     let mut best: Option<Estimate> = None;
     for found in best_of(tried) {
         let effort = Effort {
-            steps: SEARCH_STEPS,
+            steps: STEPS_AGAIN,
             to_beat: best.as_ref().map_or(f64::MAX, Estimate::criterion),
         };
         let found = fitting.refine(&found.transfer, false, effort);
@@ -142,16 +247,4 @@ fn best_again(fitting: &Fitting<'_>, tried: Vec<Estimate>) -> Option<Estimate> {
         best = found.filter(is_better).or(best);
     }
     best
-}
-
-/// The noise beside a model where it is clearly other noise than was supposed: `raw` as
-/// recorded, `data` behind what held it.
-fn other_noise(raw: &Data<'_>, data: &Data<'_>, found: &Estimate, now: &Noise) -> Option<Noise> {
-    let plain = as_it_is(data, &found.transfer)?;
-    let left = residuals(data, &plain)?;
-    let exact = found.rest <= 1e-12 * found.power;
-    if exact || is_white(&left, &now.taps) {
-        return None;
-    }
-    Noise::beside(raw, &found.transfer, WHITENING_MAX, Some(now))
 }

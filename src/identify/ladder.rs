@@ -54,6 +54,18 @@ fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
     a.delay_s == b.delay_s && are_near(&a.zeros, &b.zeros) && are_near(&a.poles, &b.poles)
 }
 
+/// When a search places modes anew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anew {
+    /// At first: where the first model is taken from, what shows is mostly right, and
+    /// the rest not.
+    First,
+    /// Where no neighbour is better.
+    Behind,
+    /// Not for a model that was searched for before, unless a neighbour is better.
+    Unless,
+}
+
 /// How far a search goes.
 #[derive(Debug, Clone, Copy)]
 pub struct Reach {
@@ -61,9 +73,8 @@ pub struct Reach {
     pub steps: usize,
     /// Steps to spare for what comes next, to leave a wrong path.
     pub spare: usize,
-    /// True where the model was searched for before: what is placed anew is looked at
-    /// only once one of its neighbours was better.
-    pub is_known: bool,
+    /// Where what is placed anew is looked at besides neighbours.
+    pub anew: Anew,
 }
 
 /// A search from model to model.
@@ -120,10 +131,8 @@ impl Ladder<'_> {
         let Some(mut best) = best.cloned() else {
             return all;
         };
-        // Where the first model is taken from, what shows is mostly right, and the
-        // rest not.
-        let mut is_restarted = !reach.is_known;
-        let mut idle = usize::from(reach.is_known);
+        let mut is_restarted = reach.anew == Anew::First;
+        let mut idle = usize::from(reach.anew == Anew::Unless);
         let mut tried = vec![best.transfer.clone()];
         for _ in 0..ROUNDS_MAX {
             let mut top: Option<Estimate> = None;

@@ -12,7 +12,7 @@
 
 use super::data::{Data, Signals};
 use super::normal::Normal;
-use super::stretch::{Column, ROWS};
+use super::stretch::{Column, OVER, ROWS};
 
 /// The signals behind leaky integrators.
 pub struct Leaky {
@@ -62,9 +62,10 @@ impl Leaky {
             let mut from = 0;
             std::iter::from_fn(move || {
                 let rows = count.checked_sub(from).filter(|rows| *rows > 0)?.min(ROWS);
-                let mut columns = vec![[1.0; ROWS]; data.fading() + 1];
+                let mut columns = vec![[0.0; ROWS]; data.fading()];
+                columns.push([1.0; ROWS]);
                 fading.next(rows, |index, column| {
-                    if let Some(slot) = columns.get_mut(index) {
+                    if let (Some(slot), Some(column)) = (columns.get_mut(index), column) {
                         *slot = *column;
                     }
                 });
@@ -141,9 +142,10 @@ impl Fading {
         }
     }
 
-    /// The next rows, a column for each integrator.
-    pub fn next(&mut self, rows: usize, mut take: impl FnMut(usize, &Column)) {
-        if self.count == 0 {
+    /// The next rows, a column for each integrator; `None` for what is over.
+    pub fn next(&mut self, rows: usize, mut take: impl FnMut(usize, Option<&Column>)) {
+        if self.count == 0 || self.now < OVER {
+            (0..self.count).for_each(|index| take(index, None));
             return;
         }
         let mut columns = [[0.0; ROWS]; 2];
@@ -154,7 +156,7 @@ impl Fading {
             self.row += 1.0;
         }
         for (index, column) in columns.iter().enumerate().take(self.count) {
-            take(index, column);
+            take(index, Some(column));
         }
     }
 }

@@ -16,6 +16,7 @@ pub mod response_table;
 pub mod rigid;
 pub mod tune;
 
+mod any_delay;
 mod arx;
 mod column;
 mod command_input;

@@ -1,5 +1,7 @@
 //! Models that differ a little from one that was found: where a search goes on.
 
+use std::f64::consts::PI;
+
 use super::mode::with_mode;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
@@ -268,6 +270,89 @@ fn lean(from: &TransferFunction, band_rad_s: f64) -> TransferFunction {
         poles,
         ..from.clone()
     }
+}
+
+/// A pole and a zero no farther apart, as a share, are one.
+pub const ONE: f64 = 0.02;
+
+/// Models with less of what may stand for noise or for a part of a period of delay:
+/// without what is slower than `slow_rad_s` or undoes itself, and with nothing but what
+/// swings.
+#[must_use]
+pub fn simpler(
+    from: &TransferFunction,
+    band_rad_s: f64,
+    slow_rad_s: f64,
+    given: Given,
+    period_s: f64,
+) -> Vec<TransferFunction> {
+    if given.order.is_some() || given.zeros.is_some() {
+        return Vec::new();
+    }
+    let slowest = |factor: &Factor| match *factor {
+        Factor::Pair {
+            omega_rad_s,
+            damping,
+        } if damping.abs() > 1.0 => {
+            omega_rad_s / (damping.abs() + (damping * damping - 1.0).sqrt())
+        }
+        _ => factor.corner_rad_s(),
+    };
+    let fast = |list: &[Factor]| -> Vec<Factor> {
+        let fast = list.iter().filter(|factor| slowest(factor) > slow_rad_s);
+        fast.copied().collect()
+    };
+    let mut quick = TransferFunction {
+        zeros: fast(&from.zeros),
+        poles: fast(&from.poles),
+        ..from.clone()
+    };
+    while let Some(less) = cancelled(&quick, ONE).into_iter().next() {
+        quick = less;
+    }
+    let lean = [band_rad_s, f64::INFINITY].map(|band| lean(&quick, band));
+    let lean = lean
+        .iter()
+        .flat_map(|lean| with_lag_of(lean, &quick, given, period_s));
+    let mut out: Vec<TransferFunction> = Vec::new();
+    for less in std::iter::once(quick.clone()).chain(lean) {
+        let is_new = !are_alike(&less, from) && !out.iter().any(|other| are_alike(other, &less));
+        if is_new && less.zero_count() <= less.order() {
+            out.push(as_strong(less, from, slow_rad_s, band_rad_s));
+        }
+    }
+    out
+}
+
+/// A model with the gain that brings it nearest to another one between two frequencies:
+/// what is left out of a model counts up to the highest ones.
+fn as_strong(
+    mut model: TransferFunction,
+    other: &TransferFunction,
+    from_rad_s: f64,
+    to_rad_s: f64,
+) -> TransferFunction {
+    const POINTS: i32 = 30;
+    let bare = |model: &TransferFunction, hz: f64| {
+        let bare = TransferFunction {
+            delay_s: 0.0,
+            ..model.clone()
+        };
+        bare.at_hz(hz)
+    };
+    let (mut product, mut square) = (0.0, 0.0);
+    for point in 0..=POINTS {
+        let share = f64::from(point) / f64::from(POINTS);
+        let hz = from_rad_s * libm::pow(to_rad_s / from_rad_s, share) / (2.0 * PI);
+        let (have, want) = (bare(&model, hz), bare(other, hz));
+        product += (have.conj() * want).re;
+        square += have.norm_sqr();
+    }
+    let times = product / square;
+    if times.is_finite() && times != 0.0 {
+        model.gain *= times;
+    }
+    model
 }
 
 /// Where no neighbour is better: the slowest of what swings, with one faster mode

@@ -25,6 +25,9 @@ const STEPS_MAX: usize = 40;
 /// An improvement of the sum of squares below this share of one row's ends the
 /// search: far below what noise decides.
 const ENOUGH: f64 = 1e-3;
+/// The same on the way where a position or speed was measured: friction, which no model
+/// has, is explained a little better with each step.
+const ENOUGH_INTEGRATED: f64 = 2e-2;
 
 /// Damping of a first step. In positions, most of which is slow, everything but the
 /// gain hangs together: less is much there, and the last fit comes from nearby.
@@ -208,6 +211,11 @@ impl<'a> Fitting<'a> {
                 STEPS_MAX => DAMPING_LAST,
                 _ => DAMPING_LEAKY,
             },
+            enough: match effort.steps {
+                STEPS_MAX => ENOUGH,
+                _ if raw.measured.integrators() > 0 && !raw.from_command => ENOUGH_INTEGRATED,
+                _ => ENOUGH,
+            },
             samples: raw.len(),
         };
         let Descent {
@@ -255,6 +263,8 @@ struct Task<'a> {
     samples: usize,
     /// Of the first step.
     damping: f64,
+    /// The share of one row's squares below which an improvement ends the search.
+    enough: f64,
 }
 
 /// Where a descent came to.
@@ -308,7 +318,7 @@ impl Task<'_> {
                     normal = found;
                     least = sum;
                     damping = (damping * 0.1).max(1e-12);
-                    if gained <= ENOUGH * least / normal.rows as f64
+                    if gained <= self.enough * least / normal.rows as f64
                         || least <= ROUNDING * self.power
                     {
                         break;

@@ -4,14 +4,15 @@
 
 use nalgebra::Complex;
 
+use super::any_delay::any_delay;
 use super::data::Data;
 use super::delay_profile::{Bounds, doubt_s, profile};
 use super::disturbance::Noise;
 use super::fewer_rows::FewerRows;
 use super::integrated;
-use super::ladder::{Fit, Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
+use super::ladder::{Anew, Fit, Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
 use super::mode_starts;
-use super::neighbours::{Given, cancelled};
+use super::neighbours::{Given, ONE, cancelled};
 use super::noise::{Whiteness, whitening};
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts;
@@ -25,13 +26,8 @@ pub const COMPARED: usize = 8_000;
 const COMPARED_COMMAND: usize = 16_000;
 /// Samples on which the best of them are; the last fit takes all.
 pub const CHOSEN: usize = 24_000;
-/// A pole and a zero no farther apart, as a share, are one.
-const ONE: f64 = 0.02;
 /// Lines on which modes are looked for, about.
 pub const COARSE: usize = 700;
-/// By how much a delay between samples has to be better than one of whole
-/// periods.
-const CLEAR_DELAY: f64 = 10.0;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
 pub const STEPS_MAX: usize = 500;
@@ -233,7 +229,7 @@ fn reach(is_first: bool, from_command: bool) -> Reach {
     Reach {
         steps,
         spare,
-        is_known: false,
+        anew: Anew::First,
     }
 }
 
@@ -320,29 +316,4 @@ pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
             sum + window.last().copied().unwrap_or_default()
         })
         .collect()
-}
-
-/// The delay set free, if that is clearly worth a parameter: beside a fast zero
-/// and a fast pole it makes all of them uncertain. Where it stays as it was, also
-/// how uncertain it would be, s.
-pub fn any_delay(fit: &Fit<'_>, t: f64, best: Estimate) -> (Estimate, bool, f64) {
-    let mut alone_s = 0.0;
-    for part in [0.3, -0.3] {
-        let mut start = best.transfer.clone();
-        start.delay_s += part * t;
-        if start.delay_s < 0.0 {
-            continue;
-        }
-        if let Some(found) = fit(&start, true, Effort::FULL) {
-            if found.criterion() < best.criterion() - CLEAR_DELAY {
-                return (found, true, 0.0);
-            }
-            let apart = found.transfer.delay_s - best.transfer.delay_s;
-            let std = found.std(found.count - 1).unwrap_or(0.0);
-            if apart.abs() < t && found.likelihood() < best.likelihood() + 2.0 {
-                alone_s = f64::max(alone_s, std.min(t));
-            }
-        }
-    }
-    (best, false, alone_s)
 }

@@ -154,8 +154,11 @@ pub fn gather(
             }
         });
         fading.next(rows, |index, column| {
-            if let Some(slot) = columns.get_mut(count + base.order() + index) {
-                *slot = *column;
+            let at = count + base.order() + index;
+            match (column, columns.get_mut(at), is_over.get_mut(at)) {
+                (Some(column), Some(slot), _) => *slot = *column,
+                (None, _, Some(over)) => *over = true,
+                _ => {}
             }
         });
         let mut gaps = [0.0; ROWS];
@@ -211,7 +214,11 @@ pub fn differences(
                 add(index, column);
             }
         });
-        fading.next(rows, |index, column| add(base.order() + index, column));
+        fading.next(rows, |index, column| {
+            if let Some(column) = column {
+                add(base.order() + index, column);
+            }
+        });
         let measured = data.output.get(from..from + rows)?.iter();
         let slots = out.get_mut(from..from + rows)?;
         for ((slot, y), simulated) in slots.iter_mut().zip(measured).zip(&simulated) {

@@ -11,7 +11,7 @@ pub const ROWS: usize = 128;
 /// Rows that are summed up in registers.
 const BLOCK: usize = 8;
 /// A free swing that has died down to this is over.
-const OVER: f64 = 1e-13;
+pub const OVER: f64 = 1e-13;
 /// A section moves with its own pole, of at most two parameters, and the delay.
 const MOVES: usize = 3;
 
