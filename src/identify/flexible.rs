@@ -7,7 +7,7 @@ use super::data::Data;
 use super::disturbance::as_it_is;
 use super::leaky::Leaky;
 use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
-use super::neighbours::Given;
+use super::neighbours::{FAST, Given};
 use super::noise::Whiteness;
 use super::output_error::residuals;
 use super::parameters::parameters;
@@ -365,6 +365,13 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         excited_rad_s(data.input, data.period_s)
     };
     let shown = band.min(BEYOND * excited.max(found.response.shown_rad_s()));
+    // What the steps of a measured position make of a held input swings there too.
+    let is_integrated = prepared.is_force && data.measured.integrators() > 0;
+    let highest = if is_integrated {
+        FAST / data.period_s
+    } else {
+        band
+    };
     for (index, factor) in transfer.zeros.iter().chain(&transfer.poles).enumerate() {
         if let Factor::Pair {
             omega_rad_s,
@@ -382,7 +389,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
                 },
             };
             let is_zero = index < transfer.zeros.len();
-            let band = if is_zero { shown } else { band };
+            let band = if is_zero { shown } else { highest };
             if damping.abs() < DIP && omega_rad_s < band {
                 if is_zero && std(at) > UNCLEAR {
                     unclear_zeros.push(root);

@@ -15,6 +15,7 @@ use super::disturbance::{Noise, as_it_is};
 use super::fewer_rows::FewerRows;
 use super::ladder::{Anew, Ladder, Reach, STEPS_LAST, best_of};
 use super::neighbours::{Given, simpler};
+use super::noise::predicting;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts::from_subspace;
 use super::search::{CHOSEN, COMPARED, Chosen, ROUNDS_OF_NOISE, WHITENING_MAX, is_white};
@@ -166,6 +167,22 @@ impl Stage<'_> {
         Noise::beside(&self.raw, &found.transfer, WHITENING_MAX, Some(self.noise))
     }
 
+    /// The same noise with taps that suit the model that was found, where those beside the
+    /// one before do not make it white.
+    fn closer(&self, found: &Estimate) -> Option<Noise> {
+        if self.noise.taps.is_empty() {
+            return None;
+        }
+        let long = self.data.head(CHOSEN);
+        let plain = as_it_is(&long, &found.transfer)?;
+        let left = residuals(&long, &plain)?;
+        let exact = found.rest <= 1e-12 * found.power;
+        (!exact && !is_white(&left, &self.noise.taps)).then(|| Noise {
+            leak: self.noise.leak,
+            taps: predicting(&left, WHITENING_MAX),
+        })
+    }
+
     /// A simpler model with the noise beside it, where both together explain the
     /// recording better: slow modes may stand for what disturbs the axis, and lags for a
     /// part of a period of delay.
@@ -208,11 +225,12 @@ impl Stage<'_> {
             Some(long) => (long, self.timed(long, best_again(long, tried)?)),
         };
         let doubt_s = libm::hypot(others, best.alone_s);
+        let noise = self.closer(&best.found);
         Some(Next::Chosen(Box::new(Chosen {
             found: fitting.settled(best.found)?,
             delay_is_free: best.is_free,
             delay_doubt_s: self.given.delay_s.map_or(doubt_s, |_| 0.0),
-            noise: self.noise.clone(),
+            noise: noise.unwrap_or_else(|| self.noise.clone()),
         })))
     }
 }

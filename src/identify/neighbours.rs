@@ -9,7 +9,7 @@ use super::transfer::{Factor, TransferFunction};
 /// Poles at most.
 pub const ORDER_MAX: usize = 8;
 /// No mode is looked for beyond, rad per period.
-const FAST: f64 = 0.9 * std::f64::consts::PI;
+pub const FAST: f64 = 0.9 * std::f64::consts::PI;
 /// Periods of delay that are tried.
 pub const LAG_MAX: usize = 12;
 /// How far above the fastest mode another one is looked for at first.
@@ -310,9 +310,13 @@ pub fn simpler(
     while let Some(less) = cancelled(&quick, ONE).into_iter().next() {
         quick = less;
     }
+    let is_less = |less: &&TransferFunction| {
+        less.order() < from.order() || less.zero_count() < from.zero_count()
+    };
     let lean = [band_rad_s, f64::INFINITY].map(|band| lean(&quick, band));
     let lean = lean
         .iter()
+        .filter(is_less)
         .flat_map(|lean| with_lag_of(lean, &quick, given, period_s));
     let mut out: Vec<TransferFunction> = Vec::new();
     for less in std::iter::once(quick.clone()).chain(lean) {
@@ -444,4 +448,48 @@ fn without_mode(from: &TransferFunction, far_zero: Factor, fastest: bool) -> Vec
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is slow, what undoes itself and what does not swing are left out, and the
+    /// gain becomes that of what is left: of fast motion it is as strong as before.
+    #[test]
+    fn what_may_stand_for_noise_is_left_out() {
+        let pair = |omega_rad_s, damping| Factor::Pair {
+            omega_rad_s,
+            damping,
+        };
+        let lean = TransferFunction {
+            gain: 40.0,
+            zeros: vec![pair(250.0, 0.03)],
+            poles: vec![pair(340.0, 0.04)],
+            delay_s: 1e-3,
+        };
+        let mut from = lean.clone();
+        from.zeros.extend([pair(5.0, 0.1), pair(1200.0, 0.2)]);
+        from.poles
+            .extend([pair(6.0, 0.05), pair(1205.0, 0.2), pair(900.0, 1.5)]);
+        // (6/5)² below what is left out.
+        from.gain = 40.0 * 25.0 / 36.0;
+        let less = simpler(&from, 1000.0, 15.0, Given::default(), 1e-3);
+        let quick = less.first().unwrap();
+        assert_eq!((quick.zero_count(), quick.order()), (2, 4));
+        assert!((quick.gain / 40.0 - 1.0).abs() < 0.01, "{}", quick.gain);
+        // Poles that only make late: a delay of 3/900 s, in whole periods.
+        let delays: Vec<f64> = less
+            .iter()
+            .filter(|less| less.order() == 2)
+            .map(|less| libm::round(less.delay_s * 1e3))
+            .collect();
+        assert_eq!(delays, [4.0, 5.0]);
+        let fixed = Given {
+            order: Some(6),
+            ..Given::default()
+        };
+        assert!(simpler(&from, 1000.0, 15.0, fixed, 1e-3).is_empty());
+        assert!(simpler(&lean, 1000.0, 15.0, Given::default(), 1e-3).is_empty());
+    }
 }

@@ -1,8 +1,10 @@
 //! Positions and speeds under a torque: their noise is that of what was measured, and
 //! what disturbs the axis slowly does not run off with them.
 
+use std::f64::consts::TAU;
+
 use gwatt::identify::flexible::{self, Flexible, Method};
-use gwatt::identify::{Measured, TransferFunction, simulate};
+use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
 
 use super::{Noise, PERIOD_S, choice, errors, one_side, random, table, two_sides};
 
@@ -89,5 +91,41 @@ fn slow_disturbances_do_not_run_off() {
             assert!(error.abs() < 4.0 * std, "{errors:?}, {:?}", found.transfer);
         }
         assert!(errors[0].1 < 1e-3 && errors[1].1 < 0.05, "{errors:?}");
+    }
+}
+
+/// What disturbs the axis swings a few times while a recording lasts: no mode stands for
+/// that, which would spoil the inertia.
+#[test]
+fn no_mode_stands_for_a_slow_disturbance() {
+    let axis = one_side();
+    for seed in 0..4 {
+        let found = found(&axis, Measured::Position, 1e-6, 0.05, seed);
+        assert_eq!(found.transfer.order(), axis.order(), "{seed}");
+        let inertia = found.inertia.unwrap();
+        let error = inertia.value * axis.gain - 1.0;
+        assert!(error.abs() < 4.0 * inertia.std * axis.gain, "{error}");
+        assert!(inertia.std * axis.gain < 0.005, "{inertia:?}");
+    }
+}
+
+/// A part of a period of delay is told as that, not by lags that do nearly the same.
+#[test]
+fn a_part_of_a_period_of_delay_is_found_behind_coloured_noise() {
+    let pair = |hz: f64, damping| Factor::Pair {
+        omega_rad_s: TAU * hz,
+        damping,
+    };
+    let axis = TransferFunction {
+        gain: 42.0,
+        zeros: vec![pair(40.0, 0.03)],
+        poles: vec![pair(55.0, 0.04), pair(150.0, 0.05)],
+        delay_s: 0.35 * PERIOD_S,
+    };
+    for seed in 0..2 {
+        let found = found(&axis, Measured::Position, 1e-6, 0.02, seed);
+        assert_eq!(found.transfer.order(), axis.order(), "{seed}");
+        let error_s = found.delay_s.value - axis.delay_s;
+        assert!(error_s.abs() < 2e-6, "{error_s}");
     }
 }
