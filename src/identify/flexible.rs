@@ -327,6 +327,27 @@ fn share(data: &Data<'_>, left: &[f64]) -> f64 {
     (power(left) / all).sqrt()
 }
 
+/// Up to where zeros and poles are told, rad/s.
+fn told(data: &Data<'_>, response: &FrequencyResponse) -> (f64, f64) {
+    let band = std::f64::consts::PI / data.period_s;
+    // A zero beyond what the recording shows stands for something else.
+    let excited = if data.positions {
+        excited_rad_s(&filtered(data.input, &[-2.0, 1.0]), data.period_s)
+    } else {
+        excited_rad_s(data.input, data.period_s)
+    };
+    let shown = band.min(BEYOND * excited.max(response.shown_rad_s()));
+    // What the steps of a measured position make of a held input swings at the end of
+    // the band too.
+    let is_integrated = !data.from_command && data.measured.integrators() > 0;
+    let highest = if is_integrated {
+        FAST / data.period_s
+    } else {
+        band
+    };
+    (shown, highest)
+}
+
 fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
     let leaky = found.noise.held(data);
     let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
@@ -357,21 +378,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     let mut zeros = Vec::new();
     let mut unclear_zeros = Vec::new();
     let mut poles = Vec::new();
-    let band = std::f64::consts::PI / data.period_s;
-    // A zero beyond what the recording shows stands for something else.
-    let excited = if data.positions {
-        excited_rad_s(&filtered(data.input, &[-2.0, 1.0]), data.period_s)
-    } else {
-        excited_rad_s(data.input, data.period_s)
-    };
-    let shown = band.min(BEYOND * excited.max(found.response.shown_rad_s()));
-    // What the steps of a measured position make of a held input swings there too.
-    let is_integrated = prepared.is_force && data.measured.integrators() > 0;
-    let highest = if is_integrated {
-        FAST / data.period_s
-    } else {
-        band
-    };
+    let (shown, highest) = told(data, &found.response);
     for (index, factor) in transfer.zeros.iter().chain(&transfer.poles).enumerate() {
         if let Factor::Pair {
             omega_rad_s,

@@ -18,10 +18,12 @@ use super::neighbours::{Given, simpler};
 use super::noise::predicting;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts::from_subspace;
-use super::search::{CHOSEN, COMPARED, Chosen, ROUNDS_OF_NOISE, WHITENING_MAX, is_white};
+use super::search::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, is_white};
 use super::spectrum::FrequencyResponse;
 use super::transfer::TransferFunction;
 
+/// Rounds of model and noise, behind the one that the starts are fitted in.
+const ROUNDS: usize = 3;
 /// What swings so many times only while a recording lasts may be a disturbance.
 const SLOW: f64 = 20.0;
 /// Simpler models beside which the noise is taken.
@@ -43,7 +45,7 @@ pub fn choose(
     let band_rad_s = response.shown_rad_s();
     let (mut noise, mut starts) = Noise::first(raw, raw.head(COMPARED), band_rad_s, given);
     let mut is_simple = false;
-    for round in 0..=ROUNDS_OF_NOISE {
+    for round in 0..=ROUNDS {
         let leaky = noise.held(raw);
         let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
         let rows = data.head(compared);
@@ -130,7 +132,7 @@ impl Stage<'_> {
         }
         tried = ladder.climb(tried, reach(round < 2));
         let best = self.timed(&self.fitting, best_of(tried.clone()).next()?);
-        if round < ROUNDS_OF_NOISE {
+        if round < ROUNDS {
             if let Some(next) = self.other_noise(&best.found) {
                 return Some(Next::Noise(next, vec![best.found.transfer]));
             }

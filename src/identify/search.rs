@@ -30,12 +30,12 @@ pub const CHOSEN: usize = 24_000;
 pub const COARSE: usize = 700;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
-pub const STEPS_MAX: usize = 500;
+const STEPS_MAX: usize = 500;
 /// The same for commands, of which more samples are looked at, and whose dead time
 /// is sought afterwards.
 const STEPS_COMMAND: usize = 50;
 /// Rounds of model and noise.
-pub const ROUNDS_OF_NOISE: usize = 4;
+const ROUNDS_OF_NOISE: usize = 4;
 /// Order of the filter that makes noise white, at most.
 pub const WHITENING_MAX: usize = 40;
 /// Lags over which residuals are tested.
