@@ -12,13 +12,12 @@ use super::any_delay::{Timed, timed};
 use super::data::Data;
 use super::delay_profile::doubt_s;
 use super::disturbance::{Noise, as_it_is};
-use super::fewer_rows::FewerRows;
 use super::ladder::{Anew, Ladder, Reach, STEPS_LAST, best_of};
 use super::neighbours::{Given, simpler};
 use super::noise::predicting;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts::from_subspace;
-use super::search::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, is_white};
+use super::search::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, fewer_rows, is_white};
 use super::spectrum::FrequencyResponse;
 use super::transfer::TransferFunction;
 
@@ -49,8 +48,7 @@ pub fn choose(
         let leaky = noise.held(raw);
         let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
         let rows = data.head(compared);
-        let fewer = (compared > COMPARED).then(|| FewerRows::of(&rows, band_rad_s));
-        let fewer = fewer.flatten();
+        let fewer = fewer_rows(&rows, compared, band_rad_s);
         let short = fewer.as_ref().map_or(rows, |fewer| fewer.data(&rows));
         let stage = Stage {
             raw: raw.head(compared),
@@ -107,11 +105,8 @@ impl Stage<'_> {
         starts: &[TransferFunction],
         is_simple: &mut bool,
     ) -> Option<Next> {
-        let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            self.fitting.refine(start, delay_is_free, effort)
-        };
         let ladder = Ladder {
-            fit: &fit,
+            fitting: &self.fitting,
             early_s: self.data.early_s,
             step_s: self.data.period_s,
             period_s: self.data.period_s,
@@ -150,11 +145,7 @@ impl Stage<'_> {
     fn timed(&self, fitting: &Fitting<'_>, found: Estimate) -> Timed {
         match self.given.delay_s {
             None => timed(fitting, self.data.period_s, found),
-            Some(_) => Timed {
-                found,
-                is_free: false,
-                alone_s: 0.0,
-            },
+            Some(_) => Timed::as_it_is(found),
         }
     }
 
@@ -171,7 +162,7 @@ impl Stage<'_> {
 
     /// The same noise with taps that suit the model that was found, where those beside the
     /// one before do not make it white.
-    fn closer(&self, found: &Estimate) -> Option<Noise> {
+    fn other_taps(&self, found: &Estimate) -> Option<Noise> {
         if self.noise.taps.is_empty() {
             return None;
         }
@@ -227,7 +218,7 @@ impl Stage<'_> {
             Some(long) => (long, self.timed(long, best_again(long, tried)?)),
         };
         let doubt_s = libm::hypot(others, best.alone_s);
-        let noise = self.closer(&best.found);
+        let noise = self.other_taps(&best.found);
         Some(Next::Chosen(Box::new(Chosen {
             found: fitting.settled(best.found)?,
             delay_is_free: best.is_free,

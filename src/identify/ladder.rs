@@ -2,7 +2,7 @@
 //! better, until there is none.
 
 use super::neighbours::{Given, are_alike, neighbours, restarts};
-use super::output_error::{Effort, Estimate};
+use super::output_error::{Effort, Estimate, Fitting};
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
 
@@ -18,9 +18,6 @@ pub const SEARCH_STEPS: usize = 20;
 pub const STEPS_LAST: usize = 200;
 /// Steps from model to model at most.
 const ROUNDS_MAX: usize = 12;
-
-/// Fits a model from a start, with its delay or without.
-pub type Fit<'a> = dyn Fn(&TransferFunction, bool, Effort) -> Option<Estimate> + 'a;
 
 /// The best of models, one of each kind, the very best first.
 pub fn best_of(mut found: Vec<Estimate>) -> impl Iterator<Item = Estimate> {
@@ -79,8 +76,8 @@ pub struct Reach {
 
 /// A search from model to model.
 pub struct Ladder<'a> {
-    /// Fits a model from a start.
-    pub fit: &'a Fit<'a>,
+    /// Fits models to what is compared.
+    pub fitting: &'a Fitting<'a>,
     /// The shortest delay, and the steps of delays, s.
     pub early_s: f64,
     pub step_s: f64,
@@ -108,7 +105,7 @@ impl Ladder<'_> {
                 steps: SEARCH_STEPS,
                 to_beat: if is_known { least } else { f64::MAX },
             };
-            if let Some(found) = (self.fit)(start, false, effort) {
+            if let Some(found) = self.fitting.refine(start, false, effort) {
                 least = least.min(found.criterion());
                 all.push(found);
             }
@@ -163,7 +160,7 @@ impl Ladder<'_> {
                     steps: SEARCH_STEPS,
                     to_beat: top.as_ref().unwrap_or(&best).criterion(),
                 };
-                let found = (self.fit)(&start, false, effort);
+                let found = self.fitting.refine(&start, false, effort);
                 left = left.saturating_sub(found.as_ref().map_or(1, |found| found.steps));
                 if let Some(found) = found {
                     all.push(found.clone());

@@ -4,13 +4,13 @@
 
 use nalgebra::Complex;
 
-use super::any_delay::any_delay;
+use super::any_delay::{Timed, any_delay};
 use super::data::Data;
 use super::delay_profile::{Bounds, doubt_s, profile};
 use super::disturbance::Noise;
 use super::fewer_rows::FewerRows;
 use super::integrated;
-use super::ladder::{Anew, Fit, Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
+use super::ladder::{Anew, Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
 use super::mode_starts;
 use super::neighbours::{Given, ONE, cancelled};
 use super::noise::{Whiteness, whitening};
@@ -97,8 +97,7 @@ fn choose(
     let band_rad_s = response.shown_rad_s();
     let step_s = data.period_s * mode_starts::delay_step(data.from_command);
     let (all_rows, long) = (data.head(compared), data.head(CHOSEN));
-    let fewer = (compared > COMPARED).then(|| FewerRows::of(&all_rows, band_rad_s));
-    let fewer = fewer.flatten();
+    let fewer = fewer_rows(&all_rows, compared, band_rad_s);
     let short = fewer
         .as_ref()
         .map_or(all_rows, |fewer| fewer.data(&all_rows));
@@ -123,16 +122,10 @@ fn choose(
         starts.extend(shown.iter().cloned());
         starts.extend(before.cloned());
         let on_short = Fitting::new(short, taps);
-        let fit = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            on_short.refine(start, delay_is_free, effort)
-        };
         let on_long = (short.len() != data.len()).then(|| Fitting::new(long, taps));
         let on_long = on_long.as_ref().unwrap_or(&on_short);
-        let fit_long = |start: &TransferFunction, delay_is_free: bool, effort: Effort| {
-            on_long.refine(start, delay_is_free, effort)
-        };
         let ladder = Ladder {
-            fit: &fit,
+            fitting: &on_short,
             early_s: data.early_s,
             step_s,
             period_s: data.period_s,
@@ -143,7 +136,7 @@ fn choose(
         let mut tried = ladder.climb(ladder.fitted(&starts, false), reach);
         let mut others = doubt_s(&tried);
         if data.from_command && given.delay_s.is_none() {
-            let profiled = by_profile(&fit, data, given, band_rad_s, tried.clone());
+            let profiled = by_profile(&on_short, data, given, band_rad_s, tried.clone());
             if let Some((found, apart_s)) = profiled {
                 others = libm::hypot(apart_s, step_s / 12.0_f64.sqrt());
                 tried = vec![found];
@@ -164,11 +157,16 @@ fn choose(
         let Some(found) = best_of(best_of(tried).filter_map(again).collect()).next() else {
             break;
         };
-        let (found, delay_is_free, alone_s) = match given.delay_s {
-            Some(_) => (found, false, 0.0),
-            // Between the steps there is nothing to be found.
-            None if data.from_command && others > step_s => (found, false, 0.0),
-            None => any_delay(&fit_long, data.period_s, found),
+        // Between the steps there is nothing to be found.
+        let is_open = given.delay_s.is_none() && !(data.from_command && others > step_s);
+        let Timed {
+            found,
+            is_free: delay_is_free,
+            alone_s,
+        } = if is_open {
+            any_delay(on_long, data.period_s, found)
+        } else {
+            Timed::as_it_is(found)
         };
         let delay_doubt_s = match given.delay_s {
             Some(_) => 0.0,
@@ -190,6 +188,15 @@ fn choose(
         noise.taps = whitening(&left, WHITENING_MAX);
     }
     best
+}
+
+/// The rows on which models are compared, where they are more than usual and fewer tell
+/// as much.
+#[must_use]
+pub fn fewer_rows(rows: &Data<'_>, compared: usize, band_rad_s: f64) -> Option<FewerRows> {
+    (compared > COMPARED)
+        .then(|| FewerRows::of(rows, band_rad_s))
+        .flatten()
 }
 
 /// True where a filter makes white what is left.
@@ -236,7 +243,7 @@ fn reach(is_first: bool, from_command: bool) -> Reach {
 /// The model behind a command by the profile of its dead time, and how far that is in
 /// doubt, s.
 fn by_profile(
-    fit: &Fit<'_>,
+    fitting: &Fitting<'_>,
     data: &Data<'_>,
     given: Given,
     band_rad_s: f64,
@@ -251,7 +258,9 @@ fn by_profile(
     let fit = |start: &TransferFunction, effort: Effort| {
         let is_given = given.order.is_none_or(|order| start.order() == order)
             && given.zeros.is_none_or(|zeros| start.zero_count() == zeros);
-        is_given.then(|| fit(start, false, effort)).flatten()
+        is_given
+            .then(|| fitting.refine(start, false, effort))
+            .flatten()
     };
     let found = profile(fit, tried, bounds)?;
     Some((found.estimate, found.doubt_s))

@@ -250,9 +250,14 @@ impl<T: Copy> Pending<T> {
         if last {
             return braking.lasts_s(&self.unseen(self.max_speed, self.unbent_share()));
         }
+        braking.lasts_s(&self.ramp())
+    }
+
+    /// Its ramp.
+    fn ramp(&self) -> Ramp {
         let accel = self.unbent_share() * self.accel();
         let (speed, accel) = self.turning(self.max_speed, accel);
-        braking.lasts_s(&Ramp::new(&self.element, self.length_mm, speed, accel))
+        Ramp::new(&self.element, self.length_mm, speed, accel)
     }
 
     /// Its ramp before it is known how sharply it turns, and how much of it, up to one
@@ -312,12 +317,9 @@ pub(super) struct Braking {
 
 impl Braking {
     pub fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Self {
-        let accel = before.unbent_share() * before.accel();
-        let (speed, accel) = before.turning(before.max_speed, accel);
-        Self {
-            ramp: Ramp::new(&before.element, before.length_mm, speed, accel),
-            most: before.tolerated(next, accel, next.unbent_share()).0,
-        }
+        let ramp = before.ramp();
+        let (most, _) = before.tolerated(next, ramp.accel, next.unbent_share());
+        Self { ramp, most }
     }
 
     /// How long it still brakes when the next one begins, s.

@@ -76,17 +76,17 @@ pub(super) fn fit(
     let rounding = corner.round(legs, most_mm, axes, accel, false)?;
     let lines = corner.fit(legs, &rounding);
     let kink_rad = KINK_SHARE * NORMAL_SHARE * lines.accel * cycle_s / lines.speed;
-    let way = Way {
+    let bounds = Bounds {
         binormal,
         bisector,
         tolerance,
         kink_rad,
     };
-    onto_arcs(lines, sides, &bent, &way)
+    onto_arcs(lines, sides, &bent, &bounds)
 }
 
 /// What a blend of arcs keeps to.
-struct Way {
+struct Bounds {
     /// Normal of its plane, and where in it the inside of the corner lies.
     binormal: Vector,
     bisector: Vector,
@@ -97,8 +97,13 @@ struct Way {
 }
 
 /// Moves a blend that was fitted to lines so that it touches the arcs.
-fn onto_arcs(mut fit: Fit, sides: [&Side; 2], bent: &[Option<Bent>; 2], way: &Way) -> Option<Fit> {
-    let (binormal, bisector) = (way.binormal, way.bisector);
+fn onto_arcs(
+    mut fit: Fit,
+    sides: [&Side; 2],
+    bent: &[Option<Bent>; 2],
+    bounds: &Bounds,
+) -> Option<Fit> {
+    let (binormal, bisector) = (bounds.binormal, bounds.bisector);
     let r = fit.radius;
     // Distance between the centres of blend and arc.
     let apart = |i: usize| -> Option<f64> {
@@ -139,7 +144,7 @@ fn onto_arcs(mut fit: Fit, sides: [&Side; 2], bent: &[Option<Bent>; 2], way: &Wa
         }
         (None, None) => return None,
     };
-    if length(center) - r > way.tolerance {
+    if length(center) - r > bounds.tolerance {
         return None;
     }
     for (i, side) in sides.iter().enumerate() {
@@ -160,7 +165,7 @@ fn onto_arcs(mut fit: Fit, sides: [&Side; 2], bent: &[Option<Bent>; 2], way: &Wa
     let opens = (length(spokes[1]) - fit.radius) / fit.sweep;
     for (i, (spoke, out)) in spokes.into_iter().zip([out, back]).enumerate() {
         let tangent = unit(add(cross(binormal, spoke), scale(out, opens)))?;
-        if sides[i].circle.is_some() && angle(tangent, ends[i].1) > way.kink_rad {
+        if sides[i].circle.is_some() && angle(tangent, ends[i].1) > bounds.kink_rad {
             return None;
         }
     }
