@@ -3,11 +3,11 @@
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use gwatt::diagnostic::excerpt;
 use gwatt::pipeline::Failure;
 use gwatt::source::MAX_LINE_BYTES;
-use tempfile::NamedTempFile;
 
 /// A program that is to be read.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ enum Source {
     Stdin,
     File(PathBuf),
     /// Standard input, kept so that it can be read again.
-    Kept(NamedTempFile),
+    Kept(Mutex<File>),
 }
 
 impl Program {
@@ -60,7 +60,7 @@ impl Program {
         match &self.source {
             Source::Stdin => copied(&mut io::stdin().lock()),
             Source::File(path) => open_file(path),
-            Source::Kept(file) => open_file(file.path()),
+            Source::Kept(file) => reopened(file),
         }
     }
 
@@ -77,21 +77,19 @@ impl Program {
     /// Makes sure that it can be opened several times.
     pub fn keep(&mut self) -> Result<(), Failure> {
         if matches!(self.source, Source::Stdin) {
-            let mut file = NamedTempFile::new().map_err(Failure::Output)?;
-            copy(&mut io::stdin().lock(), file.as_file_mut())?;
-            self.source = Source::Kept(file);
+            self.source = Source::Kept(Mutex::new(copied(&mut io::stdin().lock())?));
         }
         Ok(())
     }
 
     /// Its size in bytes; 0 for standard input that is not kept.
     pub fn bytes(&self) -> u64 {
-        let path = match &self.source {
+        let metadata = match &self.source {
             Source::Stdin => return 0,
-            Source::File(path) => path.as_path(),
-            Source::Kept(file) => file.path(),
+            Source::File(path) => fs::metadata(path),
+            Source::Kept(file) => held(file).metadata(),
         };
-        fs::metadata(path).map_or(0, |metadata| metadata.len())
+        metadata.map_or(0, |metadata| metadata.len())
     }
 }
 
@@ -107,6 +105,26 @@ fn open_file(path: &Path) -> Result<File, Failure> {
         return Ok(file);
     }
     copied(&mut file)
+}
+
+fn held(file: &Mutex<File>) -> MutexGuard<'_, File> {
+    // It is moved about in from its beginning only.
+    file.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A file without a name from its beginning, for a reader of its own: several may
+/// read it at once.
+fn reopened(file: &Mutex<File>) -> Result<File, Failure> {
+    let mut file = held(file);
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::fd::AsRawFd;
+        if let Ok(own) = File::open(format!("/proc/self/fd/{}", file.as_raw_fd())) {
+            return Ok(own);
+        }
+    }
+    file.rewind().map_err(Failure::Input)?;
+    copied(&mut *file)
 }
 
 /// A file with what is left to read.

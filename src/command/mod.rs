@@ -13,8 +13,10 @@ pub mod report;
 pub mod spindle;
 pub mod tune;
 
+mod beside;
 mod clash;
 mod input;
+mod interrupt;
 mod into;
 mod output;
 mod rows;

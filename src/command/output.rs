@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use gwatt::pipeline::Restart;
-use tempfile::NamedTempFile;
 
+use super::beside::Beside;
 use super::input::is_dash;
 
 /// Where a result is to go.
@@ -70,34 +70,13 @@ impl Target {
                 Body::Apart(file)
             }
             Self::File { path, permissions } => {
-                let file = beside(path, permissions.clone())
+                let file = Beside::new(path, permissions.clone())
                     .with_context(|| format!("cannot write {}", path.display()))?;
                 Body::Beside(file)
             }
         };
         Ok(Spool { target: self, body })
     }
-}
-
-/// A temporary file beside `path`, so that renaming it moves no data.
-fn beside(path: &Path, permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".gwatt-");
-    #[cfg(unix)]
-    if permissions.is_none() {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file: the system takes the umask off.
-        builder.permissions(Permissions::from_mode(0o666));
-    }
-    let file = builder.tempfile_in(folder)?;
-    if let Some(permissions) = permissions {
-        file.as_file().set_permissions(permissions)?;
-    }
-    Ok(file)
 }
 
 /// A result on its way: dropped, it leaves no trace.
@@ -110,15 +89,21 @@ pub struct Spool {
 #[derive(Debug)]
 enum Body {
     Apart(File),
-    Beside(NamedTempFile),
+    Beside(Beside),
+}
+
+impl Body {
+    fn file(&self) -> &File {
+        match self {
+            Self::Apart(file) => file,
+            Self::Beside(beside) => beside.file(),
+        }
+    }
 }
 
 impl Restart for Spool {
     fn restart(&mut self) -> io::Result<()> {
-        let mut file = match &self.body {
-            Body::Apart(file) => file,
-            Body::Beside(file) => file.as_file(),
-        };
+        let mut file = self.body.file();
         file.set_len(0)?;
         file.rewind()
     }
@@ -127,10 +112,7 @@ impl Restart for Spool {
 impl Spool {
     /// Opens what was written so far for reading from the beginning.
     pub fn read(&mut self) -> io::Result<File> {
-        let mut file = match &self.body {
-            Body::Apart(file) => file.try_clone()?,
-            Body::Beside(file) => file.as_file().try_clone()?,
-        };
+        let mut file = self.body.file().try_clone()?;
         file.seek(SeekFrom::Start(0))?;
         Ok(file)
     }
@@ -138,46 +120,34 @@ impl Spool {
     /// Puts the result where it is to go.
     pub fn deliver(self) -> anyhow::Result<()> {
         match (self.target, self.body) {
-            (Target::File { path, .. }, Body::Beside(file)) => {
-                file.persist(&path)
-                    .map_err(|error| error.error)
-                    .with_context(|| format!("cannot write {}", path.display()))?;
-                Ok(())
-            }
+            (Target::File { path, .. }, Body::Beside(file)) => file
+                .persist(&path)
+                .with_context(|| format!("cannot write {}", path.display())),
             (Target::Special(path), Body::Apart(file)) => {
                 let copied = File::options()
                     .write(true)
                     .open(&path)
-                    .and_then(|out| copy(file, out));
+                    .and_then(|out| copy(&file, out));
                 copied.with_context(|| format!("cannot write {}", path.display()))
             }
-            (_, Body::Apart(file)) => copy(file, io::stdout().lock()).context(STDOUT),
-            (_, Body::Beside(file)) => {
-                copy(file.reopen().context(STDOUT)?, io::stdout().lock()).context(STDOUT)
-            }
+            (_, body) => copy(body.file(), io::stdout().lock()).context(STDOUT),
         }
     }
 }
 
 impl Write for Spool {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.body {
-            Body::Apart(file) => file.write(bytes),
-            Body::Beside(file) => file.write(bytes),
-        }
+        self.body.file().write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.body {
-            Body::Apart(file) => file.flush(),
-            Body::Beside(file) => file.flush(),
-        }
+        self.body.file().flush()
     }
 }
 
 const STDOUT: &str = "cannot write to standard output";
 
-fn copy(mut from: File, mut to: impl Write) -> io::Result<()> {
+fn copy(mut from: &File, mut to: impl Write) -> io::Result<()> {
     from.seek(SeekFrom::Start(0))?;
     io::copy(&mut from, &mut to)?;
     to.flush()

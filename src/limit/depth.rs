@@ -4,7 +4,8 @@
 //! from a lower speed, and may then exceed the limit although it did not before.
 //! The program is planned anew with the changes, and blocks that do not fit
 //! then are lowered one step deeper, until all fit. A deeper step depends less
-//! on the neighbours, so that this ends.
+//! on the neighbours, so that this ends: after [`ROUNDS`] rounds all lines go
+//! deeper together, however many of them take turns.
 
 use std::collections::HashMap;
 
@@ -16,12 +17,19 @@ pub type Place = (u16, u64);
 /// Lines that are remembered one by one; with more, all lines count.
 const LINES_MAX: usize = 1 << 17;
 
+/// Rounds in which lines go deeper one by one, and how far all go in each round
+/// after those.
+const ROUNDS: u32 = 24;
+const STRIDE: u8 = 3;
+
 /// How deep the lines of a program have to be lowered.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Depths {
     lines: HashMap<Place, u8>,
     /// All lines at least.
     everywhere: u8,
+    /// How often it went deeper.
+    rounds: u32,
 }
 
 impl Depths {
@@ -43,10 +51,24 @@ impl Depths {
     /// Lowers these lines, in the order of the program, one step deeper; false
     /// when none can be.
     pub fn deepen(&mut self, lines: &[Place]) -> bool {
-        if self.lines.len() + lines.len() > LINES_MAX {
-            let deeper = self.everywhere < Self::DEEPEST;
-            self.everywhere += u8::from(deeper);
-            return deeper;
+        let deeper = self.go_deeper(lines);
+        self.rounds += u32::from(deeper);
+        deeper
+    }
+
+    /// How often it went deeper.
+    #[must_use]
+    pub fn rounds(&self) -> u32 {
+        self.rounds
+    }
+
+    fn go_deeper(&mut self, lines: &[Place]) -> bool {
+        let late = self.rounds >= ROUNDS;
+        if late || self.lines.len() + lines.len() > LINES_MAX {
+            let before = self.everywhere;
+            let stride = if late { STRIDE } else { 1 };
+            self.everywhere = (before + stride).min(Self::DEEPEST);
+            return self.everywhere > before;
         }
         let mut deeper = false;
         let mut last = None;
@@ -83,6 +105,20 @@ mod tests {
         }
         assert!(!depths.deepen(&[(0, 7)]));
         assert!(depths.deepen(&[(0, 7), (1, 7)]));
+    }
+
+    /// However the lines take turns, there is a last round.
+    #[test]
+    fn lines_that_take_turns_come_to_an_end() {
+        let mut depths = Depths::default();
+        let mut line = 0;
+        while depths.deepen(&[(0, line)]) {
+            line += 1;
+            assert!(line < 1000);
+        }
+        let together = u32::from(Depths::DEEPEST.div_ceil(super::STRIDE));
+        assert_eq!(depths.rounds(), super::ROUNDS + together);
+        assert_eq!(depths.everywhere, Depths::DEEPEST);
     }
 
     #[test]

@@ -16,6 +16,7 @@ use super::writer::{Writer, Written};
 use super::{
     Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
 };
+use crate::diagnostic::Diagnostic;
 use crate::limit::{Depths, Law, Limiter};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
 use crate::power::PowerModel;
@@ -55,8 +56,13 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
                 depths: depths.clone(),
             };
             let (written, certified) = job.run(&mut input, &mut output, &mut rows)?;
-            if certified.deeper.is_empty() || !depths.deepen(&certified.deeper) {
+            if certified.deeper.is_empty() {
                 return Ok(conclude(machine, target, options, written, certified));
+            }
+            if !depths.deepen(&certified.deeper) {
+                let mut stopped = conclude(machine, target, options, written, certified);
+                stopped.reasons.push(last_round(&depths));
+                return Ok(stopped);
             }
             // The changes made neighbours exceed the limit: planned anew with more.
             input.rewind().map_err(Failure::Input)?;
@@ -69,6 +75,16 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
         return Ok(first);
     }
     lower_further(machine, first, &mut |target| attempt(target, true))
+}
+
+/// Why there is no further round.
+fn last_round(depths: &Depths) -> Diagnostic {
+    let rounds = depths.rounds();
+    Diagnostic::error(
+        "last-round",
+        format!("blocks exceed the limit beside others that were lowered, after {rounds} rounds"),
+    )
+    .help("another strategy, or --allow feed, may help")
 }
 
 /// One round of limiting.

@@ -132,7 +132,9 @@ impl Mover<'_, '_> {
             }
             _ => None,
         };
-        if let (Some(planner), Some(element)) = (&mut self.planner, &element) {
+        if let (Some(planner), Some(element)) = (&mut self.planner, &element)
+            && planner.follows(element)
+        {
             if self.open.is_empty() {
                 self.first = number;
             }
@@ -154,7 +156,7 @@ impl Mover<'_, '_> {
         }
         self.stop()?;
         self.next += 1;
-        self.stops_instead |= self.planner.is_none()
+        self.stops_instead |= (self.planner.is_none() || element.is_some())
             && self.machine.path.mode != Some(PathMode::ExactStop)
             && mv.path_mode != PathMode::ExactStop;
         self.alone(mv, number)

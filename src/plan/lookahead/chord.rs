@@ -6,13 +6,26 @@
 use super::element::{Curve, Element};
 use crate::machine::ChordRule;
 
-/// Chords of one arc, at most.
-const CHORDS_MAX: f64 = 1e6;
+/// Chords of one arc that are followed.
+const CHORDS_MAX: f64 = 65_536.0;
 
 impl ChordRule {
     /// How many chords an arc of this length (mm) and radius gets at a feed.
     #[must_use]
     pub fn count(&self, curve: &Curve, feed_mm_s: f64) -> u32 {
+        self.number(curve, feed_mm_s).clamp(1.0, CHORDS_MAX) as u32
+    }
+
+    /// Whether an arc gets no more chords than are followed: that of hundreds of
+    /// metres, or of a turned digit, would have millions.
+    pub(super) fn is_followed<T>(&self, arc: &Element<T>) -> bool {
+        arc.curve
+            .as_ref()
+            .is_none_or(|curve| self.number(curve, asked_mm_s(arc)) <= CHORDS_MAX)
+    }
+
+    /// The number of chords, without bounds.
+    fn number(&self, curve: &Curve, feed_mm_s: f64) -> f64 {
         let r = curve.radius_mm;
         let flat_mm = r * curve.sweep_rad.abs();
         let mut chord_mm = self.max_mm;
@@ -25,13 +38,17 @@ impl ChordRule {
         }
         let least = self.per_circle * curve.sweep_rad.abs() / std::f64::consts::TAU;
         let count = (flat_mm / chord_mm.max(self.min_mm)).max(least);
-        let count = if self.round_up {
+        if self.round_up {
             count.ceil()
         } else {
             count.floor()
-        };
-        count.clamp(1.0, CHORDS_MAX) as u32
+        }
     }
+}
+
+/// The speed that is asked for on an arc, mm/s.
+fn asked_mm_s<T>(arc: &Element<T>) -> f64 {
+    arc.feed_mm_s.min(arc.speed_mm_s)
 }
 
 /// The chords of an arc.
@@ -59,7 +76,7 @@ impl<T: Copy> Chords<T> {
         let along = curve
             .plane
             .map(|axis| arc.start.get(axis).copied().unwrap_or(0.0));
-        let count = rule.count(&curve, arc.feed_mm_s.min(arc.speed_mm_s));
+        let count = rule.count(&curve, asked_mm_s(arc));
         let step_rad = curve.sweep_rad * (1.0 / f64::from(count));
         // A chord is shorter than its piece of the arc.
         let half = 0.5 * step_rad.abs();

@@ -224,6 +224,15 @@ impl<T: Copy> PathPlanner<T> {
         matches!(self.rule, Rule::LinuxCnc(_))
     }
 
+    /// Whether an element can be followed: false for an arc of more chords than
+    /// that, of which no more is known than the limits of its axes.
+    #[must_use]
+    #[inline]
+    pub fn follows(&self, element: &Element<T>) -> bool {
+        element.curve.is_none()
+            || (self.look_ahead.chords.as_ref()).is_none_or(|rule| rule.is_followed(element))
+    }
+
     /// Adds an element.
     #[inline]
     pub fn push(&mut self, element: &Element<T>) {

@@ -76,6 +76,12 @@ impl Side {
         self.element
             .describe(machine, mv, self.overrides, joint(mv))
     }
+
+    /// Whether the move that was described can be followed.
+    #[inline]
+    fn follows(&self) -> bool {
+        self.planner.follows(&self.element)
+    }
 }
 
 impl Ahead {
@@ -137,11 +143,11 @@ impl Ahead {
         }
         self.catch_up(machine);
         let number = self.open.end();
-        if !self.largest.describe(machine, mv, number) {
+        if !(self.largest.describe(machine, mv, number) && self.largest.follows()) {
             return false;
         }
         if let Some(nominal) = &mut self.nominal
-            && !nominal.describe(machine, mv, number)
+            && !(nominal.describe(machine, mv, number) && nominal.follows())
         {
             return false;
         }

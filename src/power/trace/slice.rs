@@ -50,6 +50,11 @@ impl Slice {
         (rest == [0.0; 3]).then(|| [value(self.from), value(self.to)])
     }
 
+    /// Whether it is plain that the power changes evenly.
+    pub(in crate::power) fn is_even(&self) -> bool {
+        self.ends_w().is_some()
+    }
+
     /// The same with so much more power.
     #[inline]
     pub(in crate::power) fn raised(&self, by_w: f64) -> Self {
@@ -87,6 +92,13 @@ impl Slice {
         values.fold(f64::NEG_INFINITY, super::super::demand::larger)
     }
 
+    /// The largest size of the power in W, drawn or fed back.
+    pub(in crate::power) fn size_w(&self) -> f64 {
+        let mut turned = *self;
+        turned.power.0 = turned.power.0.map(|c| -c);
+        super::super::demand::larger(self.peak_w(), turned.peak_w())
+    }
+
     /// Its energy in J.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
@@ -96,12 +108,6 @@ impl Slice {
     /// The variable after `t` seconds.
     pub(in crate::power) fn at(&self, t: f64) -> f64 {
         self.from + (self.to - self.from) * (t / self.duration_s)
-    }
-
-    /// Whether the power does not change.
-    pub(in crate::power) fn is_constant(&self) -> bool {
-        let [_, rest @ ..] = self.power.0;
-        rest == [0.0; 4]
     }
 
     /// What lies between two values of the variable.

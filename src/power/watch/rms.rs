@@ -17,6 +17,10 @@ const CELL_MIN_S: f64 = 1e-4;
 const CELLS_MIN: f64 = 16.0;
 /// Of shorter windows than this the largest power counts, which no mean exceeds.
 const WINDOW_MIN_S: f64 = 1e-3;
+/// A slice in which the power does not change evenly is long from so many windows
+/// on, and then counts as so many steps.
+const LONG: f64 = 48.0;
+const STEPS: f64 = 16.0;
 
 /// The mean over windows, bounded in two ways where the timing of moves is not
 /// known: such a move counts as if it lasted for ever, or with the square of its
@@ -137,19 +141,11 @@ impl Rms {
             self.last = (time_s + slice.duration_s, place);
             return;
         }
+        if self.is_long(slice) {
+            return self.add_long(slice, time_s, place);
+        }
         let mut done_s = 0.0;
         let mut from = slice.from;
-        if slice.is_constant() && slice.duration_s > 3.0 * self.window_s {
-            // Once the window is full of it nothing changes any more.
-            let lead = slice.part(from, slice.at(2.0 * self.window_s));
-            self.add(&lead, time_s, place);
-            let left_s = slice.duration_s - lead.duration_s;
-            let whole_s = libm::floor(left_s / self.cell_s - 1.0).max(0.0) * self.cell_s;
-            self.total += slice.power.0[0] * slice.power.0[0] * whole_s;
-            self.elapsed_s += whole_s;
-            done_s = lead.duration_s + whole_s;
-            from = slice.at(done_s);
-        }
         while done_s < slice.duration_s {
             let room_s = self.cell_s - self.filled_s;
             let left_s = slice.duration_s - done_s;
@@ -170,6 +166,51 @@ impl Rms {
                 break;
             }
         }
+    }
+
+    /// Whether only the ends of a slice matter: all else would be cells without
+    /// number in a slice that lasts for days.
+    fn is_long(&self, slice: &Slice) -> bool {
+        let windows = if slice.is_even() { 2.0 } else { LONG };
+        slice.duration_s > windows * self.edge_s() + self.cell_s
+    }
+
+    /// A window, and so much more that it fits in wherever the cells lie.
+    fn edge_s(&self) -> f64 {
+        self.window_s + 2.0 * self.cell_s
+    }
+
+    /// A slice that is long. Where the power changes evenly its square is convex:
+    /// no window inside is worse than that at one of both ends, nor is one that is
+    /// put together of both. Any other power counts as steps that are nowhere lower.
+    fn add_long(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        if !slice.is_even() {
+            let part_s = slice.duration_s / STEPS;
+            let mut from = slice.from;
+            for step in 1..=STEPS as u32 {
+                let to = slice.at(f64::from(step) * part_s).min(slice.to);
+                let size_w = slice.part(from, to).size_w();
+                let now_s = time_s + f64::from(step - 1) * part_s;
+                self.add(&Slice::constant(part_s, size_w), now_s, place);
+                from = to;
+            }
+            return;
+        }
+        let edge_s = self.edge_s();
+        // What lasts for ever ends with its last power.
+        let at_w = |t: f64| {
+            let inside = t.is_finite().then(|| slice.power_w(t));
+            inside.unwrap_or_else(|| slice.power.value(slice.to))
+        };
+        let end_s = slice.duration_s;
+        let lead = Slice::linear(edge_s, at_w(0.0), at_w(edge_s));
+        self.add(&lead, time_s, place);
+        let between_s = end_s - 2.0 * edge_s;
+        let squares = slice.squares();
+        self.total += squares.between(slice.at(edge_s), slice.at(end_s - edge_s));
+        self.elapsed_s += between_s;
+        let tail = Slice::linear(edge_s, at_w(end_s - edge_s), at_w(end_s));
+        self.add(&tail, time_s + edge_s + between_s, place);
     }
 
     /// Counts something in the cell that is being filled.
@@ -356,6 +397,59 @@ mod tests {
         let exact = (4e6 + 9.0 * 1e4) / 10.0;
         let found = rms_w(10.0, &slices);
         assert!((found * found - exact).abs() < 4e6 / 4096.0);
+    }
+
+    /// Each way of counting against the exact largest mean, which lies at an end.
+    #[test]
+    fn a_slice_of_days_costs_no_more_than_its_ends() {
+        let between = |from: f64, to: f64| (from * from + from * to + to * to) / 3.0;
+        // 1 to 3 kW in 30 years, and back: the last and the first 10 s.
+        let years_s = 1e9;
+        for (first, last) in [(1000.0, 3000.0), (3000.0, 1000.0), (-3000.0, 2000.0)] {
+            let found = rms_w(10.0, &[Slice::linear(years_s, first, last)]);
+            let worst: f64 = if f64::abs(first) > f64::abs(last) { first } else { last };
+            assert!((found - worst.abs()).abs() < 1e-3 * worst.abs(), "{found}");
+            assert!(found * found >= worst * worst * (1.0 - 1e-7));
+        }
+        // 2 kW before a ramp from 1 kW: of the window that holds both nothing is lost.
+        let slices = [
+            Slice::constant(5.0, 2000.0),
+            Slice::linear(1e5, 1000.0, 500.0),
+        ];
+        let ramp = between(1000.0, 1000.0 - 500.0 * 5.0 / 1e5);
+        let exact = (5.0 * 4e6 + 5.0 * ramp) / 10.0;
+        let found = rms_w(10.0, &slices).powi(2);
+        assert!(found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0, "{found} {exact}");
+        // The same behind a ramp that falls from 900 W.
+        let slices = [
+            Slice::linear(1e5, 900.0, 500.0),
+            Slice::constant(5.0, 2000.0),
+        ];
+        let ramp = between(500.0 + 400.0 * 5.0 / 1e5, 500.0);
+        let exact = (5.0 * 4e6 + 5.0 * ramp) / 10.0;
+        let found = rms_w(10.0, &slices).powi(2);
+        assert!(found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0, "{found} {exact}");
+    }
+
+    /// A power that is no straight line of time is nowhere counted lower, and
+    /// higher by one of 16 steps at most.
+    #[test]
+    fn a_curve_over_days_counts_as_steps() {
+        let parabola = Slice {
+            duration_s: 1e7,
+            from: 0.0,
+            to: 1.0,
+            power: crate::power::polynomial::Polynomial([0.0, 4000.0, -4000.0, 0.0, 0.0]),
+        };
+        // 1 kW in the middle, where the two steps beside it meet.
+        let found = rms_w(10.0, &[parabola]);
+        assert!((found - 1000.0).abs() < 1e-3, "{found}");
+        let falling = Slice {
+            power: crate::power::polynomial::Polynomial([-1600.0, 0.0, 1600.0, 0.0, 0.0]),
+            ..parabola
+        };
+        let found = rms_w(10.0, &[falling]);
+        assert!((found - 1600.0).abs() < 1e-3, "{found}");
     }
 
     #[test]
