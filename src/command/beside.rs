@@ -282,7 +282,10 @@ mod tests {
         let named = Named::copy(file, folder.path(), &prefix(&path)).unwrap();
         named.persist(&path).unwrap();
         let mut text = String::new();
-        File::open(&path).unwrap().read_to_string(&mut text).unwrap();
+        File::open(&path)
+            .unwrap()
+            .read_to_string(&mut text)
+            .unwrap();
         assert_eq!(text, "G0 X1\n");
         assert_eq!(names(folder.path()), ["out.ngc"]);
     }

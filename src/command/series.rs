@@ -32,18 +32,20 @@ pub fn write(
         Refused::Told
     };
     let options = setup.options_for(program);
-    program
+    let coarse = program
         .open()
         .and_then(|input| pipeline::series(input, machine, &options, step_s, &mut rows))
         .map_err(|failure| refused(&program.name, failure))?;
+    terminal.diagnostics(&program.name, coarse.as_slice());
     rows.program("after");
     if let Some(path) = &args.limited {
         let limited = Program::new(path);
         let options = setup.options_for(&limited);
-        limited
+        let coarse = limited
             .open()
             .and_then(|input| pipeline::series(input, machine, &options, step_s, &mut rows))
             .map_err(|failure| refused(&limited.name, failure))?;
+        terminal.diagnostics(&limited.name, coarse.as_slice());
     } else {
         let how = LimitOptions {
             strategy: Strategy::Optimal,

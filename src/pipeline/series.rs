@@ -8,14 +8,20 @@ use std::io::{self, Read, Seek};
 
 use super::front::Front;
 use super::{Failure, Options};
+use crate::diagnostic::Diagnostic;
 use crate::interpret::Step;
 use crate::machine::Machine;
 use crate::power::{
     Assessor, AxisInstant, Instant, Motion, PowerModel, SpindleInstant, Turning, Want,
 };
 
-/// Rows that a series may have.
+/// Rows that a series may have, and how many steps of it are taken one by one: so
+/// many, and so many for each piece of motion. Beyond them a piece gets rows farther
+/// apart, but still so many.
 const ROWS_MAX: f64 = 2e8;
+const STEPS: f64 = 5e5;
+const STEPS_BY_PIECE: f64 = 5e3;
+const STEPS_LEAST: f64 = 1e3;
 /// Share of a step by which a row may come close to a switching instant.
 const NEAR: f64 = 1e-6;
 /// Share by which rounding alone may make two states differ.
@@ -40,7 +46,8 @@ pub trait SeriesSink {
 /// program waits for it.
 ///
 /// Rests that never end and moves from an unknown start have no place in time and
-/// are left out.
+/// are left out. What lasts for very many steps gets rows farther apart: the note
+/// that is given back says where first.
 ///
 /// # Errors
 /// See [`Failure`]; an error of `sink` becomes [`Failure::Output`].
@@ -50,7 +57,7 @@ pub fn series<R: Read + Seek + Send>(
     options: &Options,
     step_s: f64,
     sink: &mut dyn SeriesSink,
-) -> Result<(), Failure> {
+) -> Result<Option<Diagnostic>, Failure> {
     let mut front = Front::new(input, machine, options);
     // Nothing is judged here.
     let want = Want {
@@ -66,6 +73,8 @@ pub fn series<R: Read + Seek + Send>(
         start_s: 0.0,
         next: 0,
         rows: 0,
+        pieces: 0,
+        coarse: None,
         now: Instant::default(),
         last: None,
         motions: VecDeque::new(),
@@ -87,7 +96,8 @@ pub fn series<R: Read + Seek + Send>(
     }
     assessor.finish(&mut |_, _, _| {});
     sampler.take_all(&mut assessor, true)?;
-    front.finish().map(|_| ())
+    front.finish()?;
+    Ok(sampler.coarse)
 }
 
 /// Makes rows of motion.
@@ -99,6 +109,10 @@ struct Sampler<'a> {
     /// Number of the next step.
     next: u64,
     rows: u64,
+    /// Pieces of motion so far.
+    pieces: u64,
+    /// The first that got rows farther apart.
+    coarse: Option<Diagnostic>,
     now: Instant,
     /// The last row: its time, and what it showed.
     last: Option<(f64, Instant)>,
@@ -237,8 +251,9 @@ impl Sampler<'_> {
 
     fn stretch(&mut self, stretch: Stretch<'_>) -> Result<(), Failure> {
         let lasts_s = stretch.to_s - stretch.from_s;
-        let rows = self.rows as f64 + lasts_s / self.step_s;
-        if rows > ROWS_MAX {
+        let stride = self.stride(lasts_s, stretch.motion.mv.line);
+        let rows = self.rows as f64 + lasts_s / (self.step_s * stride as f64);
+        if rows.is_nan() || rows > ROWS_MAX {
             return Err(Failure::Unsuitable(format!(
                 "the series has more than {ROWS_MAX} rows: a longer --step-ms is needed"
             )));
@@ -258,12 +273,35 @@ impl Sampler<'_> {
                 if t > from + NEAR * self.step_s {
                     self.row(&stretch, t, inside)?;
                 }
-                self.next += 1;
+                self.next = self.next.saturating_add(stride);
             }
             self.row(&stretch, to, inside)?;
         }
         self.start_s += lasts_s;
+        if stride > 1 {
+            // Back to the first step behind it.
+            self.next = libm::ceil(self.start_s / self.step_s) as u64;
+        }
         Ok(())
+    }
+
+    /// Every which step of a piece gets a row.
+    fn stride(&mut self, lasts_s: f64, line: u64) -> u64 {
+        self.pieces += 1;
+        let left = STEPS + STEPS_BY_PIECE * self.pieces as f64 - self.rows as f64;
+        let stride = libm::ceil(lasts_s / self.step_s / left.max(STEPS_LEAST));
+        if stride <= 1.0 {
+            return 1;
+        }
+        if self.coarse.is_none() {
+            let rows_s = stride * self.step_s;
+            let message = format!(
+                "line {line} lasts {lasts_s:.0} s: from here on some rows are farther apart, {rows_s} s in this line"
+            );
+            let note = Diagnostic::note("coarse-series", message);
+            self.coarse = Some(note.help("a longer --step-ms gives even rows"));
+        }
+        stride as u64
     }
 
     fn row(&mut self, stretch: &Stretch<'_>, t: f64, inside: f64) -> Result<(), Failure> {

@@ -256,3 +256,51 @@ fn overlapping_moves_are_shown_at_once() {
     let last_s = rows[rows.len() - 1].0;
     assert!((last_s - summary.duration_s).abs() < 1e-9, "{last_s}");
 }
+
+/// How many rows there are, and the times of the last ones.
+#[derive(Default)]
+struct Counted {
+    rows: u64,
+    last_s: std::collections::VecDeque<f64>,
+}
+
+impl SeriesSink for Counted {
+    fn row(&mut self, time_s: f64, _: u64, _: &Instant) -> io::Result<()> {
+        self.rows += 1;
+        self.last_s.push_back(time_s);
+        if self.last_s.len() > 300 {
+            self.last_s.pop_front();
+        }
+        Ok(())
+    }
+}
+
+/// A dwell of a month at 1 ms would be 2.6e9 rows: they are farther apart, which is
+/// said, and behind it they are a step apart as before.
+#[test]
+fn a_month_costs_no_more_rows_than_an_hour() {
+    let iso = machine("iso", "", "", "");
+    let mut counted = Counted::default();
+    let program = "G21 G90\nG4 X2592000\nG0 X200\nM2\n";
+    let options = Options::default();
+    let note = series(Cursor::new(program), &iso, &options, 1e-3, &mut counted).unwrap();
+    let note = note.expect("a note");
+    assert_eq!(note.rule, "coarse-series");
+    assert_eq!(
+        note.message,
+        "line 2 lasts 2592000 s: from here on some rows are farther apart, 5.133 s in this line"
+    );
+    assert!(
+        (500_000..510_000).contains(&counted.rows),
+        "{}",
+        counted.rows
+    );
+    let last: Vec<f64> = counted.last_s.into_iter().collect();
+    assert!(last.iter().all(|time_s| *time_s > 2_592_000.0));
+    let apart = last.windows(2).map(|pair| pair[1] - pair[0]);
+    assert!(apart.clone().all(|apart_s| apart_s < 1.001e-3));
+    let whole = last
+        .iter()
+        .filter(|time_s| (*time_s * 1e3).fract().min(1.0 - (*time_s * 1e3).fract()) < 1e-3);
+    assert!(whole.count() > 290);
+}

@@ -407,7 +407,11 @@ mod tests {
         let years_s = 1e9;
         for (first, last) in [(1000.0, 3000.0), (3000.0, 1000.0), (-3000.0, 2000.0)] {
             let found = rms_w(10.0, &[Slice::linear(years_s, first, last)]);
-            let worst: f64 = if f64::abs(first) > f64::abs(last) { first } else { last };
+            let worst: f64 = if f64::abs(first) > f64::abs(last) {
+                first
+            } else {
+                last
+            };
             assert!((found - worst.abs()).abs() < 1e-3 * worst.abs(), "{found}");
             assert!(found * found >= worst * worst * (1.0 - 1e-7));
         }
@@ -419,7 +423,10 @@ mod tests {
         let ramp = between(1000.0, 1000.0 - 500.0 * 5.0 / 1e5);
         let exact = (5.0 * 4e6 + 5.0 * ramp) / 10.0;
         let found = rms_w(10.0, &slices).powi(2);
-        assert!(found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0, "{found} {exact}");
+        assert!(
+            found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0,
+            "{found} {exact}"
+        );
         // The same behind a ramp that falls from 900 W.
         let slices = [
             Slice::linear(1e5, 900.0, 500.0),
@@ -428,7 +435,10 @@ mod tests {
         let ramp = between(500.0 + 400.0 * 5.0 / 1e5, 500.0);
         let exact = (5.0 * 4e6 + 5.0 * ramp) / 10.0;
         let found = rms_w(10.0, &slices).powi(2);
-        assert!(found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0, "{found} {exact}");
+        assert!(
+            found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0,
+            "{found} {exact}"
+        );
     }
 
     /// A power that is no straight line of time is nowhere counted lower, and
