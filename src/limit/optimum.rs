@@ -57,7 +57,10 @@ pub(super) fn best_pair(
         }
     }
     // Fewer words are better where they cost no time.
-    let single = [by_accel, solver.speed(case, speed, &none)];
+    let single = [
+        solver.accel_alone(case, accel),
+        solver.speed(case, speed, &none),
+    ];
     let best_single = single
         .into_iter()
         .flatten()

@@ -1,5 +1,6 @@
 //! One move by itself: the change that makes it fit.
 
+use super::by_axis;
 use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
@@ -268,18 +269,42 @@ impl<'m> Solver<'m> {
 
     fn by_accel(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         let knob = levers.accel.ok_or_else(|| self.no_accel_lever(case))?;
-        if let Some(load) = self.cruise_load(case).filter(|load| *load > 1.0) {
-            return Err(Obstacle::new(
-                "friction-alone",
-                format!(
-                    "friction alone takes {:.1} % of the limit at the wanted speed",
-                    load * 100.0
-                ),
-                "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
-            ));
+        // A block that is too short for its speed reaches less of it the more slowly it
+        // accelerates, so that friction alone at full speed decides nothing.
+        if let Some(change) = self.accel_alone(case, knob) {
+            return Ok(change);
         }
-        self.accel(case, knob, &Change::default())
-            .ok_or_else(|| too_much(case))
+        let Some(load) = self.cruise_load(case).filter(|load| *load > 1.0) else {
+            return Err(too_much(case));
+        };
+        Err(Obstacle::new(
+            "friction-alone",
+            format!(
+                "friction alone takes {:.1} % of the limit at the wanted speed",
+                load * 100.0
+            ),
+            "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
+        ))
+    }
+
+    /// The accelerations that fit and take the least time: one share for all axes, or
+    /// one for each axis of an independent rapid.
+    pub(super) fn accel_alone(&self, case: Case<'_>, knob: usize) -> Option<Change> {
+        let together = by_axis::arriving_together(self, case, knob);
+        let common = self.accel(case, knob, &Change::default());
+        let time_s = |change: &Change| {
+            let changed = change.apply(self.machine, case.mv, case.permit);
+            plan(self.machine, &changed, self.largest).duration_s
+        };
+        match (common, together) {
+            // The word for all axes is the simpler one.
+            (Some(common), Some(together))
+                if time_s(&together) < time_s(&common) * (1.0 - 1e-6) =>
+            {
+                Some(together)
+            }
+            (common, together) => common.or(together),
+        }
     }
 
     /// The highest acceleration that fits, on top of what `with` changes.

@@ -273,6 +273,21 @@ pub enum RapidKnob {
     G1,
 }
 
+impl Controller {
+    /// The confirmed knob that takes a value for each axis and else does what the one
+    /// with this index does; that one itself where it takes such values.
+    #[must_use]
+    pub fn knob_by_axis(&self, index: usize) -> Option<usize> {
+        let like = self.knobs.get(index)?;
+        self.knobs.iter().position(|knob| {
+            knob.verified
+                && knob.target == like.target
+                && knob.unit == like.unit
+                && knob.argument == KnobArgument::Axes
+        })
+    }
+}
+
 /// A word that limits speed or acceleration until it is taken back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Knob {

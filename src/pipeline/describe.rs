@@ -4,7 +4,7 @@ use super::Row;
 use super::tally::axes;
 use crate::interpret::Move;
 use crate::limit::Change;
-use crate::machine::{KnobUnit, Machine};
+use crate::machine::{AxisValues, KnobUnit, Machine};
 use crate::power::{Assessment, PowerModel};
 
 /// The row of a judged move that begins at `start_s`.
@@ -78,7 +78,7 @@ pub(super) fn describe(
         row.value_after = Some(percent);
     }
     if let Some((knob, values)) = &change.accel {
-        names.push(knob_name(machine, *knob));
+        names.push(knob_name(machine, written(machine, *knob, values)));
         if row.value_after.is_none()
             && let Some(axis) = mv
                 .moving
@@ -93,6 +93,15 @@ pub(super) fn describe(
         }
     }
     row.knob = names.join(" ");
+}
+
+/// The knob whose word says these values: where they differ, the one by axis.
+fn written(machine: &Machine, knob: usize, values: &AxisValues) -> usize {
+    let mut axes = machine.axis_set.iter().map(|axis| values[axis]);
+    let first = axes.next();
+    let uniform = axes.all(|value| Some(value) == first);
+    let by_axis = || machine.controller.knob_by_axis(knob);
+    if uniform { None } else { by_axis() }.unwrap_or(knob)
 }
 
 /// The word of a knob, such as `G131`.

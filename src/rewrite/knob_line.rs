@@ -15,7 +15,8 @@ pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Opt
             Some(format!("{} = {}", code(knob), decimal(first, false)))
         }
         KnobArgument::Assign => {
-            by_axis(machine, knob).and_then(|index| words(machine, index, values))
+            let other = machine.controller.knob_by_axis(index)?;
+            words(machine, other, values)
         }
         KnobArgument::Axes => {
             let mut text = code(knob);
@@ -28,16 +29,6 @@ pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Opt
         }
         KnobArgument::Path(_) => None,
     }
-}
-
-/// The knob of the same target that takes a value for each axis.
-fn by_axis(machine: &Machine, like: &Knob) -> Option<usize> {
-    machine.controller.knobs.iter().position(|knob| {
-        knob.verified
-            && knob.target == like.target
-            && knob.unit == like.unit
-            && knob.argument == KnobArgument::Axes
-    })
 }
 
 /// The word of a knob, such as `G131`.

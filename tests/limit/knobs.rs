@@ -33,6 +33,89 @@ fn isg_rapid_speed_and_feed() {
     );
 }
 
+/// X takes 0.8 s + 0.1 s, and Y alone would take 0.3 s: with 4·100 mm/(0.9 s)² =
+/// 493.8 mm/s², 9.88 %, it arrives with X. At the end of X' ramp both draw 1250 W +
+/// 12 W where they drew 2500 W, and no time is lost; by one word for both it would be
+/// 56 % and 0.98 s.
+#[test]
+fn independent_axes_arrive_together() {
+    let rig = Rig {
+        peak_w: 1400.0,
+        rest: "[path]\nmode = \"exact-stop\"\nrapid = \"independent\"",
+        ..ISG
+    };
+    for strategy in [Strategy::Accel, Strategy::Optimal] {
+        let (text, summary) = rig
+            .strategy(strategy)
+            .limit(b"G0 X400 Y100\nG1 X0 F100\nG0 X10\nM30\n")
+            .expect("a program");
+        assert!(summary.certified, "{:?}", summary.reasons);
+        assert_eq!(
+            String::from_utf8(text).expect("text"),
+            "G230 X100 Y9.9\nG0 X400 Y100\nG1 X0 F100\nG231 = 100\nG0 X10\nM30\n"
+        );
+        assert_eq!(summary.after.duration_s, summary.before.duration_s);
+    }
+    // What the program itself has set by axis comes back by axis.
+    let text = rig
+        .strategy(Strategy::Accel)
+        .fits("G230 X90 Y80\nG0 X400 Y100\nG0 X410\nM30\n");
+    assert!(text.starts_with("G230 X90 Y80\nG230 X90 Y"), "{text}");
+    assert!(
+        text.ends_with("\nG0 X400 Y100\nG230 X90 Y80\nG0 X410\nM30\n"),
+        "{text}"
+    );
+}
+
+/// Where arriving together is not enough all arrive later: 1250 W of X are 950 W with
+/// 76 % of its acceleration, and Y draws a little beside it.
+#[test]
+fn independent_axes_arrive_together_a_little_later() {
+    let rig = Rig {
+        peak_w: 950.0,
+        rest: "[path]\nmode = \"exact-stop\"\nrapid = \"independent\"",
+        ..ISG
+    };
+    let (text, summary) = rig
+        .strategy(Strategy::Accel)
+        .limit(b"G0 X400 Y100\nM30\n")
+        .expect("a program");
+    assert!(summary.certified, "{:?}", summary.reasons);
+    let text = String::from_utf8(text).expect("text");
+    assert!(text.starts_with("G230 X7"), "{text}");
+    // 0.8 s + 0.1 s/0.75; one word for both makes it 0.8 s + 0.1 s/0.38.
+    let rise = summary.after.duration_s / summary.before.duration_s;
+    assert!((1.03..1.045).contains(&rise), "{rise}: {text}");
+    assert!(
+        summary.after.peak_w > 0.99 * 950.0,
+        "{}",
+        summary.after.peak_w
+    );
+}
+
+/// 2500 N at 500 mm/s are 1250 W of 1000 W, but a block that accelerates slowly does
+/// not get there: `√(a·1 m)·(500 kg·a + 2500 N) = 1000 W`, a = 0.1508 m/s²,
+/// 3.015 %.
+#[test]
+fn slow_enough_a_block_does_not_reach_its_friction() {
+    let rig = Rig {
+        axis: "coulomb_n = 2500",
+        ..ISG
+    };
+    let (text, summary) = rig
+        .strategy(Strategy::Accel)
+        .limit(b"G0 X1000\nM30\n")
+        .expect("a program");
+    assert!(summary.certified, "{:?}", summary.reasons);
+    assert_eq!(
+        String::from_utf8(text).expect("text"),
+        "G231 = 3\nG0 X1000\nG231 = 100\nM30\n"
+    );
+    // 2·√(1 m/0.15 m/s²) for 1 m/0.5 m/s + 0.5 m/s/5 m/s².
+    assert!((summary.after.duration_s - 5.1640).abs() < 1e-4);
+    assert!((summary.before.duration_s - 2.1).abs() < 1e-9);
+}
+
 /// Over 400 mm acceleration alone costs less time than speed.
 #[test]
 fn isg_optimum_writes_no_word_that_changes_nothing() {
