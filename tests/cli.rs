@@ -1,6 +1,8 @@
 //! The binary from outside: exit codes, messages, and what is left on the disk.
 
 mod identify;
+#[cfg(unix)]
+mod interrupts;
 mod machines;
 
 use std::fs::{self, File};

@@ -123,6 +123,9 @@ const RUNS: &[&[&str]] = &[
     &["diff", "P", "--from", "M", "--to", "N"],
 ];
 
+/// Loops that do not end have a bound of their own, which is high.
+const BOUNDED: &[&str] = &["--max-moves", "200000", "--max-idle-lines", "200000"];
+
 struct Chance(u64);
 
 impl Chance {
@@ -348,6 +351,7 @@ fn small_programs_come_to_an_end_soon() {
                 "N" => names[2].as_str(),
                 word => word,
             })
+            .chain(BOUNDED.iter().copied())
             .collect();
         let (took_s, kib, end) = run(&arguments, &folder, limit_s);
         runs += 1;

@@ -317,4 +317,53 @@ mod tests {
         drop(running);
         assert_eq!(names(folder.path()).len(), others.len() + 1);
     }
+
+    /// The run that the next test interrupts.
+    #[cfg(unix)]
+    #[test]
+    #[ignore = "runs only for the next test, in a process of its own"]
+    fn holds_a_named_file() {
+        let folder = std::env::var("GWATT_TEST_FOLDER").unwrap();
+        let named = Named::new(Path::new(&folder), ".gwatt-0-", false).unwrap();
+        writeln!(named.file.as_file(), "half of it").unwrap();
+        std::thread::sleep(std::time::Duration::from_secs(20));
+    }
+
+    /// A name that is there from the beginning goes with a signal, of which the run
+    /// ends as it would without.
+    #[cfg(unix)]
+    #[test]
+    fn a_signal_takes_the_name_away() {
+        use std::os::unix::process::ExitStatusExt;
+        use std::process::{Command, Stdio};
+        for (name, number) in [("INT", 2), ("TERM", 15)] {
+            let folder = tempfile::tempdir().unwrap();
+            let test = "command::beside::tests::holds_a_named_file";
+            let mut child = Command::new(std::env::current_exe().unwrap())
+                .args(["--ignored", "--exact", test])
+                .env("GWATT_TEST_FOLDER", folder.path())
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap();
+            let written = || {
+                let entries = fs::read_dir(folder.path()).unwrap();
+                let mut sizes = entries.map(|entry| entry.unwrap().metadata().unwrap().len());
+                sizes.any(|size| size > 0)
+            };
+            for _ in 0..1000 {
+                if written() {
+                    break;
+                }
+                std::thread::sleep(std::time::Duration::from_millis(10));
+            }
+            assert!(written());
+            let id = child.id().to_string();
+            let kill = Command::new("kill")
+                .args([&format!("-{name}"), &id])
+                .status();
+            assert!(kill.unwrap().success());
+            assert_eq!(child.wait().unwrap().signal(), Some(number));
+            assert_eq!(names(folder.path()), [""; 0]);
+        }
+    }
 }
