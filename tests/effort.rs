@@ -375,3 +375,74 @@ fn small_programs_come_to_an_end_soon() {
     assert!(failed.is_empty(), "{failed:?} in {}", folder.display());
     fs::remove_dir_all(folder).unwrap();
 }
+
+/// Limits over time on a circle that takes years: 100 N on each axis at 50 mm/s are
+/// 10 W, and 5·√2 W each where both move alike: 14.14 W for longer than any window.
+#[test]
+fn an_arc_of_years_is_held_against_its_worst_window() {
+    let axis = |letter: char| {
+        format!(
+            "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\nmass_kg = 50\ncoulomb_n = 200\n"
+        )
+    };
+    let ratings = "peak_power_w = 1000\ncontinuous_power_w = 900\nwindow_s = 180";
+    for (controller, most) in [("iso", 1.001), ("linuxcnc", 1.001)] {
+        let text = format!(
+            "schema = 1\nname = \"m\"\ncontroller = \"{controller}\"\n[converter]\n{ratings}\n{}{}\
+             [limits]\nmargin = 0\n[path]\nmode = \"exact-stop\"\n",
+            axis('X'),
+            axis('Y')
+        );
+        let machine = gwatt::machine::Machine::from_toml("m.toml", &text)
+            .unwrap()
+            .0;
+        let program = "G21 G90 G94 G17\nG0 X0 Y0\nG3 X0 Y0 I2147483648 J0 F3000\nM30\n";
+        let options = gwatt::pipeline::Options::default();
+        let input = std::io::Cursor::new(program);
+        let summary = gwatt::pipeline::analyze(input, &machine, &options, None).unwrap();
+        // 1.35e10 mm at 50 mm/s.
+        let years_s = std::f64::consts::TAU * 2_147_483_648.0 / 50.0;
+        assert!((summary.duration_s / years_s - 1.0).abs() < 1e-6);
+        let mean_w = summary.over_time[0].rating.value;
+        let exact_w = 200.0 * 0.05 * 2.0_f64.sqrt();
+        // Two slices of 1 ‰ of the converter's power, and a cell.
+        let high_w = 1000.0 * 1e-3;
+        assert!(
+            mean_w >= exact_w && mean_w < exact_w * most + high_w,
+            "{mean_w}"
+        );
+    }
+}
+
+/// grbl rounds arcs by 2 µm: a circle of 4295 km would be some millions of chords, of
+/// which nobody knows how they run; one of 100 m is planned chord by chord.
+#[test]
+fn an_arc_of_too_many_chords_gets_the_robust_bound() {
+    let axis = |letter: char| {
+        format!(
+            "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\nmass_kg = 50\ncoulomb_n = 200\n"
+        )
+    };
+    let text = format!(
+        "schema = 1\nname = \"m\"\ncontroller = \"grbl\"\n[converter]\npeak_power_w = 1000\n{}{}\
+         [limits]\nmargin = 0\n",
+        axis('X'),
+        axis('Y')
+    );
+    let machine = gwatt::machine::Machine::from_toml("m.toml", &text)
+        .unwrap()
+        .0;
+    for (radius, certificate) in [
+        ("2147483648", gwatt::pipeline::Certificate::Robust),
+        ("100000", gwatt::pipeline::Certificate::Planned),
+    ] {
+        let program = format!("G21 G90 G94 G17\nG0 X0 Y0\nG3 X0 Y0 I{radius} J0 F3000\nM2\n");
+        let options = gwatt::pipeline::Options::default();
+        let input = std::io::Cursor::new(program);
+        let summary = gwatt::pipeline::analyze(input, &machine, &options, None).unwrap();
+        assert_eq!(summary.certificate, Some(certificate), "{radius}");
+        // At most 50 mm/s with 50 kg at 3 m/s² on both axes, and friction on both.
+        let most_w = 2.0 * 0.05 * (50.0 * 3.0 + 200.0);
+        assert!(summary.peak_w >= 200.0 * 0.05 * 2.0_f64.sqrt() && summary.peak_w < most_w * 1.001);
+    }
+}

@@ -92,13 +92,6 @@ impl Slice {
         values.fold(f64::NEG_INFINITY, super::super::demand::larger)
     }
 
-    /// The largest size of the power in W, drawn or fed back.
-    pub(in crate::power) fn size_w(&self) -> f64 {
-        let mut turned = *self;
-        turned.power.0 = turned.power.0.map(|c| -c);
-        super::super::demand::larger(self.peak_w(), turned.peak_w())
-    }
-
     /// Its energy in J.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
