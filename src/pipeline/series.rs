@@ -19,7 +19,7 @@ use crate::power::{
 /// many, and so many for each piece of motion. Beyond them a piece gets rows farther
 /// apart, but still so many.
 const ROWS_MAX: f64 = 2e8;
-const STEPS: f64 = 5e5;
+const STEPS: f64 = 2.5e5;
 const STEPS_BY_PIECE: f64 = 5e3;
 const STEPS_LEAST: f64 = 1e3;
 /// Share of a step by which a row may come close to a switching instant.
