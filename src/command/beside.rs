@@ -237,7 +237,7 @@ fn is_ours(name: &OsStr, prefix: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::{Read, Write};
+    use std::io::Write;
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap();
@@ -259,7 +259,7 @@ mod tests {
         for (number, make) in kinds.into_iter().enumerate() {
             let old = fs::read_to_string(&path).ok();
             let beside = make(folder.path(), &prefix(&path)).unwrap();
-            write!(beside.file(), "G0 X{number}\n").unwrap();
+            writeln!(beside.file(), "G0 X{number}").unwrap();
             assert_eq!(fs::read_to_string(&path).ok(), old);
             beside.persist(&path).unwrap();
             let new = fs::read_to_string(&path).unwrap();
@@ -281,12 +281,7 @@ mod tests {
         file.write_all(b"G0 X1\n").unwrap();
         let named = Named::copy(file, folder.path(), &prefix(&path)).unwrap();
         named.persist(&path).unwrap();
-        let mut text = String::new();
-        File::open(&path)
-            .unwrap()
-            .read_to_string(&mut text)
-            .unwrap();
-        assert_eq!(text, "G0 X1\n");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "G0 X1\n");
         assert_eq!(names(folder.path()), ["out.ngc"]);
     }
 
