@@ -16,11 +16,11 @@ use crate::power::{
 };
 
 /// Rows that a series may have, and how many steps of it are taken one by one: so
-/// many, and so many for each piece of motion. Beyond them a piece gets rows farther
-/// apart, but still so many.
+/// many, and so many for each line that moves. Beyond them a line gets rows farther
+/// apart, but each piece of its motion still so many.
 const ROWS_MAX: f64 = 2e8;
 const STEPS: f64 = 2.5e5;
-const STEPS_BY_PIECE: f64 = 5e3;
+const STEPS_BY_LINE: f64 = 2.5e3;
 const STEPS_LEAST: f64 = 1e3;
 /// Share of a step by which a row may come close to a switching instant.
 const NEAR: f64 = 1e-6;
@@ -73,7 +73,8 @@ pub fn series<R: Read + Seek + Send>(
         start_s: 0.0,
         next: 0,
         rows: 0,
-        pieces: 0,
+        line: None,
+        lines: 0,
         coarse: None,
         now: Instant::default(),
         last: None,
@@ -109,8 +110,9 @@ struct Sampler<'a> {
     /// Number of the next step.
     next: u64,
     rows: u64,
-    /// Pieces of motion so far.
-    pieces: u64,
+    /// The line that moves, and how many have so far, one after the other.
+    line: Option<u64>,
+    lines: u64,
     /// The first that got rows farther apart.
     coarse: Option<Diagnostic>,
     now: Instant,
@@ -287,14 +289,17 @@ impl Sampler<'_> {
 
     /// Every which step of a piece gets a row.
     fn stride(&mut self, lasts_s: f64, line: u64) -> u64 {
-        self.pieces += 1;
-        let left = STEPS + STEPS_BY_PIECE * self.pieces as f64 - self.rows as f64;
+        if self.line != Some(line) {
+            self.line = Some(line);
+            self.lines += 1;
+        }
+        let left = STEPS + STEPS_BY_LINE * self.lines as f64 - self.rows as f64;
         let stride = libm::ceil(lasts_s / self.step_s / left.max(STEPS_LEAST));
         if stride <= 1.0 {
             return 1;
         }
         if self.coarse.is_none() {
-            let rows_s = stride * self.step_s;
+            let rows_s = (stride * self.step_s * 1e6).round() / 1e6;
             let message = format!(
                 "line {line} lasts {lasts_s:.0} s: from here on some rows are farther apart, {rows_s} s in this line"
             );

@@ -288,7 +288,7 @@ fn a_month_costs_no_more_rows_than_an_hour() {
     assert_eq!(note.rule, "coarse-series");
     assert_eq!(
         note.message,
-        "line 2 lasts 2592000 s: from here on some rows are farther apart, 10.165 s in this line"
+        "line 2 lasts 2592000 s: from here on some rows are farther apart, 10.266 s in this line"
     );
     assert!(
         (250_000..260_000).contains(&counted.rows),
