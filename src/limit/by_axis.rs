@@ -11,7 +11,7 @@ use crate::machine::{AXES, AxisValues};
 use crate::plan::{Trajectory, is_independent, plan};
 
 /// Halvings of a share of acceleration, and of the time of arrival.
-const HALVINGS: u32 = 24;
+const HALVINGS: u32 = 16;
 /// Lowest share of acceleration that is tried.
 const LOWEST: f64 = 1e-4;
 /// How often the time of arrival is doubled at most.

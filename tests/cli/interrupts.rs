@@ -1,5 +1,6 @@
 //! Runs that are interrupted: what they leave on the disk.
 
+use std::fmt::Write as _;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
@@ -24,7 +25,7 @@ fn an_interrupted_run_leaves_nothing() {
     let mut program = String::from("G21 G90 G94 G17\n");
     for number in 0..6000 {
         let at = 200 + number % 2;
-        program.push_str(&format!("G0 X{at} Y200 Z{at}\nG0 X0 Y0 Z0\n"));
+        writeln!(program, "G0 X{at} Y200 Z{at}\nG0 X0 Y0 Z0").unwrap();
     }
     shop.put("long.ngc", &program);
     let run = ["limit", "long.ngc", "-o", "out.ngc"];
