@@ -17,14 +17,32 @@ const LOWEST: f64 = 1e-4;
 /// How often the time of arrival is doubled at most.
 const DOUBLINGS: u32 = 8;
 
+impl Solver<'_> {
+    /// The accelerations that fit and take the least time: one share for all axes, or
+    /// one for each axis of an independent rapid.
+    pub(super) fn accel_alone(&self, case: Case<'_>, knob: usize) -> Option<Change> {
+        let together = arriving_together(self, case, knob);
+        let common = self.accel(case, knob, &Change::default());
+        let time_s = |change: &Change| {
+            let changed = change.apply(self.machine, case.mv, case.permit);
+            plan(self.machine, &changed, self.largest).duration_s
+        };
+        match (common, together) {
+            // The word for all axes is the simpler one.
+            (Some(common), Some(together))
+                if time_s(&together) < time_s(&common) * (1.0 - 1e-6) =>
+            {
+                Some(together)
+            }
+            (common, together) => common.or(together),
+        }
+    }
+}
+
 /// The change of a knob with which the axes of an independent rapid arrive together
 /// as soon as the limit permits; `None` for other moves, where the controller has no
 /// word by axis, and where nothing fits.
-pub(super) fn arriving_together(
-    solver: &Solver<'_>,
-    case: Case<'_>,
-    knob: usize,
-) -> Option<Change> {
+fn arriving_together(solver: &Solver<'_>, case: Case<'_>, knob: usize) -> Option<Change> {
     let alone = case.mv.moving.iter().count() < 2 || !is_independent(solver.machine, case.mv);
     if alone
         || !case.mv.unknown_start.is_empty()

@@ -1,6 +1,5 @@
 //! One move by itself: the change that makes it fit.
 
-use super::by_axis;
 use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
@@ -285,26 +284,6 @@ impl<'m> Solver<'m> {
             ),
             "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
         ))
-    }
-
-    /// The accelerations that fit and take the least time: one share for all axes, or
-    /// one for each axis of an independent rapid.
-    pub(super) fn accel_alone(&self, case: Case<'_>, knob: usize) -> Option<Change> {
-        let together = by_axis::arriving_together(self, case, knob);
-        let common = self.accel(case, knob, &Change::default());
-        let time_s = |change: &Change| {
-            let changed = change.apply(self.machine, case.mv, case.permit);
-            plan(self.machine, &changed, self.largest).duration_s
-        };
-        match (common, together) {
-            // The word for all axes is the simpler one.
-            (Some(common), Some(together))
-                if time_s(&together) < time_s(&common) * (1.0 - 1e-6) =>
-            {
-                Some(together)
-            }
-            (common, together) => common.or(together),
-        }
     }
 
     /// The highest acceleration that fits, on top of what `with` changes.
