@@ -30,9 +30,11 @@ pub(super) struct Pending<T> {
     /// Share of the acceleration given up to the kinks before and behind.
     pub kink_before: f64,
     pub kink_behind: f64,
-    /// A parabolic blend before or behind it: its path is known within the
-    /// tolerance only.
-    pub parabolic: bool,
+    /// A parabolic blend before it, and one after it, which take half of its
+    /// acceleration. Next to an element that moves axes other than X, Y and Z the
+    /// one before it takes none, though the elements overlap.
+    pub blended_before: bool,
+    pub blended_after: bool,
     /// Behind it there is a stop.
     pub rests: bool,
     /// The element before it, where it begins while that brakes.
@@ -53,7 +55,8 @@ impl<T: Copy> Pending<T> {
             max_speed: 0.0,
             kink_before: 0.0,
             kink_behind: 0.0,
-            parabolic: false,
+            blended_before: false,
+            blended_after: false,
             rests: false,
             braking: None,
             entry2: 0.0,
@@ -70,7 +73,8 @@ impl<T: Copy> Pending<T> {
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
         self.max_speed = max_speed.min(element.length_mm / cycle_s);
         (self.kink_before, self.kink_behind) = (0.0, 0.0);
-        (self.parabolic, self.rests) = (false, false);
+        (self.blended_before, self.blended_after) = (false, false);
+        self.rests = false;
         self.braking = None;
         self.entry2 = 0.0;
     }
@@ -89,7 +93,38 @@ impl<T: Copy> Pending<T> {
 
     /// The share of its acceleration that a parabolic blend leaves.
     pub fn unbent_share(&self) -> f64 {
-        0.5 * (1.0 - self.kink_before.max(self.kink_behind))
+        0.5 * self.straight_share()
+    }
+
+    /// The share that the kinks on both sides leave.
+    fn straight_share(&self) -> f64 {
+        1.0 - self.kink_before.max(self.kink_behind)
+    }
+
+    /// The share that it keeps. It is the `last` where nothing waits after it: then
+    /// its mode takes what a blend would.
+    pub fn kept_share(&self, last: bool) -> f64 {
+        if self.blended_before || self.blended_after {
+            self.unbent_share()
+        } else if last {
+            self.unseen_share()
+        } else {
+            self.straight_share()
+        }
+    }
+
+    /// The share that it keeps while nothing waits after it.
+    pub fn unseen_share(&self) -> f64 {
+        match self.element.joint {
+            Joint::Blend { .. } => self.unbent_share(),
+            _ => self.straight_share(),
+        }
+    }
+
+    /// Whether it overlaps with the element before or after it: its path is known
+    /// within the tolerance only.
+    pub fn overlaps(&self) -> bool {
+        self.blended_after || self.braking.is_some()
     }
 
     /// Gives up `mm` of path at the start or at the end.
@@ -194,7 +229,10 @@ impl<T: Copy> Pending<T> {
     /// acceleration. An arc pulls in its plane; at its start it turns towards the centre, by what half of the
     /// speed asked for needs.
     fn pull(&self, at_end: bool, share: f64) -> Option<Vector> {
-        let side = self.side(at_end)?;
+        let Some(side) = self.side(at_end) else {
+            // Where X, Y and Z stand the planner takes the first axis.
+            return Some([1.0, 0.0, 0.0]);
+        };
         let Some(circle) = &side.circle else {
             return Some(side.leg.tangent);
         };
@@ -230,7 +268,7 @@ impl<T: Copy> Pending<T> {
     /// parabolic blend before it takes half of that.
     pub fn overlap(&self, next: &Self, whole: bool) -> f64 {
         let twice = |yes| if yes { 2.0 } else { 1.0 };
-        let whole = twice(whole && !self.parabolic);
+        let whole = twice(whole && !self.blended_before);
         // So far only its own mode may take half of the next one's.
         let next_whole = twice(!matches!(next.element.joint, Joint::Blend { .. }));
         let share = next_whole * next.unbent_share();
@@ -248,14 +286,14 @@ impl<T: Copy> Pending<T> {
             return 0.0;
         };
         if last {
-            return braking.lasts_s(&self.unseen(self.max_speed, self.unbent_share()));
+            return braking.lasts_s(&self.unseen(self.max_speed, self.kept_share(true)));
         }
         braking.lasts_s(&self.ramp())
     }
 
     /// Its ramp.
     fn ramp(&self) -> Ramp {
-        let accel = self.unbent_share() * self.accel();
+        let accel = self.kept_share(false) * self.accel();
         let (speed, accel) = self.turning(self.max_speed, accel);
         Ramp::new(&self.element, self.length_mm, speed, accel)
     }
