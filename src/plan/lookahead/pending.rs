@@ -187,10 +187,9 @@ impl<T: Copy> Pending<T> {
 
     /// What is left of it.
     pub fn piece(&self) -> Piece {
-        let change = &self.element.start;
         if self.is_line {
             Piece::Joined {
-                direction: [change[0], change[1], change[2]],
+                direction: self.element.start,
             }
         } else {
             Piece::Along {
@@ -246,21 +245,16 @@ impl<T: Copy> Pending<T> {
         unit(add(scale(flat, share * self.accel()), inward))
     }
 
-    /// The speed that the tolerance permits in a parabolic blend, and the sine of
-    /// half the angle inside its corner; `accel` of the first element, of the next one
-    /// a share of its own.
-    fn tolerated(&self, next: &Self, accel: f64, share: f64) -> (f64, f64) {
-        let (Some(first), Some(second)) = (self.pull(true, 1.0), next.pull(false, share)) else {
-            return (f64::INFINITY, 0.0);
+    /// How it leaves a parabolic blend that comes after it.
+    fn leaving(&self) -> Leaving {
+        let tolerance_mm = match self.element.joint {
+            Joint::Blend { tolerance_mm, .. } => tolerance_mm,
+            _ => 0.0,
         };
-        let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
-        let most = match self.element.joint {
-            Joint::Blend { tolerance_mm, .. } if tolerance_mm > 0.0 && cos > 1e-3 => {
-                2.0 * (accel * tolerance_mm / cos).sqrt()
-            }
-            _ => f64::INFINITY,
-        };
-        (most, sin)
+        Leaving {
+            pull: self.pull(true, 1.0),
+            tolerance_mm,
+        }
     }
 
     /// The speed along the mean direction that the planner expects of a parabolic
@@ -274,7 +268,7 @@ impl<T: Copy> Pending<T> {
         let share = next_whole * next.unbent_share();
         let first = self.unseen(self.asked_speed(), whole * self.unbent_share());
         let second = next.unseen(next.asked_speed(), share);
-        let (most, sin) = self.tolerated(next, first.accel, share);
+        let (most, sin) = self.leaving().tolerated(first.accel, next, share);
         let [first, second] = Ramp::overlap([&first, &second]);
         0.5 * sin * (first.min(most) + second.min(most))
     }
@@ -285,10 +279,15 @@ impl<T: Copy> Pending<T> {
         let Some(braking) = &self.braking else {
             return 0.0;
         };
-        if last {
-            return braking.lasts_s(&self.unseen(self.max_speed, self.kept_share(true)));
-        }
-        braking.lasts_s(&self.ramp())
+        let ramp = if last {
+            self.unseen(self.max_speed, self.kept_share(true))
+        } else {
+            self.ramp()
+        };
+        let (ahead, share) = (braking.ramp, self.kept_share(last));
+        let (most, _) = braking.leaving.tolerated(ahead.accel, self, share);
+        let [brakes_from, _] = Ramp::overlap([&ahead, &ramp]);
+        brakes_from.min(most) / ahead.accel
     }
 
     /// Its ramp.
@@ -349,20 +348,40 @@ impl Ramp {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Braking {
     ramp: Ramp,
-    /// The speed that the tolerance permits.
-    most: f64,
+    leaving: Leaving,
 }
 
 impl Braking {
-    pub fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Self {
-        let ramp = before.ramp();
-        let (most, _) = before.tolerated(next, ramp.accel, next.unbent_share());
-        Self { ramp, most }
+    pub fn of<T: Copy>(before: &Pending<T>) -> Self {
+        Self {
+            ramp: before.ramp(),
+            leaving: before.leaving(),
+        }
     }
+}
 
-    /// How long it still brakes when the next one begins, s.
-    fn lasts_s(&self, next: &Ramp) -> f64 {
-        let [brakes_from, _] = Ramp::overlap([&self.ramp, next]);
-        brakes_from.min(self.most) / self.ramp.accel
+/// How the first element of a parabolic blend comes to its corner.
+#[derive(Debug, Clone, Copy)]
+struct Leaving {
+    /// The direction in which the planner expects it to pull.
+    pull: Option<Vector>,
+    /// How far the corner may be left, mm; 0: as far as it takes.
+    tolerance_mm: f64,
+}
+
+impl Leaving {
+    /// The speed that the tolerance permits, and the sine of half the angle inside the
+    /// corner; `accel` of this element, of the next one a share of its own.
+    fn tolerated<T: Copy>(&self, accel: f64, next: &Pending<T>, share: f64) -> (f64, f64) {
+        let (Some(first), Some(second)) = (self.pull, next.pull(false, share)) else {
+            return (f64::INFINITY, 0.0);
+        };
+        let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
+        let most = if self.tolerance_mm > 0.0 && cos > 1e-3 {
+            2.0 * (accel * self.tolerance_mm / cos).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        (most, sin)
     }
 }

@@ -13,7 +13,7 @@ use super::element::{Element, Joint};
 use super::linuxcnc::LinuxCnc;
 use super::ramp::Speeds2;
 use super::window::{Node, Span, Window};
-use crate::machine::{CornerRule, LookAhead, Machine};
+use crate::machine::{AxisValues, CornerRule, LookAhead, Machine};
 use crate::plan::{Profile, Section};
 
 /// A piece of path that a controller lays round a corner: a circle in space,
@@ -45,8 +45,8 @@ pub enum Piece {
     },
     /// A line that stands for all elements from the first to the tagged one.
     Joined {
-        /// Its unit direction in X, Y and Z.
-        direction: [f64; 3],
+        /// Change of each axis by its length: of X, Y and Z a unit.
+        direction: AxisValues,
     },
     /// A blend; half of it belongs to the element before and half to the next.
     Blend(Blend),
@@ -308,6 +308,13 @@ impl<T: Copy> PathPlanner<T> {
         }
         self.window.push(node);
         *before = Some(after.before());
+    }
+
+    /// The last element and the next one are not put together to one line.
+    pub fn part(&mut self) {
+        if let Rule::LinuxCnc(rule) = &mut self.rule {
+            rule.part(&mut self.window);
+        }
     }
 
     /// The motion stops behind the last element: a dwell, a tool change, the

@@ -68,7 +68,7 @@ impl<T: Copy> LinuxCnc<T> {
         if self.joiner.passes(element) {
             return self.enqueue(element, element.tag, false, window);
         }
-        for joined in self.joiner.push(element, &self.axes).into_iter().flatten() {
+        for joined in self.joiner.push(element, &self.axes) {
             self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
     }
@@ -99,7 +99,7 @@ impl<T: Copy> LinuxCnc<T> {
                 before.blended_after = true;
                 // It is marked only where it may have been a blend of lines and arcs.
                 next.blended_before = !(before.rotates() || next.rotates());
-                next.braking = Some(Braking::of(&before, &next));
+                next.braking = Some(Braking::of(&before));
                 self.hand_over(&before, window, false);
             }
             Way::Blend(fit) => self.round(&mut before, &mut next, &fit, window),
@@ -122,12 +122,17 @@ impl<T: Copy> LinuxCnc<T> {
         next
     }
 
-    /// The motion stops behind the last element; nothing comes behind it unless it is
-    /// `followed`.
-    pub fn stop(&mut self, window: &mut Window<Load<T>>, followed: bool) {
+    /// What comes next is not put to the last element.
+    pub fn part(&mut self, window: &mut Window<Load<T>>) {
         if let Some(joined) = self.joiner.flush(&self.axes) {
             self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
+    }
+
+    /// The motion stops behind the last element; nothing comes behind it unless it is
+    /// `followed`.
+    pub fn stop(&mut self, window: &mut Window<Load<T>>, followed: bool) {
+        self.part(window);
         if let Some(last) = self.pending.take() {
             self.hand_over(&last, window, !followed);
             self.spare = Some(last);
