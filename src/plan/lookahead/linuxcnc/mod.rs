@@ -288,7 +288,7 @@ impl<T: Copy> LinuxCnc<T> {
         if of.element.curve.is_some() {
             unseen *= TANGENTIAL_SHARE;
             if last {
-                accel = unseen;
+                accel *= TANGENTIAL_SHARE;
             } else {
                 (max_speed, accel) = of.turning(max_speed, accel);
             }
