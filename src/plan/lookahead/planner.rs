@@ -283,7 +283,10 @@ impl<T: Copy> PathPlanner<T> {
         };
         let top2 = after.top_mm_s * after.top_mm_s;
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
-        node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
+        if self.look_ahead.min_cruise_ratio > 0.0 {
+            let share = 1.0 - self.look_ahead.min_cruise_ratio;
+            node.smooth_accel = element.common_accel_mm_s2() * share;
+        }
         node.step2 = after.rest2;
         node.jerk = element.jerk_mm_s3;
         (after, node)
