@@ -3,6 +3,7 @@
 mod certain;
 mod corners;
 mod glide;
+mod klipper;
 mod linuxcnc;
 mod measured;
 mod profile;
