@@ -5,7 +5,7 @@ use super::code::GCode;
 use super::execute::{Control, Run};
 use super::motion::EXTRUDER;
 use super::moves::{Action, ActionKind, Corner, Step};
-use crate::machine::{Family, MESSAGES};
+use crate::machine::{CornerRule, Family, MESSAGES};
 use crate::syntax::Block;
 
 impl Control<'_> {
@@ -58,7 +58,8 @@ impl Control<'_> {
     /// origin of another work offset, and reads its tool table again without a sign.
     fn sets_what_is_in_force(&self, run: &Run<'_, '_>) -> bool {
         let value = |letter| run.words.word(letter, run.block).map(|word| word.value);
-        if self.machine.controller.language.family != Family::Rs274 {
+        let rules = self.machine.controller.planner.look_ahead;
+        if !rules.is_some_and(|rules| matches!(rules.corner, CornerRule::LinuxCnc { .. })) {
             return true;
         }
         let active = f64::from(self.position.offsets().system);

@@ -388,7 +388,10 @@ fn assumed(mv: &Move) -> Move {
     let commanded = AxisSet(mv.moving.0 | mv.unknown_start.0);
     whole.unknown_start = AxisSet::default();
     whole.moving = AxisSet::default();
-    for axis in commanded.iter().filter(|axis| mv.start[*axis] != mv.end[*axis]) {
+    for axis in commanded
+        .iter()
+        .filter(|axis| mv.start[*axis] != mv.end[*axis])
+    {
         whole.moving.insert(axis);
     }
     (whole.length_mm, _) = path_length(&mv.start, &mv.end, whole.moving, None);

@@ -221,6 +221,34 @@ fn recorded(axes: &[Any], rows: &[Vec<f64>]) -> Option<(f64, f64)> {
     Some(((last - first + 1) as f64 * 1e-3, peak_w))
 }
 
+/// Whether a recording is as planned; nothing where there is none.
+fn compare(
+    letters: &str,
+    machine: &Machine,
+    axes: &[Any],
+    program: &str,
+    rows: &[Vec<f64>],
+) -> Option<bool> {
+    let (recorded_s, recorded_w) = recorded(axes, rows)?;
+    let mut rows = Rows::default();
+    let input = Cursor::new(program.as_bytes());
+    analyze(input, machine, &Options::default(), Some(&mut rows)).expect("a program");
+    let planned_s: f64 = rows.0.iter().map(|row| row.duration_s).sum();
+    let planned_w = rows
+        .0
+        .iter()
+        .fold(0.0, |most: f64, row| most.max(row.peak_w));
+    println!(
+        "{letters:8} {recorded_s:8.3} s {:+7.2} %  {recorded_w:8.1} W {:+7.2} %",
+        (planned_s / recorded_s - 1.0) * 100.0,
+        (planned_w / recorded_w - 1.0) * 100.0
+    );
+    let off_s = planned_s - recorded_s;
+    let slack_s = 0.01 * recorded_s + 0.005;
+    let timed = (-slack_s - WAIT_S..=slack_s).contains(&off_s);
+    Some(timed && recorded_w <= planned_w * 1.005)
+}
+
 #[test]
 #[ignore = "runs LinuxCNC for minutes"]
 fn recorded_random_programs_draw_no_more_than_planned() {
@@ -248,34 +276,25 @@ fn recorded_random_programs_draw_no_more_than_planned() {
         let machine = Machine::from_toml("test.toml", &text).expect("a machine").0;
         let programs: Vec<String> = (0..count).map(|_| program(&axes, &mut random)).collect();
         let limits: Vec<AxisLimits> = axes.iter().map(|axis| axis.limits).collect();
-        for (program, rows) in programs.iter().zip(record(&limits, &programs, 3)) {
-            let Some((recorded_s, recorded_w)) = recorded(&axes, &rows) else {
-                println!("{letters}: no recording");
-                continue;
-            };
-            let mut rows = Rows::default();
-            let input = Cursor::new(program.as_bytes());
-            analyze(input, &machine, &Options::default(), Some(&mut rows)).expect("a program");
-            let planned_s: f64 = rows.0.iter().map(|row| row.duration_s).sum();
-            let planned_w = rows
-                .0
-                .iter()
-                .fold(0.0, |most: f64, row| most.max(row.peak_w));
-            seen += 1;
-            println!(
-                "{letters:8} {recorded_s:8.3} s {:+7.2} %  {recorded_w:8.1} W {:+7.2} %",
-                (planned_s / recorded_s - 1.0) * 100.0,
-                (planned_w / recorded_w - 1.0) * 100.0
-            );
-            let off_s = planned_s - recorded_s;
-            let slack_s = 0.01 * recorded_s + 0.005;
-            let timed = (-slack_s - WAIT_S..=slack_s).contains(&off_s);
-            if recorded_w > planned_w * 1.005 || !timed {
-                wrong.push(program.clone());
+        let mut left = programs;
+        // A loaded host holds LinuxCNC's task up, which adds time.
+        for speedup in [3, 1, 1] {
+            let recordings = record(&limits, &left, speedup);
+            let pairs = left.into_iter().zip(recordings);
+            let (again, passed): (Vec<_>, Vec<_>) = pairs
+                .map(|(program, rows)| {
+                    let fits = compare(letters, &machine, &axes, &program, &rows);
+                    (program, fits)
+                })
+                .partition(|(_, fits)| *fits != Some(true));
+            seen += passed.len();
+            left = again.into_iter().map(|(program, _)| program).collect();
+            if left.is_empty() {
+                break;
             }
         }
+        wrong.extend(left);
     }
     println!("{seen} programs");
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(seen * 2 > count * MACHINES.len(), "{seen} recordings");
 }
