@@ -55,7 +55,7 @@ pub enum CornerRule {
     },
     /// Speed at a corner of 90 degrees (Klipper):
     /// `v² = v90²·(√2 − 1)·s/(1 − s)·a/a_max`, a the lower acceleration of both
-    /// blocks and a_max that of all paths, and at most what the block's length bends
+    /// blocks and `a_max` that of all paths, and at most what the block's length bends
     /// through.
     SquareCorner {
         /// Speed at 90 degrees in mm/s.
