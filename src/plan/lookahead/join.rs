@@ -59,28 +59,19 @@ impl<T: Copy> Joiner<T> {
         self.last.is_none() && (!may_join || element.curve.is_none() && !joins(element))
     }
 
-    /// Adds an element; gives what is complete before it, and the element
-    /// itself where nothing can be joined to it.
-    pub fn push(&mut self, element: &Element<T>, axes: &Axes) -> ArrayVec<Joined<T>, 3> {
-        let mut complete = ArrayVec::new();
-        let Some(chords) = chords(element, axes) else {
-            complete.extend(self.link(element, axes).into_iter().flatten());
-            return complete;
-        };
-        // Each completes what is before it, or is complete by itself.
-        for chord in chords {
-            let [before, alone] = self.link(&chord, axes);
-            self.has_chord = alone.is_none();
-            complete.extend(before);
-            complete.extend(alone.map(|chord| Joined {
-                is_line: true,
-                ..chord
-            }));
+    /// Adds a chord of an arc: what [`Self::push`] gives.
+    pub fn push_chord(&mut self, chord: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
+        let [before, mut alone] = self.push(chord, axes);
+        self.has_chord = alone.is_none();
+        if let Some(chord) = &mut alone {
+            chord.is_line = true;
         }
-        complete
+        [before, alone]
     }
 
-    fn link(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
+    /// Adds an element that is no arc of two chords; gives what is complete before it,
+    /// and the element itself where nothing can be joined to it.
+    pub fn push(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
         let change = &element.start;
         let travel = scale([change[0], change[1], change[2]], element.length_mm);
         let joins = joins(element);
@@ -180,7 +171,7 @@ fn straight<T: Copy>(
 
 /// The two chords of an arc that bulges so little that the detector takes it for
 /// lines.
-fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Element<T>; 2]> {
+pub(super) fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Element<T>; 2]> {
     let curve = element.curve.as_ref()?;
     let Joint::Blend { join_mm, .. } = element.joint else {
         return None;

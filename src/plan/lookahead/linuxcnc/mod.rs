@@ -17,7 +17,7 @@ mod glide;
 use super::super::arc::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
 use super::blend::{Axes, Fit, fit};
 use super::element::{Element, Joint};
-use super::join::Joiner;
+use super::join::{Joined, Joiner, chords};
 use super::pending::{Braking, Pending};
 use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, dot, scale, sub};
@@ -68,7 +68,19 @@ impl<T: Copy> LinuxCnc<T> {
         if self.joiner.passes(element) {
             return self.enqueue(element, element.tag, false, window);
         }
-        for joined in self.joiner.push(element, &self.axes) {
+        if let Some(chords) = chords(element, &self.axes) {
+            for chord in &chords {
+                let complete = self.joiner.push_chord(chord, &self.axes);
+                self.enqueue_all(complete, window);
+            }
+        } else {
+            let complete = self.joiner.push(element, &self.axes);
+            self.enqueue_all(complete, window);
+        }
+    }
+
+    fn enqueue_all(&mut self, joined: [Option<Joined<T>>; 2], window: &mut Window<Load<T>>) {
+        for joined in joined.into_iter().flatten() {
             self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
     }
