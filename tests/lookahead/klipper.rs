@@ -235,7 +235,11 @@ proptest! {
                 4 => [x, 0.0, 0.0, 0.0],
                 _ => [x, y, 0.0, 0.0],
             };
-            (by.map(|part: f64| (part * 1e6).round() / 1e6), f64::round(speed * 10.0) / 10.0)
+            let mut by = by.map(|part: f64| (part * 1e6).round() / 1e6);
+            if by == [0.0; 4] {
+                by[0] = 1.0;
+            }
+            (by, f64::round(speed * 10.0) / 10.0)
         }).collect();
         compare(&asked);
     }

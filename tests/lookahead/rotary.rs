@@ -48,7 +48,7 @@ fn machine(axes: &[Limits]) -> Machine {
         .to_owned();
     for (letter, [speed, accel, mass, friction, weight]) in axes {
         let rotary = ["A", "B", "C"].contains(letter);
-        text += &if rotary {
+        let table = if rotary {
             format!(
                 "[axes.{letter}]\nkind = \"rotary\"\nrapid_deg_min = {speed:?}\n\
                  accel_deg_s2 = {accel:?}\ninertia_kg_m2 = {mass:?}\n\
@@ -61,6 +61,7 @@ fn machine(axes: &[Limits]) -> Machine {
                  gravity_n = {weight:?}\nefficiency = 0.8\n"
             )
         };
+        text += &table;
     }
     Machine::from_toml("test.toml", &text).expect("a machine").0
 }
