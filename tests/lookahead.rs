@@ -3,10 +3,15 @@
 mod certain;
 mod corners;
 mod glide;
+mod klipper;
 mod linuxcnc;
 mod measured;
 mod profile;
 mod recorded;
+mod recorder;
+mod rotary;
+mod side_by_side;
+mod words;
 mod tandem;
 
 use gwatt::interpret::{ActionKind, Diagnostics, Facts, Interpreter, MoveKind, Reading, Step};
@@ -176,8 +181,11 @@ pub(crate) fn plan_elements(
                     let number = (action.value * 10.0).round() as u16;
                     let said = machine.controller.queue.effect(letter, number);
                     let ends = matches!(action.kind, ActionKind::Stop | ActionKind::End);
+                    let parts = matches!(action.kind, ActionKind::PathMode | ActionKind::Feed);
                     if ends || said == Some(QueueEffect::Stop) {
                         planner.stop();
+                    } else if parts || said == Some(QueueEffect::Pass) {
+                        planner.part();
                     }
                 }
             }

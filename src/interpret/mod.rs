@@ -73,6 +73,7 @@ pub(crate) use flow::Flow;
 pub use flow::Limits;
 pub use knob::KnobState;
 pub use modal::{Feed, Modal, NumberText};
+pub(crate) use motion::path_length;
 pub use moves::*;
 pub use parameter_file::ParameterFile;
 pub use position::{BlockDelete, Reading, Start};

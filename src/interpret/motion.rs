@@ -385,7 +385,7 @@ fn no_such_axis(letter: u8, span: Span, report: &mut Report<'_, '_>) {
 /// Length of the path that F speaks for, and whether that is a length of
 /// linear axes: XYZ if any of them moves, else UVW, else the rotary axes, else
 /// the extruder (RS274/NGC, "Feed Rate").
-pub(super) fn path_length(
+pub(crate) fn path_length(
     start: &AxisValues,
     end: &AxisValues,
     moving: AxisSet,

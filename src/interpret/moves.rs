@@ -22,6 +22,13 @@ impl Step {
     pub fn moves_axes(&self) -> bool {
         matches!(self, Self::Move(mv) if mv.moves_axes())
     }
+
+    /// Whether it only reports a word of the feed, which need not stand in a limited
+    /// program as it does in the original.
+    #[must_use]
+    pub(crate) fn is_feed_note(&self) -> bool {
+        matches!(self, Self::Action(action) if action.kind == ActionKind::Feed)
+    }
 }
 
 /// The kind of a move.
@@ -208,6 +215,10 @@ pub enum ActionKind {
     Other,
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,
+    /// The feed mode (the G number), or without a motion a new feed (0): only where
+    /// lines may be put together, which they are not over it. A limited program may
+    /// have others.
+    Feed,
     /// Offsets or lengths change: G54, G92, G43 … (the G number); only where
     /// the look-ahead is modelled, which may end at it.
     Offset,

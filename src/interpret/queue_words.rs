@@ -4,8 +4,8 @@
 use super::code::GCode;
 use super::execute::{Control, Run};
 use super::motion::EXTRUDER;
-use super::moves::{Action, ActionKind, Step};
-use crate::machine::{Family, MESSAGES};
+use super::moves::{Action, ActionKind, Corner, Step};
+use crate::machine::{CornerRule, Family, MESSAGES};
 use crate::syntax::Block;
 
 impl Control<'_> {
@@ -18,6 +18,14 @@ impl Control<'_> {
     pub(super) fn note_queue_and_spindle(&mut self, run: &mut Run<'_, '_>) {
         self.note_offsets(run);
         self.tell_spindle(run);
+    }
+
+    /// Reports a word of the feed where lines may be put together.
+    pub(super) fn note_feed(&self, value: f64, run: &mut Run<'_, '_>) {
+        let joins = matches!(self.modal.corner, Corner::Round { join_mm, .. } if join_mm > 0.0);
+        if joins && self.plans_ahead() {
+            run.act(ActionKind::Feed, value);
+        }
     }
 
     /// Tells of words that change offsets or lengths, or the meaning of S.
@@ -35,14 +43,30 @@ impl Control<'_> {
                 | GCode::ToolLength(_)
                 | GCode::ClearOffset { .. }
                 | GCode::RestoreOffset
-                | GCode::DataSetting
                 | GCode::LocalOffset
                 | GCode::SurfaceSpeed => true,
+                GCode::DataSetting => self.sets_what_is_in_force(run),
                 _ => false,
             };
             if tells {
                 run.act(ActionKind::Offset, f64::from(number) / 10.0);
             }
+        }
+    }
+
+    /// Whether G10 may change what is in force: `LinuxCNC` does no more than keep the
+    /// origin of another work offset, and reads its tool table again without a sign.
+    fn sets_what_is_in_force(&self, run: &Run<'_, '_>) -> bool {
+        let value = |letter| run.words.word(letter, run.block).map(|word| word.value);
+        let rules = self.machine.controller.planner.look_ahead;
+        if !rules.is_some_and(|rules| matches!(rules.corner, CornerRule::LinuxCnc { .. })) {
+            return true;
+        }
+        let active = f64::from(self.position.offsets().system);
+        match value(b'L') {
+            Some(0.0) => false,
+            Some(2.0 | 20.0) => value(b'P').is_none_or(|p| p == 0.0 || p == active),
+            _ => true,
         }
     }
 

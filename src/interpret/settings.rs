@@ -10,8 +10,10 @@ use crate::source::Span;
 
 impl Control<'_> {
     pub(super) fn feed_mode(&mut self, run: &mut Run<'_, '_>) {
-        for (code, ..) in &run.words.g {
-            if let GCode::FeedMode(mode) = *code {
+        for index in 0..run.words.g.len() {
+            let (code, number, _) = run.words.g[index];
+            if let GCode::FeedMode(mode) = code {
+                self.note_feed(f64::from(number) / 10.0, run);
                 if mode != self.modal.feed_mode {
                     // An F of another meaning must not be taken over.
                     self.modal.feed = None;
@@ -57,11 +59,17 @@ impl Control<'_> {
             text
         };
         run.facts.feed_word = Some(word);
-        self.modal.feed = Some(Feed {
+        let feed = Feed {
             value: word.value,
             mm_per_unit,
             text: NumberText::new(text),
-        });
+        };
+        let before = self.modal.feed.as_ref();
+        let same = before.is_some_and(|before| before.value == feed.value);
+        if !same && !run.words.has_axes() {
+            self.note_feed(0.0, run);
+        }
+        self.modal.feed = Some(feed);
     }
 
     /// Plane, units, compensation, offsets, path and distance mode.

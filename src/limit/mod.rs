@@ -14,6 +14,7 @@ mod optimum;
 mod options;
 mod root;
 mod solver;
+mod stop;
 mod window;
 
 pub use change::{Change, Permit};

@@ -7,7 +7,7 @@ use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine, RapidJoint};
+use crate::machine::{AxisValues, Machine};
 use crate::plan::{Overrides, Plan, blended_bound, blended_speed, driven_accel, plan};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
@@ -168,6 +168,8 @@ impl<'m> Solver<'m> {
 
     /// Load of a move that begins and ends at rest, with the spindle beside it.
     fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
+        let halved = self.halved(case.mv, mv);
+        let mv = halved.as_ref().unwrap_or(mv);
         let plan = plan(self.machine, mv, self.largest);
         let demand = self.model.demand(mv, &plan, Want::PEAKS);
         let known = mv.unknown_start.is_empty();
@@ -184,14 +186,6 @@ impl<'m> Solver<'m> {
     fn is_open(&self, case: Case<'_>, mv: &Move) -> bool {
         let known = mv.unknown_start.is_empty() && mv.length_mm > 0.0;
         known && matches!(case.ends, Ends::Any(_)) && !self.gets_stops(case.mv, mv)
-    }
-
-    /// Whether a rapid became a feed that begins and ends at rest, since feeds
-    /// would be blended otherwise than rapids.
-    fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
-        self.machine.controller.planner.rapid_joint != RapidJoint::All
-            && rapid.kind == MoveKind::Rapid
-            && changed.kind != MoveKind::Rapid
     }
 
     pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {

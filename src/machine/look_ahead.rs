@@ -13,7 +13,7 @@ pub struct LookAhead {
     /// where only the axes have limits.
     pub path_accel_mm_s2: f64,
     /// Share of each hill of speed that is cruised at least, [0, 1) (Klipper's
-    /// minimum cruise ratio); 0: none.
+    /// minimum cruise ratio), at the acceleration of all paths; 0: none.
     pub min_cruise_ratio: f64,
     /// How arcs are rounded into chords; `None`: they are run as arcs.
     pub chords: Option<ChordRule>,
@@ -53,8 +53,10 @@ pub enum CornerRule {
         /// The steps in mm/s; infinite where not given.
         step_mm_s: AxisValues,
     },
-    /// Speed at a corner of 90 degrees (Klipper): `v² = v90²·(√2 − 1)·s/(1 − s)`,
-    /// and at most what the block's length bends through.
+    /// Speed at a corner of 90 degrees (Klipper):
+    /// `v² = v90²·(√2 − 1)·s/(1 − s)·a/a_max`, a the lower acceleration of both
+    /// blocks and `a_max` that of all paths, and at most what the block's length bends
+    /// through.
     SquareCorner {
         /// Speed at 90 degrees in mm/s.
         velocity_mm_s: f64,

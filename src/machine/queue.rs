@@ -30,8 +30,11 @@ pub struct Queue {
     pub stops: Vec<QueueWord>,
     /// The same where they change what is in force, else they do nothing.
     pub stops_on_change: Vec<QueueWord>,
-    /// They act while the axes move on.
+    /// They act while the axes move on. Lines before and after them are not put
+    /// together.
     pub passes: Vec<QueueWord>,
+    /// The same, but such lines may be.
+    pub joins: Vec<QueueWord>,
 }
 
 /// What a word does to the motion before it.
@@ -41,8 +44,10 @@ pub enum QueueEffect {
     Stop,
     /// It stops if the word changes what is in force.
     StopOnChange,
-    /// It goes on.
+    /// It goes on; lines before and after the word stay apart.
     Pass,
+    /// It goes on as if nothing stood there.
+    Join,
 }
 
 impl Queue {
@@ -54,6 +59,7 @@ impl Queue {
             (&self.stops, QueueEffect::Stop),
             (&self.stops_on_change, QueueEffect::StopOnChange),
             (&self.passes, QueueEffect::Pass),
+            (&self.joins, QueueEffect::Join),
         ];
         let named = |list: &[QueueWord]| list.iter().any(|word| word.is(letter, number));
         let found = lists.into_iter().find(|(list, _)| named(list));
@@ -72,11 +78,13 @@ mod tests {
             stops: vec![word(b'S', None), word(b'M', Some(80))],
             stops_on_change: vec![word(b'M', Some(90))],
             passes: vec![word(b'M', Some(620))],
+            joins: vec![word(b'T', None)],
         };
         assert_eq!(queue.effect(b'S', 15), Some(QueueEffect::Stop));
         assert_eq!(queue.effect(b'M', 80), Some(QueueEffect::Stop));
         assert_eq!(queue.effect(b'M', 90), Some(QueueEffect::StopOnChange));
         assert_eq!(queue.effect(b'M', 620), Some(QueueEffect::Pass));
+        assert_eq!(queue.effect(b'T', 30), Some(QueueEffect::Join));
         assert_eq!(queue.effect(b'M', 70), None);
     }
 }

@@ -327,6 +327,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
     /// (b): the step must be the original's next one.
     pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
         self.pass_spindle();
+        if step.is_feed_note() {
+            return;
+        }
         let original = self.originals.get(self.done).map(|original| &*original);
         if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
             return;

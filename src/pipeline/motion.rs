@@ -145,6 +145,9 @@ impl Mover<'_, '_> {
         }
         // A move of no length is passed; a dwell stops.
         if mv.kind != MoveKind::Dwell && mv.length_mm <= 0.0 {
+            if let (MoveKind::Rapid, Some(planner)) = (mv.kind, &mut self.planner) {
+                planner.part();
+            }
             if self.open.is_empty() {
                 self.next += 1;
                 self.position = mv.end;
@@ -207,6 +210,12 @@ impl Mover<'_, '_> {
     fn act(&mut self, action: &Action) -> Result<(), Failure> {
         match self.switched.effect(&self.machine.controller, action) {
             Effect::Stop => self.stop(),
+            Effect::Part => {
+                if let Some(planner) = &mut self.planner {
+                    planner.part();
+                }
+                Ok(())
+            }
             // What may or may not stop is taken not to.
             Effect::None | Effect::Unknown => Ok(()),
         }
@@ -260,16 +269,10 @@ impl Mover<'_, '_> {
                 range_mm = [*from_mm, *to_mm];
                 Track::of(mv)
             }
-            Piece::Joined { direction } => {
-                let mut all = [0.0; crate::machine::AXES];
-                for (slot, d) in all.iter_mut().zip(direction) {
-                    *slot = *d;
-                }
-                Track::Line {
-                    start: self.position,
-                    direction: all,
-                }
-            }
+            Piece::Joined { direction } => Track::Line {
+                start: self.position,
+                direction: *direction,
+            },
             Piece::Blend(blend) => Track::Blend {
                 start: self.position,
                 blend: *blend,

@@ -9,8 +9,8 @@ use super::drive;
 use super::limits::{self, PathLimits};
 use super::profile::{Outline, Phase, PhaseKind, Profile};
 use super::s_curve::{SCurve, Steepness};
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine, RapidPath};
+use crate::interpret::{Move, MoveKind, path_length};
+use crate::machine::{AxisSet, AxisValues, Machine, RapidPath};
 
 /// Override switches as factors; 1 is 100 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -356,7 +356,8 @@ fn independent(
     plan
 }
 
-/// A move from an unknown start: the time of its known part, and bounds.
+/// A move from an unknown start: bounds, and the time that it takes from where the axes
+/// were taken to stand, which is 0 where nothing was known of them before.
 fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> Plan {
     let motion = UnknownMotion {
         bound: speed_bound(machine, mv, overrides, *caps),
@@ -373,6 +374,26 @@ fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> P
     } else {
         Plan::rest(0.0)
     };
+    if mv.arc.is_none() {
+        let whole = plan_with(machine, &assumed(mv), overrides, *caps);
+        plan.duration_s = plan.duration_s.max(whole.duration_s);
+    }
     plan.trajectory = Trajectory::Unknown(Box::new(motion));
     plan
+}
+
+/// A straight move from where its axes were taken to stand.
+fn assumed(mv: &Move) -> Move {
+    let mut whole = mv.clone();
+    let commanded = AxisSet(mv.moving.0 | mv.unknown_start.0);
+    whole.unknown_start = AxisSet::default();
+    whole.moving = AxisSet::default();
+    for axis in commanded
+        .iter()
+        .filter(|axis| mv.start[*axis] != mv.end[*axis])
+    {
+        whole.moving.insert(axis);
+    }
+    (whole.length_mm, _) = path_length(&mv.start, &mv.end, whole.moving, None);
+    whole
 }

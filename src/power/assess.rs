@@ -169,6 +169,7 @@ impl<'m> Assessor<'m> {
         let Some(ahead) = &mut self.ahead else { return };
         match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
+            Effect::Part => ahead.part(),
             Effect::Stop => {
                 ahead.stop(self.machine, &self.model, &mut self.eye);
                 ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);

@@ -11,6 +11,8 @@ use crate::machine::{Controller, Family, MESSAGE, QueueEffect};
 pub(crate) enum Effect {
     /// It goes on.
     None,
+    /// It goes on; lines before and after the action are not put together.
+    Part,
     /// It stops.
     Stop,
     /// One of the two.
@@ -53,8 +55,8 @@ impl Switched {
             ActionKind::ToolSelect => b'T',
             ActionKind::Offset => b'G',
             ActionKind::Message => MESSAGE,
-            ActionKind::PathMode
-            | ActionKind::SpindleRpm
+            ActionKind::PathMode | ActionKind::Feed => return Effect::Part,
+            ActionKind::SpindleRpm
             | ActionKind::SurfaceSpeed
             | ActionKind::SpindleClamp
             | ActionKind::SpindleCenter
@@ -74,7 +76,8 @@ impl Switched {
         match controller.queue.effect(letter, number) {
             Some(QueueEffect::Stop) => Effect::Stop,
             Some(QueueEffect::StopOnChange) if changes => Effect::Stop,
-            Some(QueueEffect::Pass | QueueEffect::StopOnChange) => Effect::None,
+            Some(QueueEffect::Pass) => Effect::Part,
+            Some(QueueEffect::Join | QueueEffect::StopOnChange) => Effect::None,
             None => match action.kind {
                 ActionKind::Spindle | ActionKind::ToolChange => Effect::Stop,
                 // A printer's T changes the tool.

@@ -83,7 +83,7 @@ impl PowerModel {
 }
 
 /// A line in X, Y and Z, otherwise like the move.
-pub(super) fn straight_line(mv: &Move, direction: &[f64; 3], length_mm: f64) -> Move {
+pub(super) fn straight_line(mv: &Move, direction: &[f64], length_mm: f64) -> Move {
     let mut line = mv.clone();
     line.length_mm = length_mm;
     line.arc = None;

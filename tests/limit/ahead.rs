@@ -71,8 +71,13 @@ fn short_lines(word: &str) -> String {
     program + "M2\n"
 }
 
-/// A word of which the profiles say nothing.
-const UNSAID: &str = "G10 L2 P2 X0\n";
+/// A word of which the profile says nothing.
+fn unsaid(controller: &str) -> &'static str {
+    match controller {
+        "linuxcnc" => "M19 R0\n",
+        _ => "G10 L2 P2 X0\n",
+    }
+}
 
 /// It may stop the motion or not: nothing is asked for that is more in either
 /// case, however short the lines are.
@@ -80,7 +85,7 @@ const UNSAID: &str = "G10 L2 P2 X0\n";
 fn what_may_stop_the_motion_counts_as_far_as_it_reaches() {
     for rig in [LINUXCNC, GRBL] {
         let [through, stopped, doubt] =
-            ["", "G4 P0\n", UNSAID].map(|word| report(rig, &short_lines(word)));
+            ["", "G4 P0\n", unsaid(rig.controller)].map(|word| report(rig, &short_lines(word)));
         // 0.15 m/s takes 2.25 mm: 12 lines brake and 12 speed up.
         assert!(
             through[80..120].iter().all(|row| row.peak_w < 1.0),
@@ -356,7 +361,7 @@ fn text(pieces: &[Piece], controller: &str, doubt: Option<&str>) -> String {
             Piece::Word(word @ ("M8" | "M9")) => match doubt {
                 Some(other) => write!(program, "{other}"),
                 None if matches!(controller, "linuxcnc" | "grbl") => {
-                    write!(program, "{UNSAID}")
+                    write!(program, "{}", unsaid(controller))
                 }
                 None => writeln!(program, "{word}"),
             },

@@ -97,3 +97,27 @@ fn a_rapid_among_blended_feeds_is_written_between_stops() {
     // No move is added, and none is lost.
     assert_eq!(summary.before.moves, summary.after.moves);
 }
+
+/// Between the dwells `LinuxCNC` accelerates by half, 2.5 m/s²: F is found for that,
+/// 500 W / (500 kg · 2.5 m/s²) = 0.4 m/s, and not the 0.2 m/s of the whole.
+#[test]
+fn between_dwells_half_of_the_acceleration_counts() {
+    let rig = super::Rig {
+        controller: "linuxcnc",
+        peak_w: 500.0,
+        ..RIG
+    };
+    let program = "G21 G90 G64 P0.05\nG1 X10 F500\nG0 X400\nG1 X410\n";
+    let (text, summary) = rig.limit(program.as_bytes()).expect("a program");
+    assert!(summary.certified, "{:?}", summary.reasons);
+    let text = String::from_utf8(text).expect("text");
+    assert!(text.contains("\nG4 P0\nG1 X400 F24000\nG4 P0\n"), "{text}");
+    assert!(
+        (499.9..=500.0).contains(&summary.after.peak_w),
+        "{}",
+        summary.after.peak_w
+    );
+    // Under G61.1 nothing is blended: no dwell, and all of the acceleration.
+    let exact = rig.fits("G21 G90 G61.1\nG1 X10 F500\nG0 X400\nG1 X410\n");
+    assert!(exact.contains("\nG1 X400 F11999\n"), "{exact}");
+}

@@ -36,7 +36,7 @@ fn point(piece: &Planned<u64>, element: &Element<u64>, state: State) -> Point {
     let (v, a) = (state.velocity_mm_s, state.accel_mm_s2);
     let (mut along, mut across) = ([0.0; 3], [0.0; 3]);
     match piece.piece {
-        Piece::Joined { direction } => along = direction,
+        Piece::Joined { direction } => along.copy_from_slice(&direction[..3]),
         Piece::Blend(blend) => {
             let angle = (state.position_mm - blend.lead_mm).max(0.0) / blend.radius_mm;
             let (sin, cos) = libm::sincos(angle);

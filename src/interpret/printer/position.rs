@@ -64,7 +64,8 @@ impl Control<'_> {
             if home.is_none() {
                 self.position.unknown.insert(axis);
                 let message = "without `home_mm` of its axis in the machine file, where G28 ends \
-                               is not known: the next moves count from anywhere";
+                               is not known: the power of the next moves counts from anywhere, \
+                               their time from 0";
                 run.report.note_once("home", message, span);
             }
         }

@@ -227,8 +227,11 @@ pub(crate) struct PlannerTable {
     pub(crate) stops: Option<Vec<At<String>>>,
     /// The same for words that do nothing where what they say is in force.
     pub(crate) stops_on_change: Option<Vec<At<String>>>,
-    /// Words that act while the axes move on.
+    /// Words that act while the axes move on; lines before and after them are not
+    /// put together where the controller does that.
     pub(crate) passes: Option<Vec<At<String>>>,
+    /// The same where such lines may be put together.
+    pub(crate) joins: Option<Vec<At<String>>>,
     /// What waits for the spindle's speed; default: not known, so that both
     /// cases are counted.
     pub(crate) spindle_wait: Option<SpindleWaitName>,

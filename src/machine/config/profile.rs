@@ -213,6 +213,7 @@ fn queue(findings: &mut Findings<'_>, table: &PlannerTable) -> Queue {
         stops: list(&table.stops),
         stops_on_change: list(&table.stops_on_change),
         passes: list(&table.passes),
+        joins: list(&table.joins),
     }
 }
 

@@ -40,6 +40,8 @@ pub(super) struct Before {
     /// Squared speed at which it could begin from rest.
     rest2: f64,
     prints: Prints,
+    /// See [`After`].
+    accel_share: f64,
 }
 
 impl Before {
@@ -65,6 +67,9 @@ pub(super) struct After<'e, T> {
     pub rest2: f64,
     /// Of interest to [`CornerRule::SpeedStep`] alone.
     prints: Prints,
+    /// Its acceleration as a share of what counts for all paths, up to 1; of interest
+    /// to [`CornerRule::SquareCorner`] alone.
+    accel_share: f64,
 }
 
 impl<'e, T> After<'e, T> {
@@ -88,6 +93,12 @@ impl<'e, T> After<'e, T> {
             }
             _ => (false, false),
         };
+        let accel_share = match rule {
+            CornerRule::SquareCorner { .. } => {
+                accel_share(element.accel_mm_s2, element.common_accel_mm_s2())
+            }
+            _ => 1.0,
+        };
         Self {
             element,
             top_mm_s,
@@ -95,6 +106,7 @@ impl<'e, T> After<'e, T> {
             is_unit: is_unit(&element.start),
             rest2,
             prints,
+            accel_share,
         }
     }
 
@@ -118,6 +130,7 @@ impl<'e, T> After<'e, T> {
             ramp2: element.length_mm * element.accel_mm_s2,
             rest2: self.rest2,
             prints: self.prints,
+            accel_share: self.accel_share,
         }
     }
 }
@@ -179,7 +192,7 @@ pub(super) fn speed2<T>(
         CornerRule::SquareCorner {
             velocity_mm_s,
             extruder_step_mm_s,
-        } => square(*velocity_mm_s, *extruder_step_mm_s, before, after.element),
+        } => square(*velocity_mm_s, *extruder_step_mm_s, before, after),
         CornerRule::SpeedStep {
             step_mm_s,
             same_kind_only,
@@ -323,7 +336,20 @@ fn jerk<T>(steps: &AxisValues, before: &Before, after: &After<'_, T>, span: usiz
     }
 }
 
-fn square<T>(v90: f64, extruder_step: f64, before: &Before, after: &Element<T>) -> f64 {
+/// The speed at a right angle holds at the acceleration of all paths; what Z or the
+/// extruder slow down is slower there too, in proportion.
+#[inline]
+pub(super) fn accel_share(accel_mm_s2: f64, common_mm_s2: f64) -> f64 {
+    if accel_mm_s2 < common_mm_s2 && common_mm_s2 < f64::INFINITY {
+        accel_mm_s2 / common_mm_s2
+    } else {
+        1.0
+    }
+}
+
+fn square<T>(v90: f64, extruder_step: f64, before: &Before, after: &After<'_, T>) -> f64 {
+    let share = before.accel_share.min(after.accel_share);
+    let after = after.element;
     let Some(cos) = cosine(LINEAR, &before.end, &after.start) else {
         return 0.0;
     };
@@ -341,7 +367,7 @@ fn square<T>(v90: f64, extruder_step: f64, before: &Before, after: &Element<T>) 
     // Half a block may bend into the circle: v² = a·(L/2)·tan(half angle).
     let half_tan = 0.5 * s / c;
     let bent = (after.length_mm * after.accel_mm_s2).min(before.ramp2);
-    (v90 * v90 * (SQRT_2 - 1.0) * s / (1.0 - s))
+    (share * v90 * v90 * (SQRT_2 - 1.0) * s / (1.0 - s))
         .min(bent * half_tan)
         .min(extruder2)
 }

@@ -232,11 +232,31 @@ impl<T> Element<T> {
         });
     }
 
+    /// The acceleration that the program or the controller sets for all paths, mm/s²:
+    /// that along the path, or of X and Y where that has no limit (Klipper's
+    /// `max_accel`); infinite where neither has one.
+    #[inline]
+    pub(super) fn common_accel_mm_s2(&self) -> f64 {
+        common_accel(self.path_accel_mm_s2, &self.axis_accel_mm_s2)
+    }
+
     /// Speed that feed, axes and curvature permit, mm/s.
     #[must_use]
     #[inline]
     pub fn top_mm_s(&self) -> f64 {
         let axes = lower(self.speed_mm_s, self.curve_speed_mm_s);
         lower(axes, self.feed_mm_s)
+    }
+}
+
+/// See [`Element::common_accel_mm_s2`].
+#[inline]
+pub(crate) fn common_accel(path_mm_s2: f64, axes_mm_s2: &AxisValues) -> f64 {
+    let [x, y, ..] = *axes_mm_s2;
+    let largest = if y > x { y } else { x };
+    if largest > 0.0 {
+        lower(path_mm_s2, largest)
+    } else {
+        path_mm_s2
     }
 }

@@ -60,6 +60,8 @@ pub(crate) struct Line {
     /// Not above the acceleration along the path, here and through the joint
     /// before it, mm/s².
     pub least_accel_mm_s2: f64,
+    /// The largest share of the acceleration of all paths that it surely has, up to 1.
+    pub common_share: f64,
     pub start: LineStart,
 }
 

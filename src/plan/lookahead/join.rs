@@ -10,7 +10,7 @@ use arrayvec::ArrayVec;
 use super::blend::Axes;
 use super::element::{Element, Joint};
 use super::vector::{Vector, add, dot, length, scale, sub, unit};
-use crate::machine::AXES;
+use crate::machine::{AXES, AxisValues};
 use std::f64::consts::PI;
 
 /// Points that are put together, at most: one more ends the line.
@@ -59,21 +59,19 @@ impl<T: Copy> Joiner<T> {
         self.last.is_none() && (!may_join || element.curve.is_none() && !joins(element))
     }
 
-    /// Adds an element; gives what is complete before it, and the element
-    /// itself where nothing can be joined to it.
-    pub fn push(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
-        let Some(chords) = chords(element, axes) else {
-            return self.link(element, axes);
-        };
-        // Chords are always held back, so that each completes one line at most.
-        chords.map(|chord| {
-            let [before, _] = self.link(&chord, axes);
-            self.has_chord = true;
-            before
-        })
+    /// Adds a chord of an arc: what [`Self::push`] gives.
+    pub fn push_chord(&mut self, chord: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
+        let [before, mut alone] = self.push(chord, axes);
+        self.has_chord = alone.is_none();
+        if let Some(chord) = &mut alone {
+            chord.is_line = true;
+        }
+        [before, alone]
     }
 
-    fn link(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
+    /// Adds an element that is no arc of two chords; gives what is complete before it,
+    /// and the element itself where nothing can be joined to it.
+    pub fn push(&mut self, element: &Element<T>, axes: &Axes) -> [Option<Joined<T>>; 2] {
         let change = &element.start;
         let travel = scale([change[0], change[1], change[2]], element.length_mm);
         let joins = joins(element);
@@ -128,7 +126,7 @@ impl<T: Copy> Joiner<T> {
         let is_line = std::mem::take(&mut self.has_chord) || several;
         self.points.clear();
         if several {
-            element = straight(&element, end, axes)?;
+            element = straight(&element, end, [0.0; AXES], axes)?;
         }
         Some(Joined {
             element,
@@ -138,27 +136,33 @@ impl<T: Copy> Joiner<T> {
     }
 }
 
-/// An element as a straight line with the limits of its direction; `None` if it
-/// has no length.
-fn straight<T: Copy>(of: &Element<T>, travel: Vector, axes: &Axes) -> Option<Element<T>> {
+/// An element as a straight line with the limits of its direction; `others`: how far
+/// the axes move that are not X, Y or Z. `None` if it has no length.
+fn straight<T: Copy>(
+    of: &Element<T>,
+    travel: Vector,
+    others: AxisValues,
+    axes: &Axes,
+) -> Option<Element<T>> {
+    let length_mm = length(travel);
     let along = unit(travel)?;
-    let accels = axes.accel(&of.axis_accel_mm_s2);
     let mut element = Element {
-        length_mm: length(travel),
+        length_mm,
         speed_mm_s: f64::INFINITY,
         accel_mm_s2: of.path_accel_mm_s2,
         jerk_mm_s3: f64::INFINITY,
         curve_speed_mm_s: f64::INFINITY,
         curve: None,
-        start: [0.0; AXES],
+        start: others.map(|change| change / length_mm),
         ..*of
     };
-    for (i, change) in along.into_iter().enumerate() {
-        element.start[i] = change;
-        if change != 0.0 {
-            element.speed_mm_s = element.speed_mm_s.min(axes.speed[i] / change.abs());
-            element.accel_mm_s2 = element.accel_mm_s2.min(accels[i] / change.abs());
-            element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerk[i] / change.abs());
+    element.start[..3].copy_from_slice(&along);
+    for (i, change) in element.start.iter().enumerate() {
+        if *change != 0.0 {
+            let per = 1.0 / change.abs();
+            element.speed_mm_s = element.speed_mm_s.min(axes.speeds[i] * per);
+            element.accel_mm_s2 = element.accel_mm_s2.min(of.axis_accel_mm_s2[i] * per);
+            element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerks[i] * per);
         }
     }
     element.end = element.start;
@@ -167,14 +171,14 @@ fn straight<T: Copy>(of: &Element<T>, travel: Vector, axes: &Axes) -> Option<Ele
 
 /// The two chords of an arc that bulges so little that the detector takes it for
 /// lines.
-fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Element<T>; 2]> {
+pub(super) fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Element<T>; 2]> {
     let curve = element.curve.as_ref()?;
     let Joint::Blend { join_mm, .. } = element.joint else {
         return None;
     };
     let half_rad = 0.5 * curve.sweep_rad;
     let bulge_mm = curve.radius_mm * (1.0 - libm::cos(half_rad));
-    let flat = curve.plane == [0, 1] && half_rad.abs() <= PI && keeps_to_xyz(element);
+    let flat = curve.plane == [0, 1] && half_rad.abs() <= PI;
     if !flat || bulge_mm >= join_mm {
         return None;
     }
@@ -189,8 +193,11 @@ fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Element<T>; 2]>
         add(scale(flat, curve.radius_mm), [0.0, 0.0, rise])
     };
     let (middle, end) = (at(half_rad), at(curve.sweep_rad));
-    let first = straight(element, middle, axes)?;
-    Some([first, straight(element, sub(end, middle), axes)?])
+    // The other axes move by half with each.
+    let mut others = element.start.map(|change| 0.5 * change * element.length_mm);
+    others[..3].fill(0.0);
+    let first = straight(element, middle, others, axes)?;
+    Some([first, straight(element, sub(end, middle), others, axes)?])
 }
 
 /// Whether axes other than X, Y and Z stand.

@@ -19,6 +19,7 @@ mod runs;
 mod vector;
 mod window;
 
+pub(crate) use element::common_accel;
 pub use element::{Curve, Element, Joint};
 pub(crate) use glide::{Gliding, Line, LineStart, Passed};
 pub use planner::{Blend, PathPlanner, Piece, Planned};

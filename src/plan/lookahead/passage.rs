@@ -53,8 +53,9 @@ pub(super) fn permits(rule: &CornerRule, before: &Line, after: &Line, speed_mm_s
                 before.length_mm * before.least_accel_mm_s2,
             );
             let most2 = speed2 * (1.0 + ROUNDING);
+            let share = lower(before.common_share, after.common_share);
             c > 0.0
-                && velocity_mm_s * velocity_mm_s * (SQRT_2 - 1.0) * (s + s2) >= most2 * c2
+                && share * velocity_mm_s * velocity_mm_s * (SQRT_2 - 1.0) * (s + s2) >= most2 * c2
                 && bent * bent * s2 >= 4.0 * most2 * most2 * c2
                 && (f - e) * (f - e) * most2 <= extruder_step_mm_s * extruder_step_mm_s
         }

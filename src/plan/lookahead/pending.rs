@@ -30,9 +30,11 @@ pub(super) struct Pending<T> {
     /// Share of the acceleration given up to the kinks before and behind.
     pub kink_before: f64,
     pub kink_behind: f64,
-    /// A parabolic blend before or behind it: its path is known within the
-    /// tolerance only.
-    pub parabolic: bool,
+    /// A parabolic blend before it, and one after it, which take half of its
+    /// acceleration. Next to an element that moves axes other than X, Y and Z the
+    /// one before it takes none, though the elements overlap.
+    pub blended_before: bool,
+    pub blended_after: bool,
     /// Behind it there is a stop.
     pub rests: bool,
     /// The element before it, where it begins while that brakes.
@@ -53,7 +55,8 @@ impl<T: Copy> Pending<T> {
             max_speed: 0.0,
             kink_before: 0.0,
             kink_behind: 0.0,
-            parabolic: false,
+            blended_before: false,
+            blended_after: false,
             rests: false,
             braking: None,
             entry2: 0.0,
@@ -70,7 +73,8 @@ impl<T: Copy> Pending<T> {
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
         self.max_speed = max_speed.min(element.length_mm / cycle_s);
         (self.kink_before, self.kink_behind) = (0.0, 0.0);
-        (self.parabolic, self.rests) = (false, false);
+        (self.blended_before, self.blended_after) = (false, false);
+        self.rests = false;
         self.braking = None;
         self.entry2 = 0.0;
     }
@@ -89,7 +93,38 @@ impl<T: Copy> Pending<T> {
 
     /// The share of its acceleration that a parabolic blend leaves.
     pub fn unbent_share(&self) -> f64 {
-        0.5 * (1.0 - self.kink_before.max(self.kink_behind))
+        0.5 * self.straight_share()
+    }
+
+    /// The share that the kinks on both sides leave.
+    fn straight_share(&self) -> f64 {
+        1.0 - self.kink_before.max(self.kink_behind)
+    }
+
+    /// The share that it keeps. It is the `last` where nothing waits after it: then
+    /// its mode takes what a blend would.
+    pub fn kept_share(&self, last: bool) -> f64 {
+        if self.blended_before || self.blended_after {
+            self.unbent_share()
+        } else if last {
+            self.unseen_share()
+        } else {
+            self.straight_share()
+        }
+    }
+
+    /// The share that it keeps while nothing waits after it.
+    pub fn unseen_share(&self) -> f64 {
+        match self.element.joint {
+            Joint::Blend { .. } => self.unbent_share(),
+            _ => self.straight_share(),
+        }
+    }
+
+    /// Whether it overlaps with the element before or after it: its path is known
+    /// within the tolerance only.
+    pub fn overlaps(&self) -> bool {
+        self.blended_after || self.braking.is_some()
     }
 
     /// Gives up `mm` of path at the start or at the end.
@@ -152,10 +187,9 @@ impl<T: Copy> Pending<T> {
 
     /// What is left of it.
     pub fn piece(&self) -> Piece {
-        let change = &self.element.start;
         if self.is_line {
             Piece::Joined {
-                direction: [change[0], change[1], change[2]],
+                direction: self.element.start,
             }
         } else {
             Piece::Along {
@@ -194,7 +228,10 @@ impl<T: Copy> Pending<T> {
     /// acceleration. An arc pulls in its plane; at its start it turns towards the centre, by what half of the
     /// speed asked for needs.
     fn pull(&self, at_end: bool, share: f64) -> Option<Vector> {
-        let side = self.side(at_end)?;
+        let Some(side) = self.side(at_end) else {
+            // Where X, Y and Z stand the planner takes the first axis.
+            return Some([1.0, 0.0, 0.0]);
+        };
         let Some(circle) = &side.circle else {
             return Some(side.leg.tangent);
         };
@@ -208,21 +245,16 @@ impl<T: Copy> Pending<T> {
         unit(add(scale(flat, share * self.accel()), inward))
     }
 
-    /// The speed that the tolerance permits in a parabolic blend, and the sine of
-    /// half the angle inside its corner; `accel` of the first element, of the next one
-    /// a share of its own.
-    fn tolerated(&self, next: &Self, accel: f64, share: f64) -> (f64, f64) {
-        let (Some(first), Some(second)) = (self.pull(true, 1.0), next.pull(false, share)) else {
-            return (f64::INFINITY, 0.0);
+    /// How it leaves a parabolic blend that comes after it.
+    fn leaving(&self) -> Leaving {
+        let tolerance_mm = match self.element.joint {
+            Joint::Blend { tolerance_mm, .. } => tolerance_mm,
+            _ => 0.0,
         };
-        let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
-        let most = match self.element.joint {
-            Joint::Blend { tolerance_mm, .. } if tolerance_mm > 0.0 && cos > 1e-3 => {
-                2.0 * (accel * tolerance_mm / cos).sqrt()
-            }
-            _ => f64::INFINITY,
-        };
-        (most, sin)
+        Leaving {
+            pull: self.pull(true, 1.0),
+            tolerance_mm,
+        }
     }
 
     /// The speed along the mean direction that the planner expects of a parabolic
@@ -230,13 +262,13 @@ impl<T: Copy> Pending<T> {
     /// parabolic blend before it takes half of that.
     pub fn overlap(&self, next: &Self, whole: bool) -> f64 {
         let twice = |yes| if yes { 2.0 } else { 1.0 };
-        let whole = twice(whole && !self.parabolic);
+        let whole = twice(whole && !self.blended_before);
         // So far only its own mode may take half of the next one's.
         let next_whole = twice(!matches!(next.element.joint, Joint::Blend { .. }));
         let share = next_whole * next.unbent_share();
         let first = self.unseen(self.asked_speed(), whole * self.unbent_share());
         let second = next.unseen(next.asked_speed(), share);
-        let (most, sin) = self.tolerated(next, first.accel, share);
+        let (most, sin) = self.leaving().tolerated(first.accel, next, share);
         let [first, second] = Ramp::overlap([&first, &second]);
         0.5 * sin * (first.min(most) + second.min(most))
     }
@@ -247,15 +279,20 @@ impl<T: Copy> Pending<T> {
         let Some(braking) = &self.braking else {
             return 0.0;
         };
-        if last {
-            return braking.lasts_s(&self.unseen(self.max_speed, self.unbent_share()));
-        }
-        braking.lasts_s(&self.ramp())
+        let ramp = if last {
+            self.unseen(self.max_speed, self.kept_share(true))
+        } else {
+            self.ramp()
+        };
+        let (ahead, share) = (braking.ramp, self.kept_share(last));
+        let (most, _) = braking.leaving.tolerated(ahead.accel, self, share);
+        let [brakes_from, _] = Ramp::overlap([&ahead, &ramp]);
+        brakes_from.min(most) / ahead.accel
     }
 
     /// Its ramp.
     fn ramp(&self) -> Ramp {
-        let accel = self.unbent_share() * self.accel();
+        let accel = self.kept_share(false) * self.accel();
         let (speed, accel) = self.turning(self.max_speed, accel);
         Ramp::new(&self.element, self.length_mm, speed, accel)
     }
@@ -311,20 +348,40 @@ impl Ramp {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Braking {
     ramp: Ramp,
-    /// The speed that the tolerance permits.
-    most: f64,
+    leaving: Leaving,
 }
 
 impl Braking {
-    pub fn of<T: Copy>(before: &Pending<T>, next: &Pending<T>) -> Self {
-        let ramp = before.ramp();
-        let (most, _) = before.tolerated(next, ramp.accel, next.unbent_share());
-        Self { ramp, most }
+    pub fn of<T: Copy>(before: &Pending<T>) -> Self {
+        Self {
+            ramp: before.ramp(),
+            leaving: before.leaving(),
+        }
     }
+}
 
-    /// How long it still brakes when the next one begins, s.
-    fn lasts_s(&self, next: &Ramp) -> f64 {
-        let [brakes_from, _] = Ramp::overlap([&self.ramp, next]);
-        brakes_from.min(self.most) / self.ramp.accel
+/// How the first element of a parabolic blend comes to its corner.
+#[derive(Debug, Clone, Copy)]
+struct Leaving {
+    /// The direction in which the planner expects it to pull.
+    pull: Option<Vector>,
+    /// How far the corner may be left, mm; 0: as far as it takes.
+    tolerance_mm: f64,
+}
+
+impl Leaving {
+    /// The speed that the tolerance permits, and the sine of half the angle inside the
+    /// corner; `accel` of this element, of the next one a share of its own.
+    fn tolerated<T: Copy>(&self, accel: f64, next: &Pending<T>, share: f64) -> (f64, f64) {
+        let (Some(first), Some(second)) = (self.pull, next.pull(false, share)) else {
+            return (f64::INFINITY, 0.0);
+        };
+        let (sin, cos) = libm::sincos(0.5 * angle_between(first, second));
+        let most = if self.tolerance_mm > 0.0 && cos > 1e-3 {
+            2.0 * (accel * self.tolerance_mm / cos).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        (most, sin)
     }
 }

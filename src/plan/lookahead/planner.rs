@@ -13,7 +13,7 @@ use super::element::{Element, Joint};
 use super::linuxcnc::LinuxCnc;
 use super::ramp::Speeds2;
 use super::window::{Node, Span, Window};
-use crate::machine::{CornerRule, LookAhead, Machine};
+use crate::machine::{AxisValues, CornerRule, LookAhead, Machine};
 use crate::plan::{Profile, Section};
 
 /// A piece of path that a controller lays round a corner: a circle in space,
@@ -45,8 +45,8 @@ pub enum Piece {
     },
     /// A line that stands for all elements from the first to the tagged one.
     Joined {
-        /// Its unit direction in X, Y and Z.
-        direction: [f64; 3],
+        /// Change of each axis by its length: of X, Y and Z a unit.
+        direction: AxisValues,
     },
     /// A blend; half of it belongs to the element before and half to the next.
     Blend(Blend),
@@ -292,7 +292,10 @@ impl<T: Copy> PathPlanner<T> {
         };
         let top2 = after.top_mm_s * after.top_mm_s;
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
-        node.smooth_accel *= 1.0 - self.look_ahead.min_cruise_ratio;
+        if self.look_ahead.min_cruise_ratio > 0.0 {
+            let share = 1.0 - self.look_ahead.min_cruise_ratio;
+            node.smooth_accel = element.common_accel_mm_s2() * share;
+        }
         node.step2 = after.rest2;
         node.jerk = element.jerk_mm_s3;
         (after, node)
@@ -317,6 +320,13 @@ impl<T: Copy> PathPlanner<T> {
         }
         self.window.push(node);
         *before = Some(after.before());
+    }
+
+    /// The last element and the next one are not put together to one line.
+    pub fn part(&mut self) {
+        if let Rule::LinuxCnc(rule) = &mut self.rule {
+            rule.part(&mut self.window);
+        }
     }
 
     /// The motion stops behind the last element: a dwell, a tool change, the

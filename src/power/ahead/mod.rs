@@ -24,7 +24,7 @@ use super::eye::Eye;
 use super::model::PowerModel;
 use super::robust::Extremes;
 use super::tandem::Ride;
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::machine::{LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Element, PathPlanner};
@@ -185,6 +185,10 @@ impl Ahead {
     ) {
         self.catch_up(machine);
         if role(machine, mv) == Role::Nothing {
+            if mv.kind == MoveKind::Rapid {
+                // Nothing is put together over a rapid, wherever it leads.
+                self.part();
+            }
             self.open.push(mv, text, want).assessment = assessment;
             return self.pump(model, eye);
         }
@@ -243,6 +247,15 @@ impl Ahead {
         self.at_rest = true;
         self.in_doubt = false;
         self.pump(model, eye);
+    }
+
+    /// Lines before and after this place are not put together. Where the motion
+    /// glides nothing is.
+    pub fn part(&mut self) {
+        self.largest.planner.part();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.planner.part();
+        }
     }
 
     /// Whether the last move ends at rest whatever comes.

@@ -27,14 +27,16 @@ const TOLERANCE_SHARE: f64 = 0.25;
 const ANGLE_MIN: f64 = 1e-6;
 const ARC_LENGTH_MIN_MM: f64 = 1e-6;
 
-/// The machine's limits of X, Y and Z; 0 for axes that it does not have.
+/// The machine's limits; those of X, Y and Z are 0 for axes that it does not have.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axes {
     exists: [bool; 3],
     pub speed: Vector,
     /// The lowest of them.
     pub least_speed: f64,
-    pub jerk: Vector,
+    /// Of all axes; infinite for those that the machine does not have.
+    pub speeds: AxisValues,
+    pub jerks: AxisValues,
 }
 
 impl Axes {
@@ -45,7 +47,8 @@ impl Axes {
             exists: speeds.map(|speed| speed.is_some()),
             speed: speeds.map(Option::unwrap_or_default),
             least_speed: speeds.into_iter().flatten().fold(f64::INFINITY, f64::min),
-            jerk: [0, 1, 2].map(|i| axis(i).map_or(f64::INFINITY, limits::jerk)),
+            speeds: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, |axis| axis.rapid_mm_s)),
+            jerks: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, limits::jerk)),
         }
     }
 

@@ -15,7 +15,8 @@ impl<T: Copy> LinuxCnc<T> {
         let speed = pending.target_speed();
         let plain = element.curve.is_none()
             && !pending.is_line
-            && !pending.parabolic
+            && !pending.overlaps()
+            && !pending.blended_before
             && !pending.rotates()
             && pending.entry2 == speed2
             && speed * speed == speed2

@@ -17,7 +17,7 @@ mod glide;
 use super::super::arc::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
 use super::blend::{Axes, Fit, fit};
 use super::element::{Element, Joint};
-use super::join::Joiner;
+use super::join::{Joined, Joiner, chords};
 use super::pending::{Braking, Pending};
 use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, dot, scale, sub};
@@ -68,7 +68,19 @@ impl<T: Copy> LinuxCnc<T> {
         if self.joiner.passes(element) {
             return self.enqueue(element, element.tag, false, window);
         }
-        for joined in self.joiner.push(element, &self.axes).into_iter().flatten() {
+        if let Some(chords) = chords(element, &self.axes) {
+            for chord in &chords {
+                let complete = self.joiner.push_chord(chord, &self.axes);
+                self.enqueue_all(complete, window);
+            }
+        } else {
+            let complete = self.joiner.push(element, &self.axes);
+            self.enqueue_all(complete, window);
+        }
+    }
+
+    fn enqueue_all(&mut self, joined: [Option<Joined<T>>; 2], window: &mut Window<Load<T>>) {
+        for joined in joined.into_iter().flatten() {
             self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
     }
@@ -96,9 +108,10 @@ impl<T: Copy> LinuxCnc<T> {
                 self.hand_over(&before, window, false);
             }
             Way::Parabolic => {
-                before.parabolic = true;
-                next.parabolic = true;
-                next.braking = Some(Braking::of(&before, &next));
+                before.blended_after = true;
+                // It is marked only where it may have been a blend of lines and arcs.
+                next.blended_before = !(before.rotates() || next.rotates());
+                next.braking = Some(Braking::of(&before));
                 self.hand_over(&before, window, false);
             }
             Way::Blend(fit) => self.round(&mut before, &mut next, &fit, window),
@@ -121,12 +134,17 @@ impl<T: Copy> LinuxCnc<T> {
         next
     }
 
-    /// The motion stops behind the last element; nothing comes behind it unless it is
-    /// `followed`.
-    pub fn stop(&mut self, window: &mut Window<Load<T>>, followed: bool) {
+    /// What comes next is not put to the last element.
+    pub fn part(&mut self, window: &mut Window<Load<T>>) {
         if let Some(joined) = self.joiner.flush(&self.axes) {
             self.enqueue(&joined.element, joined.first, joined.is_line, window);
         }
+    }
+
+    /// The motion stops behind the last element; nothing comes behind it unless it is
+    /// `followed`.
+    pub fn stop(&mut self, window: &mut Window<Load<T>>, followed: bool) {
+        self.part(window);
         if let Some(last) = self.pending.take() {
             self.hand_over(&last, window, !followed);
             self.spare = Some(last);
@@ -202,7 +220,7 @@ impl<T: Copy> LinuxCnc<T> {
     fn lead_mm(&self, before: &Pending<T>, fit: &Fit) -> Option<f64> {
         let left_mm = before.length_mm - fit.trims[0];
         let short = left_mm / fit.speed < self.gap_cycles * self.cycle_s;
-        let alone = before.element.curve.is_some() || before.parabolic;
+        let alone = before.element.curve.is_some() || before.blended_before;
         (short && !alone).then_some(left_mm.max(0.0))
     }
 
@@ -275,16 +293,14 @@ impl<T: Copy> LinuxCnc<T> {
 
     /// Puts an element into the window as it is now.
     fn hand_over(&mut self, of: &Pending<T>, window: &mut Window<Load<T>>, last: bool) {
-        let unblended = last && matches!(of.element.joint, Joint::Blend { .. });
-        let share = if of.parabolic || unblended { 0.5 } else { 1.0 };
-        let mut accel = of.accel() * (1.0 - of.kink_before.max(of.kink_behind)) * share;
+        let mut accel = of.accel() * of.kept_share(last);
         let mut max_speed = of.max_speed.min(of.length_mm / self.cycle_s);
         // What a queue's last element may be entered with.
-        let mut half = accel;
+        let mut unseen = of.accel() * of.unseen_share();
         if of.element.curve.is_some() {
-            half *= TANGENTIAL_SHARE;
+            unseen *= TANGENTIAL_SHARE;
             if last {
-                accel = half;
+                accel *= TANGENTIAL_SHARE;
             } else {
                 (max_speed, accel) = of.turning(max_speed, accel);
             }
@@ -318,15 +334,14 @@ impl<T: Copy> LinuxCnc<T> {
             next: None,
             piece: of.piece(),
             // With limits of jerk it is not modelled.
-            certain: !of.parabolic || of.element.jerk_mm_s3 == f64::INFINITY,
+            certain: !of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY,
             rests: of.rests,
             overlap_s: of.overlap_s(last),
-            overlaps: of.parabolic,
+            overlaps: of.overlaps(),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
-        let parabolic = matches!(of.element.joint, Joint::Blend { .. });
         node.jerk = of.element.jerk_mm_s3;
-        node.tail2 = half * of.length_mm * if parabolic && !last { 0.5 } else { 1.0 };
+        node.tail2 = unseen * of.length_mm;
         self.push_node(node, max2, window);
     }
 }

@@ -335,13 +335,16 @@ impl<P: Copy> Window<P> {
             node.e2 = e2;
             if s2 < smooth_reach {
                 if s2 + node.smooth2() > next_s2 || waiting.is_some() {
-                    peak2 = lower(node.top2, 0.5 * (s2 + smooth_reach));
+                    peak2 = 0.5 * (s2 + smooth_reach);
                     if was_final {
                         boundary = boundary.or(Some(i));
                     }
                     if let Some(end) = waiting.take() {
+                        // They do not speed up.
+                        let mut top2 = peak2;
                         for node in self.nodes.range_mut(i + 1..end) {
-                            node.hill2 = peak2;
+                            top2 = lower(top2, node.e2);
+                            node.hill2 = top2;
                         }
                     }
                 }

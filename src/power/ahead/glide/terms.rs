@@ -2,7 +2,7 @@
 
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{AXES, AxisId, AxisSet, AxisValues, CornerRule, LookAhead, Machine, PathMode};
-use crate::plan::lookahead::Line;
+use crate::plan::lookahead::{Line, common_accel};
 
 const LINEAR: usize = 3;
 const EXTRUDER: usize = AxisId::E as usize;
@@ -23,6 +23,10 @@ pub(super) struct Terms {
     pub blocks: u64,
     /// Corners are rounded: what that takes is described too.
     blends: bool,
+    /// The acceleration of all paths counts.
+    has_common: bool,
+    /// The axes whose own limits a joint needs.
+    at_joints: AxisSet,
 }
 
 impl Terms {
@@ -36,6 +40,9 @@ impl Terms {
             path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks: blocks as u64,
             blends: matches!(rules.corner, CornerRule::LinuxCnc { .. }),
+            at_joints: AxisSet::default(),
+            has_common: rules.min_cruise_ratio > 0.0
+                || matches!(rules.corner, CornerRule::SquareCorner { .. }),
         };
         if blocks > 0 && machine.force_curves.is_empty() {
             // Blends are those of X, Y and Z.
@@ -47,6 +54,11 @@ impl Terms {
                 }
             }
             terms.linear = AxisSet(terms.axes.0 & !(1 << EXTRUDER));
+            // The extruder has a step of speed of its own there.
+            terms.at_joints = match rules.corner {
+                CornerRule::SquareCorner { .. } => terms.linear,
+                _ => terms.axes,
+            };
         }
         terms
     }
@@ -80,7 +92,7 @@ impl Terms {
         line.length_mm = mv.length_mm;
         line.path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
         let mut least_accel_mm_s2 = line.path_accel_mm_s2;
-        for axis in axes.iter() {
+        for axis in AxisSet(axes.0 & self.at_joints.0).iter() {
             least_accel_mm_s2 = lower(mv.accel_mm_s2[axis], least_accel_mm_s2);
         }
         line.extrusion = 0.0;
@@ -89,6 +101,11 @@ impl Terms {
             let share = line.extrusion.abs();
             permitted &= share * speed_mm_s <= self.speed_mm_s[EXTRUDER];
             least_accel_mm_s2 = lower(mv.accel_mm_s2[EXTRUDER] / share, least_accel_mm_s2);
+        }
+        if self.has_common {
+            let common_mm_s2 = common_accel(line.path_accel_mm_s2, &mv.accel_mm_s2);
+            least_accel_mm_s2 = lower(least_accel_mm_s2, common_mm_s2);
+            line.common_share = least_accel_mm_s2 / common_mm_s2;
         }
         line.least_accel_mm_s2 = least_accel_mm_s2;
         if self.blends {
