@@ -46,3 +46,4 @@ mod pocket;
 mod borrowed;
 mod lathe_cycles;
 mod repeated;
+mod oracle;
