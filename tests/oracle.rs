@@ -4,6 +4,7 @@
 //!
 //! `switches` says which rules gwatt is held to.
 
+mod ahead;
 mod compare;
 mod course;
 mod electrical;
@@ -14,6 +15,7 @@ mod plant;
 mod profile;
 mod programs;
 mod random;
+mod series;
 mod spindle;
 mod switches;
 mod worked;

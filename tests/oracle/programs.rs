@@ -42,6 +42,62 @@ pub fn any(random: &mut Random, machine: &Described, blocks: usize) -> String {
     text + "M2\n"
 }
 
+/// A program that a controller with look-ahead passes without stops: chords of
+/// curves, corners, long lines, rapids.
+pub fn curvy(random: &mut Random, machine: &Described, controller: &str, blocks: usize) -> String {
+    let printer = ["marlin", "reprap", "klipper"].contains(&controller);
+    let mut text = String::from(if printer { "G21\nG90\n" } else { "G21 G90 G17 G94\n" });
+    if controller == "iso" {
+        text += "G61\n";
+    }
+    let mut at = vec![0.0; machine.axes.len()];
+    let mut written = 0;
+    while written < blocks {
+        match random.below(12) {
+            0 if machine.max_rpm > 0.0 && !printer => {
+                let rpm = random.within(0.0, machine.max_rpm).round();
+                let _ = writeln!(text, "{} S{rpm}", ["M3", "M5"][random.below(2)]);
+            }
+            1 if machine.loads && !printer => {
+                let _ = writeln!(text, "{}", ["M8", "M9"][random.below(2)]);
+            }
+            2..=3 => {
+                let words = target(random, machine, &mut at);
+                let _ = writeln!(text, "G0{words}");
+                written += 1;
+            }
+            4 if machine.arcs && !printer => {
+                arc(random, &mut text, &mut at);
+                written += 1;
+            }
+            5..=7 => {
+                let words = target(random, machine, &mut at);
+                let feed = random.scale(300.0, 60_000.0).round();
+                let _ = writeln!(text, "G1{words} F{feed}");
+                written += 1;
+            }
+            _ => written += chords(random, &mut text, &mut at),
+        }
+    }
+    text + if printer { "" } else { "M2\n" }
+}
+
+/// Some chords of a curve in XY, mm; how many.
+fn chords(random: &mut Random, text: &mut String, at: &mut [f64]) -> usize {
+    let count = 3 + random.below(12);
+    let feed = random.scale(600.0, 60_000.0).round();
+    let (chord, bend) = (random.scale(0.2, 10.0), random.within(-0.5, 0.5));
+    let mut angle = random.within(0.0, TAU);
+    for _ in 0..count {
+        let (sin, cos) = libm::sincos(angle);
+        at[0] = ((at[0] + chord * cos) * 1e4).round() / 1e4;
+        at[1] = ((at[1] + chord * sin) * 1e4).round() / 1e4;
+        let _ = writeln!(text, "G1 X{:.4} Y{:.4} F{feed}", at[0], at[1]);
+        angle += bend;
+    }
+    count
+}
+
 /// Where a straight move goes: some axes, near or far.
 fn target(random: &mut Random, machine: &Described, at: &mut [f64]) -> String {
     let far = random.scale(0.05, 600.0);

@@ -31,3 +31,9 @@ pub const NEVER_TOO_HIGH: bool = true;
 /// The controllers under which axes step in speed at corners: what the step
 /// draws is in the series and in the peaks, so that no speed jumps.
 pub const STEPS_OF_SPEED: bool = false;
+
+/// The reported peak is the largest power of the series, not a bound of it.
+pub const PEAKS_OF_SERIES: bool = true;
+
+/// The reported energies are the integral of the series.
+pub const ENERGY_OF_SERIES: bool = true;
