@@ -95,7 +95,7 @@ impl Limits<'_> {
         let mut top = self.speed;
         if far(top) > length {
             let (mut low, mut high) = (0.0, top);
-            for _ in 0..46 {
+            for _ in 0..36 {
                 let middle = 0.5 * (low + high);
                 if far(middle) > length {
                     high = middle;
@@ -125,10 +125,10 @@ impl Limits<'_> {
 fn under_both(v_top: f64, accel: f64, jerk: f64, curve: &dyn Fn(f64) -> f64) -> Ramp {
     let lowest = (0..=64).map(|i| curve(v_top * f64::from(i) / 64.0));
     let lowest = lowest.fold(accel, f64::min);
-    let dt = (v_top / lowest + 2.0 * (v_top / jerk).sqrt()) / (8.0 * STEPS as f64);
+    let dt = (v_top / lowest + 2.0 * (v_top / jerk).sqrt()) / (3.0 * STEPS as f64);
     let (mut v, mut a) = (0.0, 0.0_f64);
     let mut ramp = Ramp::new();
-    while v < v_top * (1.0 - 1e-9) && ramp.len() < 80 * STEPS {
+    while v < v_top * (1.0 - 1e-9) && ramp.len() < 60 * STEPS {
         let ahead = (v + dt * a).min(v_top);
         let free = (a + jerk * dt).min(accel).min(curve(ahead));
         let next = free.min((2.0 * jerk * (v_top - ahead)).sqrt()).max(0.0);
