@@ -43,7 +43,11 @@ fn compare(seed: u64, blocks: usize) {
             }
         }
     }
-    assert!(shown.is_empty(), "{differing} differ:\n{}", shown.join("\n\n"));
+    assert!(
+        shown.is_empty(),
+        "{differing} differ:\n{}",
+        shown.join("\n\n")
+    );
     assert!(all.ratings > blocks / 100, "{} ratings", all.ratings);
 }
 

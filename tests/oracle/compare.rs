@@ -59,7 +59,10 @@ pub fn steps(machine: &Machine, program: &str) -> Vec<Step> {
     for (index, line) in program.lines().enumerate() {
         if let Some((word, rpm)) = line.split_once(" S") {
             let rpm: f64 = rpm.parse().unwrap();
-            let sign = ["M5", "M3", "M4"].iter().position(|own| *own == word).unwrap();
+            let sign = ["M5", "M3", "M4"]
+                .iter()
+                .position(|own| *own == word)
+                .unwrap();
             let rpm = [0.0, rpm, -rpm][sign];
             steps.push(Step::Spindle { rpm, on: sign > 0 });
         }
@@ -91,7 +94,10 @@ impl Compared {
         let (rows, summary) = rows(&machine, program);
         let judged = |overrides: [f64; 2]| {
             let mut judge = Judge::new(&plant, overrides);
-            steps.iter().filter_map(|step| judge.take(step)).collect::<Vec<_>>()
+            steps
+                .iter()
+                .filter_map(|step| judge.take(step))
+                .collect::<Vec<_>>()
         };
         // Times and energies are those at 100 %, or at the largest override below.
         let usual = plant.overrides.map(|factor| factor.min(1.0));
@@ -111,7 +117,10 @@ impl Compared {
             self.row(&plant, row, full, most);
         }
         for found in &summary.over_time {
-            let converter = plant.converters.iter().position(|it| it.name == found.converter);
+            let converter = plant
+                .converters
+                .iter()
+                .position(|it| it.name == found.converter);
             let which = converter.unwrap();
             let slices = &nominal.slices.as_ref().unwrap()[which];
             let (own, measure) = (&plant.converters[which], found.rating.measure);
@@ -139,14 +148,26 @@ impl Compared {
         let bounded = both || curved && CURVES_WITH_MANY_POINTS;
         let later = if bounded { BOUNDED } else { share };
         let mut differs = |what: &str, own: f64| {
-            self.wrong.push(format!("{what}: {own}; {} {:?} axes {} {} s, {} W, {} W back, {} J, {}",
-                row.line, row.kind, row.axes, row.duration_s, row.peak_w, row.regen_w, row.energy_j, row.converter));
+            self.wrong.push(format!(
+                "{what}: {own}; {} {:?} axes {} {} s, {} W, {} W back, {} J, {}",
+                row.line,
+                row.kind,
+                row.axes,
+                row.duration_s,
+                row.peak_w,
+                row.regen_w,
+                row.energy_j,
+                row.converter
+            ));
         };
         let later_s = row.duration_s - full.duration_s;
         if later_s < -share * full.duration_s || later_s > later * full.duration_s {
             differs("duration", full.duration_s);
         }
-        let named = plant.converters.iter().position(|it| it.name == row.converter);
+        let named = plant
+            .converters
+            .iter()
+            .position(|it| it.name == row.converter);
         let which = named.unwrap();
         let (peak_w, regen_w) = (most.peak_w[which], most.regen_w[which]);
         let slack_w = share * (peak_w.abs() + regen_w) + 1e-6;
@@ -170,7 +191,10 @@ impl Compared {
         }
         let scale_j = full.duration_s * (peak_w.abs() + regen_w);
         // The spindle's drive may count while it is switched off.
-        let drives = plant.spindle.as_ref().is_some_and(|spindle| spindle.base_w > 0.0);
+        let drives = plant
+            .spindle
+            .as_ref()
+            .is_some_and(|spindle| spindle.base_w > 0.0);
         let apart_j = row.energy_j - full.energy_j;
         let slack_j = ENERGY.max(2.0 * later) * scale_j + 1e-6;
         if apart_j < -slack_j || apart_j > slack_j && !drives {

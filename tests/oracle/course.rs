@@ -65,7 +65,10 @@ impl Course {
         let moving = |axis: &&Axis| delta[axis.index] != 0.0;
         if is_rapid && plant.independent {
             let axes = plant.axes.iter().filter(moving);
-            return Self::Axes(axes.map(|axis| alone(axis, delta[axis.index], rapid)).collect());
+            return Self::Axes(
+                axes.map(|axis| alone(axis, delta[axis.index], rapid))
+                    .collect(),
+            );
         }
         let circle = mv.arc.map(|arc| {
             let [x, y] = [0, 1].map(|i| mv.start[arc.plane[i]] - arc.center[i]);
@@ -80,7 +83,12 @@ impl Course {
         let turned = circle.map_or(0.0, |arc| arc.radius * arc.sweep.abs());
         let length = if let Some(arc) = circle {
             let rest = (0..delta.len()).filter(|axis| !arc.plane.contains(axis));
-            libm::hypot(turned, rest.map(|axis| delta[axis] * delta[axis]).sum::<f64>().sqrt())
+            libm::hypot(
+                turned,
+                rest.map(|axis| delta[axis] * delta[axis])
+                    .sum::<f64>()
+                    .sqrt(),
+            )
         } else {
             mv.length_mm
         };
@@ -88,7 +96,11 @@ impl Course {
             return Self::Rest(0.0);
         }
         let mut limits = Limits {
-            speed: if is_rapid { f64::INFINITY } else { mv.feed_mm_s * feed },
+            speed: if is_rapid {
+                f64::INFINITY
+            } else {
+                mv.feed_mm_s * feed
+            },
             accel: f64::INFINITY,
             jerk: f64::INFINITY,
             curve: None,
@@ -97,7 +109,9 @@ impl Course {
         for axis in &plant.axes {
             let part = if let Some(arc) = circle.filter(|_| in_plane(axis.index)) {
                 smallest = smallest.min(axis.accel);
-                limits.speed = limits.speed.min(axis.speed * length / turned / arc.most(axis.index));
+                limits.speed = limits
+                    .speed
+                    .min(axis.speed * length / turned / arc.most(axis.index));
                 continue;
             } else {
                 delta[axis.index].abs() / length
@@ -111,12 +125,18 @@ impl Course {
         }
         if let Some(arc) = circle {
             let half = smallest * FRAC_1_SQRT_2;
-            limits.speed = limits.speed.min((half * arc.radius).sqrt() * length / turned);
+            limits.speed = limits
+                .speed
+                .min((half * arc.radius).sqrt() * length / turned);
             limits.accel = limits.accel.min(half);
         }
         let share = |axis: &Axis| delta[axis.index] / length;
         let curve = |v: f64, side: usize| {
-            let axes = plant.axes.iter().filter(moving).filter(|axis| !axis.curve.is_empty());
+            let axes = plant
+                .axes
+                .iter()
+                .filter(moving)
+                .filter(|axis| !axis.curve.is_empty());
             let own = axes.map(|axis| {
                 let u = share(axis);
                 left(axis, u.abs() * v, u.signum(), side) / u.abs()
@@ -124,10 +144,19 @@ impl Course {
             own.fold(f64::INFINITY, f64::min)
         };
         let sides: [&dyn Fn(f64) -> f64; 2] = [&|v| curve(v, 0), &|v| curve(v, 1)];
-        let curved = plant.axes.iter().filter(moving).any(|axis| !axis.curve.is_empty());
+        let curved = plant
+            .axes
+            .iter()
+            .filter(moving)
+            .any(|axis| !axis.curve.is_empty());
         limits.curve = (curved && circle.is_none()).then_some(sides);
         let profile = limits.run(length);
-        Self::Path(Path { length, delta, circle, profile })
+        Self::Path(Path {
+            length,
+            delta,
+            circle,
+            profile,
+        })
     }
 
     /// How long it lasts.
@@ -151,7 +180,9 @@ impl Course {
                 path.profile.times_s.iter().copied().chain(turned).collect()
             }
             Self::Axes(axes) => {
-                let all = axes.iter().flat_map(|(_, _, profile)| profile.times_s.clone());
+                let all = axes
+                    .iter()
+                    .flat_map(|(_, _, profile)| profile.times_s.clone());
                 all.collect()
             }
         };
@@ -172,7 +203,9 @@ impl Course {
     /// The turns of its arc; 0 for straight ones.
     pub fn turns(&self) -> f64 {
         match self {
-            Self::Path(Path { circle: Some(arc), .. }) => arc.sweep.abs() / (4.0 * FRAC_PI_2),
+            Self::Path(Path {
+                circle: Some(arc), ..
+            }) => arc.sweep.abs() / (4.0 * FRAC_PI_2),
             _ => 0.0,
         }
     }
@@ -185,7 +218,11 @@ impl Course {
             Self::Axes(axes) => {
                 for (index, sign, profile) in axes {
                     if let Some([_, v, a]) = profile.at(t, inside) {
-                        states[*index] = AxisState { v: sign * v, a: sign * a, sign: *sign };
+                        states[*index] = AxisState {
+                            v: sign * v,
+                            a: sign * a,
+                            sign: *sign,
+                        };
                     }
                 }
             }
@@ -200,9 +237,17 @@ impl Circle {
     fn most(&self, axis: usize) -> f64 {
         let tangent = |angle: f64| {
             let (sin, cos) = libm::sincos(angle);
-            if axis == self.plane[0] { sin.abs() } else { cos.abs() }
+            if axis == self.plane[0] {
+                sin.abs()
+            } else {
+                cos.abs()
+            }
         };
-        let offset = if axis == self.plane[0] { FRAC_PI_2 } else { 0.0 };
+        let offset = if axis == self.plane[0] {
+            FRAC_PI_2
+        } else {
+            0.0
+        };
         let ends = [self.start, self.start + self.sweep];
         // Whole where a multiple of π, from where it is 1, lies between the ends.
         let [from, to] = ends.map(|angle| (angle - offset) / (2.0 * FRAC_PI_2));
@@ -217,11 +262,18 @@ impl Circle {
 impl Path {
     /// When an axis of an arc's plane turns back.
     fn quadrants_s(&self) -> Vec<f64> {
-        let Some(arc) = self.circle else { return vec![] };
+        let Some(arc) = self.circle else {
+            return vec![];
+        };
         let [first, last] = [arc.start, arc.start + arc.sweep].map(|angle| angle / FRAC_PI_2);
-        let (low, high) = (first.min(last).ceil() as i64, first.max(last).floor() as i64);
+        let (low, high) = (
+            first.min(last).ceil() as i64,
+            first.max(last).floor() as i64,
+        );
         let position = |quadrant: i64| (quadrant as f64 - first) / (last - first) * self.length;
-        (low..=high).map(|quadrant| self.when(position(quadrant))).collect()
+        (low..=high)
+            .map(|quadrant| self.when(position(quadrant)))
+            .collect()
     }
 
     /// When the path is at a position.
@@ -245,7 +297,11 @@ impl Path {
         };
         for (index, state) in states.iter_mut().enumerate() {
             let u = self.delta[index] / self.length;
-            *state = AxisState { v: u * v, a: u * a, sign: if u == 0.0 { 0.0 } else { u.signum() } };
+            *state = AxisState {
+                v: u * v,
+                a: u * a,
+                sign: if u == 0.0 { 0.0 } else { u.signum() },
+            };
         }
         let Some(arc) = self.circle else { return };
         let turn = arc.sweep / self.length;
@@ -268,8 +324,9 @@ impl Path {
 
 /// An axis by itself.
 fn alone(axis: &Axis, delta: f64, rapid: f64) -> (usize, f64, Profile) {
-    let sides: [&dyn Fn(f64) -> f64; 2] =
-        [&|v| left(axis, v, delta.signum(), 0), &|v| left(axis, v, delta.signum(), 1)];
+    let sides: [&dyn Fn(f64) -> f64; 2] = [&|v| left(axis, v, delta.signum(), 0), &|v| {
+        left(axis, v, delta.signum(), 1)
+    }];
     let limits = Limits {
         speed: axis.speed * rapid,
         accel: axis.accel,

@@ -37,7 +37,11 @@ impl Axis {
     /// Electrical power at a force.
     pub fn electrical_w(&self, v: f64, force: f64) -> f64 {
         let p = v * self.unit * force;
-        let converted = if p > 0.0 { p / self.efficiency } else { p * self.efficiency };
+        let converted = if p > 0.0 {
+            p / self.efficiency
+        } else {
+            p * self.efficiency
+        };
         converted + self.copper * force * force
     }
 

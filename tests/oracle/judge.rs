@@ -83,7 +83,8 @@ impl<'p> Judge<'p> {
     fn buses(&self, course: &Course, mv: &Move, [t, inside]: [f64; 2], buses: &mut Vec<Bus>) {
         let spindle = self.plant.spindle.as_ref();
         let beside = spindle.map_or(Beside::default(), |spindle| {
-            self.turning.beside(spindle, self.now_s + t, self.now_s + inside)
+            self.turning
+                .beside(spindle, self.now_s + t, self.now_s + inside)
         });
         let states = course.at(t, inside);
         buses.clear();

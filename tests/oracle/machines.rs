@@ -54,12 +54,19 @@ pub fn of(controller: &str, random: &mut Random, curves: bool) -> Described {
     if random.once_in(3) && controller == "iso" {
         toml += "[path]\nrapid = \"independent\"\n";
     }
-    let margin = if random.once_in(2) { 0.0 } else { random.within(0.0, 0.3) };
+    let margin = if random.once_in(2) {
+        0.0
+    } else {
+        random.within(0.0, 0.3)
+    };
     let spindle = random.once_in(3);
     let loads = random.once_in(3);
     let names: &[&str] = if several { &["left", "right"] } else { &[""] };
     for (which, name) in names.iter().enumerate() {
-        let fed: Vec<char> = axes.iter().copied().enumerate()
+        let fed: Vec<char> = axes
+            .iter()
+            .copied()
+            .enumerate()
             .filter(|(index, _)| !several || index % 2 == which)
             .map(|(_, letter)| letter)
             .collect();
@@ -69,11 +76,18 @@ pub fn of(controller: &str, random: &mut Random, curves: bool) -> Described {
     for letter in &axes {
         axis(random, &mut toml, *letter, motion, *letter == curved);
     }
-    let fed_by = if several { "converter = \"right\"\n" } else { "" };
+    let fed_by = if several {
+        "converter = \"right\"\n"
+    } else {
+        ""
+    };
     if loads {
         for (on, off) in [("M8", "M9"), ("M7", "M9")] {
             let power_w = random.scale(5.0, 1500.0);
-            let _ = writeln!(toml, "[[load]]\non = \"{on}\"\noff = \"{off}\"\npower_w = {power_w:?}\n{fed_by}");
+            let _ = writeln!(
+                toml,
+                "[[load]]\non = \"{on}\"\noff = \"{off}\"\npower_w = {power_w:?}\n{fed_by}"
+            );
         }
     }
     let mut max_rpm = 0.0;
@@ -99,16 +113,28 @@ pub fn of(controller: &str, random: &mut Random, curves: bool) -> Described {
     if !spindle && random.once_in(2) {
         let feed = random.within(100.0, 200.0);
         let rapid = random.within(50.0, 100.0);
-        let _ = writeln!(toml, "override_max_percent = {{ feed = {feed:?}, rapid = {rapid:?} }}");
+        let _ = writeln!(
+            toml,
+            "override_max_percent = {{ feed = {feed:?}, rapid = {rapid:?} }}"
+        );
     }
     let arcs = motion == Motion::Plain;
-    Described { toml, axes, arcs, max_rpm, loads }
+    Described {
+        toml,
+        axes,
+        arcs,
+        max_rpm,
+        loads,
+    }
 }
 
 fn converter(random: &mut Random, toml: &mut String, name: &str, axes: &[char]) {
     let peak_w = random.scale(2e3, 1e5);
     let regen_w = random.scale(500.0, 1e5);
-    let _ = writeln!(toml, "[[converter]]\npeak_power_w = {peak_w:?}\nregen_power_w = {regen_w:?}");
+    let _ = writeln!(
+        toml,
+        "[[converter]]\npeak_power_w = {peak_w:?}\nregen_power_w = {regen_w:?}"
+    );
     if !name.is_empty() {
         let _ = writeln!(toml, "name = \"{name}\"\naxes = {axes:?}");
     }
@@ -139,35 +165,79 @@ fn converter(random: &mut Random, toml: &mut String, name: &str, axes: &[char]) 
 
 fn axis(random: &mut Random, toml: &mut String, letter: char, motion: Motion, curved: bool) {
     let turns = "ABC".contains(letter);
-    let (unit, u) = if turns { ("deg", 0.017_453_292_519_943_295) } else { ("mm", 1e-3) };
+    let (unit, u) = if turns {
+        ("deg", 0.017_453_292_519_943_295)
+    } else {
+        ("mm", 1e-3)
+    };
     let speed = random.scale(40.0, 900.0);
     let accel = random.scale(300.0, 9000.0);
-    let mass = if turns { random.scale(0.05, 20.0) } else { random.scale(1.0, 800.0) };
+    let mass = if turns {
+        random.scale(0.05, 20.0)
+    } else {
+        random.scale(1.0, 800.0)
+    };
     let force = mass * accel * u;
     let _ = writeln!(toml, "[axes.{letter}]\naccel_{unit}_s2 = {accel:?}");
-    let coulomb = if random.once_in(3) { 0.0 } else { force * random.within(0.0, 0.6) };
-    let viscous = if random.once_in(2) { 0.0 } else { force / (speed * u) * random.within(0.0, 0.4) };
-    let gravity = if random.once_in(2) { 0.0 } else { force * random.within(-0.8, 0.8) };
-    let copper = if random.once_in(2) { 0.0 } else { random.within(0.0, 0.3) * speed * u / force };
+    let coulomb = if random.once_in(3) {
+        0.0
+    } else {
+        force * random.within(0.0, 0.6)
+    };
+    let viscous = if random.once_in(2) {
+        0.0
+    } else {
+        force / (speed * u) * random.within(0.0, 0.4)
+    };
+    let gravity = if random.once_in(2) {
+        0.0
+    } else {
+        force * random.within(-0.8, 0.8)
+    };
+    let copper = if random.once_in(2) {
+        0.0
+    } else {
+        random.within(0.0, 0.3) * speed * u / force
+    };
     // The same axis by the data of its motor.
     let at_motor = !turns && random.once_in(4);
     let lead_mm = random.scale(5.0, 40.0).round();
     let gear = if random.once_in(2) { 1.0 } else { 2.0 };
-    let k = if at_motor { std::f64::consts::TAU * gear / (1e-3 * lead_mm) } else { 1.0 };
+    let k = if at_motor {
+        std::f64::consts::TAU * gear / (1e-3 * lead_mm)
+    } else {
+        1.0
+    };
     if at_motor {
         let _ = writeln!(
             toml,
             "lead_mm = {lead_mm:?}\ngear_ratio = {gear:?}\nmax_speed_rpm = {:?}\n\
              inertia_kg_m2 = {:?}\nfriction_nm = {:?}\nviscous_nm_s_rad = {:?}\n\
              gravity_nm = {:?}\ncopper_w_nm2 = {:?}",
-            speed * 60.0 / lead_mm * gear, mass / (k * k), coulomb / k, viscous / (k * k),
-            gravity / k, copper * k * k,
+            speed * 60.0 / lead_mm * gear,
+            mass / (k * k),
+            coulomb / k,
+            viscous / (k * k),
+            gravity / k,
+            copper * k * k,
         );
     } else {
         let names = if turns {
-            ["inertia_kg_m2", "friction_nm", "viscous_nm_s_rad", "gravity_nm", "copper_w_nm2"]
+            [
+                "inertia_kg_m2",
+                "friction_nm",
+                "viscous_nm_s_rad",
+                "gravity_nm",
+                "copper_w_nm2",
+            ]
         } else {
-            ["mass_kg", "coulomb_n", "viscous_n_s_m", "gravity_n", "copper_w_n2"]
+            [
+                "mass_kg",
+                "coulomb_n",
+                "viscous_n_s_m",
+                "gravity_n",
+                "copper_w_n2",
+            ]
         };
         for (name, value) in names.iter().zip([mass, coulomb, viscous, gravity, copper]) {
             let _ = writeln!(toml, "{name} = {value:?}");
@@ -188,11 +258,19 @@ fn axis(random: &mut Random, toml: &mut String, letter: char, motion: Motion, cu
         );
     }
     if motion == Motion::Jerk || motion == Motion::Both {
-        let _ = writeln!(toml, "jerk_{unit}_s3 = {:?}", accel * random.scale(5.0, 400.0));
+        let _ = writeln!(
+            toml,
+            "jerk_{unit}_s3 = {:?}",
+            accel * random.scale(5.0, 400.0)
+        );
     }
     if curved && (motion == Motion::Curve || motion == Motion::Both) {
         let drag = coulomb + viscous * speed * u + gravity.abs();
-        let points = if CURVES_WITH_MANY_POINTS { 2 + random.below(4) } else { 2 };
+        let points = if CURVES_WITH_MANY_POINTS {
+            2 + random.below(4)
+        } else {
+            2
+        };
         let mut most = random.within(0.6, 1.4);
         let point = |i: usize, share: f64| {
             let v = speed * 1.001 * i as f64 / (points - 1) as f64;
@@ -213,7 +291,11 @@ fn axis(random: &mut Random, toml: &mut String, letter: char, motion: Motion, cu
                 own
             })
             .collect();
-        let key = if at_motor || turns { "torque_curve" } else { "force_curve" };
+        let key = if at_motor || turns {
+            "torque_curve"
+        } else {
+            "force_curve"
+        };
         let _ = writeln!(toml, "{key} = [{}]", list.join(", "));
     }
 }

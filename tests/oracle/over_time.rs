@@ -59,9 +59,9 @@ pub fn value(converter: &Converter, measure: Measure, slices: &[Slice], share: f
     let fed = |slice: &Slice| slice.1.map(|bus| bus.nominal_fed_w);
     let mean = |[a, b]: [f64; 2]| 0.5 * (a + b);
     match measure {
-        Measure::Overload { above_w, every_s, .. } => {
-            windowed(slices, every_s, |it| it.0 * part_above(drawn(it), above_w))[0]
-        }
+        Measure::Overload {
+            above_w, every_s, ..
+        } => windowed(slices, every_s, |it| it.0 * part_above(drawn(it), above_w))[0],
         Measure::Continuous { window_s } => {
             let square = |it: &Slice| {
                 let [a, b] = drawn(it);
@@ -80,7 +80,9 @@ pub fn value(converter: &Converter, measure: Measure, slices: &[Slice], share: f
                 let beyond = |it: &Slice| it.0 * (mean(fed(it)) - converter.regen_limit_w);
                 (1.0, store(slices, beyond))
             };
-            (nominal_v * nominal_v + sign * 2.0 * joules / farads).max(0.0).sqrt()
+            (nominal_v * nominal_v + sign * 2.0 * joules / farads)
+                .max(0.0)
+                .sqrt()
         }
         Measure::Brake { .. } => {
             let power_w = share * get(table, "brake_power_w", 0.0);

@@ -123,7 +123,11 @@ impl Axis {
             let at_motor = get(table, motor, 0.0) * factor;
             table.get(load).map_or(at_motor, number)
         };
-        let rapid = if turns { "rapid_deg_min" } else { "rapid_mm_min" };
+        let rapid = if turns {
+            "rapid_deg_min"
+        } else {
+            "rapid_mm_min"
+        };
         let per_min = get(table, rapid, 0.0) / 60.0;
         let speed = per_min.max(get(table, "max_speed_rpm", 0.0) * per_rpm);
         let accel = if turns { "accel_deg_s2" } else { "accel_mm_s2" };

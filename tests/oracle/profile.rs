@@ -91,7 +91,12 @@ impl Limits<'_> {
     /// The motion over a length.
     pub fn run(&self, length: f64) -> Profile {
         let ramps = |v: f64| [self.ramp(v, 0), self.ramp(v, 1)];
-        let far = |v: f64| ramps(v).iter().map(|it| length_and_speed(it)[0]).sum::<f64>();
+        let far = |v: f64| {
+            ramps(v)
+                .iter()
+                .map(|it| length_and_speed(it)[0])
+                .sum::<f64>()
+        };
         let mut top = self.speed;
         if far(top) > length {
             let (mut low, mut high) = (0.0, top);
@@ -107,7 +112,11 @@ impl Limits<'_> {
         }
         // Rounding makes no cruise.
         let left = length - far(top);
-        let cruise_s = if left > 1e-9 * length { left / top } else { 0.0 };
+        let cruise_s = if left > 1e-9 * length {
+            left / top
+        } else {
+            0.0
+        };
         let [up, down] = ramps(top);
         let mut profile = Profile::default();
         for [dt, a0, a1] in up {
@@ -156,7 +165,13 @@ impl Profile {
         let [s, v, _] = self.pieces.last().map_or([0.0; 3], |it| it.at(it.lasts_s));
         self.times_s.push(self.duration_s() + lasts_s);
         let j = (a1 - a0) / lasts_s;
-        self.pieces.push(Piece { lasts_s, s, v, a: a0, j });
+        self.pieces.push(Piece {
+            lasts_s,
+            s,
+            v,
+            a: a0,
+            j,
+        });
     }
 
     /// How long it lasts.

@@ -46,7 +46,11 @@ pub fn any(random: &mut Random, machine: &Described, blocks: usize) -> String {
 /// curves, corners, long lines, rapids.
 pub fn curvy(random: &mut Random, machine: &Described, controller: &str, blocks: usize) -> String {
     let printer = ["marlin", "reprap", "klipper"].contains(&controller);
-    let mut text = String::from(if printer { "G21\nG90\n" } else { "G21 G90 G17 G94\n" });
+    let mut text = String::from(if printer {
+        "G21\nG90\n"
+    } else {
+        "G21 G90 G17 G94\n"
+    });
     if controller == "iso" {
         text += "G61\n";
     }
@@ -119,11 +123,19 @@ fn arc(random: &mut Random, text: &mut String, at: &mut [f64]) {
     let round = |value: f64| (value * 1e8).round() / 1e8;
     let [i, j] = [radius * cos, radius * sin].map(round);
     let sense = if random.once_in(2) { 1.0 } else { -1.0 };
-    let sweep = if random.once_in(4) { 0.0 } else { random.within(0.1, 6.2) };
+    let sweep = if random.once_in(4) {
+        0.0
+    } else {
+        random.within(0.1, 6.2)
+    };
     let (turn_sin, turn_cos) = libm::sincos(sense * sweep);
     // From the centre to the end.
     let (x, y) = (-i * turn_cos + j * turn_sin, -i * turn_sin - j * turn_cos);
-    let end = if sweep == 0.0 { [at[0], at[1]] } else { [at[0] + i + x, at[1] + j + y].map(round) };
+    let end = if sweep == 0.0 {
+        [at[0], at[1]]
+    } else {
+        [at[0] + i + x, at[1] + j + y].map(round)
+    };
     (at[0], at[1]) = (end[0], end[1]);
     let word = if sense > 0.0 { "G3" } else { "G2" };
     let _ = write!(text, "{word} X{:.8} Y{:.8} I{i:.8} J{j:.8}", at[0], at[1]);

@@ -24,6 +24,8 @@ pub struct Rules {
     pub accel: f64,
     /// Share of the change of a speed by which chords of time may miss a curve.
     pub chord: f64,
+    /// The time in which an axis makes a small step of speed at a corner, s.
+    pub kink_s: f64,
     /// Whether axes step in speed at corners.
     pub steps: bool,
     /// Whether corners and blends ask for more than the jerk of an axis.
@@ -46,7 +48,11 @@ pub struct Watch<'p> {
 
 /// The sign of a motion.
 fn sign(own: &AxisInstant) -> f64 {
-    if own.velocity_mm_s == 0.0 { 0.0 } else { own.velocity_mm_s.signum() }
+    if own.velocity_mm_s == 0.0 {
+        0.0
+    } else {
+        own.velocity_mm_s.signum()
+    }
 }
 
 fn near(a: f64, b: f64, scale: f64) -> bool {
@@ -74,7 +80,8 @@ impl<'p> Watch<'p> {
 
     fn differs(&mut self, what: &str, time_s: f64, line: u64, values: &[f64]) {
         if self.wrong.len() < KEPT {
-            self.wrong.push(format!("{what} in line {line} at {time_s} s: {values:?}"));
+            self.wrong
+                .push(format!("{what} in line {line} at {time_s} s: {values:?}"));
         }
     }
 
@@ -88,10 +95,18 @@ impl<'p> Watch<'p> {
         let force = |sign: f64| axis.force(state(sign), [1.0; 2]);
         let scale = axis.mass * axis.accel * axis.unit + axis.gravity.abs();
         let v = own.velocity_mm_s;
-        let signs: &[f64] = if v == 0.0 { &[-1.0, 0.0, 1.0] } else { &[v.signum()] };
+        let signs: &[f64] = if v == 0.0 {
+            &[-1.0, 0.0, 1.0]
+        } else {
+            &[v.signum()]
+        };
         // Where it comes to rest, rounding leaves it a speed.
         let stands = v.abs() < 1e-7 * axis.speed;
-        if !signs.iter().any(|sign| near(own.force_n, force(*sign), scale)) && !stands {
+        if !signs
+            .iter()
+            .any(|sign| near(own.force_n, force(*sign), scale))
+            && !stands
+        {
             self.differs("force", time_s, line, &[own.force_n, force(sign(own))]);
         }
         let power_w = axis.electrical_w(v, own.force_n);
@@ -113,14 +128,25 @@ impl<'p> Watch<'p> {
         let plant = self.plant;
         let mut states = [AxisState::default(); LETTERS.len()];
         for (state, own) in states.iter_mut().zip(&now.axes) {
-            *state = AxisState { v: own.velocity_mm_s, a: own.accel_mm_s2, sign: sign(own) };
+            *state = AxisState {
+                v: own.velocity_mm_s,
+                a: own.accel_mm_s2,
+                sign: sign(own),
+            };
         }
         // Whether an axis speeds up or comes to rest cannot be seen of one instant.
-        let known = now.axes.iter().all(|own| own.velocity_mm_s != 0.0 || own.accel_mm_s2 == 0.0);
+        let known = now
+            .axes
+            .iter()
+            .all(|own| own.velocity_mm_s != 0.0 || own.accel_mm_s2 == 0.0);
         let spindle = plant.spindle.as_ref().map(|spindle| spindle.converter);
         for (which, converter) in plant.converters.iter().enumerate() {
             let own = |axis: &&Axis| converter.axes.contains(&axis.index);
-            let powers = plant.axes.iter().filter(own).map(|axis| now.axes[axis.index].power_w);
+            let powers = plant
+                .axes
+                .iter()
+                .filter(own)
+                .map(|axis| now.axes[axis.index].power_w);
             let beside_w = if spindle == Some(which) {
                 now.spindle.power_w + now.spindle.cutting_w
             } else {
@@ -143,22 +169,40 @@ impl<'p> Watch<'p> {
             };
             let masks = 0..1_u32 << plant.loads.len();
             let scale = drawn_w + fed_w + 1e-3;
-            let Some(mask) = masks.into_iter().find(|mask| near(shown_w, sum(*mask), scale)) else {
+            let Some(mask) = masks
+                .into_iter()
+                .find(|mask| near(shown_w, sum(*mask), scale))
+            else {
                 self.differs("bus power", time_s, line, &[shown_w, drawn_w, fed_w]);
                 continue;
             };
-            let expected_w = if converter.credit { (-sum(mask)).max(0.0) } else { fed_w };
+            let expected_w = if converter.credit {
+                (-sum(mask)).max(0.0)
+            } else {
+                fed_w
+            };
             if !near(now.regen_w[which], expected_w, scale) {
-                self.differs("power fed back", time_s, line, &[now.regen_w[which], expected_w]);
+                self.differs(
+                    "power fed back",
+                    time_s,
+                    line,
+                    &[now.regen_w[which], expected_w],
+                );
             }
             self.peaks_w[which][0] = self.peaks_w[which][0].max(shown_w);
             self.peaks_w[which][1] = self.peaks_w[which][1].max(now.regen_w[which]);
-            let beside = Beside { power_w: beside_w, idle_w: 0.0 };
+            let beside = Beside {
+                power_w: beside_w,
+                idle_w: 0.0,
+            };
             if !known {
                 continue;
             }
             let bus = plant.bus(which, &states, mask, beside);
-            let peaks = self.by_line.entry((line, which)).or_insert([f64::NEG_INFINITY; 2]);
+            let peaks = self
+                .by_line
+                .entry((line, which))
+                .or_insert([f64::NEG_INFINITY; 2]);
             peaks[0] = peaks[0].max(bus.drawn_w);
             peaks[1] = peaks[1].max(bus.fed_w);
         }
@@ -174,9 +218,15 @@ impl<'p> Watch<'p> {
             let (from, to) = (&last.axes[axis.index], &now.axes[axis.index]);
             let mean = 0.5 * (from.accel_mm_s2 + to.accel_mm_s2);
             let change = to.velocity_mm_s - from.velocity_mm_s - mean * dt;
-            let slack = self.rules.chord * axis.accel * self.rules.accel * dt + ROUNDING * axis.speed;
+            let slack =
+                self.rules.chord * axis.accel * self.rules.accel * dt + ROUNDING * axis.speed;
             let joint = line != last_line || dt == 0.0;
-            if change.abs() > slack && !(self.rules.steps && joint) {
+            let kink = if joint {
+                axis.accel * self.rules.kink_s
+            } else {
+                0.0
+            };
+            if change.abs() > slack + kink && !(self.rules.steps && joint) {
                 let values = [from.velocity_mm_s, to.velocity_mm_s, mean, dt];
                 self.differs("a step of speed", time_s, line, &values);
             }
@@ -196,8 +246,14 @@ impl<'p> Watch<'p> {
     pub fn compare(&mut self, rows: &[Row]) {
         let mut told: HashMap<(u64, usize), [f64; 2]> = HashMap::new();
         for row in rows {
-            let named = self.plant.converters.iter().position(|it| it.name == row.converter);
-            let peaks = told.entry((row.line, named.unwrap())).or_insert([row.peak_w, row.regen_w]);
+            let named = self
+                .plant
+                .converters
+                .iter()
+                .position(|it| it.name == row.converter);
+            let peaks = told
+                .entry((row.line, named.unwrap()))
+                .or_insert([row.peak_w, row.regen_w]);
             *peaks = [peaks[0].max(row.peak_w), peaks[1].max(row.regen_w)];
         }
         let mut low = Vec::new();
@@ -210,7 +266,12 @@ impl<'p> Watch<'p> {
         }
         low.sort_by_key(|found| found.0);
         for (line, own, told) in low {
-            self.differs("read too low", 0.0, line, &[own[0], told[0], own[1], told[1]]);
+            self.differs(
+                "read too low",
+                0.0,
+                line,
+                &[own[0], told[0], own[1], told[1]],
+            );
         }
     }
 }

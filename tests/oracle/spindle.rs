@@ -31,7 +31,11 @@ impl Spindle {
     /// Acceleration at a speed, both rad/s.
     fn accel(&self, omega: f64) -> f64 {
         let most = self.max_rpm * RAD_S_PER_RPM;
-        let base = if self.base_rpm > 0.0 { self.base_rpm * RAD_S_PER_RPM } else { most };
+        let base = if self.base_rpm > 0.0 {
+            self.base_rpm * RAD_S_PER_RPM
+        } else {
+            most
+        };
         let accel = (base + (most * most - base * base) / (2.0 * base)) / self.accel_time_s;
         accel * (base / omega.abs().max(base))
     }
@@ -40,7 +44,11 @@ impl Spindle {
     pub fn power_w(&self, [omega, alpha]: State) -> f64 {
         let sign = if omega == 0.0 { 0.0 } else { omega.signum() };
         let p = omega * (self.inertia * alpha + self.friction_nm * sign);
-        if p > 0.0 { p / self.efficiency } else { p * self.efficiency }
+        if p > 0.0 {
+            p / self.efficiency
+        } else {
+            p * self.efficiency
+        }
     }
 }
 
@@ -88,7 +96,8 @@ impl Turning {
     /// The state at `t`, by the law that holds at `inside`.
     pub fn at(&self, t: f64, inside: f64) -> State {
         let after = self.knots.partition_point(|knot| knot.0 <= inside);
-        let Some(&(since, [v, a], next)) = after.checked_sub(1).and_then(|i| self.knots.get(i)) else {
+        let Some(&(since, [v, a], next)) = after.checked_sub(1).and_then(|i| self.knots.get(i))
+        else {
             return [0.0; 2];
         };
         let Some(&(until, ..)) = self.knots.get(after) else {
@@ -105,7 +114,11 @@ impl Turning {
         let on = self.switched.iter().rfind(|(since, _)| *since <= inside);
         Beside {
             power_w: spindle.power_w(state),
-            idle_w: if on.is_some_and(|(_, on)| *on) { spindle.base_w } else { 0.0 },
+            idle_w: if on.is_some_and(|(_, on)| *on) {
+                spindle.base_w
+            } else {
+                0.0
+            },
         }
     }
 }

@@ -45,9 +45,16 @@ fn a_ramp_under_a_curve() {
         ..FREE
     };
     let (ramp_s, ramp) = (1.25, 0.125 + 2.0 / 3.0 * 0.875);
-    near(limits.run(5.0).duration_s(), 2.0 * ramp_s + (5.0 - 2.0 * ramp), 1e-5);
+    near(
+        limits.run(5.0).duration_s(),
+        2.0 * ramp_s + (5.0 - 2.0 * ramp),
+        1e-5,
+    );
     // With a jerk that hardly limits, nearly the same; never faster.
-    let jerky = Limits { jerk: 500.0, ..limits };
+    let jerky = Limits {
+        jerk: 500.0,
+        ..limits
+    };
     let slower = jerky.run(5.0).duration_s();
     near(slower, 2.0 * ramp_s + (5.0 - 2.0 * ramp), 5e-3);
     assert!(slower > limits_duration(&curve), "{slower}");
@@ -73,7 +80,10 @@ fn a_spindle_runs_up() {
         )
     };
     let omega = TAU * 50.0;
-    for (base, end_w) in [("", 0.1 * omega * omega), ("base_rpm = 1500", 0.0625 * omega * omega * 1.0)] {
+    for (base, end_w) in [
+        ("", 0.1 * omega * omega),
+        ("base_rpm = 1500", 0.0625 * omega * omega * 1.0),
+    ] {
         let plant = Plant::new(&toml(base));
         let spindle = plant.spindle.unwrap();
         let mut turning = Turning::default();
