@@ -5,6 +5,7 @@
 //! `switches` says which rules gwatt is held to.
 
 mod ahead;
+mod axes;
 mod compare;
 mod course;
 mod electrical;

@@ -2,7 +2,7 @@
 //!
 //! * Straight, direction u: `v ≤ v_n/|u_n|`, and so for acceleration and jerk.
 //!   A drive's curve leaves `(F(v) ∓ (Fc + b·v) ∓ Fg)/m` of each axis.
-//! * Arc: tangential and centripetal acceleration each at most `a_min/√2`, a_min
+//! * Arc: tangential and centripetal acceleration each at most `a_min/√2`, `a_min`
 //!   the smallest limit of the moving axes; other axes follow in proportion.
 //! * Independent rapids: each axis for itself.
 
@@ -70,15 +70,7 @@ impl Course {
                     .collect(),
             );
         }
-        let circle = mv.arc.map(|arc| {
-            let [x, y] = [0, 1].map(|i| mv.start[arc.plane[i]] - arc.center[i]);
-            Circle {
-                plane: arc.plane,
-                radius: libm::hypot(x, y),
-                start: libm::atan2(y, x),
-                sweep: arc.sweep_rad,
-            }
-        });
+        let circle = Circle::of(mv);
         let in_plane = |axis: usize| circle.is_some_and(|arc| arc.plane.contains(&axis));
         let turned = circle.map_or(0.0, |arc| arc.radius * arc.sweep.abs());
         let length = if let Some(arc) = circle {
@@ -233,6 +225,18 @@ impl Course {
 }
 
 impl Circle {
+    /// The arc of a move.
+    fn of(mv: &Move) -> Option<Self> {
+        let arc = mv.arc?;
+        let [x, y] = [0, 1].map(|i| mv.start[arc.plane[i]] - arc.center[i]);
+        Some(Self {
+            plane: arc.plane,
+            radius: libm::hypot(x, y),
+            start: libm::atan2(y, x),
+            sweep: arc.sweep_rad,
+        })
+    }
+
     /// The largest part of the speed in the plane that an axis sees.
     fn most(&self, axis: usize) -> f64 {
         let tangent = |angle: f64| {

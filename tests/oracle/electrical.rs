@@ -20,6 +20,7 @@ pub struct AxisState {
 
 /// What an axis draws at most, feeds back at most, and draws as commanded, W.
 #[derive(Debug, Clone, Copy, Default)]
+#[allow(clippy::struct_field_names, reason = "suffixes are units")]
 pub struct AxisPower {
     pub drawn_w: f64,
     pub fed_w: f64,
@@ -83,6 +84,7 @@ pub struct Beside {
 
 /// Of one converter: largest power drawn and fed back, and both as commanded.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "suffixes are units")]
 pub struct Bus {
     pub drawn_w: f64,
     pub fed_w: f64,

@@ -1,7 +1,7 @@
 //! The spindle over time: constant torque up to the base speed, constant power
 //! above it, no jerk limit.
 //!
-//! `dω/dt = A` below ω_b, `A·ω_b/ω` above, so that there `ω²` grows by `2·A·ω_b·t`;
+//! `dω/dt = A` below the base speed `ω_b`, `A·ω_b/ω` above, so that there `ω²` grows by `2·A·ω_b·t`;
 //! `T = ω_b/A + (ω_m² − ω_b²)/(2·A·ω_b)` gives A. Torque `J·α + friction`, power
 //! `T·ω`, by the efficiency like an axis.
 

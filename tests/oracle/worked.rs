@@ -1,5 +1,6 @@
 //! The second implementation itself, held against cases worked by hand.
 
+use super::compare::{Compared, machine, rows};
 use super::plant::Plant;
 use super::profile::Limits;
 use super::spindle::Turning;
@@ -92,4 +93,27 @@ fn a_spindle_runs_up() {
         let end_s = turning.settled_s() - 1e-7;
         near(turning.beside(&spindle, end_s, end_s).power_w, end_w, 1e-4);
     }
+}
+
+/// Y, 1000 kg at 1 m/s², draws 1000 W and feeds 1000 W back; the spindle holds
+/// 3000/min with 1 N·m, 314.16 W, on the same converter. What is fed back loads it
+/// more, and the spindle lowers that; what is drawn grows all the same.
+#[test]
+fn a_spindle_adds_to_what_is_drawn_where_it_lowers_what_is_fed_back() {
+    let axis = "rapid_mm_min = 60000\naccel_mm_s2 = 1000\nmass_kg = 1000";
+    let converter = "peak_power_w = 1e5\nregen_power_w = 1e4\ncredit_regen = true";
+    let toml = format!(
+        "schema = 1\nname = \"two\"\ncontroller = \"iso\"\n\
+         [[converter]]\nname = \"left\"\naxes = [\"X\"]\n{converter}\n\
+         [[converter]]\nname = \"right\"\naxes = [\"Y\"]\n{converter}\n\
+         [axes.X]\n{axis}\n[axes.Y]\n{axis}\n[spindle]\ninertia_kg_m2 = 0.1\n\
+         friction_nm = 1\nmax_rpm = 3000\naccel_time_s = 1\nwait = false\n\
+         converter = \"right\"\n[limits]\nmargin = 0\n"
+    );
+    let program = "G21 G90\nM3 S3000\nG4 P5\nG0 Y2000\nM2\n";
+    let mut compared = Compared::default();
+    compared.program(&toml, program);
+    assert!(compared.wrong.is_empty(), "{:?}", compared.wrong);
+    let (found, _) = rows(&machine(&toml), program);
+    near(found[1].peak_w, 1000.0 + 100.0 * std::f64::consts::PI, 1e-6);
 }
