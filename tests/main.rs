@@ -47,3 +47,4 @@ mod borrowed;
 mod lathe_cycles;
 mod repeated;
 mod effort;
+mod oracle;

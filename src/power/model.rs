@@ -5,7 +5,7 @@
 use super::axis::AxisPower;
 use super::bus::SpindleShare;
 use super::ceiling::Ceiling;
-use super::demand::{Demand, Totals, Want};
+use super::demand::{Demand, Totals, Want, larger};
 use super::{arc, independent, straight};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet, Machine};
@@ -323,6 +323,11 @@ impl Demand {
             self.load_ratio = ratio;
             self.converter = index;
             [self.peak_w, self.regen_w] = peaks;
+        } else if self.converter == index {
+            // The spindle took off some of what loads it most; the other power may
+            // still have grown.
+            self.peak_w = larger(self.peak_w, peaks[0]);
+            self.regen_w = larger(self.regen_w, peaks[1]);
         }
     }
 }

@@ -6,12 +6,15 @@
 use super::blend::{cuts, pieces};
 use super::piece::straight_line;
 use crate::interpret::Move;
+use crate::machine::AXES;
 use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{Blend, Phase, Plan, Profile, Trajectory};
 use std::f64::consts::FRAC_PI_2;
 
 /// Instants at which the axes of one arc may turn back that are looked at.
 const QUADRANTS: f64 = 4096.0;
+/// Halvings that locate an instant.
+const HALVINGS: u32 = 60;
 
 /// A piece of motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,7 +156,41 @@ impl Motion {
         switches.extend(own.map(|t| t - self.from_s));
         switches.push(self.duration_s());
         switches.dedup();
+        if matches!(self.course, Course::Both(_)) {
+            let pairs = switches.windows(2);
+            let turns: Vec<f64> = pairs.flat_map(|pair| self.turns_s(pair)).collect();
+            switches.extend(turns);
+            switches.sort_by(f64::total_cmp);
+            switches.dedup();
+        }
         switches
+    }
+
+    /// Where axes turn back between two switches, s: two speeds that add up may do so
+    /// at any time.
+    fn turns_s(&self, pair: &[f64]) -> Vec<f64> {
+        let [from, to] = *pair else {
+            return Vec::new();
+        };
+        let inside = 0.5 * (from + to);
+        let turn = |axis: usize| {
+            let speed = |t: f64| self.axis(axis, [t, inside]).map(|[(speed, _), _]| speed);
+            let first = speed(from)?;
+            if first * speed(to)? >= 0.0 {
+                return None;
+            }
+            let (mut low, mut high) = (from, to);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if first * speed(middle)? > 0.0 {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            Some(high)
+        };
+        (0..AXES).filter_map(turn).collect()
     }
 }
 
