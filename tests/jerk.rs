@@ -124,7 +124,7 @@ fn a_position_takes_seven_phases_at_most() {
     let short = position_target(rest, state(-4.0, 0.0, 0.0), &limits()).unwrap();
     assert!((short.duration_s() - 4.0).abs() < 1e-12);
     assert_eq!(short.phases.len(), 3);
-    let path = long.path().unwrap();
+    let path = long.path();
     assert!((path.length_mm() - 100.0).abs() < 1e-12);
     assert_eq!(path.top_speed_mm_s(), 10.0);
     let none = position_target(rest, rest, &limits()).unwrap();

@@ -46,7 +46,7 @@ fn between(start: [f64; 2], end: [f64; 2], length: f64, limits: &JerkLimits) -> 
         accel_mm_s2,
     };
     let found = position_target(state(0.0, start), state(length, end), limits).unwrap();
-    found.path().unwrap()
+    found.path()
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine};
-use crate::plan::{Overrides, Plan, blended_bound, blended_speed, driven_accel, plan};
+use crate::plan::{Overrides, blended_bound, blended_speed, plan, ramps};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -154,9 +154,7 @@ impl<'m> Solver<'m> {
         let share = &share(case, mv);
         let speed_mm_s = blended_speed(self.machine, mv, self.largest);
         if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
-            let plan = plan(self.machine, mv, self.largest);
-            let driven = driven_accel(self.machine, mv, plan.speed_limit_mm_s);
-            let ramps = Plan::ramps(plan.speed_limit_mm_s, plan.accel_mm_s2.min(driven));
+            let ramps = ramps(self.machine, mv, self.largest);
             let demand = self.model.demand(mv, &ramps, Want::PEAKS);
             return self.model.load_beside(&demand, share, speed_mm_s);
         }

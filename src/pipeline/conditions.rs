@@ -34,8 +34,8 @@ fn jerk_condition(machine: &Machine, summary: &Summary) -> Option<&'static str> 
 /// How curves of force count.
 fn curve_condition(machine: &Machine) -> Option<&'static str> {
     (!machine.force_curves.is_empty()).then_some(
-        "force curves: straight moves from rest to rest follow them; with look-ahead or limits of \
-         jerk the lowest acceleration up to the move's speed counts, on arcs up to the rapid speed",
+        "force curves: moves from rest to rest follow them; with look-ahead peaks are those of \
+         ramps along the curves, and times those of the lowest acceleration up to the move's speed",
     )
 }
 

@@ -19,10 +19,10 @@
 //! acceleration is limited by the second at the largest speed that axes and
 //! turning permit, whatever F asks for.
 //!
-//! Where drives have curves of force the lowest acceleration that they leave at
-//! any speed is the limit of the axis.
+//! Where drives have curves of force, turning takes its share of what they leave at
+//! the speed of the arc; how the arc speeds up under them is the matter of `drive`.
 
-use super::drive::{self, Heading};
+use super::drive;
 use super::limits::{self, PathLimits};
 use super::s_curve::cbrt_of_square;
 use super::trajectory::Caps;
@@ -111,6 +111,15 @@ fn largest_parts(machine: &Machine, arc: &Arc) -> [f64; 2] {
     }
 }
 
+/// The axes of an arc's plane that move, each with its largest speed at a path speed
+/// of 1.
+pub(super) fn plane_axes(machine: &Machine, mv: &Move, arc: &Arc) -> [(usize, f64); 2] {
+    let share = plane_share(mv, arc);
+    let [first, second] = largest_parts(machine, arc);
+    let [a, b] = arc.plane;
+    [(a, share * first), (b, share * second)]
+}
+
 /// Path speed that the axes' own speeds permit.
 pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
     let share = plane_share(mv, arc);
@@ -136,12 +145,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
     let mut plane_accel = f64::INFINITY;
     let mut linear_accel = f64::INFINITY;
     for (axis, limit) in limits::moving(machine, mv) {
-        let mut accel = limits::accel(mv, axis, caps);
-        if !machine.force_curves.is_empty() {
-            // Whatever F asks for.
-            let speed = limit.rapid_mm_s * raised;
-            accel = accel.min(drive::lowest(machine, axis, speed, Heading::Both));
-        }
+        let accel = limits::accel(mv, axis, caps);
         if limit.kind == AxisKind::Linear {
             linear_accel = linear_accel.min(accel);
         }
@@ -169,6 +173,17 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
             let (cut, along) = linuxcnc(speed, accel, radius + rise_mm * rise_mm / radius);
             (turning.min(cut), along)
         }
+    };
+    let turning = if machine.force_curves.is_empty() {
+        turning
+    } else {
+        let normal_share = match machine.controller.planner.arc_rule {
+            ArcRule::Shared => FRAC_1_SQRT_2,
+            ArcRule::LinuxCnc => LINUXCNC_NORMAL_SHARE,
+        };
+        let axes = plane_axes(machine, mv, arc);
+        let most = turning.min(limits.speed_mm_s);
+        drive::turning_speed(machine, axes, [radius, share, normal_share], most)
     };
     let mut limits = PathLimits {
         speed_mm_s: limits.speed_mm_s.min(turning),

@@ -9,13 +9,11 @@
 //! curve.
 
 use super::power_law::PowerLaw;
-use super::profile::{Phase, PhaseKind, Profile};
+use super::profile::{Phase, PhaseKind, Phases, Profile};
 use super::slope;
-use arrayvec::ArrayVec;
+use smallvec::SmallVec;
 use thiserror::Error;
 
-/// Pieces of a curve at most.
-pub const PIECES: usize = 16;
 /// Steps at most in the search for a top speed.
 const STEPS: u32 = 100;
 
@@ -25,15 +23,9 @@ pub enum CurveError {
     /// Speeds do not grow, or an acceleration is not positive and finite.
     #[error("speeds must grow from point to point, and accelerations be positive")]
     Points,
-    /// More than [`PIECES`] pieces.
-    #[error("a curve has at most {PIECES} pieces")]
-    TooMany,
     /// A speed is beyond the curve or not finite, or a length not positive.
     #[error("the speed is beyond the curve, or the length is not positive")]
     Range,
-    /// The profile has more phases than a [`Profile`] holds.
-    #[error("the profile has too many phases")]
-    Phases,
 }
 
 /// One law of acceleration between two speeds.
@@ -57,7 +49,7 @@ enum Law {
 /// The largest acceleration, or braking, at each speed; both positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccelCurve {
-    pieces: ArrayVec<Piece, PIECES>,
+    pieces: SmallVec<[Piece; 4]>,
 }
 
 impl AccelCurve {
@@ -88,7 +80,7 @@ impl AccelCurve {
         if !given.into_iter().all(positive) {
             return Err(CurveError::Points);
         }
-        let mut pieces = ArrayVec::new();
+        let mut pieces = SmallVec::new();
         // Where friction brakes harder than the limit, power never matters.
         let base = if accel_mm_s2 + drag_mm_s2 > 0.0 {
             (power_mm2_s3 / (accel_mm_s2 + drag_mm_s2)).min(max_mm_s)
@@ -116,9 +108,9 @@ impl AccelCurve {
     /// # Errors
     ///
     /// Where speeds do not grow, accelerations are not positive and finite, or
-    /// there are none or too many.
+    /// there are none.
     pub fn points(points: &[(f64, f64)]) -> Result<Self, CurveError> {
-        let mut pieces = ArrayVec::new();
+        let mut pieces = SmallVec::new();
         let mut last: Option<(f64, f64)> = None;
         for &(speed, accel) in points {
             let (from, start) = last.unwrap_or((0.0, accel));
@@ -141,7 +133,7 @@ impl AccelCurve {
                 to: speed,
                 law,
             };
-            pieces.try_push(piece).map_err(|_| CurveError::TooMany)?;
+            pieces.push(piece);
         }
         if pieces.is_empty() {
             return Err(CurveError::Points);
@@ -167,7 +159,7 @@ impl AccelCurve {
     }
 
     /// How far it takes to speed up from rest to `speed` mm/s, in mm.
-    fn length_to(&self, speed: f64) -> f64 {
+    pub(super) fn length_to(&self, speed: f64) -> f64 {
         let pieces = self.pieces.iter().filter(|piece| piece.from < speed);
         pieces
             .map(|piece| piece.length(piece.from, piece.to.min(speed)))
@@ -180,15 +172,11 @@ impl AccelCurve {
     /// # Errors
     ///
     /// Where the speeds are not in order or beyond the curve.
-    pub fn speed_up(
-        &self,
-        from_mm_s: f64,
-        to_mm_s: f64,
-    ) -> Result<ArrayVec<Phase, PIECES>, CurveError> {
+    pub fn speed_up(&self, from_mm_s: f64, to_mm_s: f64) -> Result<Phases, CurveError> {
         if !(from_mm_s >= 0.0 && to_mm_s >= from_mm_s && to_mm_s <= self.max_mm_s()) {
             return Err(CurveError::Range);
         }
-        let mut phases = ArrayVec::new();
+        let mut phases = Phases::new();
         let mut position = 0.0;
         for piece in &self.pieces {
             let (low, high) = (piece.from.max(from_mm_s), piece.to.min(to_mm_s));
@@ -206,15 +194,11 @@ impl AccelCurve {
     /// # Errors
     ///
     /// Where the speeds are not in order or beyond the curve.
-    pub fn slow_down(
-        &self,
-        from_mm_s: f64,
-        to_mm_s: f64,
-    ) -> Result<ArrayVec<Phase, PIECES>, CurveError> {
+    pub fn slow_down(&self, from_mm_s: f64, to_mm_s: f64) -> Result<Phases, CurveError> {
         if !(to_mm_s >= 0.0 && from_mm_s >= to_mm_s && from_mm_s <= self.max_mm_s()) {
             return Err(CurveError::Range);
         }
-        let mut phases = ArrayVec::new();
+        let mut phases = Phases::new();
         let mut position = 0.0;
         for piece in self.pieces.iter().rev() {
             let (low, high) = (piece.from.max(to_mm_s), piece.to.min(from_mm_s));
@@ -296,8 +280,7 @@ impl Piece {
 ///
 /// # Errors
 ///
-/// Where length or speed is not positive, and where the curves have more
-/// pieces than a profile has phases.
+/// Where length or speed is not positive.
 pub fn fastest(
     length_mm: f64,
     speed_mm_s: f64,
@@ -324,11 +307,10 @@ pub fn fastest(
             ..phase
         };
         position += phase.length_mm();
-        let pushed = profile.phases.try_push(phase);
-        pushed.map_err(|_| CurveError::Phases)
+        profile.phases.push(phase);
     };
     for phase in up.speed_up(0.0, top)? {
-        push(phase)?;
+        push(phase);
     }
     let cruise = (length_mm - ramps(top)) / top;
     if top == limit && cruise > 0.0 {
@@ -339,10 +321,10 @@ pub fn fastest(
             velocity_mm_s: top,
             end_velocity_mm_s: top,
             accel_mm_s2: 0.0,
-        })?;
+        });
     }
     for phase in down.slow_down(top, 0.0)? {
-        push(phase)?;
+        push(phase);
     }
     Ok(profile)
 }

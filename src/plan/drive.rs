@@ -11,20 +11,24 @@
 //!
 //! never more than the axis' own limit. On a straight path of direction `u` the
 //! lowest of `a_n(|u_n|·v)/|u_n|` counts: straight lines over the speed, with
-//! kinks. A profile has room for three of them on each side; where there are
-//! more, three below them.
+//! kinks. On an arc each axis has any speed up to the path's, so that the lowest up
+//! to that counts, in the part that the arc rule leaves for speeding up.
 
+use super::arc;
 use super::curve::{AccelCurve, fastest};
+use super::driven_ramp::{self, Kink, Kinks};
 use super::limits::{self, PathLimits};
 use super::profile::Profile;
-use crate::interpret::Move;
-use crate::machine::{ALL_AXES, Axis, ForcePoint, Machine};
+use crate::interpret::{Arc, Move};
+use crate::machine::{ALL_AXES, ArcRule, Axis, AxisKind, ForcePoint, Machine};
 use arrayvec::ArrayVec;
+use smallvec::SmallVec;
+use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Kinks of a path's curve, at most; beyond them the lowest acceleration counts.
-const KINKS: usize = 24;
-/// Pieces of each side of a profile.
-const PIECES: usize = 3;
+/// Steps at most in the search for a speed.
+const STEPS: u32 = 100;
+/// No axis is faster, mm/s.
+const FASTEST: f64 = 1e12;
 
 /// Whether weight helps or hinders.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,8 +39,19 @@ pub(super) enum Heading {
     Both,
 }
 
-/// A point of a path's curve: speed in mm/s, acceleration in mm/s².
-type Kink = (f64, f64);
+/// An axis that moves on a path.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    axis: usize,
+    /// The largest speed of the axis at a path speed of 1.
+    share: f64,
+    /// Acceleration along the path at an acceleration of the axis of 1.
+    path_per_axis: f64,
+    heading: Heading,
+}
+
+/// The axes of a path.
+type Parts = ArrayVec<Part, { 2 * crate::machine::AXES }>;
 
 /// The points of an axis' curve; `None` without one.
 fn points(machine: &Machine, axis: usize) -> Option<&[ForcePoint]> {
@@ -91,31 +106,116 @@ pub(super) fn lowest(machine: &Machine, axis: usize, speed: f64, heading: Headin
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The lowest acceleration along a straight path at speeds up to `speed`, mm/s².
+/// The lowest acceleration along a path at speeds up to `speed`, mm/s²; infinite for
+/// an arc whose axes have all of their own up to there. How much of that the arc rule
+/// gives to speeding up is not the drives' matter.
 pub(super) fn lowest_on_path(machine: &Machine, mv: &Move, speed: f64) -> f64 {
-    let mut accel = f64::INFINITY;
-    for (axis, share, heading) in shares(machine, mv) {
-        let own = lowest(machine, axis, speed * share, heading);
-        accel = accel.min(own / share);
+    let parts = parts(machine, mv);
+    let is_free = |part: &Part| {
+        let own = mv.accel_mm_s2.get(part.axis).copied().unwrap_or(0.0);
+        lowest(machine, part.axis, speed * part.share, part.heading) >= own
+    };
+    if mv.arc.is_some() && parts.iter().all(is_free) {
+        return f64::INFINITY;
     }
-    accel
+    lowest_of(machine, &parts, speed)
 }
 
-/// The axes that move on a straight path: what each has of it, and where to.
-fn shares<'a>(
-    machine: &'a Machine,
-    mv: &'a Move,
-) -> impl Iterator<Item = (usize, f64, Heading)> + use<'a> {
-    limits::moving(machine, mv).filter_map(|(axis, _)| {
-        let distance = mv.end[axis] - mv.start[axis];
-        let share = distance.abs() / mv.length_mm;
-        (share > 0.0).then_some((axis, share, Heading::Known(distance.signum())))
+fn lowest_of(machine: &Machine, parts: &[Part], speed: f64) -> f64 {
+    parts.iter().fold(f64::INFINITY, |accel, part| {
+        let own = lowest(machine, part.axis, speed * part.share, part.heading);
+        accel.min(own * part.path_per_axis)
     })
 }
 
-/// How a straight path runs under its limits and those of the drives.
+/// The axes that a path moves.
+fn parts(machine: &Machine, mv: &Move) -> Parts {
+    match &mv.arc {
+        Some(arc) => arc_parts(machine, mv, arc),
+        None => limits::moving(machine, mv)
+            .filter_map(|(axis, _)| in_proportion(mv, axis))
+            .collect(),
+    }
+}
+
+/// An axis that moves in proportion to the path, if it does.
+fn in_proportion(mv: &Move, axis: usize) -> Option<Part> {
+    let distance = mv.end.get(axis)? - mv.start.get(axis)?;
+    let share = distance.abs() / mv.length_mm;
+    (share > 0.0).then_some(Part {
+        axis,
+        share,
+        path_per_axis: 1.0 / share,
+        heading: Heading::Known(distance.signum()),
+    })
+}
+
+/// Of an arc: what is left of each axis' acceleration for speeding up, whatever
+/// directions it meets.
+fn arc_parts(machine: &Machine, mv: &Move, of: &Arc) -> Parts {
+    let plane = arc::plane_axes(machine, mv, of);
+    let linux_cnc = machine.controller.planner.arc_rule == ArcRule::LinuxCnc;
+    let along = if linux_cnc {
+        arc::LINUXCNC_TANGENTIAL_SHARE
+    } else {
+        FRAC_1_SQRT_2
+    };
+    let mut parts = Parts::new();
+    for (axis, own) in limits::moving(machine, mv) {
+        let in_plane = plane.iter().find(|(plane, _)| *plane == axis);
+        let across = in_plane.is_none();
+        let part = in_proportion(mv, axis).filter(|_| across);
+        // The rule shares the smallest acceleration of all linear axes.
+        let shares = !across || (own.kind == AxisKind::Linear && !linux_cnc);
+        let share =
+            in_plane.map_or_else(|| part.map_or(0.0, |part| part.share), |(_, share)| *share);
+        let turning = shares.then_some(Part {
+            axis,
+            share,
+            path_per_axis: along,
+            heading: Heading::Both,
+        });
+        parts.extend(part.into_iter().chain(turning));
+    }
+    parts
+}
+
+/// The largest speed, at most `speed`, at which a curve of radius `radius_mm` takes
+/// no more than `normal_share` of what the drives leave of the acceleration of the
+/// axes; each of them has at most so much of the speed.
+pub(super) fn turning_speed(
+    machine: &Machine,
+    axes: [(usize, f64); 2],
+    [radius_mm, plane_share, normal_share]: [f64; 3],
+    speed: f64,
+) -> f64 {
+    let permits = |v: f64| {
+        let in_plane = v * plane_share;
+        let left = axes.map(|(axis, share)| lowest(machine, axis, v * share, Heading::Both));
+        let left = left.into_iter().fold(f64::INFINITY, f64::min);
+        in_plane * in_plane <= normal_share * left * radius_mm
+    };
+    if permits(speed) {
+        return speed;
+    }
+    let (mut low, mut high) = (0.0, speed.min(FASTEST));
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        if permits(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// How a path runs under its limits and those of the drives.
 pub(super) fn path(machine: &Machine, mv: &Move, limits: &PathLimits) -> Profile {
-    follow(machine, shares(machine, mv), mv.length_mm, limits)
+    if mv.arc.is_some() && lowest_on_path(machine, mv, limits.speed_mm_s) >= limits.accel_mm_s2 {
+        return limits.profile(mv.length_mm);
+    }
+    follow(machine, &parts(machine, mv), mv.length_mm, limits)
 }
 
 /// The same for one axis that runs for itself over `length`.
@@ -126,87 +226,140 @@ pub(super) fn axis(
     heading: f64,
     limits: &PathLimits,
 ) -> Profile {
-    let alone = [(axis, 1.0, Heading::Known(heading))];
-    follow(machine, alone.into_iter(), length, limits)
+    let alone = Part {
+        axis,
+        share: 1.0,
+        path_per_axis: 1.0,
+        heading: Heading::Known(heading),
+    };
+    follow(machine, &[alone], length, limits)
 }
 
-fn follow(
-    machine: &Machine,
-    shares: impl Iterator<Item = (usize, f64, Heading)>,
-    length: f64,
-    limits: &PathLimits,
-) -> Profile {
-    let shares: ArrayVec<_, { crate::machine::AXES }> = shares.take(crate::machine::AXES).collect();
-    if limits.jerk_mm_s3 == f64::INFINITY {
-        let [up, down] =
-            [0, 1].map(|side| curve(machine, &shares, side, limits).and_then(|kinks| few(&kinks)));
-        if let (Some(up), Some(down)) = (up, down)
+/// The ramps of a path between rest and its largest speed, however long they are,
+/// without a limit of jerk: no motion under the limits draws or feeds back more.
+pub(super) fn ramps(machine: &Machine, mv: &Move, limits: &PathLimits) -> Profile {
+    let parts = parts(machine, mv);
+    let curves = curves(machine, &parts, limits);
+    if let Some((up, down)) = curves.as_ref().and_then(|curves| accel_curves(curves)) {
+        let top = limits.speed_mm_s;
+        let length = up.length_to(top) + down.length_to(top);
+        if let Ok(profile) = fastest(length, top, &up, &down) {
+            return profile;
+        }
+    }
+    let v = limits.speed_mm_s;
+    Profile::trapezoid(v * v / limits.accel_mm_s2, v, limits.accel_mm_s2)
+}
+
+fn follow(machine: &Machine, parts: &[Part], length: f64, limits: &PathLimits) -> Profile {
+    if let Some(curves) = curves(machine, parts, limits) {
+        let [up, down] = &curves;
+        if limits.jerk_mm_s3 < f64::INFINITY {
+            let bound = |kinks: &Kinks| kinks.iter().any(|kink| kink.1 < limits.accel_mm_s2);
+            if !(bound(up) || bound(down)) {
+                return limits.profile(length);
+            }
+            return driven_ramp::fastest(length, limits.speed_mm_s, limits.jerk_mm_s3, [up, down]);
+        }
+        if let Some((up, down)) = accel_curves(&curves)
             && let Ok(profile) = fastest(length, limits.speed_mm_s, &up, &down)
         {
             return profile;
         }
     }
     let mut low = *limits;
-    for (axis, share, heading) in shares {
-        let own = lowest(machine, axis, limits.speed_mm_s * share, heading);
-        low.accel_mm_s2 = low.accel_mm_s2.min(own / share);
-    }
+    low.accel_mm_s2 = low
+        .accel_mm_s2
+        .min(lowest_of(machine, parts, limits.speed_mm_s));
     low.profile(length)
 }
 
-/// The curve of a path up (0) or down (1); `None` where it has too many kinks.
-fn curve(
-    machine: &Machine,
-    shares: &[(usize, f64, Heading)],
-    side: usize,
-    limits: &PathLimits,
-) -> Option<ArrayVec<Kink, KINKS>> {
+fn accel_curves([up, down]: &[Kinks; 2]) -> Option<(AccelCurve, AccelCurve)> {
+    Some((AccelCurve::points(up).ok()?, AccelCurve::points(down).ok()?))
+}
+
+/// The curves of a path up and down; `None` where a drive leaves nothing.
+fn curves(machine: &Machine, parts: &[Part], limits: &PathLimits) -> Option<[Kinks; 2]> {
+    let [up, down] = [0, 1].map(|side| curve(machine, parts, side, limits));
+    Some([up?, down?])
+}
+
+/// The curve of a path up (0) or down (1); `None` where a drive leaves nothing.
+fn curve(machine: &Machine, parts: &[Part], side: usize, limits: &PathLimits) -> Option<Kinks> {
     let top = limits.speed_mm_s;
-    let mut speeds = ArrayVec::<f64, KINKS>::new();
-    speeds.try_push(0.0).ok()?;
-    for &(axis, share, _) in shares {
-        for point in points(machine, axis).unwrap_or_default() {
-            let speed = point.speed_mm_s / share;
+    let mut speeds = SmallVec::<[f64; 16]>::new();
+    speeds.push(0.0);
+    for part in parts {
+        for point in points(machine, part.axis).unwrap_or_default() {
+            let speed = point.speed_mm_s / part.share;
             if speed > 0.0 && speed < top {
-                speeds.try_push(speed).ok()?;
+                speeds.push(speed);
             }
         }
     }
-    speeds.try_push(top).ok()?;
+    speeds.push(top);
     speeds.sort_unstable_by(f64::total_cmp);
-    let mut kinks = ArrayVec::<Kink, KINKS>::new();
+    let mut kinks = Kinks::new();
     for (&from, &to) in speeds.iter().zip(speeds.iter().skip(1)) {
         if to <= from {
             continue;
         }
         // Straight lines between two speeds: what each axis leaves, and the
         // limit.
-        let mut lines = ArrayVec::<[f64; 2], { crate::machine::AXES + 1 }>::new();
+        let mut lines = ArrayVec::<[f64; 2], { 2 * crate::machine::AXES + 1 }>::new();
         lines.push([limits.accel_mm_s2; 2]);
-        for &(axis, share, heading) in shares {
-            let (Some(points), Some(Some(own))) = (points(machine, axis), machine.axes.get(axis))
+        for part in parts {
+            let (Some(points), Some(Some(own))) =
+                (points(machine, part.axis), machine.axes.get(part.axis))
             else {
                 continue;
             };
             let at = |v: f64| {
-                let both = left(own, points, v * share, heading);
-                both.get(side).map_or(0.0, |accel| accel / share)
+                let both = left(own, points, v * part.share, part.heading);
+                // Of an axis that turns, either may be asked for.
+                let accel = match part.heading {
+                    Heading::Known(_) => both.get(side).copied(),
+                    Heading::Both => both.into_iter().reduce(f64::min),
+                };
+                accel.unwrap_or(0.0) * part.path_per_axis
             };
             lines.try_push([at(from), at(to)]).ok()?;
         }
-        lowest_lines(&lines, [from, to], &mut kinks)?;
+        lowest_lines(&lines, [from, to], &mut kinks);
+    }
+    if parts.iter().any(|part| part.heading == Heading::Both) {
+        // The axis has any speed up to that.
+        kinks = never_rising(&kinks);
     }
     let positive = kinks.iter().all(|(_, accel)| *accel > 0.0);
     positive.then_some(kinks)
 }
 
+/// The lowest value of a curve up to each speed.
+fn never_rising(kinks: &[Kink]) -> Kinks {
+    let mut falling = Kinks::new();
+    let mut before: Option<(Kink, f64)> = None;
+    for &(v, accel) in kinks {
+        let Some((last, low)) = before else {
+            falling.push((v, accel));
+            before = Some(((v, accel), accel));
+            continue;
+        };
+        if accel < low && last.1 > low {
+            // It comes down to the lowest so far on the way.
+            let share = (last.1 - low) / (last.1 - accel);
+            add(&mut falling, (last.0 + share * (v - last.0), low));
+        }
+        let low = low.min(accel);
+        add(&mut falling, (v, low));
+        before = Some(((v, accel), low));
+    }
+    falling
+}
+
 /// Appends the kinks of the lowest of straight lines, given by their values at
 /// both ends of a range of speeds.
-fn lowest_lines(
-    lines: &[[f64; 2]],
-    [from, to]: [f64; 2],
-    kinks: &mut ArrayVec<Kink, KINKS>,
-) -> Option<()> {
+fn lowest_lines(lines: &[[f64; 2]], [from, to]: [f64; 2], kinks: &mut Kinks) {
     let at = |line: &[f64; 2], x: f64| line[0] + x * (line[1] - line[0]);
     let falls = |line: &[f64; 2]| line[1] - line[0];
     let mut x = 0.0;
@@ -215,8 +368,10 @@ fn lowest_lines(
         let order = a[0].total_cmp(&b[0]);
         order.then(falls(a).total_cmp(&falls(b)))
     };
-    let mut own = lines.iter().min_by(first)?;
-    add(kinks, (from, own[0]))?;
+    let Some(mut own) = lines.iter().min_by(first) else {
+        return;
+    };
+    add(kinks, (from, own[0]));
     for _ in 0..lines.len() {
         // The first line that falls below it.
         let mut next: Option<(f64, &[f64; 2])> = None;
@@ -228,75 +383,22 @@ fn lowest_lines(
             }
         }
         let Some((meets, line)) = next else { break };
-        add(kinks, (from + meets * (to - from), at(own, meets)))?;
+        add(kinks, (from + meets * (to - from), at(own, meets)));
         (x, own) = (meets, line);
     }
-    add(kinks, (to, own[1]))
+    add(kinks, (to, own[1]));
 }
 
 /// Appends a kink, unless the speed is the same or nothing bends.
-fn add(kinks: &mut ArrayVec<Kink, KINKS>, kink: Kink) -> Option<()> {
+fn add(kinks: &mut Kinks, kink: Kink) {
     if let Some(&last) = kinks.last() {
         if kink.0 <= last.0 {
-            return Some(());
+            return;
         }
         let before = kinks.len().checked_sub(2).and_then(|i| kinks.get(i));
         if before.is_some_and(|before| before.1 == last.1 && last.1 == kink.1) {
             kinks.pop();
         }
     }
-    kinks.try_push(kink).ok()
-}
-
-/// A curve with few pieces that is nowhere above the kinks, and as high as it
-/// can be: of all with their corners at the speeds of kinks the fastest.
-fn few(kinks: &[Kink]) -> Option<AccelCurve> {
-    let last = kinks.len().checked_sub(1)?;
-    if last <= PIECES {
-        return AccelCurve::points(kinks).ok();
-    }
-    let mut best: Option<(f64, [Kink; PIECES + 1])> = None;
-    for i in 1..last {
-        for j in i + 1..last {
-            let Some(corners) = below(kinks, [0, i, j, last]) else {
-                continue;
-            };
-            // About the time to the top.
-            let time = |pair: &[Kink]| match pair {
-                [a, b] => (b.0 - a.0) * (1.0 / a.1 + 1.0 / b.1),
-                _ => 0.0,
-            };
-            let time: f64 = corners.windows(2).map(time).sum();
-            if best.is_none_or(|(fastest, _)| time < fastest) {
-                best = Some((time, corners));
-            }
-        }
-    }
-    AccelCurve::points(&best?.1).ok()
-}
-
-/// Corners at these kinks, lowered until no kink lies below the lines between
-/// them; `None` where nothing is left.
-fn below(kinks: &[Kink], at: [usize; PIECES + 1]) -> Option<[Kink; PIECES + 1]> {
-    let mut corners = [(0.0, 0.0); PIECES + 1];
-    for (corner, index) in corners.iter_mut().zip(at) {
-        *corner = *kinks.get(index)?;
-    }
-    let mut lower = [0.0_f64; PIECES + 1];
-    for piece in 0..PIECES {
-        let [a, b] = [corners.get(piece)?, corners.get(piece + 1)?];
-        for kink in kinks.get(*at.get(piece)?..*at.get(piece + 1)?)? {
-            let share = (kink.0 - a.0) / (b.0 - a.0);
-            let above = a.1 + share * (b.1 - a.1) - kink.1;
-            for own in lower.iter_mut().skip(piece).take(2) {
-                *own = own.max(above);
-            }
-        }
-    }
-    for (corner, lower) in corners.iter_mut().zip(lower) {
-        // A little more, for rounding.
-        corner.1 -= lower * (1.0 + 1e-12);
-    }
-    let positive = corners.iter().all(|corner| corner.1 > 0.0);
-    positive.then_some(corners)
+    kinks.push(kink);
 }

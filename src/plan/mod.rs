@@ -7,6 +7,7 @@ mod arc;
 mod bound;
 pub mod curve;
 mod drive;
+mod driven_ramp;
 pub mod jerk;
 mod limits;
 pub mod lookahead;
@@ -23,11 +24,11 @@ mod trajectory;
 
 pub use bound::{PathShares, SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
-pub use profile::{Phase, PhaseKind, Profile, State};
+pub use profile::{Phase, PhaseKind, Phases, Profile, State};
 pub use s_curve::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{
     Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, driven_accel, is_independent,
-    path_figures, plan, plan_with,
+    path_figures, plan, plan_with, ramps,
 };

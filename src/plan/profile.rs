@@ -13,6 +13,7 @@
 use super::power_law::PowerLaw;
 use super::slope;
 use arrayvec::ArrayVec;
+use smallvec::SmallVec;
 
 /// Steps at most in the search for an instant.
 const STEPS: u32 = 100;
@@ -334,11 +335,15 @@ impl Outline {
     }
 }
 
-/// The speed along one path, from rest to rest: at most seven phases.
+/// The phases of a profile: seven without allocation, more where a drive's curve
+/// of force has many kinks.
+pub type Phases = SmallVec<[Phase; 7]>;
+
+/// The speed along one path, from rest to rest.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Profile {
     /// The phases in order of time.
-    pub phases: ArrayVec<Phase, 7>,
+    pub phases: Phases,
 }
 
 impl Profile {
@@ -354,7 +359,7 @@ impl Profile {
             top_speed: v,
         } = Outline::new(length, speed, accel);
         let a = accel;
-        let mut phases = ArrayVec::new();
+        let mut phases = Phases::new();
         phases.push(Phase::constant(ramp_s, 0.0, 0.0, v, a));
         if let Some(cruise_s) = cruise_s {
             let ramp_mm = 0.5 * v * ramp_s;

@@ -417,7 +417,7 @@ fn push(
         accel_mm_s2,
     };
     // Two ramps of three phases, and a cruise.
-    profile.phases.try_push(phase).ok();
+    profile.phases.push(phase);
 }
 
 #[cfg(test)]

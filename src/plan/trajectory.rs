@@ -186,7 +186,7 @@ pub fn plan_with(machine: &Machine, mv: &Move, overrides: Overrides, caps: Caps)
     if is_independent(machine, mv) {
         return independent(machine, mv, overrides, &caps, limits);
     }
-    if !machine.force_curves.is_empty() && mv.arc.is_none() {
+    if !machine.force_curves.is_empty() {
         return limits.plan(drive::path(machine, mv, &limits));
     }
     PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
@@ -300,7 +300,19 @@ impl PathLimits {
     }
 }
 
-/// The lowest acceleration along a straight path, in mm/s², that the drives leave
+/// The ramps between rest and the largest speed of a move on one path, however long
+/// they are, without limits of jerk: what a move that may begin and end at any speed
+/// meets at most. Where drives have curves of force the ramps follow them.
+#[must_use]
+pub fn ramps(machine: &Machine, mv: &Move, overrides: Overrides) -> Plan {
+    let limits = PathLimits::of(machine, mv, overrides, &Caps::default());
+    if machine.force_curves.is_empty() {
+        return Plan::ramps(limits.speed_mm_s, limits.accel_mm_s2);
+    }
+    limits.plan(drive::ramps(machine, mv, &limits))
+}
+
+/// The lowest acceleration along a path, in mm/s², that the drives leave
 /// at any speed up to `speed_mm_s`; infinite where none has a curve of force.
 #[must_use]
 pub fn driven_accel(machine: &Machine, mv: &Move, speed_mm_s: f64) -> f64 {
@@ -366,10 +378,8 @@ fn unknown(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> P
     let limits = PathLimits::of(machine, mv, overrides, caps);
     let mut plan = if mv.length_mm > 0.0 && limits.permit_motion() {
         let mut limits = limits;
-        if mv.arc.is_none() {
-            let driven = driven_accel(machine, mv, limits.speed_mm_s);
-            limits.accel_mm_s2 = limits.accel_mm_s2.min(driven);
-        }
+        let driven = driven_accel(machine, mv, limits.speed_mm_s);
+        limits.accel_mm_s2 = limits.accel_mm_s2.min(driven);
         PathFigures::new(mv.length_mm, limits).plan(mv.length_mm)
     } else {
         Plan::rest(0.0)

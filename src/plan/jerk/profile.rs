@@ -123,11 +123,11 @@ impl JerkProfile {
         self.end
     }
 
-    /// The same as the profile of a path; `None` if it has more than the seven
-    /// phases of one.
+    /// The same as the profile of a path.
     #[must_use]
-    pub fn path(&self) -> Option<Profile> {
-        let phases = ArrayVec::try_from(self.phases.as_slice()).ok()?;
-        Some(Profile { phases })
+    pub fn path(&self) -> Profile {
+        Profile {
+            phases: self.phases.iter().copied().collect(),
+        }
     }
 }

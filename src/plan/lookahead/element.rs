@@ -171,17 +171,17 @@ impl<T> Element<T> {
         self.top_mm_s() > 0.0 && self.accel_mm_s2 > 0.0
     }
 
-    /// Takes in what the drives leave. The limits of the axes hold at any speed.
+    /// Takes in what the drives leave at speeds up to the element's.
     fn drive(&mut self, machine: &Machine, mv: &Move) {
         let top = self.top_mm_s();
-        if mv.arc.is_none() {
-            self.drive_accel_mm_s2 = drive::lowest_on_path(machine, mv, top);
-        }
-        for (axis, accel) in self.axis_accel_mm_s2.iter_mut().enumerate() {
-            let speed = limits::moving(machine, mv)
-                .find(|(own, _)| *own == axis)
-                .map_or(0.0, |(_, own)| own.rapid_mm_s * mv.rapid_factor.max(1.0));
-            *accel = accel.min(drive::lowest(machine, axis, speed, Heading::Both));
+        self.drive_accel_mm_s2 = drive::lowest_on_path(machine, mv, top);
+        let plane = self.curve.map(|curve| curve.plane);
+        let axes = self.axis_accel_mm_s2.iter_mut().zip(&self.start);
+        for (axis, (accel, change)) in axes.enumerate() {
+            let turns = plane.is_some_and(|plane| plane.contains(&axis));
+            let share = if turns { 1.0 } else { change.abs() };
+            let left = drive::lowest(machine, axis, top * share, Heading::Both);
+            *accel = accel.min(left);
         }
         if let Some(Curve { plane, .. }) = self.curve {
             let accel_mm_s2 = self.accel_along(plane);
@@ -238,6 +238,14 @@ impl<T> Element<T> {
     #[inline]
     pub(super) fn common_accel_mm_s2(&self) -> f64 {
         common_accel(self.path_accel_mm_s2, &self.axis_accel_mm_s2)
+    }
+
+    /// Whether the drives leave less than the axes' own acceleration at some speed of
+    /// the element.
+    #[must_use]
+    #[inline]
+    pub fn is_driven(&self) -> bool {
+        self.drive_accel_mm_s2 < self.accel_mm_s2
     }
 
     /// Speed that feed, axes and curvature permit, mm/s.

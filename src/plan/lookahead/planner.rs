@@ -257,8 +257,7 @@ impl<T: Copy> PathPlanner<T> {
     #[inline]
     pub(super) fn limited(&self, element: &Element<T>) -> Option<Element<T>> {
         let path = self.look_ahead.path_accel_mm_s2;
-        let driven = element.drive_accel_mm_s2 < element.accel_mm_s2;
-        if element.path_accel_mm_s2 <= path && !driven {
+        if element.path_accel_mm_s2 <= path && !element.is_driven() {
             return None;
         }
         let mut limited = *element;

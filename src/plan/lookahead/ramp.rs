@@ -25,8 +25,9 @@ pub struct Speeds2 {
 
 impl Speeds2 {
     /// Whether the speed is one and the same all along.
+    #[must_use]
     #[inline]
-    pub(super) fn are_one(&self) -> bool {
+    pub fn are_one(&self) -> bool {
         self.start == self.top && self.end == self.top
     }
 

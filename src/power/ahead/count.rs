@@ -38,6 +38,7 @@ impl Ahead {
         let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         open.alone &= rests && is_whole(&open.mv, planned);
+        open.steady &= planned.speeds2.are_one();
         let with_energy = times && open.want.energy;
         if times {
             open.assessment.duration_s += duration_s;
@@ -124,6 +125,7 @@ impl Ahead {
             let assessment = &mut open.assessment;
             open.certain &= certain;
             open.alone &= from == to && rests && is_whole(&open.mv, planned);
+            open.steady &= planned.speeds2.are_one();
             if times {
                 assessment.duration_s += share * duration_s;
                 assessment.demand.energy_j += share * energy_j;

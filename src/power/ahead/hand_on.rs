@@ -57,6 +57,9 @@ impl Ahead {
             };
             let next = next.filter(|_| !own.rests);
             let before = before.filter(|before| !before.rests);
+            if self.driven && !own.steady {
+                own.drive(machine, model, eye, self.largest.overrides);
+            }
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
             // What no piece speaks of is not known.
             let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;
@@ -81,6 +84,7 @@ impl Ahead {
         if self.at_rest && !self.in_doubt {
             self.open.begin_at_rest();
             self.unwaited = None;
+            self.driven = false;
         }
     }
 

@@ -13,6 +13,7 @@
 //! run as fast as planned even from rest.
 
 mod count;
+mod driven;
 mod glide;
 mod hand_on;
 mod open;
@@ -53,6 +54,9 @@ pub(super) struct Ahead {
     /// What was handed on last, and what before that, where nobody waited for what
     /// may be blended with it.
     unwaited: Option<Extremes>,
+    /// Since the last stop a drive leaves less than the axis' own acceleration at the
+    /// speed of some move.
+    driven: bool,
     /// The last piece, where the next one may run already while it does.
     last_ride: Option<Ride>,
 }
@@ -109,6 +113,7 @@ impl Ahead {
             in_doubt: false,
             reach2: None,
             unwaited: None,
+            driven: false,
             last_ride: None,
         }
     }
@@ -161,6 +166,7 @@ impl Ahead {
         open.moves = true;
         open.in_doubt = std::mem::take(&mut self.in_doubt);
         open.rests = mv.path_mode == PathMode::ExactStop;
+        self.driven |= self.largest.element.is_driven();
         // The planner holds it back, even if it ends at rest.
         self.at_rest = false;
         self.largest.planner.push(&self.largest.element);

@@ -25,6 +25,8 @@ pub(super) struct Open {
     pub moves: bool,
     /// It neither begins nor ends in motion.
     pub alone: bool,
+    /// It runs at one speed throughout.
+    pub steady: bool,
     /// How it comes out where the motion glides.
     pub glided: Glided,
     /// Its pieces over time, where they are looked at.
@@ -56,6 +58,7 @@ impl Open {
             rests: false,
             moves: false,
             alone: true,
+            steady: true,
             glided: Glided::default(),
             kept: Kept::default(),
         }
@@ -70,7 +73,7 @@ impl Open {
         self.text.extend_from_slice(text);
         self.assessment = Assessment::AHEAD;
         self.want = want;
-        (self.certain, self.alone) = (true, true);
+        (self.certain, self.alone, self.steady) = (true, true, true);
         (self.in_doubt, self.rests, self.moves) = (false, false, false);
         self.kept.clear();
     }

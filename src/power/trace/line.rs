@@ -6,7 +6,7 @@ use super::slice::Slice;
 use super::{Flow, Tracer};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
-use crate::plan::{Phase, PhaseKind, Profile};
+use crate::plan::{Phase, PhaseKind, Phases, Profile};
 use arrayvec::ArrayVec;
 
 /// A little more, for rounding.
@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-9;
 pub(in crate::power) struct Line {
     /// Signed SI motion of each axis per mm.
     directions: ArrayVec<(usize, f64), AXES>,
-    phases: ArrayVec<Phase, 7>,
+    phases: Phases,
     idle_w: f64,
 }
 
