@@ -199,7 +199,6 @@ pub(crate) fn choice(method: Method) -> Choice {
         method,
         given: Given::default(),
         decimation: Vec::new(),
-        ratio: None,
         from_command: false,
     }
 }

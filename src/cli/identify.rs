@@ -55,7 +55,7 @@ pub struct IdentifyArgs {
     /// Rigid: band of the filter [default: 30, or a tenth of the rate]
     #[arg(long, value_name = "HZ")]
     pub bandwidth_hz: Option<f64>,
-    /// Lead of the screw, where torque is recorded and a slide moves
+    /// Lead of the screw: torque, angle or speed of the motor are referred to the slide
     #[arg(long, value_name = "MM")]
     pub lead_mm: Option<f64>,
     /// Motor revolutions per revolution of the screw

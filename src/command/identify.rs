@@ -41,16 +41,16 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
         .collect();
     refuse_clashes(&inputs, &outputs)?;
     let ratio = ratio(args)?;
-    let recording = open(&args.recording, letter)?;
+    let recording = open(&args.recording, letter, ratio)?;
     let name = || args.recording.display().to_string();
-    let choice = choice(args, ratio)?;
+    let choice = choice(args)?;
     let is_flexible =
         args.model == Some(ModelArg::Flexible) || (args.model.is_none() && args.method.is_some());
     let (found, validation) = if is_flexible {
         let found = flexible::identify(&recording, &choice).with_context(name)?;
         let validation = match &args.validate {
             Some(path) => Some(
-                flexible::predict_error(&found, &open(path, letter)?, &choice)
+                flexible::predict_error(&found, &open(path, letter, ratio)?, &choice)
                     .with_context(|| path.display().to_string())?,
             ),
             None => None,
@@ -61,22 +61,22 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
             FrictionArg::Symmetric => Friction::Symmetric,
             FrictionArg::Directional => Friction::Directional,
         };
-        let found =
-            rigid::fit(&recording, ratio, friction, args.bandwidth_hz).with_context(name)?;
+        let found = rigid::fit(&recording, friction, args.bandwidth_hz).with_context(name)?;
         let validation = match &args.validate {
             Some(path) => Some(
-                rigid::predict_error(&found, &open(path, letter)?, ratio)
+                rigid::predict_error(&found, &open(path, letter, ratio)?)
                     .with_context(|| path.display().to_string())?,
             ),
             None => None,
         };
         (Found::Rigid(Box::new(found)), validation)
     };
-    let heading = heading(args, letter, &recording, ratio, validation);
+    let heading = heading(args, letter, &recording, validation);
     deliver(args, &heading, &found, terminal)
 }
 
-fn open(path: &Path, axis: char) -> Result<Recording> {
+/// Reads a recording; with `ratio` (N per N·m) what turns is referred to the slide.
+fn open(path: &Path, axis: char, ratio: Option<f64>) -> Result<Recording> {
     let name = path.display();
     let read = if is_dash(path) {
         Recording::read(io::stdin().lock(), Some(axis))
@@ -85,7 +85,13 @@ fn open(path: &Path, axis: char) -> Result<Recording> {
             File::open(path).with_context(|| format!("{name}: cannot read the recording"))?;
         Recording::read(BufReader::new(file), Some(axis))
     };
-    read.with_context(|| name.to_string())
+    let mut recording = read.with_context(|| name.to_string())?;
+    if let Some(ratio) = ratio {
+        recording
+            .refer_to_slide(ratio)
+            .with_context(|| name.to_string())?;
+    }
+    Ok(recording)
 }
 
 /// N per N·m.
@@ -111,7 +117,7 @@ pub(super) fn method(asked: Option<MethodArg>) -> Method {
     }
 }
 
-fn choice(args: &IdentifyArgs, ratio: Option<f64>) -> Result<Choice> {
+fn choice(args: &IdentifyArgs) -> Result<Choice> {
     ensure!(
         args.order.is_none_or(|order| order <= 12),
         "--order is at most 12"
@@ -142,7 +148,6 @@ fn choice(args: &IdentifyArgs, ratio: Option<f64>) -> Result<Choice> {
             delay_s,
         },
         decimation: args.decimate.clone(),
-        ratio,
         from_command: args.from_command,
     })
 }
@@ -151,7 +156,6 @@ fn heading(
     args: &IdentifyArgs,
     axis: char,
     recording: &Recording,
-    ratio: Option<f64>,
     validation: Option<f64>,
 ) -> Heading {
     let force = recording
@@ -166,7 +170,7 @@ fn heading(
             recording.ignored.join(", ")
         ));
     }
-    let lever_is_missing = is_torque && slides && ratio.is_none();
+    let lever_is_missing = is_torque && slides;
     if lever_is_missing {
         notes.push(
             "torque with a motion in metres: figures are for a lever of 1 m; give --lead-mm to get mass and force".to_owned(),
@@ -175,7 +179,7 @@ fn heading(
     Heading {
         recording: args.recording.display().to_string(),
         axis,
-        rotary: is_torque && ratio.is_none(),
+        rotary: is_torque,
         validation,
         lever_is_missing,
         notes,

@@ -248,7 +248,6 @@ fn choice(args: &TuneArgs) -> Result<Choice> {
             ..Given::default()
         },
         decimation: Vec::new(),
-        ratio: None,
         from_command: args.from_command,
     })
 }

@@ -1,7 +1,7 @@
 //! Flexible axes: from a recording to resonances and anti-resonances.
 
 use super::arx;
-use super::column::{Kind, Quantity};
+use super::column::Quantity;
 use super::command_input::CommandInput;
 use super::data::Data;
 use super::disturbance::as_it_is;
@@ -42,8 +42,6 @@ pub struct Choice {
     pub given: Given,
     /// Factors by which the signals are decimated first, one a stage.
     pub decimation: Vec<usize>,
-    /// N per N·m, where torque drives a slide.
-    pub ratio: Option<f64>,
     /// The position command is the input, though a force is recorded.
     pub from_command: bool,
 }
@@ -163,10 +161,6 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
     if measured == Measured::Direct {
         quality::not_saturated(output_signal)?;
     }
-    let factor = match (input_signal.kind, choice.ratio) {
-        (Kind::Rotary, Some(ratio)) => ratio,
-        _ => 1.0,
-    };
     // From a command both sides are differenced as often as the noise of what was
     // measured stays white: positions not at all. The plain methods know held
     // inputs only.
@@ -176,7 +170,7 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
         CommandInput::held
     };
     let (input, output, runs, late_s) = if is_force {
-        let input = input_signal.values.iter().map(|u| u * factor).collect();
+        let input = input_signal.values.clone();
         let output = differences(&output_signal.values, measured, t);
         (input, output, measured, 0.0)
     } else {
@@ -186,7 +180,7 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
     };
     let excitation = pick(Quantity::Excitation)
         .filter(|signal| is_force && signal.name != input_signal.name)
-        .map(|signal| signal.values.iter().map(|r| r * factor).collect());
+        .map(|signal| signal.values.clone());
     let positions = !is_force && measured == Measured::Position;
     let mut prepared = Prepared {
         input,

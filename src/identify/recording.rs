@@ -95,6 +95,41 @@ impl Recording {
         })
     }
 
+    /// Refers what was recorded at a motor to the slide that its screw drives:
+    /// torques become forces, angles become travel. `force_per_torque` is in N per
+    /// N·m, and so in rad of the motor per m of the slide. Signals that are about
+    /// sliding stay as they are.
+    ///
+    /// # Errors
+    ///
+    /// An angle of the load: the load of a screw slides.
+    pub fn refer_to_slide(&mut self, force_per_torque: f64) -> Outcome<()> {
+        for signal in &mut self.signals {
+            if signal.kind != Kind::Rotary {
+                continue;
+            }
+            let factor = match signal.quantity {
+                Quantity::Force | Quantity::Excitation => force_per_torque,
+                Quantity::Command
+                | Quantity::Position
+                | Quantity::Velocity
+                | Quantity::Acceleration => 1.0 / force_per_torque,
+                Quantity::Time | Quantity::Power => continue,
+            };
+            if signal.name.to_ascii_lowercase().contains("load_") {
+                return Err(Trouble::new(
+                    format!("{} turns, but the load of a screw slides", signal.name),
+                    "leave --lead-mm out if the load turns; name the column without load_ if it is the motor's encoder",
+                ));
+            }
+            for value in &mut signal.values {
+                *value *= factor;
+            }
+            signal.kind = Kind::Linear;
+        }
+        Ok(())
+    }
+
     /// The signal of a quantity.
     #[must_use]
     pub fn get(&self, quantity: Quantity) -> Option<&Signal> {

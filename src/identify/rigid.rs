@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::column::{Kind, Quantity};
+use super::column::Quantity;
 use super::filter::{derivative, low_pass, second_derivative};
 use super::noise::Whiteness;
 use super::normal::Normal;
@@ -76,34 +76,24 @@ struct Equations {
     step_s: f64,
 }
 
-/// The force of a recording in N (N·m where the motion turns), with `ratio`
-/// (N per N·m) where torque drives a slide.
+/// The force of a recording in N (N·m where the motion turns).
 ///
 /// # Errors
 ///
 /// Without a force, or with one that does not go with the motion.
-pub fn force_of(recording: &Recording, ratio: Option<f64>) -> Outcome<Vec<f64>> {
+pub fn force_of(recording: &Recording) -> Outcome<Vec<f64>> {
     let Some(force) = recording.get(Quantity::Force) else {
         return Err(Trouble::new(
             "there is no force or torque in the recording",
             "add a column force_n or torque_nm: from motor current, times the force constant",
         ));
     };
-    let factor = match (force.kind, ratio) {
-        (Kind::Rotary, Some(ratio)) => ratio,
-        _ => 1.0,
-    };
-    Ok(force.values.iter().map(|f| f * factor).collect())
+    Ok(force.values.clone())
 }
 
-fn equations(
-    recording: &Recording,
-    ratio: Option<f64>,
-    friction: Friction,
-    bandwidth_hz: f64,
-) -> Outcome<Equations> {
+fn equations(recording: &Recording, friction: Friction, bandwidth_hz: f64) -> Outcome<Equations> {
     let t = recording.period_s;
-    let force = force_of(recording, ratio)?;
+    let force = force_of(recording)?;
     for signal in &recording.signals {
         if matches!(
             signal.quantity,
@@ -225,19 +215,14 @@ pub fn bandwidth(recording: &Recording, given_hz: Option<f64>) -> f64 {
         .min(0.1 / recording.period_s)
 }
 
-/// Fits a rigid axis. `ratio`: N per N·m, where torque drives a slide.
+/// Fits a rigid axis.
 ///
 /// # Errors
 ///
 /// What keeps the figures from being determined.
-pub fn fit(
-    recording: &Recording,
-    ratio: Option<f64>,
-    friction: Friction,
-    bandwidth_hz: Option<f64>,
-) -> Outcome<Rigid> {
+pub fn fit(recording: &Recording, friction: Friction, bandwidth_hz: Option<f64>) -> Outcome<Rigid> {
     let bandwidth_hz = bandwidth(recording, bandwidth_hz);
-    let equations = equations(recording, ratio, friction, bandwidth_hz)?;
+    let equations = equations(recording, friction, bandwidth_hz)?;
     let n = equations.force.len();
     let width = equations.columns.len();
     if n < 10 * width {
@@ -345,8 +330,8 @@ fn not_rigid(equations: &Equations, theta: &[f64], bandwidth_hz: f64) -> Option<
 /// # Errors
 ///
 /// When that recording cannot be used.
-pub fn predict_error(rigid: &Rigid, other: &Recording, ratio: Option<f64>) -> Outcome<f64> {
-    let equations = equations(other, ratio, rigid.friction, rigid.bandwidth_hz)?;
+pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
+    let equations = equations(other, rigid.friction, rigid.bandwidth_hz)?;
     if equations.columns.len() != rigid.theta.len() {
         return Err(Trouble::new(
             "the second recording has other signals than the first",

@@ -128,3 +128,42 @@ fn an_excitation_warns_where_the_axis_would_leave_its_stroke() {
     let ran = with(&["--stroke-mm", "1000", "--speed-mm-min", "100000"]);
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
 }
+
+/// Torque and angle of a motor whose screw of 10 mm moves 100 kg: what is written
+/// is the mass of the slide.
+#[test]
+fn a_lead_converts_torque_and_angle() {
+    use std::fmt::Write as _;
+    let shop = Shop::new();
+    // 50 kg at F in N and x in m: 100 kg at twice the force.
+    let mut text = "time_s,torque_nm,position_deg\n".to_owned();
+    let per_metre = std::f64::consts::TAU / 0.01;
+    for row in axis_recording().lines().skip(1) {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let torque = 2.0 * cells[1] / per_metre;
+        let angle = (cells[2] * per_metre).to_degrees();
+        writeln!(text, "{:.3},{torque},{angle}", cells[0]).unwrap();
+    }
+    shop.put("x.csv", text);
+    let machine = shop.run(&["machine", "show", "vmc"]).stdout;
+    shop.put("mill.toml", &machine);
+    let ran = shop.run(&[
+        "identify",
+        "x.csv",
+        "--axis",
+        "x",
+        "--lead-mm",
+        "10",
+        "--json",
+        "x.json",
+        "--into",
+        "mill.toml",
+    ]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let json: serde_json::Value = serde_json::from_str(&shop.get("x.json")).unwrap();
+    let mass = json["mass_kg"].as_f64().unwrap();
+    assert!((mass / 100.0 - 1.0).abs() < 0.02, "{mass}");
+    let friction = json["coulomb_n"].as_f64().unwrap();
+    assert!((friction / 40.0 - 1.0).abs() < 0.02, "{friction}");
+    assert!(!shop.get("mill.toml").contains("mass_kg = 0."));
+}

@@ -13,7 +13,7 @@ use super::{Noise, PERIOD_S, choice, csv, m_sequence, table};
 fn refusal(text: &str) -> String {
     let choice = choice(Method::Iv);
     let result = Recording::read(text.as_bytes(), None).and_then(|recording| {
-        rigid::fit(&recording, None, Friction::Symmetric, None)?;
+        rigid::fit(&recording, Friction::Symmetric, None)?;
         flexible::identify(&recording, &choice)
     });
     result.map(|_| ()).unwrap_err().to_string()

@@ -156,7 +156,7 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
     let force = recording
         .get(Quantity::Force)
         .or_else(|| recording.get(Quantity::Excitation));
-    let rotary = force.is_some_and(|f| f.kind == Kind::Rotary) && choice.ratio.is_none();
+    let rotary = force.is_some_and(|f| f.kind == Kind::Rotary);
     let found_dips = dips(&found.response);
     let (zeros, hidden) = visible(&found, &found_dips);
     let mut notes = Vec::new();
