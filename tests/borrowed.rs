@@ -76,6 +76,14 @@ fn rows(table: &Path, start: AxisValues) -> Vec<AxisValues> {
     reached(places.into_iter(), start)
 }
 
+/// Programs of CEAD whose words are not all read: they have to be refused.
+const REFUSED: [&str; 4] = [
+    "axis_index_assignment.mpf",
+    "edge_cases.mpf",
+    "function_calls.mpf",
+    "spline.mpf",
+];
+
 /// Programs in the language of SINUMERIK with the tables of CEAD's interpreter,
 /// which works out values and sums up increments, but no arcs.
 #[test]
@@ -126,6 +134,10 @@ fn programs_of_cead_reach_the_places_of_their_tables() {
                 Ok(())
             },
         );
+        if REFUSED.contains(&name.as_str()) {
+            assert!(done.is_err(), "{name} is read");
+            continue;
+        }
         let expected = rows(&table, start);
         let found = reached(places.into_iter(), start);
         let close = |(a, b): (&AxisValues, &AxisValues)| {

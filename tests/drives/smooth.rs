@@ -96,24 +96,26 @@ fn a_ramp_may_end_before_it_meets_the_curve() {
 
 /// The hardest acceleration at a speed: the minimum over all others, by brute force.
 fn hardest(machine: &Machine, top: f64, jerk: f64, side: f64) -> Vec<f64> {
-    const STEPS: usize = 2000;
     let points = &machine.force_curves[0].1;
+    // Kinks lie on steps.
+    let pieces = points.len() - 1;
+    let steps = pieces * (4000 / pieces);
     let axis = machine.axes[0].unwrap();
-    let width = top / STEPS as f64;
+    let width = top / steps as f64;
     let square = |i: usize| {
         let v = width * i as f64;
-        if i == 0 || i == STEPS {
+        if i == 0 || i == steps {
             return 0.0;
         }
         let force = super::force_at(points, v) - side * (axis.coulomb_n + axis.gravity_n);
         let own = (force / axis.mass_kg * 1e3).min(axis.accel_mm_s2);
         own * own
     };
-    let mut q: Vec<f64> = (0..=STEPS).map(square).collect();
-    for i in 1..=STEPS {
+    let mut q: Vec<f64> = (0..=steps).map(square).collect();
+    for i in 1..=steps {
         q[i] = q[i].min(q[i - 1] + 2.0 * jerk * width);
     }
-    for i in (0..STEPS).rev() {
+    for i in (0..steps).rev() {
         q[i] = q[i].min(q[i + 1] + 2.0 * jerk * width);
     }
     q
