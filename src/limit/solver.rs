@@ -48,12 +48,7 @@ impl<'m> Solver<'m> {
     /// A solver for a machine.
     #[must_use]
     pub fn new(machine: &'m Machine, how: LimitOptions) -> Self {
-        let limits = &machine.limits;
-        let largest = Overrides {
-            feed: limits.feed_override_max,
-            rapid: limits.rapid_override_max,
-            spindle: limits.spindle_override_max,
-        };
+        let [largest, _] = Overrides::of(machine);
         Self {
             machine,
             model: PowerModel::new(machine),

@@ -56,16 +56,7 @@ impl<'m> Assessor<'m> {
     /// Judges by `requested`, or by what the controller profile models.
     #[must_use]
     pub fn new(machine: &'m Machine, requested: Option<Certificate>, want: Want) -> Self {
-        let largest = Overrides {
-            feed: machine.limits.feed_override_max,
-            rapid: machine.limits.rapid_override_max,
-            spindle: machine.limits.spindle_override_max,
-        };
-        let nominal = Overrides {
-            feed: largest.feed.min(1.0),
-            rapid: largest.rapid.min(1.0),
-            spindle: largest.spindle.min(1.0),
-        };
+        let [largest, nominal] = Overrides::of(machine);
         let model = PowerModel::new(machine);
         let rules = machine.controller.planner.look_ahead;
         let rules = rules.filter(|_| requested != Some(Certificate::Robust));

@@ -45,6 +45,7 @@ mod spindle;
 mod spindle_state;
 mod spindle_trace;
 mod surface_speed;
+mod surge;
 mod tandem;
 mod straight;
 mod stretch;

@@ -80,6 +80,9 @@ impl Ahead {
         }
         if self.at_rest && !self.in_doubt {
             self.open.begin_at_rest();
+            if let Some(surges) = &mut self.surges {
+                surges.runs.clear();
+            }
             self.unwaited = None;
         }
     }

@@ -1,6 +1,7 @@
 //! A move that waits for what is planned behind it, and how moves take part.
 
 use super::glide::Glided;
+use super::pace::Pace;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{Machine, PathMode};
 use crate::plan::is_independent;
@@ -25,6 +26,8 @@ pub(super) struct Open {
     pub moves: bool,
     /// It neither begins nor ends in motion.
     pub alone: bool,
+    /// What is asked of it.
+    pub pace: Pace,
     /// How it comes out where the motion glides.
     pub glided: Glided,
     /// Its pieces over time, where they are looked at.
@@ -56,6 +59,7 @@ impl Open {
             rests: false,
             moves: false,
             alone: true,
+            pace: Pace::default(),
             glided: Glided::default(),
             kept: Kept::default(),
         }

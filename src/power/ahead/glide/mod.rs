@@ -12,6 +12,8 @@
 mod terms;
 
 use super::Ahead;
+use super::pace::Pace;
+use super::surges::Surges;
 use super::open::Open;
 use crate::interpret::Move;
 use crate::machine::{AxisSet, LookAhead, Machine};
@@ -129,11 +131,31 @@ impl Ahead {
             self.glider.back_off();
             return false;
         };
+        let pace = self.pace_on();
         let open = self.open.push(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
         open.moves = true;
+        open.pace = pace;
         self.count_gliding(model, eye);
         true
+    }
+
+    /// What is asked of a move that glides: the same as of the one before it. How far
+    /// that reaches is known by now.
+    #[inline]
+    fn pace_on(&mut self) -> Pace {
+        let (Some(surges), Some(last)) = (&mut self.surges, self.open.back_mut()) else {
+            return Pace::default();
+        };
+        if last.pace.own2 == 0.0 {
+            last.pace.own2 = last.glided.ramp2;
+            surges.runs.extend(last.glided.ramp2);
+        }
+        Pace {
+            before2: last.pace.before2 + last.pace.own2,
+            own2: 0.0,
+            ..last.pace
+        }
     }
 
     /// Glides through the joint before a move; gives the speed, mm/s.
@@ -195,6 +217,11 @@ impl Ahead {
         let feed_mm_s = self.open.back()?.mv.feed_mm_s;
         let speed_mm_s = feed_mm_s * terms.feed;
         if speed_mm_s * speed_mm_s != speed2 {
+            return None;
+        }
+        // Where rapids and feeds meet, another rapid override speeds the feed up.
+        let one = |surges: &Surges| surges.are_one(false, speed2);
+        if !self.surges.as_ref().is_none_or(one) {
             return None;
         }
         let (mut ramp2, mut line) = (0.0, Line::default());
