@@ -34,6 +34,8 @@ use arrayvec::ArrayVec;
 const SLOWER_MAX: usize = 32;
 /// By what share two squared speeds may differ by rounding.
 const ROUNDING: f64 = 1e-9;
+/// By what share a sum may be off by rounding.
+pub(super) const SUM_ROUNDING: f64 = 1e-13;
 
 /// An element at the largest overrides; speeds are squared, mm²/s².
 #[derive(Debug, Clone, Copy, Default)]
@@ -163,7 +165,7 @@ impl Past {
         let kept = pace.keeps(start2);
         let all = self.slower.iter().flatten();
         let reached = all.filter_map(|slow| {
-            pace.from_slower(slow, self.now2 - slow.at2 - ROUNDING * self.now2, start2, kept)
+            pace.from_slower(slow, self.now2 - slow.at2 - SUM_ROUNDING * self.now2, start2, kept)
         });
         reached.reduce(f64::max)
     }

@@ -5,13 +5,10 @@
 
 use std::collections::VecDeque;
 
-use super::pace::{Course, Pace, Slow};
+use super::pace::{Course, Pace, SUM_ROUNDING, Slow};
 
 /// Runs that are looked at; behind them anything may be.
 const RUNS_MAX: usize = 64;
-/// By what share a sum may be off by rounding.
-const ROUNDING: f64 = 1e-9;
-
 /// Elements in a row with one knob and one speed.
 #[derive(Debug)]
 struct Run {
@@ -45,12 +42,6 @@ impl Runs {
             });
         }
         self.sum2 += pace.own2;
-    }
-
-    /// The path goes on at the same speed.
-    #[inline]
-    pub fn extend(&mut self, own2: f64) {
-        self.sum2 += own2;
     }
 
     /// Forgets what is before an element.
@@ -90,7 +81,7 @@ impl Runs {
         let mut found: Option<f64> = None;
         let behind = self.runs.iter().filter(|run| run.first > number);
         for (looked, run) in behind.enumerate() {
-            let distance2 = run.slow.at2 - behind2 - ROUNDING * run.slow.at2;
+            let distance2 = run.slow.at2 - behind2 - SUM_ROUNDING * run.slow.at2;
             if distance2 >= end2 {
                 break;
             }

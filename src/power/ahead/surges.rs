@@ -15,18 +15,21 @@ use crate::power::surge::{Surge, surge_demand};
 pub(super) struct Surges {
     past: Past,
     pub runs: Runs,
-    /// Of 2·a·L that is certain: blends may take path, and acceleration.
+    /// Of the acceleration that is certain: kinks may take of it.
     ramp_share: f64,
     path_accel_mm_s2: f64,
 }
 
 impl Surges {
     pub fn new(rules: &LookAhead) -> Self {
-        let blends = matches!(rules.corner, CornerRule::LinuxCnc { .. });
+        let ramp_share = match rules.corner {
+            CornerRule::LinuxCnc { kink_ratio, .. } => 1.0 - kink_ratio,
+            _ => 1.0,
+        };
         Self {
             past: Past::default(),
             runs: Runs::default(),
-            ramp_share: if blends { 0.5 } else { 1.0 },
+            ramp_share,
             path_accel_mm_s2: rules.path_accel_mm_s2,
         }
     }

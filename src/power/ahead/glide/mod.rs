@@ -131,31 +131,17 @@ impl Ahead {
             self.glider.back_off();
             return false;
         };
-        let pace = self.pace_on();
+        let pace = self.open.back().map(|last| Pace {
+            own2: 0.0,
+            ..last.pace
+        });
         let open = self.open.push(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
         open.moves = true;
-        open.pace = pace;
+        // The same speed is asked for; how far it reaches matters when this ends.
+        open.pace = pace.unwrap_or_default();
         self.count_gliding(model, eye);
         true
-    }
-
-    /// What is asked of a move that glides: the same as of the one before it. How far
-    /// that reaches is known by now.
-    #[inline]
-    fn pace_on(&mut self) -> Pace {
-        let (Some(surges), Some(last)) = (&mut self.surges, self.open.back_mut()) else {
-            return Pace::default();
-        };
-        if last.pace.own2 == 0.0 {
-            last.pace.own2 = last.glided.ramp2;
-            surges.runs.extend(last.glided.ramp2);
-        }
-        Pace {
-            before2: last.pace.before2 + last.pace.own2,
-            own2: 0.0,
-            ..last.pace
-        }
     }
 
     /// Glides through the joint before a move; gives the speed, mm/s.
@@ -320,6 +306,11 @@ impl Ahead {
             // All have a path: their lengths and their limits are above 0.
             if !open.is_some_and(|open| side.describe(machine, &open.mv, number)) {
                 continue;
+            }
+            if let (Some(surges), Some(open)) = (&mut self.surges, self.open.get_mut(number))
+                && open.pace.own2 == 0.0
+            {
+                open.pace = surges.push(number, &side.element);
             }
             if number == glide.first {
                 side.planner.glide_to(&side.element, glide.start, speed2);
