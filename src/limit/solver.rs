@@ -8,7 +8,7 @@ use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidJoint};
-use crate::plan::{Overrides, Plan, blended_bound, blended_speed, driven_accel, plan};
+use crate::plan::{Overrides, Plan, Trajectory, blended_bound, blended_speed, driven_accel, plan};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -165,6 +165,15 @@ impl<'m> Solver<'m> {
     fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
         let plan = plan(self.machine, mv, self.largest);
         let demand = self.model.demand(mv, &plan, Want::PEAKS);
+        let any = demand.load_ratio <= 1.0 + 1e-9;
+        let demand = if any && matches!(plan.trajectory, Trajectory::Axes(_)) {
+            // Whether another override has more is of interest only where this one fits.
+            let want = self.model.around_limits(mv);
+            let (machine, largest) = (self.machine, self.largest);
+            self.model.demand_at_any(machine, mv, &plan, largest, want)
+        } else {
+            demand
+        };
         let known = mv.unknown_start.is_empty();
         let speed_mm_s = if known {
             plan.top_speed_mm_s

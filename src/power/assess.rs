@@ -366,7 +366,10 @@ impl<'m> Assessor<'m> {
             Some(path) => path.plan(mv.length_mm),
             None => plan(self.machine, mv, self.largest),
         };
-        let mut demand = self.model.demand(mv, &peak_plan, self.want);
+        let (machine, largest) = (self.machine, self.largest);
+        let mut demand = self
+            .model
+            .demand_at_any(machine, mv, &peak_plan, largest, self.want);
         let (mut duration_s, mut speed_mm_s) = (peak_plan.duration_s, peak_plan.speed_limit_mm_s);
         if self.largest != self.nominal {
             let nominal = plan(self.machine, mv, self.nominal);

@@ -30,6 +30,7 @@ mod independent;
 mod instant;
 mod interval;
 mod joining;
+mod knob;
 mod model;
 mod motion;
 mod piece;
