@@ -122,11 +122,15 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         .to_owned(),
     );
     if !summary.over_time.is_empty() {
-        conditions.push(
-            "limits over time are less the margin and at the largest overrides; what is shorter \
-             than a window may run again at once"
-                .to_owned(),
-        );
+        let runs = if options.once {
+            "of one run"
+        } else {
+            "of a program that runs again at once, for ever"
+        };
+        conditions.push(format!(
+            "limits over time are less the margin, {runs}; at the largest overrides, times of \
+             overload with cruises at any lower one"
+        ));
         if summary.certificate == Some(Certificate::Robust) {
             conditions.push(
                 "blended moves last no longer than with a stop at both ends, and no shorter than \

@@ -91,9 +91,8 @@ pub fn motion<R: Read + Seek + Send>(
     let mut mover = Mover {
         machine,
         overrides,
-        planner: rules.map(|rules| {
-            PathPlanner::new(machine, rules).expecting(largest.feed / overrides.feed)
-        }),
+        planner: rules
+            .map(|rules| PathPlanner::new(machine, rules).expecting(largest.feed / overrides.feed)),
         switched: Switched::default(),
         open: VecDeque::new(),
         first: 0,

@@ -94,6 +94,15 @@ impl<'m> Assessor<'m> {
         self
     }
 
+    /// The program runs again at once, for ever, as far as limits over time go.
+    #[must_use]
+    pub fn repeating(mut self, repeats: bool) -> Self {
+        if let Some(watch) = &mut self.eye.watch {
+            watch.repeated = repeats;
+        }
+        self
+    }
+
     /// Keeps the motion at 100 % until it is taken with [`Self::motions`], and the
     /// spindle with [`Self::turnings`].
     #[must_use]

@@ -174,8 +174,8 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
         let mut best_w = self.bound_w(peak, [&top, &top]);
         let mut ranges = vec![self.range(peak, [Rides::new(), top], [0.0, 1.0])];
         loop {
-            let worst = (0..ranges.len())
-                .max_by(|a, b| ranges[*a].upper_w.total_cmp(&ranges[*b].upper_w));
+            let worst =
+                (0..ranges.len()).max_by(|a, b| ranges[*a].upper_w.total_cmp(&ranges[*b].upper_w));
             let Some(worst) = worst else {
                 return best_w;
             };
@@ -232,11 +232,7 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
                 sign: 1.0_f64.copysign(distance),
                 accel: si * first.accel_mm_s2,
                 top: si * first.end_velocity_mm_s,
-                times_s: [
-                    first.duration_s,
-                    duration_s - last.duration_s,
-                    duration_s,
-                ],
+                times_s: [first.duration_s, duration_s - last.duration_s, duration_s],
             })
         });
         rides.take(AXES).collect()
@@ -246,7 +242,9 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
     fn bound_w(&self, peak: Peak, [low, high]: [&Rides; 2]) -> f64 {
         let mut most_w = 0.0_f64;
         let bends = peak == Peak::FedBack
-            && high.iter().any(|ride| self.model.axes[ride.axis].viscous > 0.0);
+            && high
+                .iter()
+                .any(|ride| self.model.axes[ride.axis].viscous > 0.0);
         let parts = if bends { PARTS } else { 1 };
         let mut look = |window: [f64; 2]| {
             most_w = larger(most_w, self.window_w(peak, [low, high], window, bends));
@@ -260,7 +258,11 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
                 look(ordered(up.map(|t| t * share)));
                 let braked = |i: usize| {
                     let (from, to) = (down[i], end[i]);
-                    if from < f64::INFINITY { to + (from - to) * share } else { from }
+                    if from < f64::INFINITY {
+                        to + (from - to) * share
+                    } else {
+                        from
+                    }
                 };
                 look(ordered([braked(0), braked(1)]));
             }
@@ -273,13 +275,7 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
     }
 
     /// What all axes together may have within a window of time.
-    fn window_w(
-        &self,
-        peak: Peak,
-        [low, high]: [&Rides; 2],
-        window: [f64; 2],
-        bends: bool,
-    ) -> f64 {
+    fn window_w(&self, peak: Peak, [low, high]: [&Rides; 2], window: [f64; 2], bends: bool) -> f64 {
         let axes = low.iter().zip(high);
         axes.map(|(low, high)| {
             let power = &self.model.axes[low.axis];
@@ -315,7 +311,11 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
             look(0.0, low.top, top.min(a * to_s));
         }
         if to_s >= high.times_s[1] && from_s <= low.times_s[2] {
-            look(-a, a * (high.times_s[2] - to_s), a * (low.times_s[2] - from_s));
+            look(
+                -a,
+                a * (high.times_s[2] - to_s),
+                a * (low.times_s[2] - from_s),
+            );
         }
         if to_s >= high.times_s[2] {
             let holding_w = power.holding_w();

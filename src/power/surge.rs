@@ -92,7 +92,8 @@ fn arc_demand(model: &PowerModel, mv: &Move, [from_mm, to_mm]: [f64; 2], surge: 
         let (mut bound, mut accels) = (shares.along, AxisValues::default());
         for axis in 0..AXES {
             let share = bound.positive[axis].max(bound.negative[axis]);
-            accels[axis] = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
+            accels[axis] =
+                share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
             bound.positive[axis] *= speed_mm_s;
             bound.negative[axis] *= speed_mm_s;
         }
@@ -116,7 +117,11 @@ fn blend_demand(model: &PowerModel, mv: &Move, blend: &Blend, surge: Surge) -> D
         let most = |sign: f64, angle: f64| {
             let ends = (sign * first).max(sign * last).max(0.0);
             let turned = [angle, angle + 2.0 * PI];
-            if turned.into_iter().any(inside) { swing } else { ends }
+            if turned.into_iter().any(inside) {
+                swing
+            } else {
+                ends
+            }
         };
         bound.positive[axis] = most(1.0, peak) * speed_mm_s;
         bound.negative[axis] = most(-1.0, peak + PI) * speed_mm_s;

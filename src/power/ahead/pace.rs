@@ -69,8 +69,7 @@ pub(super) struct Course {
 impl Course {
     /// Whether it speeds up to its largest speed, and brakes from it.
     pub fn ramps(&self) -> [bool; 2] {
-        [self.start2, self.end2]
-            .map(|end2| self.plain && self.top2 > end2 * (1.0 + ROUNDING))
+        [self.start2, self.end2].map(|end2| self.plain && self.top2 > end2 * (1.0 + ROUNDING))
     }
 }
 
@@ -165,7 +164,12 @@ impl Past {
         let kept = pace.keeps(start2);
         let all = self.slower.iter().flatten();
         let reached = all.filter_map(|slow| {
-            pace.from_slower(slow, self.now2 - slow.at2 - SUM_ROUNDING * self.now2, start2, kept)
+            pace.from_slower(
+                slow,
+                self.now2 - slow.at2 - SUM_ROUNDING * self.now2,
+                start2,
+                kept,
+            )
         });
         reached.reduce(f64::max)
     }

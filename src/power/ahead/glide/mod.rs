@@ -12,9 +12,9 @@
 mod terms;
 
 use super::Ahead;
+use super::open::Open;
 use super::pace::Pace;
 use super::surges::Surges;
-use super::open::Open;
 use crate::interpret::Move;
 use crate::machine::{AxisSet, LookAhead, Machine};
 use crate::plan::Overrides;
