@@ -5,6 +5,7 @@ mod corners;
 mod glide;
 mod linuxcnc;
 mod measured;
+mod overrides;
 mod profile;
 mod recorded;
 mod tandem;

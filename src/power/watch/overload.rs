@@ -221,6 +221,41 @@ mod tests {
     }
 
     #[test]
+    fn a_window_reaches_into_the_next_run() {
+        // 0.976 s above at the beginning, 0.487 s at the end of 20 s, 10 s a window.
+        let mut overload = Overload::new(2000.0, 10.0);
+        let slices = [
+            Slice::constant(0.976, 3000.0),
+            Slice::constant(18.537, 100.0),
+            Slice::constant(0.487, 3000.0),
+        ];
+        for slice in &slices {
+            overload.take(slice, 0.0, Place::default());
+        }
+        assert!((overload.worst.value - 0.976).abs() < 1e-9);
+        assert!((overload.repeated(0.0).value - 1.463).abs() < 1e-9);
+        // Where each run begins with 1 s at full power as well.
+        assert!((overload.repeated(1.0).value - 1.487).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_short_program_runs_often_in_a_window() {
+        // 1 s of 3 s: 4 s of a window of 10 s.
+        let mut overload = Overload::new(2000.0, 10.0);
+        for slice in [Slice::constant(1.0, 3000.0), Slice::constant(2.0, 100.0)] {
+            overload.take(&slice, 0.0, Place::default());
+        }
+        assert!((overload.repeated(0.0).value - 4.0).abs() < 1e-9);
+        // With more runs than can be looked at the bound is that of whole ones.
+        let mut overload = Overload::new(2000.0, 1e6);
+        for slice in [Slice::constant(1e-2, 3000.0), Slice::constant(2e-2, 100.0)] {
+            overload.take(&slice, 0.0, Place::default());
+        }
+        let found = overload.repeated(0.0).value;
+        assert!((1e6 / 3.0..1e6 / 3.0 + 0.03).contains(&found), "{found}");
+    }
+
+    #[test]
     fn only_the_time_above_counts() {
         // 1 to 4 kW in 0.3 s: above 2 kW for 0.2 s. At 2 kW itself it is not.
         let ramp = Slice::linear(0.3, 1000.0, 4000.0);

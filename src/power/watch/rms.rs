@@ -346,6 +346,37 @@ mod tests {
     }
 
     #[test]
+    fn a_window_reaches_into_the_next_run() {
+        // 3 kW for 1 s at both ends of 20 s, else nothing: 2 s of a window of 10 s.
+        let slices = [
+            Slice::constant(1.0, 3000.0),
+            Slice::constant(18.0, 0.0),
+            Slice::constant(1.0, 3000.0),
+        ];
+        let mut rms = Rms::new(10.0);
+        for slice in &slices {
+            rms.take(slice, 0.0, Place::default());
+        }
+        let found = rms.repeated(0.0).value;
+        let exact = (2.0 * 9e6_f64 / 10.0).sqrt();
+        assert!(
+            found >= exact - 1e-6 && found <= exact * 1.001,
+            "{found} {exact}"
+        );
+        // 1 s of 3 s: 4 s of a window of 10 s.
+        let mut rms = Rms::new(10.0);
+        for slice in [Slice::constant(1.0, 3000.0), Slice::constant(2.0, 0.0)] {
+            rms.take(&slice, 0.0, Place::default());
+        }
+        let found = rms.repeated(0.0).value;
+        let exact = (4.0 * 9e6_f64 / 10.0).sqrt();
+        assert!(
+            found >= exact - 1e-6 && found <= exact * 1.001,
+            "{found} {exact}"
+        );
+    }
+
+    #[test]
     fn a_trapezoid_shorter_than_the_window() {
         // 0 → 600 W in 1 s, 300 W for 2 s, then nothing for 1 s: P²·t is
         // 120 000 + 180 000 W²·s over 4 s.

@@ -184,6 +184,29 @@ mod tests {
     }
 
     #[test]
+    fn a_run_begins_with_what_the_last_one_left() {
+        // 200 J at the beginning and 100 J at the end, of which 1 s takes all.
+        let slices = [
+            Slice::constant(0.1, 5000.0),
+            Slice::constant(1.0, 1000.0),
+            Slice::constant(0.05, 5000.0),
+        ];
+        let mut store = Store::new(3000.0);
+        for slice in &slices {
+            store.take(slice, 0.0, Place::default(), &mut |_, _| {});
+        }
+        assert!((store.worst.value - 200.0).abs() < 1e-9);
+        assert!((store.repeated().value - 300.0).abs() < 1e-9);
+        assert!(store.refilled_s() <= 1.1);
+        // Where a run takes more than it gives off there is no end to it.
+        let mut store = Store::new(1200.0);
+        for slice in &slices {
+            store.take(slice, 0.0, Place::default(), &mut |_, _| {});
+        }
+        assert_eq!(store.repeated().value, f64::INFINITY);
+    }
+
+    #[test]
     fn a_short_peak_comes_from_the_capacitor() {
         // 50 ms at 5 kW from 3 kW: 100 J. At 1 kW it takes 50 ms to come back.
         let slices = [
