@@ -198,7 +198,8 @@ impl<P: Fn(f64) -> Plan> Knob<'_, P> {
     fn range(&self, peak: Peak, mut rides: [Rides; 2], knobs: [f64; 2]) -> Range {
         if rides[0].is_empty() {
             // At next to no override all lasts for ever.
-            rides[0] = rides[1].clone();
+            let [low, high] = &mut rides;
+            low.clone_from(high);
             for ride in &mut rides[0] {
                 ride.top = 0.0;
                 ride.times_s = [0.0, f64::INFINITY, f64::INFINITY];

@@ -9,7 +9,7 @@ use super::demand::{Demand, Want};
 use super::model::PowerModel;
 use super::piece::straight_line;
 use crate::interpret::Move;
-use crate::machine::{AXES, AxisValues};
+use crate::machine::AxisValues;
 use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{Blend, PathShares, Plan, SpeedBound, Trajectory};
 use std::f64::consts::PI;
@@ -90,10 +90,9 @@ fn arc_demand(model: &PowerModel, mv: &Move, [from_mm, to_mm]: [f64; 2], surge: 
         let ends_mm = [at(f64::from(stretch)), at(f64::from(stretch) + 1.0)];
         let shares = PathShares::of(mv, ends_mm);
         let (mut bound, mut accels) = (shares.along, AxisValues::default());
-        for axis in 0..AXES {
+        for (axis, accel) in accels.iter_mut().enumerate() {
             let share = bound.positive[axis].max(bound.negative[axis]);
-            accels[axis] =
-                share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
+            *accel = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
             bound.positive[axis] *= speed_mm_s;
             bound.negative[axis] *= speed_mm_s;
         }

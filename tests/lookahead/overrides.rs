@@ -189,7 +189,7 @@ fn any_program(dice: &mut Dice, controller: &str) -> String {
         let mode = ["G64", "G64 P0.05", "G64 P0.5", "G61"][(dice.next() * 4.0) as usize];
         let _ = writeln!(text, "{mode}");
     }
-    let (mut x, mut y, mut turn) = (0.0, 0.0, dice.next() * 6.28);
+    let (mut x, mut y, mut turn) = (0.0, 0.0, dice.next() * 6.25);
     for block in 0..2 + (dice.next() * 12.0) as usize {
         let length = dice.between(0.3, 150.0);
         turn += (dice.next() + dice.next() - 1.0) * 1.2;

@@ -112,7 +112,11 @@ impl Ahead {
             reach2: None,
             unwaited: None,
             last_ride: None,
-            surges: (!machine.limits.override_at.is_some()).then(|| Surges::new(&rules)),
+            surges: machine
+                .limits
+                .override_at
+                .is_none()
+                .then(|| Surges::new(&rules)),
         }
     }
 

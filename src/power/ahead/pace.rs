@@ -87,7 +87,7 @@ impl Pace {
     /// The speed, squared, that this one may be sped up to from another element at
     /// `distance2` (Σ 2·a·L between them), if that can be; `edge2` is the speed at the
     /// edge that it comes from, and `kept` says that it is the cap by F.
-    pub fn from_slower(
+    pub fn reached_from(
         &self,
         slower: &Slow,
         distance2: f64,
@@ -164,7 +164,7 @@ impl Past {
         let kept = pace.keeps(start2);
         let all = self.slower.iter().flatten();
         let reached = all.filter_map(|slow| {
-            pace.from_slower(
+            pace.reached_from(
                 slow,
                 self.now2 - slow.at2 - SUM_ROUNDING * self.now2,
                 start2,

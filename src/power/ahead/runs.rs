@@ -88,7 +88,7 @@ impl Runs {
             if looked >= RUNS_MAX {
                 return Some(course.top2);
             }
-            let reached = pace.from_slower(&run.slow, distance2, end2, kept);
+            let reached = pace.reached_from(&run.slow, distance2, end2, kept);
             found = match (reached, found) {
                 (Some(reached), Some(found)) => Some(reached.max(found)),
                 (reached, found) => reached.or(found),
