@@ -6,6 +6,7 @@ mod glide;
 mod klipper;
 mod linuxcnc;
 mod measured;
+mod overrides;
 mod profile;
 mod recorded;
 mod recorder;

@@ -12,9 +12,28 @@ fn mill(controller: &str, rest: &str, ratings: &str) -> Shop {
 /// X alone to 0.5 m/s at 3 m/s²: 0.167 s, F = 700 N, 437.5 W and the base load.
 const THERE_AND_BACK: &str = "G21 G90 G94\nG0 X400\nG0 X0\nG0 X400\nG0 X0\nM30\n";
 
+/// 0.25 m/s by 700 N with an efficiency of 0.8, and the base load.
+#[test]
+fn a_single_override_is_shown() {
+    let shop = mill("iso", "", "peak_power_w = 500");
+    shop.put("a.ngc", THERE_AND_BACK);
+    let (code, told, _) = shop.run("check a.ngc");
+    assert_eq!(code, 1);
+    assert!(told.contains("peak 538 W"), "{told}");
+    let (code, told, _) = shop.run("check a.ngc --override 50%");
+    assert_eq!(code, 0);
+    assert!(told.contains("peak 319 W"), "{told}");
+    let (_, told, _) = shop.run("check a.ngc --override feed=10%,rapid=50%");
+    assert!(told.contains("peak 319 W"), "{told}");
+    let (code, _, told) = shop.run("check a.ngc --override rapid=120%");
+    assert_eq!(code, 2);
+    assert!(told.contains("no override exceeds it"), "{told}");
+}
+
 #[test]
 fn an_overload_is_told_and_lowered_away() {
-    // Above 300 W, of 537.5 W: 0.0905 s of each ramp, four of them in 5 s.
+    // Above 300 W, of 537.5 W: 0.0905 s of each ramp, four of them in 3.87 s, and
+    // eleven in 10 s where the program runs again at once.
     let ratings = "peak_power_w = 1000\ncontinuous_power_w = 300\n\
                    overload = [{ power_w = 1000, seconds = 0.2, every_s = 10 }]";
     let shop = mill("iso", "", ratings);
@@ -30,7 +49,10 @@ fn an_overload_is_told_and_lowered_away() {
         overload.contains("overload above 300 W within 10 s"),
         "{told}"
     );
-    assert!(overload.contains("0.36 s of 0.20 s"), "{told}");
+    assert!(overload.contains("1.00 s of 0.20 s"), "{told}");
+    let (code, once, _) = shop.run("check a.ngc --once");
+    assert_eq!(code, 1);
+    assert!(once.contains("0.36 s of 0.20 s"), "{once}");
     assert!(overload.contains("line 5 at "), "{told}");
     assert!(overload.contains("does not fit → lower speeds"), "{told}");
     assert!(

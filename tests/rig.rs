@@ -71,6 +71,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             feed_override_max: 1.0,
             rapid_override_max: 1.0,
             spindle_override_max: 1.0,
+            override_at: None,
             min_feed_mm_s: 0.0,
             min_feed_ratio: 0.0,
         },

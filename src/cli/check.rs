@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{MachineArgs, ProgramArgs};
+use super::{MachineArgs, OverrideArg, ProgramArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,6 +25,11 @@ pub struct CheckArgs {
     /// How to print the results
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Judge at these overrides alone: such as 70%, or feed=70%,rapid=50%; a plain
+    /// value is that of feeds and, up to 100 %, of rapids
+    /// [default: all from 0 to the machine's largest]
+    #[arg(long = "override", value_name = "PERCENT")]
+    pub overrides: Option<OverrideArg>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: ProgramArgs,

@@ -45,6 +45,9 @@ pub struct ProgramArgs {
     /// Folder where subprograms are looked for, behind the program's own
     #[arg(long, value_name = "DIR", help_heading = "Program")]
     pub sub_path: Vec<PathBuf>,
+    /// The program runs once: limits over time need not bear it again at once
+    #[arg(long, help_heading = "Program")]
+    pub once: bool,
     /// Moves that loops and calls may repeat
     #[arg(
         long,

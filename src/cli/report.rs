@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Allow, MachineArgs, ProgramArgs};
+use super::{Allow, MachineArgs, OverrideArg, ProgramArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -53,6 +53,9 @@ pub struct ReportArgs {
     /// Exit with 1 if a move does not fit
     #[arg(long)]
     pub fail: bool,
+    /// Show these overrides alone, as in `gwatt check`
+    #[arg(long = "override", value_name = "PERCENT", conflicts_with = "series")]
+    pub overrides: Option<OverrideArg>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: ProgramArgs,

@@ -21,6 +21,9 @@ use crate::cli::{CheckArgs, Format};
 pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     let programs = Program::list(&args.programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    if let Some(overrides) = args.overrides {
+        overrides.apply(&mut setup.machine.limits);
+    }
     let (at_once, each) = share_threads(setup.options.threads, programs.len());
     setup.options.threads = each;
     let check = |program: &Program| check_program(program, &setup);

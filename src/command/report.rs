@@ -33,7 +33,10 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
         .map(AsRef::as_ref)
         .collect();
     refuse_clashes(&inputs, &outputs)?;
-    let setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    if let Some(overrides) = args.overrides {
+        overrides.apply(&mut setup.machine.limits);
+    }
     let csv = match &args.csv {
         Some(path) => Some(Target::new(path)?),
         None if args.json.is_none() && args.series.is_none() => Some(Target::Stdout),

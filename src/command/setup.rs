@@ -78,6 +78,7 @@ impl Setup {
                 },
             },
             certificate: None,
+            once: reading.once,
             threads: threads(reading),
         };
         Ok(Self { machine, options })

@@ -8,7 +8,7 @@ use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine};
-use crate::plan::{Overrides, blended_bound, blended_speed, plan, ramps};
+use crate::plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -48,12 +48,7 @@ impl<'m> Solver<'m> {
     /// A solver for a machine.
     #[must_use]
     pub fn new(machine: &'m Machine, how: LimitOptions) -> Self {
-        let limits = &machine.limits;
-        let largest = Overrides {
-            feed: limits.feed_override_max,
-            rapid: limits.rapid_override_max,
-            spindle: limits.spindle_override_max,
-        };
+        let [largest, _] = Overrides::of(machine);
         Self {
             machine,
             model: PowerModel::new(machine),
@@ -170,6 +165,15 @@ impl<'m> Solver<'m> {
         let mv = halved.as_ref().unwrap_or(mv);
         let plan = plan(self.machine, mv, self.largest);
         let demand = self.model.demand(mv, &plan, Want::PEAKS);
+        let any = demand.load_ratio <= 1.0 + 1e-9;
+        let demand = if any && matches!(plan.trajectory, Trajectory::Axes(_)) {
+            // Whether another override has more is of interest only where this one fits.
+            let want = self.model.around_limits(mv);
+            let (machine, largest) = (self.machine, self.largest);
+            self.model.demand_at_any(machine, mv, &plan, largest, want)
+        } else {
+            demand
+        };
         let known = mv.unknown_start.is_empty();
         let speed_mm_s = if known {
             plan.top_speed_mm_s

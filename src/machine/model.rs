@@ -246,6 +246,17 @@ pub struct Preset {
     pub has_accel: bool,
 }
 
+/// Overrides as factors; 1 = 100 %.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OverrideAt {
+    /// Of feeds.
+    pub feed: f64,
+    /// Of rapids.
+    pub rapid: f64,
+    /// Of the spindle.
+    pub spindle: f64,
+}
+
 /// Margin, overrides and floors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
@@ -257,6 +268,9 @@ pub struct Limits {
     pub rapid_override_max: f64,
     /// Largest spindle override as a factor.
     pub spindle_override_max: f64,
+    /// The overrides stand at these values: lower ones do not count, and times are
+    /// taken there as well. No machine file says so; a run may ask for it.
+    pub override_at: Option<OverrideAt>,
     /// No cutting feed is lowered below this, mm/s; 0: no floor.
     pub min_feed_mm_s: f64,
     /// Nor below this share of min(F, axis-limited speed); 0: no floor.

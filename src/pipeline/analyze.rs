@@ -63,7 +63,8 @@ impl<'m, 'r> Analysis<'m, 'r> {
             machine,
             assessor: Assessor::new(machine, options.certificate, Want::ALL)
                 .starting(options.reading.start)
-                .watching(),
+                .watching()
+                .repeating(!options.once),
             tally: Tally::new(machine, options, rows),
             adviser: Adviser::new(machine),
             energy,

@@ -126,7 +126,8 @@ impl<'m, 'r> Certifier<'m, 'r> {
             diagnostics: Diagnostics::default(),
             assessor: Assessor::new(machine, options.certificate, Want::ALL)
                 .starting(options.reading.start)
-                .watching(),
+                .watching()
+                .repeating(!options.once),
             block: Block::default(),
             steps: Vec::new(),
             facts: Facts::default(),

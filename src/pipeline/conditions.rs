@@ -39,6 +39,25 @@ fn curve_condition(machine: &Machine) -> Option<&'static str> {
     )
 }
 
+/// Which overrides the figures hold for.
+fn overrides_condition(machine: &Machine) -> String {
+    let limits = &machine.limits;
+    let percent = |factor: f64| factor * 100.0;
+    let (what, [feed, rapid, spindle]) = match limits.override_at {
+        Some(at) => ("these overrides alone", [at.feed, at.rapid, at.spindle]),
+        None => (
+            "any overrides that are not turned while axes move, at most",
+            [
+                limits.feed_override_max,
+                limits.rapid_override_max,
+                limits.spindle_override_max,
+            ],
+        ),
+    };
+    let [feed, rapid, spindle] = [feed, rapid, spindle].map(percent);
+    format!("{what}: feed {feed} %, rapid {rapid} %, spindle {spindle} %")
+}
+
 /// What the figures rest on, in plain sentences.
 pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
     let percent = |factor: f64| factor * 100.0;
@@ -65,12 +84,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         conditions
             .push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());
     }
-    conditions.push(format!(
-        "overrides at most: feed {} %, rapid {} %, spindle {} %",
-        percent(limits.feed_override_max),
-        percent(limits.rapid_override_max),
-        percent(limits.spindle_override_max)
-    ));
+    conditions.push(overrides_condition(machine));
     conditions.push(format!(
         "margin {} % of the converter's power",
         percent(limits.margin)
@@ -108,11 +122,15 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         .to_owned(),
     );
     if !summary.over_time.is_empty() {
-        conditions.push(
-            "limits over time are less the margin and at the largest overrides; what is shorter \
-             than a window may run again at once"
-                .to_owned(),
-        );
+        let runs = if options.once {
+            "of one run"
+        } else {
+            "of a program that runs again at once, for ever"
+        };
+        conditions.push(format!(
+            "limits over time are less the margin, {runs}; at the largest overrides, times of \
+             overload with cruises at any lower one"
+        ));
         if summary.certificate == Some(Certificate::Robust) {
             conditions.push(
                 "blended moves last no longer than with a stop at both ends, and no shorter than \

@@ -14,7 +14,7 @@ use crate::interpret::{Action, Arc, Move, MoveKind, Step};
 use crate::machine::{AxisValues, Machine, PathMode};
 use crate::plan::lookahead::{Element, PathPlanner, Piece, Planned};
 use crate::plan::{Overrides, Plan, Profile, State, Track, Trajectory, plan};
-use crate::power::{Assessor, Effect, Role, Switched, Want, joint, role};
+use crate::power::{Effect, Role, Switched, joint, role};
 
 /// A stretch of motion with one law.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,13 +85,14 @@ pub fn motion<R: Read + Seek + Send>(
     each: &mut dyn FnMut(Stretch) -> Result<(), Failure>,
 ) -> Result<MotionNotes, Failure> {
     let mut front = Front::new(input, machine, options);
-    let overrides = Assessor::new(machine, None, Want::PEAKS).nominal;
+    let [largest, overrides] = Overrides::of(machine);
     let rules = machine.controller.planner.look_ahead;
     let rules = rules.filter(|_| machine.path.mode != Some(PathMode::ExactStop));
     let mut mover = Mover {
         machine,
         overrides,
-        planner: rules.map(|rules| PathPlanner::new(machine, rules)),
+        planner: rules
+            .map(|rules| PathPlanner::new(machine, rules).expecting(largest.feed / overrides.feed)),
         switched: Switched::default(),
         open: VecDeque::new(),
         first: 0,

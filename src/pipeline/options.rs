@@ -13,6 +13,8 @@ pub struct Options {
     /// The certificate asked for; `None`: planned where the controller's
     /// planner is modelled, else robust.
     pub certificate: Option<Certificate>,
+    /// The program runs once: limits over time need not bear it again at once.
+    pub once: bool,
     /// Threads that one program may use, at least 1.
     pub threads: usize,
 }
@@ -22,6 +24,7 @@ impl Default for Options {
         Self {
             reading: Reading::default(),
             certificate: None,
+            once: false,
             threads: 1,
         }
     }

@@ -326,7 +326,8 @@ fn certify(
     let mut written = Front::new(Cursor::new(text), machine, options);
     let mut assessor = Assessor::new(machine, options.certificate, Want::ALL)
         .starting(options.reading.start)
-        .watching();
+        .watching()
+        .repeating(!options.once);
     let mut expected = Vec::new();
     let mut more = true;
     while more {

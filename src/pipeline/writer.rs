@@ -99,7 +99,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             output,
             assessor: Assessor::new(machine, options.certificate, Want::ALL)
                 .starting(options.reading.start)
-                .watching(),
+                .watching()
+                .repeating(!options.once),
             limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),

@@ -10,7 +10,7 @@ use super::limits::{self, PathLimits};
 use super::profile::{Outline, Phase, PhaseKind, Profile};
 use super::s_curve::{SCurve, Steepness};
 use crate::interpret::{Move, MoveKind, path_length};
-use crate::machine::{AxisSet, AxisValues, Machine, RapidPath};
+use crate::machine::{AxisSet, AxisValues, Machine, OverrideAt, RapidPath};
 
 /// Override switches as factors; 1 is 100 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +30,38 @@ impl Default for Overrides {
             rapid: 1.0,
             spindle: 1.0,
         }
+    }
+}
+
+impl Overrides {
+    /// Those at which a machine's peaks and its times are taken: the largest, and 100 %
+    /// or what the machine permits of it; where the knobs stand, both there.
+    #[must_use]
+    pub fn of(machine: &Machine) -> [Self; 2] {
+        let limits = &machine.limits;
+        if let Some(at) = limits.override_at {
+            let OverrideAt {
+                feed,
+                rapid,
+                spindle,
+            } = at;
+            return [Self {
+                feed,
+                rapid,
+                spindle,
+            }; 2];
+        }
+        let largest = Self {
+            feed: limits.feed_override_max,
+            rapid: limits.rapid_override_max,
+            spindle: limits.spindle_override_max,
+        };
+        let nominal = Self {
+            feed: largest.feed.min(1.0),
+            rapid: largest.rapid.min(1.0),
+            spindle: largest.spindle.min(1.0),
+        };
+        [largest, nominal]
     }
 }
 

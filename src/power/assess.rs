@@ -56,16 +56,7 @@ impl<'m> Assessor<'m> {
     /// Judges by `requested`, or by what the controller profile models.
     #[must_use]
     pub fn new(machine: &'m Machine, requested: Option<Certificate>, want: Want) -> Self {
-        let largest = Overrides {
-            feed: machine.limits.feed_override_max,
-            rapid: machine.limits.rapid_override_max,
-            spindle: machine.limits.spindle_override_max,
-        };
-        let nominal = Overrides {
-            feed: largest.feed.min(1.0),
-            rapid: largest.rapid.min(1.0),
-            spindle: largest.spindle.min(1.0),
-        };
+        let [largest, nominal] = Overrides::of(machine);
         let model = PowerModel::new(machine);
         let rules = machine.controller.planner.look_ahead;
         let rules = rules.filter(|_| requested != Some(Certificate::Robust));
@@ -100,6 +91,15 @@ impl<'m> Assessor<'m> {
     pub fn watching(mut self) -> Self {
         self.eye.watch = Watch::new(self.machine, &self.model);
         self.watch_spindle();
+        self
+    }
+
+    /// The program runs again at once, for ever, as far as limits over time go.
+    #[must_use]
+    pub fn repeating(mut self, repeats: bool) -> Self {
+        if let Some(watch) = &mut self.eye.watch {
+            watch.repeated = repeats;
+        }
         self
     }
 
@@ -376,7 +376,10 @@ impl<'m> Assessor<'m> {
             Some(path) => path.plan(mv.length_mm),
             None => plan(self.machine, mv, self.largest),
         };
-        let mut demand = self.model.demand(mv, &peak_plan, self.want);
+        let (machine, largest) = (self.machine, self.largest);
+        let mut demand = self
+            .model
+            .demand_at_any(machine, mv, &peak_plan, largest, self.want);
         let (mut duration_s, mut speed_mm_s) = (peak_plan.duration_s, peak_plan.speed_limit_mm_s);
         if self.largest != self.nominal {
             let nominal = plan(self.machine, mv, self.nominal);

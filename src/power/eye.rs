@@ -125,9 +125,9 @@ impl Eye {
 
     /// A move that runs as planned: its pieces.
     #[inline]
-    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept, top_speed_mm_s: f64) {
         if let Some(watch) = &mut self.watch {
-            watch.kept(model, mv, kept);
+            watch.kept(model, mv, kept, top_speed_mm_s);
         }
     }
 

@@ -105,34 +105,47 @@ impl PowerModel {
     pub fn demand(&self, mv: &Move, plan: &Plan, want: Want) -> Demand {
         let mut demand = Demand::NONE;
         for (index, converter) in self.converters.iter().enumerate() {
-            let active = AxisSet(mv.moving.0 & converter.axes.0);
-            let totals = match &plan.trajectory {
-                Trajectory::Path(profile) => {
-                    let idle_w = converter.idle_w(mv, &self.axes, active);
-                    match &mv.arc {
-                        Some(arc) => arc::totals(self, converter, mv, arc, profile, idle_w, want),
-                        None => straight::totals(self, converter, mv, profile, idle_w, want),
-                    }
-                }
-                Trajectory::Axes(profiles) => {
-                    let idle_w = converter.idle_w(mv, &self.axes, active);
-                    independent::totals(self, converter, mv, profiles, idle_w, want)
-                }
-                Trajectory::Rest => {
-                    let idle_w = converter.idle_w(mv, &self.axes, AxisSet::default());
-                    Totals::at_rest(idle_w, plan.duration_s, want)
-                }
-                Trajectory::Unknown(motion) => {
-                    let idle_w = converter.idle_w(mv, &self.axes, AxisSet::default());
-                    let mut totals =
-                        self.robust_totals(converter, mv, &motion.bound, &motion.accel_mm_s2);
-                    totals.energy_j = Totals::at_rest(idle_w, plan.duration_s, want).energy_j;
-                    totals
-                }
-            };
-            demand.add(index, converter, totals);
+            demand.add(index, converter, self.totals(converter, mv, plan, want));
         }
         demand
+    }
+
+    /// The largest power that one converter gives for a planned move, W.
+    pub(super) fn peak_w(&self, converter: usize, mv: &Move, plan: &Plan, want: Want) -> f64 {
+        let converter = self.converters.get(converter);
+        converter.map_or(f64::INFINITY, |converter| {
+            self.totals(converter, mv, plan, want).peak_w
+        })
+    }
+
+    /// The share of one converter.
+    #[inline]
+    fn totals(&self, converter: &ConverterPower, mv: &Move, plan: &Plan, want: Want) -> Totals {
+        let active = AxisSet(mv.moving.0 & converter.axes.0);
+        match &plan.trajectory {
+            Trajectory::Path(profile) => {
+                let idle_w = converter.idle_w(mv, &self.axes, active);
+                match &mv.arc {
+                    Some(arc) => arc::totals(self, converter, mv, arc, profile, idle_w, want),
+                    None => straight::totals(self, converter, mv, profile, idle_w, want),
+                }
+            }
+            Trajectory::Axes(profiles) => {
+                let idle_w = converter.idle_w(mv, &self.axes, active);
+                independent::totals(self, converter, mv, profiles, idle_w, want)
+            }
+            Trajectory::Rest => {
+                let idle_w = converter.idle_w(mv, &self.axes, AxisSet::default());
+                Totals::at_rest(idle_w, plan.duration_s, want)
+            }
+            Trajectory::Unknown(motion) => {
+                let idle_w = converter.idle_w(mv, &self.axes, AxisSet::default());
+                let mut totals =
+                    self.robust_totals(converter, mv, &motion.bound, &motion.accel_mm_s2);
+                totals.energy_j = Totals::at_rest(idle_w, plan.duration_s, want).energy_j;
+                totals
+            }
+        }
     }
 }
 

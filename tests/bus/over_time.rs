@@ -9,12 +9,20 @@ const LIMITS: &str = "continuous_power_w = 4934.802200544679\nwindow_s = 4\n\
                       overload = [{ power_w = 1e5, seconds = 10, every_s = 20 }]\n\
                       brake_power_w = 4934.802200544679\nbrake_energy_j = 1e5";
 
+/// One run of the program.
+fn once() -> Options {
+    Options {
+        once: true,
+        ..Options::default()
+    }
+}
+
 /// The ratings by their names: what counts in steps is up to 0.5 % too high, and
 /// never too low.
 #[track_caller]
 fn ratings(controller: &str, spindle: &str, program: &str, expected: &[(&str, f64)]) {
     let machine = machine(controller, LIMITS, spindle, "");
-    let (_, summary) = run(&machine, program, &Options::default());
+    let (_, summary) = run(&machine, program, &once());
     for (name, expected) in expected {
         let found = summary
             .over_time
@@ -74,7 +82,7 @@ fn a_run_beside_a_rapid() {
 fn a_run_beside_moves_that_are_planned_together() {
     let machine = machine("linuxcnc", LIMITS, "wait = false", "");
     let program = "G64\nM3 S3000\nG0 X2000\nG0 X4000 Y100\nG4 P9\n";
-    let (_, summary) = run(&machine, program, &Options::default());
+    let (_, summary) = run(&machine, program, &once());
     let mut overload = summary.over_time.iter().map(|it| &it.rating);
     let overload = overload
         .rfind(|it| it.measure.name() == "overload")

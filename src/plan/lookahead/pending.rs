@@ -27,6 +27,9 @@ pub(super) struct Pending<T> {
     /// Of an arc: what is left of its angle.
     pub sweep_rad: f64,
     pub max_speed: f64,
+    /// F at the largest feed override, mm/s: how joints are passed is decided for that,
+    /// wherever the knob stands.
+    pub expected_mm_s: f64,
     /// Share of the acceleration given up to the kinks before and behind.
     pub kink_before: f64,
     pub kink_behind: f64,
@@ -53,6 +56,7 @@ impl<T: Copy> Pending<T> {
             length_mm: 0.0,
             sweep_rad: 0.0,
             max_speed: 0.0,
+            expected_mm_s: element.feed_mm_s,
             kink_before: 0.0,
             kink_behind: 0.0,
             blended_before: false,
@@ -64,10 +68,11 @@ impl<T: Copy> Pending<T> {
     }
 
     /// Nothing has changed it yet.
-    pub fn begin(&mut self, is_line: bool, cycle_s: f64) {
+    pub fn begin(&mut self, is_line: bool, cycle_s: f64, feed_ratio: f64) {
         let element = &self.element;
         let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
         self.is_line = is_line;
+        self.expected_mm_s = element.feed_mm_s * feed_ratio;
         self.from_mm = 0.0;
         self.length_mm = element.length_mm;
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
@@ -79,7 +84,13 @@ impl<T: Copy> Pending<T> {
         self.entry2 = 0.0;
     }
 
+    /// The speed that it is decided for.
     pub fn target_speed(&self) -> f64 {
+        self.expected_mm_s.min(self.max_speed)
+    }
+
+    /// The speed that it runs at.
+    pub fn run_speed(&self) -> f64 {
         self.element.feed_mm_s.min(self.max_speed)
     }
 
@@ -177,7 +188,7 @@ impl<T: Copy> Pending<T> {
             nominal_mm: element.length_mm,
             length_mm: self.length_mm,
             max_speed: self.max_speed,
-            asked_speed: element.feed_mm_s,
+            asked_speed: self.expected_mm_s,
             tolerance_mm: match element.joint {
                 Joint::Blend { tolerance_mm, .. } => tolerance_mm,
                 _ => 0.0,
@@ -213,7 +224,7 @@ impl<T: Copy> Pending<T> {
     /// the plane permit it. Of a helix the planner permits less.
     pub fn asked_speed(&self) -> f64 {
         let element = &self.element;
-        let asked = lower(element.feed_mm_s, element.speed_mm_s);
+        let asked = lower(self.expected_mm_s, element.speed_mm_s);
         let Some(curve) = &element.curve else {
             return asked;
         };
@@ -280,7 +291,7 @@ impl<T: Copy> Pending<T> {
             return 0.0;
         };
         let ramp = if last {
-            self.unseen(self.max_speed, self.kept_share(true))
+            self.unseen(self.run_speed(), self.kept_share(true))
         } else {
             self.ramp()
         };
@@ -294,7 +305,7 @@ impl<T: Copy> Pending<T> {
     fn ramp(&self) -> Ramp {
         let accel = self.kept_share(false) * self.accel();
         let (speed, accel) = self.turning(self.max_speed, accel);
-        Ramp::new(&self.element, self.length_mm, speed, accel)
+        Ramp::new(self.length_mm, speed.min(self.element.feed_mm_s), accel)
     }
 
     /// Its ramp before it is known how sharply it turns, and how much of it, up to one
@@ -303,7 +314,7 @@ impl<T: Copy> Pending<T> {
         let along = self.element.curve.map_or(1.0, |_| TANGENTIAL_SHARE);
         let accel = share * along * self.accel();
         let peak = (0.5 * accel * self.length_mm).sqrt();
-        Ramp::new(&self.element, self.length_mm, max_speed.min(peak), accel)
+        Ramp::new(self.length_mm, max_speed.min(peak), accel)
     }
 
     /// Whether axes other than X, Y and Z move.
@@ -324,12 +335,12 @@ struct Ramp {
 }
 
 impl Ramp {
-    fn new(of: &Element<impl Copy>, length_mm: f64, max_speed: f64, accel: f64) -> Self {
+    fn new(length_mm: f64, max_speed: f64, accel: f64) -> Self {
         let peak = (accel * length_mm).sqrt();
         Self {
             accel,
             length_mm,
-            speed: peak.min(max_speed).min(of.feed_mm_s),
+            speed: peak.min(max_speed),
         }
     }
 

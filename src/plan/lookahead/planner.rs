@@ -217,6 +217,16 @@ impl<T: Copy> PathPlanner<T> {
         }
     }
 
+    /// The same where the feed override may be raised by a factor: `LinuxCNC` decides
+    /// for its largest value how joints are passed.
+    #[must_use]
+    pub fn expecting(mut self, feed_ratio: f64) -> Self {
+        if let Rule::LinuxCnc(rule) = &mut self.rule {
+            rule.expect(feed_ratio.max(1.0));
+        }
+        self
+    }
+
     /// Whether an arc before a stop that words cause, or at the end, accelerates
     /// less than between others, in exact stop too.
     #[must_use]

@@ -54,6 +54,13 @@ impl Ahead {
             }
         }
         if peaks {
+            let surge = self.surge(model, planned);
+            let Some(open) = self.open.get_mut(number) else {
+                return;
+            };
+            if let Some(surge) = surge {
+                open.assessment.demand.include(&surge);
+            }
             let top_speed_mm_s = planned.top_speed_mm_s();
             open.rests |= planned.rests;
             open.assessment.fastest_s += duration_s;
@@ -98,6 +105,9 @@ impl Ahead {
         };
         if peaks {
             self.ride(model, planned);
+            if let Some(surge) = self.surge(model, planned) {
+                demand.include(&surge);
+            }
         }
         let certain = !peaks || self.is_certain(eye, planned, from, to);
         // Half of a blend belongs to what is behind it, if that is another move: it

@@ -66,7 +66,8 @@ impl Ahead {
             if planned && own.certain && certain(before) && certain(next) {
                 own.assessment.blended = !own.alone;
                 if own.assessment.ahead {
-                    eye.kept(model, &own.mv, &mut own.kept);
+                    let top_speed_mm_s = own.assessment.top_speed_mm_s;
+                    eye.kept(model, &own.mv, &mut own.kept, top_speed_mm_s);
                 } else {
                     eye.alone(machine, model, &own.mv, self.largest.overrides);
                 }
@@ -83,6 +84,9 @@ impl Ahead {
         }
         if self.at_rest && !self.in_doubt {
             self.open.begin_at_rest();
+            if let Some(surges) = &mut self.surges {
+                surges.runs.clear();
+            }
             self.unwaited = None;
             self.driven = false;
         }

@@ -17,7 +17,10 @@ mod driven;
 mod glide;
 mod hand_on;
 mod open;
+mod pace;
 mod queue;
+mod runs;
+mod surges;
 
 use super::assessment::Assessment;
 use super::demand::Want;
@@ -31,6 +34,7 @@ use crate::plan::Overrides;
 use crate::plan::lookahead::{Element, PathPlanner};
 use glide::Glider;
 use queue::Queue;
+use surges::Surges;
 
 pub(crate) use open::{Role, joint, role};
 
@@ -59,6 +63,8 @@ pub(super) struct Ahead {
     driven: bool,
     /// The last piece, where the next one may run already while it does.
     last_ride: Option<Ride>,
+    /// What lower overrides may make of them, if these count.
+    surges: Option<Surges>,
 }
 
 /// A planner and how far it has come.
@@ -92,14 +98,16 @@ impl Ahead {
     /// Nothing moves yet. `overrides`: the largest, and 100 % or what is
     /// permitted of it.
     pub fn new(machine: &Machine, rules: LookAhead, overrides: [Overrides; 2]) -> Self {
+        let most_feed = machine.limits.feed_override_max;
         let [largest, nominal] = overrides.map(|overrides| Side {
-            planner: PathPlanner::new(machine, rules),
+            planner: PathPlanner::new(machine, rules).expecting(most_feed / overrides.feed),
             overrides,
             element: Element::blank(0),
             next: 0,
         });
         let alike = largest.overrides == nominal.overrides;
-        let blocks = if alike {
+        // What is decided for another override does not glide.
+        let blocks = if alike && largest.overrides.feed >= most_feed {
             largest.planner.glide_blocks()
         } else {
             0
@@ -115,6 +123,11 @@ impl Ahead {
             unwaited: None,
             driven: false,
             last_ride: None,
+            surges: machine
+                .limits
+                .override_at
+                .is_none()
+                .then(|| Surges::new(&rules)),
         }
     }
 
@@ -160,6 +173,9 @@ impl Ahead {
             self.brake_in_doubt(model, eye);
         }
         let open = self.open.push(mv, text, want);
+        if let Some(surges) = &mut self.surges {
+            open.pace = surges.push(number, &self.largest.element);
+        }
         let own = &self.nominal.as_ref().unwrap_or(&self.largest).element;
         open.assessment.speed_mm_s = own.top_mm_s();
         open.assessment.accel_mm_s2 = own.accel_mm_s2;

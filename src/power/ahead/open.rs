@@ -1,6 +1,7 @@
 //! A move that waits for what is planned behind it, and how moves take part.
 
 use super::glide::Glided;
+use super::pace::Pace;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{Machine, PathMode};
 use crate::plan::is_independent;
@@ -27,6 +28,8 @@ pub(super) struct Open {
     pub alone: bool,
     /// It runs at one speed throughout.
     pub steady: bool,
+    /// What is asked of it.
+    pub pace: Pace,
     /// How it comes out where the motion glides.
     pub glided: Glided,
     /// Its pieces over time, where they are looked at.
@@ -59,6 +62,7 @@ impl Open {
             moves: false,
             alone: true,
             steady: true,
+            pace: Pace::default(),
             glided: Glided::default(),
             kept: Kept::default(),
         }

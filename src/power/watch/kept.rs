@@ -75,7 +75,10 @@ impl Track {
             if let Some((more_w, calm_w)) = steady
                 && *most_w + more_w <= calm_w
             {
-                self.time_s = line.durations_s().fold(self.time_s, |time, own| time + own);
+                let before_s = self.time_s;
+                self.time_s = line.durations_s().fold(before_s, |time, own| time + own);
+                let lasts_s = self.time_s - before_s;
+                self.limits.pass((*most_w + more_w) * lasts_s, lasts_s);
                 return;
             }
             if let Some(tracer) = model.tracer(self.converter, self.flow) {
@@ -151,9 +154,12 @@ mod tests {
             let mut beside = Levels::new(&levels, &quick, 0);
             quick.take_kept(0, &model, &mut kept, &mut beside, place);
             assert_eq!(quick.time_s, general.time_s);
-            assert_eq!(quick.limits.ratings(0), general.limits.ratings(0));
+            assert_eq!(
+                quick.limits.ratings(0, false),
+                general.limits.ratings(0, false)
+            );
         }
-        let used = quick.limits.ratings(0);
+        let used = quick.limits.ratings(0, false);
         assert!(used.iter().all(|rating| rating.value > 0.0), "{used:?}");
         let voltage = used.last().expect("a voltage").value;
         assert!(voltage < 500.0, "{voltage}");

@@ -155,9 +155,29 @@ impl Limits {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// A move ends that runs on a path: see [`Overload::linger`].
+    #[inline]
+    pub fn linger(&mut self, time_s: f64, place: Place, cruise: &mut impl FnMut(f64) -> f64) {
+        for (overload, ..) in &mut self.overload {
+            overload.linger(time_s, place, cruise);
+        }
+    }
+
+    /// Time passes with so much energy, at a power of no account but to stores.
+    #[inline]
+    pub fn pass(&mut self, energy_j: f64, duration_s: f64) {
+        if let Some(bus) = &mut self.bus {
+            bus.store.pass(energy_j, duration_s);
+        }
+        if let Some((store, ..)) = &mut self.brake {
+            store.pass(energy_j, duration_s);
+        }
+    }
+
     /// The same as [`Self::take`], of a slice that is nowhere above that power.
     #[inline]
     pub fn take_calm(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        self.pass(slice.energy_j(), slice.duration_s);
         for (overload, ..) in &mut self.overload {
             overload.pass(slice.duration_s);
         }
@@ -187,24 +207,50 @@ impl Limits {
         }
     }
 
-    /// What was found.
-    pub fn ratings(&self, converter: usize) -> Vec<Rating> {
+    /// What was found; where the program is `repeated`, over all of its runs.
+    pub fn ratings(&self, converter: usize, repeated: bool) -> Vec<Rating> {
         let mut list = Vec::new();
+        let lead_s = if repeated { self.lead_s() } else { 0.0 };
         for (overload, measure, limit) in &self.overload {
-            list.push(overload.worst.rating(*measure, converter, *limit));
+            let worst = if repeated {
+                overload.repeated(lead_s)
+            } else {
+                overload.worst
+            };
+            list.push(worst.rating(*measure, converter, *limit));
         }
         if let Some((rms, measure, limit)) = &self.continuous {
-            list.push(rms.result().rating(*measure, converter, *limit));
+            let supply_w = self.bus.as_ref().map_or(0.0, |bus| bus.store.taken_w());
+            let worst = if repeated {
+                rms.repeated(supply_w * supply_w * lead_s)
+            } else {
+                rms.result()
+            };
+            list.push(worst.rating(*measure, converter, *limit));
         }
+        let worst = |store: &Store| {
+            if repeated {
+                store.repeated()
+            } else {
+                store.worst
+            }
+        };
         if let Some(bus) = &self.bus {
-            let mut worst = bus.store.worst;
+            let mut worst = worst(&bus.store);
             worst.value = bus.volts(worst.value);
             list.push(worst.rating(bus.measure, converter, bus.limit_v));
         }
         if let Some((store, measure, limit)) = &self.brake {
-            list.push(store.worst.rating(*measure, converter, *limit));
+            list.push(worst(store).rating(*measure, converter, *limit));
         }
         list
+    }
+
+    /// For how long at most a run begins with all that the converter gives, s: until
+    /// the capacitor has back what the run before took from it last.
+    fn lead_s(&self) -> f64 {
+        let buffered = self.bus.as_ref().filter(|_| self.buffered);
+        buffered.map_or(0.0, |bus| bus.store.refilled_s())
     }
 }
 

@@ -10,6 +10,9 @@
 //!                  └→ braking resistor: H' = R − P_b, H ≥ 0
 //! ```
 //!
+//! A program may run again at once and for ever: a run begins with what the one before
+//! has left, and windows reach from one into the next.
+//!
 //! The converter supplies Pₛ, its peak power, at most. What is drawn beyond comes
 //! from the capacitor, which is charged again with what is free: D is the energy
 //! that it lacks. S is P, and Pₛ while D > 0; where peaks may not come from the
@@ -28,6 +31,7 @@
 mod beside;
 mod kept;
 mod limits;
+mod linger;
 mod overload;
 mod rating;
 mod rms;
@@ -59,6 +63,10 @@ pub(super) struct Watch {
     /// Room for the slices of a move, and for powers by track.
     kept: Kept,
     powers: Vec<[f64; 2]>,
+    /// The program runs again and again.
+    pub repeated: bool,
+    /// Overrides below the largest count.
+    lower: bool,
 }
 
 /// One converter and one direction of its power.
@@ -109,6 +117,8 @@ impl Watch {
                 waiting,
                 kept: Kept::default(),
                 powers: Vec::new(),
+                repeated: false,
+                lower: machine.limits.override_at.is_none(),
             })
         })
     }
@@ -173,7 +183,7 @@ impl Watch {
                     tracer.plan(mv, plan, &mut |slice| track.take(&slice, place));
                 }
             }
-            return;
+            return self.linger(model, mv, plan.top_speed_mm_s);
         }
         let mut kept = std::mem::take(&mut self.kept);
         for (index, track) in self.tracks.iter().enumerate() {
@@ -190,8 +200,26 @@ impl Watch {
                 tracer.plan(mv, plan, &mut |slice| kept.push(index, slice));
             }
         }
-        self.kept(model, mv, &mut kept);
+        let on_path = matches!(plan.trajectory, Trajectory::Path(_));
+        let cruises_mm_s = if on_path { plan.top_speed_mm_s } else { 0.0 };
+        self.kept(model, mv, &mut kept, cruises_mm_s);
         self.kept = kept;
+    }
+
+    /// A move has been taken that runs at up to this speed.
+    fn linger(&mut self, model: &PowerModel, mv: &Move, top_speed_mm_s: f64) {
+        let place = Place::of(mv);
+        for track in &mut self.tracks {
+            let (converter, lower) = (track.converter, self.lower && top_speed_mm_s > 0.0);
+            let mut cruise = |above_w: f64| {
+                if lower {
+                    linger::lingers_s(model, converter, mv, top_speed_mm_s, above_w)
+                } else {
+                    0.0
+                }
+            };
+            track.limits.linger(track.time_s, place, &mut cruise);
+        }
     }
 
     /// Keeps a piece of a plan for the move that it belongs to.
@@ -203,8 +231,8 @@ impl Watch {
         }
     }
 
-    /// Takes what was kept of a move that runs as planned.
-    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
+    /// Takes what was kept of a move that runs as planned, at up to a speed.
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept, top_speed_mm_s: f64) {
         let place = Place::of(mv);
         if let Some(waiting) = &mut self.waiting {
             let slices = std::mem::replace(kept, waiting.room());
@@ -219,6 +247,7 @@ impl Watch {
             track.take_kept(index, model, kept, &mut Levels::none(), place);
         }
         kept.clear();
+        self.linger(model, mv, top_speed_mm_s);
     }
 
     /// Takes a move whose timing is not known: its largest speeds and those of
@@ -269,7 +298,7 @@ impl Watch {
     pub fn ratings(&self) -> Vec<Rating> {
         let tracks = self.tracks.iter();
         tracks
-            .flat_map(|track| track.limits.ratings(track.converter))
+            .flat_map(|track| track.limits.ratings(track.converter, self.repeated))
             .collect()
     }
 }

@@ -9,6 +9,8 @@ use super::rating::{Place, Worst};
 /// Intervals that are kept of a window; with more, neighbours are joined, the
 /// gap between them counted in.
 const INTERVALS: usize = 1 << 14;
+/// Intervals of further runs that are looked at one by one, at most.
+const REPLAYED_MAX: f64 = 1e6;
 /// Gap that rounding may leave between two slices, s.
 const GAP_S: f64 = 1e-12;
 /// Share by which rounding may lift a power.
@@ -25,6 +27,10 @@ pub(super) struct Overload {
     sum_s: f64,
     /// Time so far: the worse one, where it is not known.
     clock_s: f64,
+    /// The intervals that begin within the first window.
+    head: Vec<(f64, f64)>,
+    /// Of the move that is being taken, s.
+    own_s: f64,
     pub worst: Worst,
 }
 
@@ -36,6 +42,8 @@ impl Overload {
             intervals: VecDeque::new(),
             sum_s: 0.0,
             clock_s: 0.0,
+            head: Vec::new(),
+            own_s: 0.0,
             worst: Worst::default(),
         }
     }
@@ -58,6 +66,7 @@ impl Overload {
             let from_s = self.clock_s;
             self.clock_s += part.duration_s;
             if above {
+                self.own_s += part.duration_s;
                 let found_s = self.count(from_s, self.clock_s);
                 let now_s = time_s + (self.clock_s - start_s);
                 self.worst.raise(found_s, now_s, place);
@@ -65,9 +74,30 @@ impl Overload {
         }
     }
 
+    /// A move ends of which some lies above the power; at a lower override a cruise may
+    /// last longer there. `cruise` gives for how long at most the move lies above a
+    /// power at any override, s.
+    pub fn linger(&mut self, time_s: f64, place: Place, cruise: &mut impl FnMut(f64) -> f64) {
+        let own_s = std::mem::take(&mut self.own_s);
+        if own_s <= 0.0 {
+            return;
+        }
+        // More than the window is no worse than the window.
+        let more_s = cruise(self.above_w).min(2.0 * self.every_s) - own_s;
+        if more_s > 0.0 {
+            let from_s = self.clock_s;
+            self.clock_s += more_s;
+            let found_s = self.count(from_s, self.clock_s);
+            self.worst.raise(found_s, time_s, place);
+        }
+    }
+
     /// Adds an interval, and gives the sum over the window that ends with it: over
     /// a window that slides it is largest where its end leaves an interval.
     fn count(&mut self, start_s: f64, end_s: f64) -> f64 {
+        if start_s < self.every_s {
+            self.begin(start_s, end_s);
+        }
         match self.intervals.back_mut() {
             Some(last) if start_s <= last.1 + GAP_S => {
                 self.sum_s += end_s - last.1;
@@ -95,14 +125,57 @@ impl Overload {
         self.sum_s - outside_s
     }
 
-    fn join(&mut self) {
-        let mut joined = VecDeque::with_capacity(self.intervals.len() / 2 + 1);
-        let mut intervals = self.intervals.iter();
-        while let Some(&(start_s, end_s)) = intervals.next() {
-            let end_s = intervals.next().map_or(end_s, |next| next.1);
-            joined.push_back((start_s, end_s));
+    /// Keeps an interval of the first window.
+    fn begin(&mut self, start_s: f64, end_s: f64) {
+        match self.head.last_mut() {
+            Some(last) if start_s <= last.1 + GAP_S => last.1 = end_s,
+            _ => self.head.push((start_s, end_s)),
         }
-        self.intervals = joined;
+        if self.head.len() > INTERVALS {
+            self.head = joined(&mut self.head.iter());
+        }
+    }
+
+    /// The worst of all runs, where the program runs again and again; each run begins
+    /// with `lead_s` above the power.
+    pub fn repeated(&self, lead_s: f64) -> Worst {
+        let run_s = self.clock_s;
+        if self.worst.value == 0.0 && lead_s == 0.0 || run_s <= 0.0 || !run_s.is_finite() {
+            return self.worst;
+        }
+        let mut after = self.clone();
+        let lead = (lead_s > 0.0).then_some((0.0, lead_s.min(run_s)));
+        let until_s = self.every_s + 2.0 * run_s;
+        let a_run = self.head.len() + 1;
+        let runs = libm::ceil(until_s / run_s);
+        if runs * a_run as f64 > REPLAYED_MAX {
+            // Whole runs, and one more that the window cuts.
+            let above_s: f64 = self.head.iter().map(|(from, to)| to - from).sum();
+            let most_s = (above_s + lead_s) * (libm::floor(self.every_s / run_s) + 2.0);
+            let mut worst = self.worst;
+            worst.raise(most_s.min(self.every_s), worst.time_s, worst.place);
+            return worst;
+        }
+        let mut begin_s = run_s;
+        while begin_s < run_s + until_s {
+            let mut reached_s = begin_s;
+            for (from_s, to_s) in lead.iter().chain(&self.head) {
+                let (from_s, to_s) = (begin_s + from_s, begin_s + to_s);
+                if to_s > reached_s {
+                    let found_s = after.count(from_s.max(reached_s), to_s);
+                    after
+                        .worst
+                        .raise(found_s, after.worst.time_s, after.worst.place);
+                    reached_s = to_s;
+                }
+            }
+            begin_s += run_s;
+        }
+        after.worst
+    }
+
+    fn join(&mut self) {
+        self.intervals = joined(&mut self.intervals.iter()).into();
         self.sum_s = self.intervals.iter().map(|(from, to)| to - from).sum();
     }
 
@@ -123,6 +196,16 @@ impl Overload {
     }
 }
 
+/// Intervals by twos, with the gap between.
+fn joined(intervals: &mut dyn Iterator<Item = &(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut joined = Vec::new();
+    while let Some(&(start_s, end_s)) = intervals.next() {
+        let end_s = intervals.next().map_or(end_s, |next| next.1);
+        joined.push((start_s, end_s));
+    }
+    joined
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,6 +218,41 @@ mod tests {
             time_s += slice.duration_s;
         }
         overload.worst.value
+    }
+
+    #[test]
+    fn a_window_reaches_into_the_next_run() {
+        // 0.976 s above at the beginning, 0.487 s at the end of 20 s, 10 s a window.
+        let mut overload = Overload::new(2000.0, 10.0);
+        let slices = [
+            Slice::constant(0.976, 3000.0),
+            Slice::constant(18.537, 100.0),
+            Slice::constant(0.487, 3000.0),
+        ];
+        for slice in &slices {
+            overload.take(slice, 0.0, Place::default());
+        }
+        assert!((overload.worst.value - 0.976).abs() < 1e-9);
+        assert!((overload.repeated(0.0).value - 1.463).abs() < 1e-9);
+        // Where each run begins with 1 s at full power as well.
+        assert!((overload.repeated(1.0).value - 1.487).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_short_program_runs_often_in_a_window() {
+        // 1 s of 3 s: 4 s of a window of 10 s.
+        let mut overload = Overload::new(2000.0, 10.0);
+        for slice in [Slice::constant(1.0, 3000.0), Slice::constant(2.0, 100.0)] {
+            overload.take(&slice, 0.0, Place::default());
+        }
+        assert!((overload.repeated(0.0).value - 4.0).abs() < 1e-9);
+        // With more runs than can be looked at the bound is that of whole ones.
+        let mut overload = Overload::new(2000.0, 1e6);
+        for slice in [Slice::constant(1e-2, 3000.0), Slice::constant(2e-2, 100.0)] {
+            overload.take(&slice, 0.0, Place::default());
+        }
+        let found = overload.repeated(0.0).value;
+        assert!((1e6 / 3.0..1e6 / 3.0 + 0.03).contains(&found), "{found}");
     }
 
     #[test]

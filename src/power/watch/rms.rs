@@ -3,8 +3,10 @@
 //! Time is divided into cells, `N` to a window. A window lies within `N + 1`
 //! cells in a row, so the largest sum of these is an upper bound: too high by one
 //! cell of `N` at most, 1/4096 of the square of the largest power for windows of
-//! 0.41 s and more. A program that is shorter than the window may run again at
-//! once: its own mean counts, which is exact.
+//! 0.41 s and more. Of a program that is shorter than the window its own mean counts,
+//! which is exact for one run. Where it runs again and again its first window follows
+//! once more, or as often as it fits; what is left of its last cell comes on top of the
+//! first.
 
 use super::super::trace::Slice;
 use super::Span;
@@ -56,8 +58,18 @@ impl Continuous {
 
     /// The worst mean as its root, in W.
     pub fn result(&self) -> Worst {
-        let lasting = self.lasting.result();
-        let dense = self.dense.as_ref().map(Rms::result);
+        self.least(Rms::result)
+    }
+
+    /// The same over all runs, where the program runs again and again; each begins with
+    /// so much more of P²·t, W²·s.
+    pub fn repeated(&self, more: f64) -> Worst {
+        self.least(|rms| rms.repeated(more))
+    }
+
+    fn least(&self, of: impl Fn(&Rms) -> Worst) -> Worst {
+        let lasting = of(&self.lasting);
+        let dense = self.dense.as_ref().map(of);
         dense
             .filter(|dense| dense.value < lasting.value)
             .unwrap_or(lasting)
@@ -87,6 +99,8 @@ struct Rms {
     /// The largest integral over a window.
     worst: Worst,
     last: (f64, Place),
+    /// The first full cells, N at most, and what the others of the program come to.
+    head: Vec<f64>,
 }
 
 impl Rms {
@@ -108,7 +122,46 @@ impl Rms {
             bursts: false,
             worst: Worst::default(),
             last: (0.0, Place::default()),
+            head: Vec::new(),
         }
+    }
+
+    /// See [`Continuous::repeated`].
+    fn repeated(&self, more: f64) -> Worst {
+        if self.window_s < WINDOW_MIN_S || self.elapsed_s <= 0.0 {
+            return self.result();
+        }
+        let once = self.result();
+        let runs = self.window_s / self.elapsed_s;
+        let mut found = self.replayed(more);
+        if runs >= 1.0 {
+            // Whole runs, and one more that the window cuts.
+            let whole = ((self.total + more) * (runs + 1.0) / self.window_s).sqrt();
+            found = found.map_or(Some(whole), |found| Some(found.min(whole)));
+        }
+        let mut worst = once;
+        if let Some(found) = found {
+            worst.raise(found, once.time_s, once.place);
+            worst.lasting = once.lasting;
+        }
+        worst
+    }
+
+    /// The worst mean as its root over windows that reach into further runs, in W.
+    fn replayed(&self, more: f64) -> Option<f64> {
+        let mut after = self.clone();
+        // What is left of the last cell is moved into the next one: a shorter run.
+        let left = std::mem::take(&mut after.cell);
+        after.filled_s = 0.0;
+        (after.worst, after.elapsed_s) = (Worst::default(), f64::INFINITY);
+        let first = self.head.first()?;
+        let head = std::iter::once(first + left + more).chain(self.head.iter().skip(1).copied());
+        let head: Vec<f64> = head.collect();
+        for full in head.iter().cycle().take(2 * self.cells + head.len()) {
+            after.cell = *full;
+            after.close();
+        }
+        Some((after.worst.value / self.window_s).sqrt())
     }
 
     pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
@@ -228,6 +281,9 @@ impl Rms {
         self.filled_s = 0.0;
         let (time_s, place) = self.last;
         self.worst.raise(self.sum + full, time_s, place);
+        if self.head.len() < self.cells {
+            self.head.push(full);
+        }
         if self.ring.len() < self.cells {
             self.ring.push(full);
             self.sum += full;
@@ -278,7 +334,7 @@ impl Rms {
         }
         // max(P², F'²) ≤ max(P², F²) + F'² − F² for what has been counted.
         let more = power_w * power_w - self.floor_w * self.floor_w;
-        for cell in &mut self.ring {
+        for cell in self.ring.iter_mut().chain(&mut self.head) {
             *cell += more * self.cell_s;
         }
         self.sum += more * self.cell_s * self.ring.len() as f64;
@@ -328,6 +384,37 @@ mod tests {
             time_s += slice.duration_s;
         }
         rms.result().value
+    }
+
+    #[test]
+    fn a_window_reaches_into_the_next_run() {
+        // 3 kW for 1 s at both ends of 20 s, else nothing: 2 s of a window of 10 s.
+        let slices = [
+            Slice::constant(1.0, 3000.0),
+            Slice::constant(18.0, 0.0),
+            Slice::constant(1.0, 3000.0),
+        ];
+        let mut rms = Rms::new(10.0);
+        for slice in &slices {
+            rms.take(slice, 0.0, Place::default());
+        }
+        let found = rms.repeated(0.0).value;
+        let exact = (2.0 * 9e6_f64 / 10.0).sqrt();
+        assert!(
+            found >= exact - 1e-6 && found <= exact * 1.001,
+            "{found} {exact}"
+        );
+        // 1 s of 3 s: 4 s of a window of 10 s.
+        let mut rms = Rms::new(10.0);
+        for slice in [Slice::constant(1.0, 3000.0), Slice::constant(2.0, 0.0)] {
+            rms.take(&slice, 0.0, Place::default());
+        }
+        let found = rms.repeated(0.0).value;
+        let exact = (4.0 * 9e6_f64 / 10.0).sqrt();
+        assert!(
+            found >= exact - 1e-6 && found <= exact * 1.001,
+            "{found} {exact}"
+        );
     }
 
     #[test]

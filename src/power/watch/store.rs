@@ -4,6 +4,14 @@
 use super::super::trace::Slice;
 use super::Span;
 use super::rating::{Place, Worst};
+use arrayvec::ArrayVec;
+
+/// Energies that are noted, and by what factor they differ.
+const NOTED_MAX: usize = 64;
+const NOTED_RATIO: f64 = 1.5;
+const NOTED_MIN_J: f64 = 1e-3;
+/// What rounding may leave of a balance, as a share.
+const ROUNDING: f64 = 1e-9;
 
 /// `E' = P − L`, `E ≥ 0`, L the power that leaves it.
 #[derive(Debug, Clone)]
@@ -12,6 +20,13 @@ pub(super) struct Store {
     taken_w: f64,
     /// What it holds, J.
     held_j: f64,
+    /// What has come in less what has left or could have left, J, and its largest
+    /// value.
+    net_j: f64,
+    most_j: f64,
+    /// Time so far, s, and when it had given off certain energies first.
+    clock_s: f64,
+    given_off: ArrayVec<(f64, f64), NOTED_MAX>,
     pub worst: Worst,
 }
 
@@ -20,6 +35,10 @@ impl Store {
         Self {
             taken_w,
             held_j: 0.0,
+            net_j: 0.0,
+            most_j: 0.0,
+            clock_s: 0.0,
+            given_off: ArrayVec::new(),
             worst: Worst::default(),
         }
     }
@@ -57,6 +76,9 @@ impl Store {
         let mut now_s = time_s;
         for (part, above) in slice.sides(self.taken_w) {
             let change_j = part.energy_j() - self.taken_w * part.duration_s;
+            self.net_j += change_j;
+            self.most_j = self.most_j.max(self.net_j);
+            self.note(part.duration_s);
             if above {
                 self.held_j += change_j;
                 self.worst
@@ -79,14 +101,66 @@ impl Store {
         }
     }
 
+    /// Time passes with an energy that fills nothing.
+    #[inline]
+    pub fn pass(&mut self, energy_j: f64, duration_s: f64) {
+        self.net_j += energy_j - self.taken_w * duration_s;
+        self.note(duration_s);
+    }
+
+    /// The worst of all runs, where the program runs again and again: each begins with
+    /// what the one before has left.
+    ///
+    /// From E₀ the store holds the larger of E₀ + net and of what it holds from 0, so
+    /// that from the second run on all are alike if a run takes no more than it gives.
+    pub fn repeated(&self) -> Worst {
+        let mut worst = self.worst;
+        if self.net_j > ROUNDING * self.most_j {
+            worst.raise(f64::INFINITY, worst.time_s, worst.place);
+        } else if self.held_j > 0.0 {
+            worst.raise(self.held_j + self.most_j, worst.time_s, worst.place);
+        }
+        worst
+    }
+
+    /// How long from the beginning of a run it takes at most until it has given off what
+    /// the run before has left, s.
+    pub fn refilled_s(&self) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let reached = self
+            .given_off
+            .iter()
+            .find(|(given_j, _)| *given_j >= self.held_j);
+        reached.map_or(self.clock_s, |(_, time_s)| *time_s)
+    }
+
+    /// Time has passed, and the balance is another.
+    #[inline]
+    fn note(&mut self, duration_s: f64) {
+        self.clock_s += duration_s;
+        let last_j = self.given_off.last().map_or(0.0, |last| last.0);
+        if -self.net_j > (NOTED_RATIO * last_j).max(NOTED_MIN_J) && !self.given_off.is_full() {
+            self.given_off.push((-self.net_j, self.clock_s));
+        }
+    }
+
     /// A power that lasts for a time that is not known.
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
         let below = power_w <= self.taken_w * (1.0 + 1e-9);
         let more_w = power_w - self.taken_w;
         if below {
-            self.held_j = (self.held_j + more_w.min(0.0) * span.worse_s(false)).max(0.0);
+            let change_j = more_w.min(0.0) * span.worse_s(false);
+            self.net_j += change_j;
+            self.note(span.worse_s(false));
+            self.held_j = (self.held_j + change_j).max(0.0);
         } else {
-            self.held_j += more_w * span.worse_s(true);
+            let change_j = more_w * span.worse_s(true);
+            self.net_j += change_j;
+            self.most_j = self.most_j.max(self.net_j);
+            self.note(span.worse_s(true));
+            self.held_j += change_j;
             self.worst.raise_lasting(self.held_j, time_s, place);
         }
     }
@@ -107,6 +181,29 @@ mod tests {
             time_s += slice.duration_s;
         }
         (store.worst.value, passed)
+    }
+
+    #[test]
+    fn a_run_begins_with_what_the_last_one_left() {
+        // 200 J at the beginning and 100 J at the end, of which 1 s takes all.
+        let slices = [
+            Slice::constant(0.1, 5000.0),
+            Slice::constant(1.0, 1000.0),
+            Slice::constant(0.05, 5000.0),
+        ];
+        let mut store = Store::new(3000.0);
+        for slice in &slices {
+            store.take(slice, 0.0, Place::default(), &mut |_, _| {});
+        }
+        assert!((store.worst.value - 200.0).abs() < 1e-9);
+        assert!((store.repeated().value - 300.0).abs() < 1e-9);
+        assert!(store.refilled_s() <= 1.1);
+        // Where a run takes more than it gives off there is no end to it.
+        let mut store = Store::new(1200.0);
+        for slice in &slices {
+            store.take(slice, 0.0, Place::default(), &mut |_, _| {});
+        }
+        assert_eq!(store.repeated().value, f64::INFINITY);
     }
 
     #[test]

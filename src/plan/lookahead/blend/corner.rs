@@ -187,7 +187,6 @@ impl Corner {
             normal: cross(self.binormal(), legs[0].tangent),
             trims: [rounding.trim; 2],
             speed: rounding.speed,
-            asked_speed: legs[0].target_speed().max(legs[1].target_speed()),
             accel: rounding.accel,
         }
     }

@@ -107,7 +107,6 @@ pub(super) struct Fit {
     pub trims: [f64; 2],
     /// Speed that it is planned for, and acceleration of its plane.
     pub speed: f64,
-    pub asked_speed: f64,
     pub accel: f64,
 }
 

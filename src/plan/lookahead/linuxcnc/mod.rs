@@ -40,6 +40,8 @@ pub(super) struct LinuxCnc<T> {
     joiner: Joiner<T>,
     /// Largest speed of the last node, squared, whatever F asks for.
     last_max2: f64,
+    /// The largest feed override by the one in force.
+    feed_ratio: f64,
 }
 
 enum Way {
@@ -60,7 +62,13 @@ impl<T: Copy> LinuxCnc<T> {
             spare: None,
             joiner: Joiner::new(),
             last_max2: f64::INFINITY,
+            feed_ratio: 1.0,
         }
+    }
+
+    /// The feed override may be raised by this factor.
+    pub fn expect(&mut self, feed_ratio: f64) {
+        self.feed_ratio = feed_ratio;
     }
 
     /// Adds an element.
@@ -130,7 +138,7 @@ impl<T: Copy> LinuxCnc<T> {
             }
             None => Box::new(Pending::new(element, first)),
         };
-        next.begin(is_line, self.cycle_s);
+        next.begin(is_line, self.cycle_s, self.feed_ratio);
         next
     }
 
@@ -248,7 +256,7 @@ impl<T: Copy> LinuxCnc<T> {
         if length_mm > 0.0 {
             max = max.min(length_mm / (self.cycle_s * CYCLES_MIN));
         }
-        let top = max.min(fit.asked_speed);
+        let top = max.min(before.run_speed().max(next.run_speed()));
         let piece = Piece::Blend(Blend {
             lead_mm,
             radius_mm: fit.radius,

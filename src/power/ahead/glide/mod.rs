@@ -13,6 +13,8 @@ mod terms;
 
 use super::Ahead;
 use super::open::Open;
+use super::pace::Pace;
+use super::surges::Surges;
 use crate::interpret::Move;
 use crate::machine::{AxisSet, LookAhead, Machine};
 use crate::plan::Overrides;
@@ -129,9 +131,15 @@ impl Ahead {
             self.glider.back_off();
             return false;
         };
+        let pace = self.open.back().map(|last| Pace {
+            own2: 0.0,
+            ..last.pace
+        });
         let open = self.open.push(mv, text, want);
         open.assessment.speed_mm_s = speed_mm_s;
         open.moves = true;
+        // The same speed is asked for; how far it reaches matters when this ends.
+        open.pace = pace.unwrap_or_default();
         self.count_gliding(model, eye);
         true
     }
@@ -195,6 +203,11 @@ impl Ahead {
         let feed_mm_s = self.open.back()?.mv.feed_mm_s;
         let speed_mm_s = feed_mm_s * terms.feed;
         if speed_mm_s * speed_mm_s != speed2 {
+            return None;
+        }
+        // Where rapids and feeds meet, another rapid override speeds the feed up.
+        let one = |surges: &Surges| surges.are_one(false, speed2);
+        if !self.surges.as_ref().is_none_or(one) {
             return None;
         }
         let (mut ramp2, mut line) = (0.0, Line::default());
@@ -293,6 +306,11 @@ impl Ahead {
             // All have a path: their lengths and their limits are above 0.
             if !open.is_some_and(|open| side.describe(machine, &open.mv, number)) {
                 continue;
+            }
+            if let (Some(surges), Some(open)) = (&mut self.surges, self.open.get_mut(number))
+                && open.pace.own2 == 0.0
+            {
+                open.pace = surges.push(number, &side.element);
             }
             if number == glide.first {
                 side.planner.glide_to(&side.element, glide.start, speed2);

@@ -1,0 +1,131 @@
+//! Demand of a piece of path that may be sped up or braked at any place on it, from
+//! rest to some speed.
+//!
+//! Input: the piece, the speeds up to which that may happen, and the acceleration.
+//! Output: its [`Demand`]. On a line it is that of the ramps themselves. Where the
+//! path turns it is the robust bound, over short stretches of an arc.
+
+use super::demand::{Demand, Want};
+use super::model::PowerModel;
+use super::piece::straight_line;
+use crate::interpret::Move;
+use crate::machine::AxisValues;
+use crate::plan::lookahead::{Piece, Planned};
+use crate::plan::{Blend, PathShares, Plan, SpeedBound, Trajectory};
+use std::f64::consts::PI;
+
+/// Stretches of a turn over which the directions change little, and of a piece at most.
+const STRETCHES_A_TURN: f64 = 32.0;
+const STRETCHES_MAX: f64 = 64.0;
+
+/// Up to which speed a piece may be sped up and from which it may be braked, mm/s, if
+/// it may.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Surge {
+    pub rises_mm_s: Option<f64>,
+    pub falls_mm_s: Option<f64>,
+    /// mm/s².
+    pub accel_mm_s2: f64,
+}
+
+/// What a piece of a plan, which belongs to the move `mv`, may ask for.
+pub(super) fn surge_demand(
+    model: &PowerModel,
+    mv: &Move,
+    planned: &Planned<u64>,
+    surge: Surge,
+    want: Want,
+) -> Demand {
+    let want = Want {
+        energy: false,
+        ..want
+    };
+    match &planned.piece {
+        Piece::Along { from_mm, to_mm } if mv.arc.is_some() => {
+            arc_demand(model, mv, [*from_mm, *to_mm], surge)
+        }
+        Piece::Along { .. } => line_demand(model, mv, surge, want),
+        Piece::Joined { direction } => {
+            let line = straight_line(mv, direction, planned.length_mm);
+            line_demand(model, &line, surge, want)
+        }
+        Piece::Blend(blend) => blend_demand(model, mv, blend, surge),
+    }
+}
+
+impl Surge {
+    /// The largest speed of both, mm/s.
+    pub fn speed_mm_s(&self) -> f64 {
+        let speeds = [self.rises_mm_s, self.falls_mm_s];
+        speeds.into_iter().flatten().fold(0.0, f64::max)
+    }
+}
+
+fn line_demand(model: &PowerModel, mv: &Move, surge: Surge, want: Want) -> Demand {
+    let mut demand = Demand::NONE;
+    for (speed_mm_s, last) in [(surge.rises_mm_s, false), (surge.falls_mm_s, true)] {
+        let Some(speed_mm_s) = speed_mm_s.filter(|speed| *speed > 0.0) else {
+            continue;
+        };
+        let mut plan = Plan::ramps(speed_mm_s, surge.accel_mm_s2);
+        if let Trajectory::Path(profile) = &mut plan.trajectory {
+            if last {
+                profile.phases.reverse();
+            }
+            profile.phases.truncate(1);
+        }
+        demand.include(&model.demand(mv, &plan, want));
+    }
+    demand
+}
+
+fn arc_demand(model: &PowerModel, mv: &Move, [from_mm, to_mm]: [f64; 2], surge: Surge) -> Demand {
+    let sweep_rad = mv.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs());
+    let turns = sweep_rad * (to_mm - from_mm) / (mv.length_mm * 2.0 * PI);
+    let stretches = libm::ceil(turns * STRETCHES_A_TURN).clamp(1.0, STRETCHES_MAX);
+    let speed_mm_s = surge.speed_mm_s();
+    let mut demand = Demand::NONE;
+    for stretch in 0..stretches as u32 {
+        let at = |share: f64| from_mm + (to_mm - from_mm) * share / stretches;
+        let ends_mm = [at(f64::from(stretch)), at(f64::from(stretch) + 1.0)];
+        let shares = PathShares::of(mv, ends_mm);
+        let (mut bound, mut accels) = (shares.along, AxisValues::default());
+        for (axis, accel) in accels.iter_mut().enumerate() {
+            let share = bound.positive[axis].max(bound.negative[axis]);
+            *accel = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
+            bound.positive[axis] *= speed_mm_s;
+            bound.negative[axis] *= speed_mm_s;
+        }
+        demand.include(&model.robust(mv, &bound, &accels));
+    }
+    demand
+}
+
+/// The directions of a blend are those between its tangents.
+fn blend_demand(model: &PowerModel, mv: &Move, blend: &Blend, surge: Surge) -> Demand {
+    let speed_mm_s = surge.speed_mm_s();
+    let turning = speed_mm_s * speed_mm_s / blend.radius_mm;
+    let (mut bound, mut accels) = (SpeedBound::default(), AxisValues::default());
+    let (sin, cos) = libm::sincos(blend.sweep_rad);
+    for (axis, (first, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
+        let last = first * cos + normal * sin;
+        let swing = (first * first + normal * normal).sqrt();
+        // Where the part of an axis is largest inside.
+        let peak = libm::atan2(normal, first);
+        let inside = |angle: f64| angle > 0.0 && angle < blend.sweep_rad;
+        let most = |sign: f64, angle: f64| {
+            let ends = (sign * first).max(sign * last).max(0.0);
+            let turned = [angle, angle + 2.0 * PI];
+            if turned.into_iter().any(inside) {
+                swing
+            } else {
+                ends
+            }
+        };
+        bound.positive[axis] = most(1.0, peak) * speed_mm_s;
+        bound.negative[axis] = most(-1.0, peak + PI) * speed_mm_s;
+        let along = bound.positive[axis].max(bound.negative[axis]) / speed_mm_s;
+        accels[axis] = along * surge.accel_mm_s2 + swing * turning;
+    }
+    model.robust(mv, &bound, &accels)
+}
