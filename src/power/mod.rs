@@ -47,6 +47,7 @@ mod spindle_trace;
 mod surface_speed;
 mod tandem;
 mod straight;
+mod steps;
 mod stretch;
 mod trace;
 mod watch;
