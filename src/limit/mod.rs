@@ -13,6 +13,7 @@ mod optimum;
 mod options;
 mod root;
 mod solver;
+mod steps;
 mod window;
 
 pub use change::{Change, Permit};

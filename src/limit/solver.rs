@@ -6,6 +6,7 @@ use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
+use super::steps;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine, RapidJoint};
 use crate::plan::{Overrides, Plan, blended_bound, blended_speed, driven_accel, plan};
@@ -147,7 +148,13 @@ impl<'m> Solver<'m> {
 
     /// Load ratio of a move, changed or not, at the largest overrides.
     pub(super) fn load(&self, case: Case<'_>, mv: &Move) -> f64 {
+        if let Some(load) = steps::load(self, case, mv) {
+            return load;
+        }
         let depth = match case.ends {
+            Ends::Any(depth) if steps::exceed(self, case, mv) => {
+                depth.saturating_sub(steps::ROUNDS)
+            }
             Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
             _ => return self.planned_load(case, mv),
         };
@@ -188,7 +195,7 @@ impl<'m> Solver<'m> {
 
     /// Whether a rapid became a feed that begins and ends at rest, since feeds
     /// would be blended otherwise than rapids.
-    fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
+    pub(super) fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
         self.machine.controller.planner.rapid_joint != RapidJoint::All
             && rapid.kind == MoveKind::Rapid
             && changed.kind != MoveKind::Rapid
@@ -343,6 +350,10 @@ impl<'m> Solver<'m> {
 
     fn optimal(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         match levers {
+            // Steps do not fall with the acceleration.
+            Levers { speed: Some(_), .. } if steps::load(self, case, case.mv).is_some() => {
+                self.by_speed(case, levers)
+            }
             Levers {
                 speed: Some(speed),
                 accel: Some(accel),

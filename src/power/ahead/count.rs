@@ -68,6 +68,8 @@ impl Ahead {
             }
             if peaks {
                 open.assessment.demand.include(&demand);
+                let loads = &mut open.assessment.loads;
+                loads.own = loads.own.max(demand.load_ratio);
             }
         }
         if peaks {

@@ -120,6 +120,8 @@ fn include(open: &mut Queue, number: u64, demand: &Demand) {
     for number in before.into_iter().chain([number]) {
         if let Some(open) = open.get_mut(number) {
             open.assessment.demand.include(demand);
+            let loads = &mut open.assessment.loads;
+            loads.steps = loads.steps.max(demand.load_ratio);
         }
     }
 }
