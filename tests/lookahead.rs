@@ -7,6 +7,7 @@ mod linuxcnc;
 mod measured;
 mod profile;
 mod recorded;
+mod steps;
 mod tandem;
 
 use gwatt::interpret::{ActionKind, Diagnostics, Facts, Interpreter, MoveKind, Reading, Step};

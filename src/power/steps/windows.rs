@@ -9,6 +9,8 @@ use crate::power::model::{ConverterPower, PowerModel};
 
 /// Parts of a response time over which a mean is bounded in one go.
 const PARTS: f64 = 4.0;
+/// Share of a response time that is rounding.
+const NO_TIME: f64 = 1e-9;
 /// Means longer than the response time that are looked at for one step.
 const LONGER: usize = 8;
 
@@ -73,7 +75,7 @@ impl Steps {
             let from_s = end_s - tau;
             let placed = begun.checked_sub(1).and_then(|index| self.spans.get(index));
             let leaves_s = placed.map_or(first.start_s, Placed::end_s);
-            if leaves_s <= from_s && begun < self.spans.len() {
+            if leaves_s - from_s <= NO_TIME * tau && begun < self.spans.len() {
                 begun += 1;
                 continue;
             }
