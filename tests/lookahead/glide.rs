@@ -27,11 +27,7 @@ pub(super) fn judged(
 }
 
 /// The same for what is wanted of it.
-pub(super) fn judged_for(
-    machine: &Machine,
-    program: &str,
-    want: Want,
-) -> Vec<(u64, Assessment)> {
+pub(super) fn judged_for(machine: &Machine, program: &str, want: Want) -> Vec<(u64, Assessment)> {
     let reading = Reading::default();
     let mut interpreter = Interpreter::new(machine, &reading);
     let mut assessor = Assessor::new(machine, None, want);

@@ -115,13 +115,18 @@ fn a_mean_may_last_longer() {
     let longer_w = 100.0 * (v * s2 / apart_s) * (v * s1);
     let own_w = 100.0 * (v * (s2 - s1) / 0.01) * (v * s2);
     assert!(longer_w > 1.1 * own_w);
-    assert!((drawn_w / longer_w - 1.0).abs() < 1e-5, "{drawn_w} {longer_w}");
+    assert!(
+        (drawn_w / longer_w - 1.0).abs() < 1e-5,
+        "{drawn_w} {longer_w}"
+    );
 }
 
 /// The printer's bed weighs six times its head.
 fn printer() -> Machine {
     let text = include_str!("../../machine-configs/printer.toml");
-    Machine::from_toml("printer.toml", text).expect("a machine").0
+    Machine::from_toml("printer.toml", text)
+        .expect("a machine")
+        .0
 }
 
 /// A circle with a radius of 30 mm at 500 mm/s, as chords of so many degrees.
@@ -150,7 +155,10 @@ fn a_circle_of_chords_is_a_circle() {
         assert!((1.0..1.16).contains(&(chords_w / arc_w)), "{chords_w}");
         assert!((1.0..1.6).contains(&(regen_w / arc_regen_w)), "{regen_w}");
         // What brakes is not taken off the friction.
-        assert!((0.99..1.15).contains(&(chords_j / arc_j)), "{chords_j} {arc_j}");
+        assert!(
+            (0.99..1.15).contains(&(chords_j / arc_j)),
+            "{chords_j} {arc_j}"
+        );
     }
 }
 
@@ -159,7 +167,10 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
@@ -322,7 +333,14 @@ fn compare(seed: u64, programs: usize, lines: usize) -> (Vec<f64>, usize) {
         let [drawn_w, fed_back_w, _] = totals(&axes.machine, &program);
         let mut rows = Rows::default();
         let options = Options::default();
-        series(Cursor::new(&program), &axes.machine, &options, 1e3, &mut rows).expect("a series");
+        series(
+            Cursor::new(&program),
+            &axes.machine,
+            &options,
+            1e3,
+            &mut rows,
+        )
+        .expect("a series");
         let mut planned = axes.machine.clone();
         planned.path.response_time_s = 1e9;
         let [own_w, own_regen_w, _] = totals(&planned, &program);
@@ -367,7 +385,12 @@ fn steps_are_found_where_the_motion_glides() {
     let mut program = "G21 G90\nG1 X1 F3000\n".to_owned();
     for step in 0..400 {
         let (sin, cos) = libm::sincos(0.05 * f64::from(step));
-        let _ = writeln!(program, "G1 X{:.5} Y{:.5}", 1.0 + 10.0 * sin, 10.0 - 10.0 * cos);
+        let _ = writeln!(
+            program,
+            "G1 X{:.5} Y{:.5}",
+            1.0 + 10.0 * sin,
+            10.0 - 10.0 * cos
+        );
     }
     let machine = machine("grbl", 500.0, 2000.0);
     let exact = judged(&machine, &program, f64::NEG_INFINITY, true);

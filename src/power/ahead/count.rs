@@ -29,10 +29,8 @@ impl Ahead {
         let Some(open) = self.open.get_mut(number) else {
             return;
         };
-        if !eye.is_closed() {
-            if times {
-                eye.show_piece(&open.mv, planned);
-            }
+        if times && !eye.is_closed() {
+            eye.show_piece(&open.mv, planned);
         }
         let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;

@@ -7,7 +7,7 @@ use crate::machine::{AXES, AxisValues, CornerRule, LookAhead, Machine};
 use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
 use crate::power::model::PowerModel;
-use crate::power::steps::{Span, StepEnergy, Steps, arc_spans, tangent, velocity};
+use crate::power::steps::{Heading, Span, StepEnergy, Steps, spans, velocity};
 
 /// The means over the drives' response time, where the rules know steps of speed.
 pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps>> {
@@ -34,18 +34,24 @@ impl Ahead {
         if own.mv.arc.is_none() && speeds2.start == speeds2.top && speeds2.end == speeds2.top {
             let speed_mm_s = speeds2.top.sqrt();
             let duration_s = planned.length_mm / speed_mm_s;
-            return glide_over(steps, &mut self.open, model, number, [duration_s, speed_mm_s]);
+            return glide_over(
+                steps,
+                &mut self.open,
+                model,
+                number,
+                [duration_s, speed_mm_s],
+            );
         }
-        let mv = own.mv.clone();
+        let (heading, is_arc) = (Heading::of(&own.mv), own.mv.arc.is_some());
         let profile = planned.profile();
         // The power of an arc is that of the mean over its chords, where these are
         // shorter than the drives' response.
-        let chord = mv.arc.is_some() && from_mm > 0.0;
+        let chord = is_arc && from_mm > 0.0;
         let mut joint = !chord || planned.duration_s() > steps.response_s();
         for phase in &profile.phases {
             let mut phase = *phase;
             phase.position_mm += from_mm;
-            arc_spans(&mv, &phase, joint, &mut |span| {
+            spans(&heading, &phase, joint, &mut |span| {
                 take(steps, &mut self.open, model, number, span);
             });
             joint = false;
@@ -57,9 +63,9 @@ impl Ahead {
         let Some(steps) = self.steps.as_deref_mut() else {
             return;
         };
-        if let Some(last) = self.open.end().checked_sub(1)
-            && self.open.get(last).is_some()
-        {
+        let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
+        let last = (self.open.first()..self.open.end()).rev().find(moves);
+        if let Some(last) = last {
             let rest = Span {
                 duration_s: steps.response_s(),
                 direction: [0.0; AXES],
@@ -82,11 +88,7 @@ pub(super) fn glide_over(
     [duration_s, speed_mm_s]: [f64; 2],
 ) {
     let Some(own) = open.get(number) else { return };
-    let mut direction = [0.0; AXES];
-    let per_mm = 1.0 / own.mv.length_mm;
-    for axis in own.mv.moving.iter() {
-        direction[axis] = (own.mv.end[axis] - own.mv.start[axis]) * per_mm;
-    }
+    let direction = Heading::of(&own.mv).at(0.0);
     let span = Span {
         duration_s,
         direction,
@@ -138,13 +140,8 @@ pub(super) fn step_before(
         Piece::Along { from_mm, to_mm } => [from_mm, to_mm],
         Piece::Joined { .. } | Piece::Blend(_) => [0.0; 2],
     };
-    let (first, last) = match mv.arc {
-        Some(_) => (tangent(mv, from_mm), tangent(mv, to_mm)),
-        None => {
-            let along = tangent(mv, from_mm);
-            (along, along)
-        }
-    };
+    let heading = Heading::of(mv);
+    let [first, last] = [from_mm, to_mm].map(|at_mm| heading.at(at_mm));
     let after = velocity(&first, planned.speeds2.start.sqrt());
     let step = StepEnergy {
         speeds_mm_s: [*before, after],

@@ -30,7 +30,8 @@ impl StepEnergy {
                 continue;
             }
             let power = &model.axes[axis];
-            let [drawn_j, fed_back_j] = self.of_axis(power, p * power.si_per_unit, q * power.si_per_unit);
+            let [drawn_j, fed_back_j] =
+                self.of_axis(power, p * power.si_per_unit, q * power.si_per_unit);
             sums[0] += drawn_j;
             sums[1] += fed_back_j;
         }

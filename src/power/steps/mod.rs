@@ -24,7 +24,7 @@ mod spans;
 mod windows;
 
 pub(super) use energy::{StepEnergy, velocity};
-pub(super) use spans::{arc_spans, tangent};
+pub(super) use spans::{Heading, spans};
 
 use super::axis::Side;
 use super::demand::{Want, larger};
@@ -109,7 +109,9 @@ impl Steps {
     /// The motion begins at rest, and what was before is not known.
     pub fn begin(&mut self) {
         if !self.spans.is_empty() {
-            *self = Self::new(self.axes.iter().fold(AxisSet(0), with), self.response_s);
+            let mut axes = AxisSet::default();
+            self.axes.iter().for_each(|axis| axes.insert(*axis));
+            *self = Self::new(axes, self.response_s);
         }
     }
 
@@ -201,11 +203,6 @@ impl Steps {
         }
         [drawn_w, fed_back_w]
     }
-}
-
-fn with(mut set: AxisSet, axis: &usize) -> AxisSet {
-    set.insert(*axis);
-    set
 }
 
 impl Placed {

@@ -86,7 +86,10 @@ impl Steps {
                     at_s,
                     rest_mm: &first.place_mm,
                 };
-                self.mean([end(placed, from_s + on_s), end(Some(last), end_s + on_s)], tau)
+                self.mean(
+                    [end(placed, from_s + on_s), end(Some(last), end_s + on_s)],
+                    tau,
+                )
             });
             raise(model, converter, &self.axes, &means, step_s, totals);
             let next_s = end_s + step_s;

@@ -63,14 +63,11 @@ impl Slice {
         if t >= self.duration_s {
             return [Some(*self), None];
         }
-        if !(t > 0.0) {
+        if t <= 0.0 {
             return [None, Some(*self)];
         }
         let at = self.at(t);
-        [
-            Some(self.part(self.from, at)),
-            Some(self.part(at, self.to)),
-        ]
+        [Some(self.part(self.from, at)), Some(self.part(at, self.to))]
     }
 
     /// Whether it is plain that it is nowhere above a level.

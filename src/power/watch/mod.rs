@@ -214,7 +214,7 @@ impl Watch {
                 most_s = step.response_s.min(planned.duration_s());
                 more_w = tracer.step_j(step) / most_s;
             }
-            if !(more_w > 0.0) {
+            if more_w <= 0.0 || more_w.is_nan() {
                 tracer.piece(mv, planned, &mut |slice| kept.push(index, slice));
                 continue;
             }
