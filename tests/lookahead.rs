@@ -13,6 +13,7 @@ mod recorder;
 mod rotary;
 mod side_by_side;
 mod words;
+mod steps;
 mod tandem;
 
 use gwatt::interpret::{ActionKind, Diagnostics, Facts, Interpreter, MoveKind, Reading, Step};

@@ -59,6 +59,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         path: Path {
             mode: None,
             rapid: RapidPath::Linear,
+            response_time_s: 0.01,
         },
         force_curves: Vec::new(),
         responses: Responses::default(),

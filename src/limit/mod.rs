@@ -14,6 +14,7 @@ mod optimum;
 mod options;
 mod root;
 mod solver;
+mod steps;
 mod stop;
 mod window;
 

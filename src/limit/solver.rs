@@ -6,6 +6,7 @@ use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
+use super::steps;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisValues, Machine};
 use crate::plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
@@ -142,7 +143,13 @@ impl<'m> Solver<'m> {
 
     /// Load ratio of a move, changed or not, at the largest overrides.
     pub(super) fn load(&self, case: Case<'_>, mv: &Move) -> f64 {
+        if let Some(load) = steps::load(self, case, mv) {
+            return load;
+        }
         let depth = match case.ends {
+            Ends::Any(depth) if steps::exceed(self, case, mv) => {
+                depth.saturating_sub(steps::ROUNDS)
+            }
             Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
             _ => return self.planned_load(case, mv),
         };
@@ -343,6 +350,10 @@ impl<'m> Solver<'m> {
 
     fn optimal(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         match levers {
+            // Steps do not fall with the acceleration.
+            Levers { speed: Some(_), .. } if steps::load(self, case, case.mv).is_some() => {
+                self.by_speed(case, levers)
+            }
             Levers {
                 speed: Some(speed),
                 accel: Some(accel),

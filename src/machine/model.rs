@@ -137,13 +137,15 @@ pub struct Brake {
 }
 
 /// How the machine follows a path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path {
     /// `Some(ExactStop)` overrides the program's G64; `Some(Blend)` is the mode
     /// at power-on; `None`: the controller's.
     pub mode: Option<PathMode>,
     /// Straight rapids, or each axis for itself.
     pub rapid: RapidPath,
+    /// Over how long the drives spread a step of speed at a corner, s.
+    pub response_time_s: f64,
 }
 
 /// The spindle's data, SI.

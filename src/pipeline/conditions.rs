@@ -2,7 +2,7 @@
 
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
-use crate::machine::{Machine, PathMode, Spindle, SpindleWait};
+use crate::machine::{CornerRule, Machine, PathMode, Spindle, SpindleWait};
 
 /// How the spindle counts.
 fn spindle_condition(spindle: &Spindle) -> &'static str {
@@ -78,6 +78,14 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         conditions.push(format!(
             "the other moves are planned with the look-ahead of `{}`",
             machine.controller.name
+        ));
+    }
+    let corner = machine.controller.planner.look_ahead.map(|it| it.corner);
+    let stepped = corner.is_some_and(|corner| !matches!(corner, CornerRule::LinuxCnc { .. }));
+    if summary.ahead && stepped {
+        conditions.push(format!(
+            "the drives spread steps of speed at corners over {} ms (path.response_time_s)",
+            (machine.path.response_time_s * 1e6).round() / 1e3
         ));
     }
     if machine.path.mode == Some(PathMode::ExactStop) {

@@ -5,7 +5,7 @@
 //! others are judged at once.
 
 use super::ahead::Ahead;
-use super::assessment::{Assessment, Certificate};
+use super::assessment::{Assessment, Certificate, Loads};
 use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
 use super::effect::{Effect, Switched};
@@ -338,6 +338,7 @@ impl<'m> Assessor<'m> {
                 top_speed_mm_s: path.top_speed_mm_s,
                 fastest_s: path.duration_s,
                 demand,
+                loads: Loads::NONE,
                 certificate: Certificate::Planned,
                 blended,
                 joined: false,
@@ -396,6 +397,7 @@ impl<'m> Assessor<'m> {
             top_speed_mm_s: peak_plan.top_speed_mm_s,
             fastest_s: peak_plan.duration_s,
             demand,
+            loads: Loads::NONE,
             certificate: if unknown {
                 Certificate::Robust
             } else {

@@ -24,6 +24,23 @@ impl Certificate {
     }
 }
 
+/// Load ratios of a move that is planned with others, by their cause.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loads {
+    /// Of the plan itself.
+    pub own: f64,
+    /// Of the steps of speed at joints.
+    pub steps: f64,
+}
+
+impl Loads {
+    /// Nothing known.
+    pub(super) const NONE: Self = Self {
+        own: 0.0,
+        steps: 0.0,
+    };
+}
+
 /// What is known of a move once it is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
@@ -40,6 +57,9 @@ pub struct Assessment {
     pub fastest_s: f64,
     /// Peaks at the largest overrides, and the energy at 100 %.
     pub demand: Demand,
+    /// The part of the load ratio that the plan asks for by itself, and that of the
+    /// steps of speed at its joints, where any matter; 0 where not known.
+    pub loads: Loads,
     /// Which certificate the peaks belong to.
     pub certificate: Certificate,
     /// The move may run into or out of a neighbour without a stop: its peaks
@@ -63,6 +83,7 @@ impl Assessment {
         top_speed_mm_s: 0.0,
         fastest_s: 0.0,
         demand: Demand::NONE,
+        loads: Loads::NONE,
         certificate: Certificate::Planned,
         blended: true,
         joined: false,

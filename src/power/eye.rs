@@ -7,6 +7,7 @@
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::robust::Part;
+use super::steps::StepEnergy;
 use super::watch::{Beside, Kept, Span, Watch};
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -115,11 +116,19 @@ impl Eye {
         }
     }
 
-    /// A piece of a plan, which belongs to the move `mv`.
+    /// A piece of a plan, which belongs to the move `mv`, and the step of speed with
+    /// which it begins.
     #[inline]
-    pub fn keep(&self, model: &PowerModel, mv: &Move, planned: &Planned<u64>, kept: &mut Kept) {
+    pub fn keep(
+        &self,
+        model: &PowerModel,
+        mv: &Move,
+        planned: &Planned<u64>,
+        step: Option<&StepEnergy>,
+        kept: &mut Kept,
+    ) {
         if let Some(watch) = &self.watch {
-            watch.keep(model, mv, planned, kept);
+            watch.keep(model, mv, planned, step, kept);
         }
     }
 

@@ -49,13 +49,14 @@ mod surface_speed;
 mod surge;
 mod tandem;
 mod straight;
+mod steps;
 mod stretch;
 mod trace;
 mod watch;
 
 pub(crate) use ahead::{Role, joint, role};
 pub use assess::Assessor;
-pub use assessment::{Assessment, Certificate};
+pub use assessment::{Assessment, Certificate, Loads};
 pub use axis::electrical_w;
 pub use bus::{SpindleShare, Turning};
 pub use demand::{Demand, Want};

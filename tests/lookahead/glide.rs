@@ -17,14 +17,19 @@ pub(super) fn judged(
     floor_w: f64,
     accel: bool,
 ) -> Vec<(u64, Assessment)> {
-    let reading = Reading::default();
-    let mut interpreter = Interpreter::new(machine, &reading);
     let want = Want {
         energy: false,
         floor_w,
         regen_floor_w: floor_w,
         accel,
     };
+    judged_for(machine, program, want)
+}
+
+/// The same for what is wanted of it.
+pub(super) fn judged_for(machine: &Machine, program: &str, want: Want) -> Vec<(u64, Assessment)> {
+    let reading = Reading::default();
+    let mut interpreter = Interpreter::new(machine, &reading);
     let mut assessor = Assessor::new(machine, None, want);
     let mut found = Vec::new();
     let mut keep = |mv: &Move, judged: &Assessment, _: &[u8]| found.push((mv.line, *judged));

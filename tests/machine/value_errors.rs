@@ -258,6 +258,15 @@ fn unknown_mode() {
 }
 
 #[test]
+fn response_of_no_time() {
+    assert_snapshot!(findings(&with("[path]\nresponse_time_s = 0")), @r"
+    line 20, error machine-range: `response_time_s` must be between 0.001 and 1, but is 0
+      | response_time_s = 0
+      |                   ^
+    ");
+}
+
+#[test]
 fn table_for_list() {
     assert_snapshot!(findings(&with("[load]\non = \"M8\"\noff = \"M9\"\npower_w = 1")), @r"
     line 19, error machine-type: `load` must be a list, not a table / write its header in double brackets

@@ -120,12 +120,19 @@ pub(crate) fn rapid_path(name: RapidName) -> RapidPath {
     }
 }
 
+/// Drives that follow a step of speed more quickly are rare.
+const RESPONSE_TIME_S: f64 = 0.01;
+
 fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
     Path {
         mode: table.and_then(|table| table.mode).map(path_mode),
         rapid: table
             .and_then(|table| table.rapid)
             .map_or(controller.planner.rapid, rapid_path),
+        response_time_s: value(
+            table.and_then(|table| table.response_time_s.as_ref()),
+            RESPONSE_TIME_S,
+        ),
     }
 }
 

@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::controller_file::{CompensationTable, DistanceName, PointName};
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
-    RapidPercent, Share,
+    RapidPercent, ResponseTime, Share,
 };
 
 /// A machine whose drives share a power converter.
@@ -112,6 +112,9 @@ pub(crate) struct PathTable {
     pub(crate) mode: Option<PathModeName>,
     /// Straight rapids, or each axis for itself; absent: the controller's.
     pub(crate) rapid: Option<RapidName>,
+    /// Over how long the drives spread a step of speed at a corner, in s; default
+    /// 0.01.
+    pub(crate) response_time_s: Option<ResponseTime>,
 }
 
 /// Parameters of the control that change how programs are read; what is absent

@@ -128,6 +128,9 @@ number!(/** A share that may be nothing, but not the whole. */
 number!(/** Percent that cannot exceed 100. */
     RapidPercentBounds, RapidPercent, Some((1.0, false)), Some((100.0, false)));
 
+number!(/** Seconds from a thousandth to one. */
+    ResponseTimeBounds, ResponseTime, Some((0.001, false)), Some((1.0, false)));
+
 /// One value, or a list of them.
 #[derive(Debug, Clone)]
 pub(crate) struct OneOrMany<T>(pub(crate) Vec<At<T>>);

@@ -1,12 +1,14 @@
 //! Pieces of plans, counted for the moves that they belong to.
 
 use super::Ahead;
+use super::joints::step_before;
 use crate::interpret::Move;
 use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 use crate::power::piece::{is_quiet, piece_demand};
+use crate::power::steps::StepEnergy;
 use crate::power::tandem::{Ride, tandem_demand};
 
 impl Ahead {
@@ -27,19 +29,33 @@ impl Ahead {
         let Some(open) = self.open.get_mut(number) else {
             return;
         };
-        if !eye.is_closed() {
-            if peaks {
-                eye.keep(model, &open.mv, planned, &mut open.kept);
-            }
-            if times {
-                eye.show_piece(&open.mv, planned);
-            }
+        if times && !eye.is_closed() {
+            eye.show_piece(&open.mv, planned);
         }
         let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         open.alone &= rests && is_whole(&open.mv, planned);
         open.steady &= planned.speeds2.are_one();
         let with_energy = times && open.want.energy;
+        let watched = peaks && eye.watch.is_some();
+        if with_energy || watched {
+            let step = self.step(number, planned, peaks);
+            let Some(open) = self.open.get_mut(number) else {
+                return;
+            };
+            if with_energy && let Some(step) = &step {
+                open.assessment.demand.energy_j += step.supplied_j(model);
+            }
+            if watched {
+                eye.keep(model, &open.mv, planned, step.as_ref(), &mut open.kept);
+            }
+        }
+        if peaks {
+            self.follow(model, number, planned);
+        }
+        let Some(open) = self.open.get_mut(number) else {
+            return;
+        };
         if times {
             open.assessment.duration_s += duration_s;
         }
@@ -51,6 +67,8 @@ impl Ahead {
             }
             if peaks {
                 open.assessment.demand.include(&demand);
+                let loads = &mut open.assessment.loads;
+                loads.own = loads.own.max(demand.load_ratio);
             }
         }
         if peaks {
@@ -77,6 +95,20 @@ impl Ahead {
         }
     }
 
+    /// The step of speed before a piece on the path of a move, at the largest
+    /// overrides or at 100 %, where the rules know any.
+    fn step(&mut self, number: u64, planned: &Planned<u64>, peaks: bool) -> Option<StepEnergy> {
+        let response_s = self.steps.as_ref()?.response_s();
+        let open = self.open.get(number)?;
+        let side = match &mut self.nominal {
+            Some(nominal) if !peaks => nominal,
+            _ => &mut self.largest,
+        };
+        let (step, end_mm_s) = step_before(&open.mv, planned, &side.end_mm_s, response_s);
+        side.end_mm_s = end_mm_s;
+        Some(step)
+    }
+
     /// Counts a piece of path that belongs to several moves.
     fn take_shared(
         &mut self,
@@ -93,7 +125,7 @@ impl Ahead {
         };
         if peaks {
             open.rests |= planned.rests;
-            eye.keep(model, &open.mv, planned, &mut open.kept);
+            eye.keep(model, &open.mv, planned, None, &mut open.kept);
         }
         if times {
             eye.show_piece(&open.mv, planned);

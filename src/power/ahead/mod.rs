@@ -16,6 +16,7 @@ mod count;
 mod driven;
 mod glide;
 mod hand_on;
+mod joints;
 mod open;
 mod pace;
 mod queue;
@@ -27,9 +28,10 @@ use super::demand::Want;
 use super::eye::Eye;
 use super::model::PowerModel;
 use super::robust::Extremes;
+use super::steps::Steps;
 use super::tandem::Ride;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{LookAhead, Machine, PathMode};
+use crate::machine::{AXES, AxisValues, LookAhead, Machine, PathMode};
 use crate::plan::Overrides;
 use crate::plan::lookahead::{Element, PathPlanner};
 use glide::Glider;
@@ -65,6 +67,8 @@ pub(super) struct Ahead {
     last_ride: Option<Ride>,
     /// What lower overrides may make of them, if these count.
     surges: Option<Surges>,
+    /// Steps of speed at joints, where the rules know them.
+    steps: Option<Box<Steps>>,
 }
 
 /// A planner and how far it has come.
@@ -76,6 +80,9 @@ struct Side {
     element: Element<u64>,
     /// The first move that is not finished.
     next: u64,
+    /// Speeds of the axes at the end of the last piece, mm/s, where they are of
+    /// interest.
+    end_mm_s: AxisValues,
 }
 
 impl Side {
@@ -104,6 +111,7 @@ impl Ahead {
             overrides,
             element: Element::blank(0),
             next: 0,
+            end_mm_s: [0.0; AXES],
         });
         let alike = largest.overrides == nominal.overrides;
         // What is decided for another override does not glide.
@@ -128,6 +136,7 @@ impl Ahead {
                 .override_at
                 .is_none()
                 .then(|| Surges::new(&rules)),
+            steps: joints::steps_of(machine, &rules),
         }
     }
 
@@ -227,6 +236,7 @@ impl Ahead {
         open.in_doubt = std::mem::replace(&mut self.in_doubt, true);
         self.at_rest = false;
         self.pump(model, eye);
+        self.rest_after(model);
         // No piece will speak of it.
         self.finish();
         let side = self.nominal.as_ref().unwrap_or(&self.largest);
@@ -331,7 +341,17 @@ impl Ahead {
             self.take(model, eye, &planned, false, true);
         }
         if self.at_rest {
+            self.rest_after(model);
             self.finish();
+        }
+    }
+
+    /// What was planned ends at rest.
+    fn rest_after(&mut self, model: &PowerModel) {
+        self.follow_rest(model);
+        self.largest.end_mm_s = [0.0; AXES];
+        if let Some(nominal) = &mut self.nominal {
+            nominal.end_mm_s = [0.0; AXES];
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::power::demand::{Demand, Totals};
 use crate::power::spindle_state::SpindleState;
 use crate::power::spindle_trace::SpindleSpan;
 use crate::power::watch::Beside;
-use crate::power::{Assessment, Certificate, SpindleShare};
+use crate::power::{Assessment, Certificate, Loads, SpindleShare};
 
 /// The text of a row that belongs to no block.
 const NO_TEXT: &[u8] = b"";
@@ -83,6 +83,7 @@ impl SpindleBus<'_> {
             top_speed_mm_s: 0.0,
             fastest_s: duration_s,
             demand,
+            loads: Loads::NONE,
             certificate: Certificate::Planned,
             blended: false,
             joined: false,

@@ -21,6 +21,7 @@ pub use slice::Slice;
 use super::axis::Side;
 use super::model::{ConverterPower, PowerModel};
 use super::piece::straight_line;
+use super::steps::StepEnergy;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::lookahead::{Piece, Planned};
@@ -119,6 +120,21 @@ impl Tracer<'_> {
                 }
             }
             Trajectory::Unknown(_) => {}
+        }
+    }
+
+    /// The energy of a step of speed, J; what flows the other way counts where it is
+    /// credited.
+    pub fn step_j(&self, step: &StepEnergy) -> f64 {
+        let [drawn_j, fed_back_j] = step.of(self.model, self.converter.axes);
+        let [own_j, other_j] = match self.flow {
+            Flow::Drawn => [drawn_j, fed_back_j],
+            Flow::FedBack => [fed_back_j, drawn_j],
+        };
+        if self.converter.credit_regen {
+            (own_j - other_j).max(0.0)
+        } else {
+            own_j
         }
     }
 

@@ -63,6 +63,18 @@ impl Slice {
         raised
     }
 
+    /// What lies before an instant, s after its beginning, and what lies after it.
+    pub(in crate::power) fn cut(&self, t: f64) -> [Option<Self>; 2] {
+        if t >= self.duration_s {
+            return [Some(*self), None];
+        }
+        if t <= 0.0 {
+            return [None, Some(*self)];
+        }
+        let at = self.at(t);
+        [Some(self.part(self.from, at)), Some(self.part(at, self.to))]
+    }
+
     /// Whether it is plain that it is nowhere above a level.
     #[inline]
     pub(in crate::power) fn keeps_below(&self, level_w: f64) -> bool {

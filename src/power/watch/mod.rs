@@ -45,6 +45,7 @@ pub(super) use span::Span;
 
 use super::model::PowerModel;
 use super::robust::Part;
+use super::steps::StepEnergy;
 use super::trace::{Flow, Slice};
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -222,12 +223,36 @@ impl Watch {
         }
     }
 
-    /// Keeps a piece of a plan for the move that it belongs to.
-    pub fn keep(&self, model: &PowerModel, mv: &Move, planned: &Planned<u64>, kept: &mut Kept) {
+    /// Keeps a piece of a plan for the move that it belongs to, with the step of
+    /// speed with which it begins.
+    pub fn keep(
+        &self,
+        model: &PowerModel,
+        mv: &Move,
+        planned: &Planned<u64>,
+        step: Option<&StepEnergy>,
+        kept: &mut Kept,
+    ) {
         for (index, track) in self.tracks.iter().enumerate() {
-            if let Some(tracer) = model.tracer(track.converter, track.flow) {
-                tracer.piece(mv, planned, &mut |slice| kept.push(index, slice));
+            let Some(tracer) = model.tracer(track.converter, track.flow) else {
+                continue;
+            };
+            let (mut most_s, mut more_w) = (0.0, 0.0);
+            if let Some(step) = step {
+                most_s = step.response_s.min(planned.duration_s());
+                more_w = tracer.step_j(step) / most_s;
             }
+            if more_w <= 0.0 || more_w.is_nan() {
+                tracer.piece(mv, planned, &mut |slice| kept.push(index, slice));
+                continue;
+            }
+            tracer.piece(mv, planned, &mut |slice| {
+                let [first, rest] = slice.cut(most_s);
+                most_s -= slice.duration_s;
+                for slice in first.map(|it| it.raised(more_w)).into_iter().chain(rest) {
+                    kept.push(index, slice);
+                }
+            });
         }
     }
 

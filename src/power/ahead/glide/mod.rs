@@ -12,6 +12,7 @@
 mod terms;
 
 use super::Ahead;
+use super::joints::glide_over;
 use super::open::Open;
 use super::pace::Pace;
 use super::surges::Surges;
@@ -260,6 +261,11 @@ impl Ahead {
             open.glides_for(passed.own_mm * glide.s_per_mm + shared_s, glide.speed_mm_s);
             self.largest.next = glide.first;
             self.glider.pause = 1;
+            if let Some(steps) = self.steps.as_deref_mut() {
+                let duration_s = passed.own_mm * glide.s_per_mm;
+                let glides = [duration_s, glide.speed_mm_s];
+                glide_over(steps, &mut self.open, model, glide.first, glides);
+            }
             glide.first += 1;
             glide.start = passed.next;
             let Some(next) = self.open.get_mut(glide.first) else {

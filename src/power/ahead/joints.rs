@@ -1,0 +1,151 @@
+//! Steps of speed at the joints between planned pieces, counted for the moves there.
+
+use super::Ahead;
+use super::queue::Queue;
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisValues, CornerRule, LookAhead, Machine};
+use crate::plan::lookahead::{Piece, Planned};
+use crate::power::demand::Demand;
+use crate::power::model::PowerModel;
+use crate::power::steps::{Heading, Span, StepEnergy, Steps, spans, velocity};
+
+/// The means over the drives' response time, where the rules know steps of speed.
+pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps>> {
+    // LinuxCNC takes the acceleration for a kink from that along the path.
+    let stepped = !matches!(rules.corner, CornerRule::LinuxCnc { .. });
+    let response_s = machine.path.response_time_s;
+    stepped.then(|| Box::new(Steps::new(machine.axis_set, response_s)))
+}
+
+impl Ahead {
+    /// Follows a planned piece of a move's own path, at the largest overrides.
+    #[inline]
+    pub(super) fn follow(&mut self, model: &PowerModel, number: u64, planned: &Planned<u64>) {
+        let Some(steps) = self.steps.as_deref_mut() else {
+            return;
+        };
+        let Piece::Along { from_mm, .. } = planned.piece else {
+            return steps.begin();
+        };
+        let Some(own) = self.open.get(number) else {
+            return;
+        };
+        let speeds2 = planned.speeds2;
+        if own.mv.arc.is_none() && speeds2.start == speeds2.top && speeds2.end == speeds2.top {
+            let speed_mm_s = speeds2.top.sqrt();
+            let duration_s = planned.length_mm / speed_mm_s;
+            return glide_over(
+                steps,
+                &mut self.open,
+                model,
+                number,
+                [duration_s, speed_mm_s],
+            );
+        }
+        let (heading, is_arc) = (Heading::of(&own.mv), own.mv.arc.is_some());
+        let profile = planned.profile();
+        // The power of an arc is that of the mean over its chords, where these are
+        // shorter than the drives' response.
+        let chord = is_arc && from_mm > 0.0;
+        let mut joint = !chord || planned.duration_s() > steps.response_s();
+        for phase in &profile.phases {
+            let mut phase = *phase;
+            phase.position_mm += from_mm;
+            spans(&heading, &phase, joint, &mut |span| {
+                take(steps, &mut self.open, model, number, span);
+            });
+            joint = false;
+        }
+    }
+
+    /// The axes rest after the last move: what they do until then is followed by rest.
+    pub(super) fn follow_rest(&mut self, model: &PowerModel) {
+        let Some(steps) = self.steps.as_deref_mut() else {
+            return;
+        };
+        let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
+        let last = (self.open.first()..self.open.end()).rev().find(moves);
+        if let Some(last) = last {
+            let rest = Span {
+                duration_s: steps.response_s(),
+                direction: [0.0; AXES],
+                speeds_mm_s: [0.0; 2],
+                joint: true,
+            };
+            take(steps, &mut self.open, model, last, &rest);
+        }
+        steps.begin();
+    }
+}
+
+/// Follows a line at one speed, for `[s, mm/s]`.
+#[inline]
+pub(super) fn glide_over(
+    steps: &mut Steps,
+    open: &mut Queue,
+    model: &PowerModel,
+    number: u64,
+    [duration_s, speed_mm_s]: [f64; 2],
+) {
+    let Some(own) = open.get(number) else { return };
+    let direction = Heading::of(&own.mv).at(0.0);
+    let span = Span {
+        duration_s,
+        direction,
+        speeds_mm_s: [speed_mm_s; 2],
+        joint: true,
+    };
+    take(steps, open, model, number, &span);
+}
+
+/// Follows a span of a move; what steps ask for there counts for it and for the one
+/// before.
+#[inline]
+fn take(steps: &mut Steps, open: &mut Queue, model: &PowerModel, number: u64, span: &Span) {
+    if !steps.push(span) {
+        return;
+    }
+    let Some(own) = open.get(number) else { return };
+    if steps.is_quiet(model, &own.mv, own.want) {
+        return;
+    }
+    let demand = steps.demand(model, &own.mv);
+    include(open, number, &demand);
+}
+
+#[cold]
+fn include(open: &mut Queue, number: u64, demand: &Demand) {
+    let before = (open.first()..number).rev();
+    let before = before
+        .take(8)
+        .find(|it| open.get(*it).is_some_and(|it| it.moves));
+    for number in before.into_iter().chain([number]) {
+        if let Some(open) = open.get_mut(number) {
+            open.assessment.demand.include(demand);
+            let loads = &mut open.assessment.loads;
+            loads.steps = loads.steps.max(demand.load_ratio);
+        }
+    }
+}
+
+/// The step of speed before a piece on the path of a move, where the last one ended
+/// with the speeds `before`; and the speeds with which it ends.
+pub(super) fn step_before(
+    mv: &Move,
+    planned: &Planned<u64>,
+    before: &AxisValues,
+    response_s: f64,
+) -> (StepEnergy, AxisValues) {
+    let [from_mm, to_mm] = match planned.piece {
+        Piece::Along { from_mm, to_mm } => [from_mm, to_mm],
+        Piece::Joined { .. } | Piece::Blend(_) => [0.0; 2],
+    };
+    let heading = Heading::of(mv);
+    let [first, last] = [from_mm, to_mm].map(|at_mm| heading.at(at_mm));
+    let after = velocity(&first, planned.speeds2.start.sqrt());
+    let step = StepEnergy {
+        speeds_mm_s: [*before, after],
+        response_s,
+    };
+    (step, velocity(&last, planned.speeds2.end.sqrt()))
+}

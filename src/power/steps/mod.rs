@@ -1,0 +1,220 @@
+//! Steps of speed where a controller passes corners without stopping.
+//!
+//! At a joint that is passed at the speed v each axis is commanded a step of
+//! `Δv = v·(u₂ − u₁)`, in no time. The drives follow it in a time of their own, the
+//! response time τ of the machine file: what they make of the commanded speed is
+//! its mean over τ,
+//!
+//! ```text
+//! w(t) = (x(t) − x(t − τ))/τ,    w'(t) = (v(t) − v(t − τ))/τ
+//! ```
+//!
+//! in which the steps within τ add up by their signs, and the acceleration along
+//! the path counts with its share. A slower drive takes a longer mean. Where the
+//! steps lie further apart than τ a mean that just reaches from one to another may
+//! ask for more than that over τ: these are looked at too, up to 2·τ; one over a
+//! longer time has no more acceleration than one of its parts.
+//!
+//! Input: the planned motion as [`Span`]s in the order of time. Output: the largest
+//! power of these means where there is a step within. It comes on top of what the
+//! plan itself asks for, which has no steps.
+
+mod energy;
+mod spans;
+mod windows;
+
+pub(super) use energy::{StepEnergy, velocity};
+pub(super) use spans::{Heading, spans};
+
+use super::axis::Side;
+use super::demand::{Want, larger};
+use super::model::{ConverterPower, PowerModel};
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisSet, AxisValues};
+use arrayvec::ArrayVec;
+use std::collections::VecDeque;
+
+/// Steps by less than this share of the speed are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A stretch of time with one direction, and a speed that changes evenly.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    pub duration_s: f64,
+    /// Change of each axis per unit of path.
+    pub direction: AxisValues,
+    /// Along the path at both ends, mm/s.
+    pub speeds_mm_s: [f64; 2],
+    /// It begins at a joint.
+    pub joint: bool,
+}
+
+/// A span in its place.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    span: Span,
+    start_s: f64,
+    /// Where the axes are at its start, mm, from anywhere.
+    place_mm: AxisValues,
+    /// Some axis makes a step at its start.
+    steps: bool,
+}
+
+/// What the axes do at most in some time.
+#[derive(Debug, Clone, Copy, Default)]
+struct Most {
+    speed_mm_s: AxisValues,
+    accel_mm_s2: AxisValues,
+    /// Sum of all steps.
+    step_mm_s: AxisValues,
+}
+
+/// The last of the motion, as far as steps in it still count.
+#[derive(Debug)]
+pub(super) struct Steps {
+    response_s: f64,
+    axes: ArrayVec<usize, AXES>,
+    spans: VecDeque<Placed>,
+    end_s: f64,
+    end_mm: AxisValues,
+    end_mm_s: AxisValues,
+    /// When the last step was.
+    last_step_s: f64,
+    /// Since `since_s`, and in at least 2·τ before.
+    most: [Most; 2],
+    since_s: f64,
+}
+
+impl Steps {
+    /// Nothing moves yet. `response_s`: over how long the drives spread a step.
+    pub fn new(axes: AxisSet, response_s: f64) -> Self {
+        Self {
+            response_s,
+            axes: axes.iter().collect(),
+            spans: VecDeque::with_capacity(64),
+            end_s: 0.0,
+            end_mm: [0.0; AXES],
+            end_mm_s: [0.0; AXES],
+            last_step_s: f64::NEG_INFINITY,
+            most: [Most::default(); 2],
+            since_s: 0.0,
+        }
+    }
+
+    /// Over how long the drives spread a step, s.
+    pub fn response_s(&self) -> f64 {
+        self.response_s
+    }
+
+    /// The motion begins at rest, and what was before is not known.
+    pub fn begin(&mut self) {
+        if !self.spans.is_empty() {
+            let mut axes = AxisSet::default();
+            self.axes.iter().for_each(|axis| axes.insert(*axis));
+            *self = Self::new(axes, self.response_s);
+        }
+    }
+
+    /// Takes the next span; true where steps within twice the response time before
+    /// its end may matter.
+    #[inline]
+    pub fn push(&mut self, span: &Span) -> bool {
+        let lasts = span.duration_s > 0.0 && span.duration_s < f64::INFINITY;
+        if !lasts {
+            return false;
+        }
+        let start_s = self.end_s;
+        let reach_s = start_s - 2.0 * self.response_s;
+        while let Some(first) = self.spans.front()
+            && first.start_s + first.span.duration_s < reach_s
+        {
+            self.spans.pop_front();
+        }
+        if start_s - self.since_s > 2.0 * self.response_s {
+            self.most = [Most::default(), self.most[0]];
+            self.since_s = start_s;
+        }
+        let [from, to] = span.speeds_mm_s;
+        let accel = (to - from) / span.duration_s;
+        let top = if from > to { from } else { to };
+        let most = &mut self.most[0];
+        let place_mm = self.end_mm;
+        let (mut steps, length_mm) = (false, 0.5 * (from + to) * span.duration_s);
+        for &axis in &self.axes {
+            let u = span.direction[axis];
+            let step = (u * from - self.end_mm_s[axis]).abs();
+            steps |= step > ROUNDING * top;
+            most.step_mm_s[axis] += step;
+            most.speed_mm_s[axis] = most.speed_mm_s[axis].max(u.abs() * top);
+            most.accel_mm_s2[axis] = most.accel_mm_s2[axis].max((u * accel).abs());
+            self.end_mm[axis] += u * length_mm;
+            self.end_mm_s[axis] = u * to;
+        }
+        steps &= span.joint;
+        if steps {
+            self.last_step_s = start_s;
+        }
+        self.spans.push_back(Placed {
+            span: *span,
+            start_s,
+            place_mm,
+            steps,
+        });
+        self.end_s = start_s + span.duration_s;
+        self.last_step_s > reach_s
+    }
+
+    /// Whether a quick bound shows that the peaks of all means that end in the last
+    /// span are of no interest.
+    #[inline]
+    pub fn is_quiet(&self, model: &PowerModel, mv: &Move, want: Want) -> bool {
+        if want.floor_w == f64::NEG_INFINITY {
+            return false;
+        }
+        let [converter] = model.converters.as_slice() else {
+            return false;
+        };
+        want.passes(self.bound_w(model, converter, mv))
+    }
+
+    /// An upper bound of what is drawn and fed back, W.
+    fn bound_w(&self, model: &PowerModel, converter: &ConverterPower, mv: &Move) -> [f64; 2] {
+        let mut drawn_w = converter.idle_w(mv, &model.axes, AxisSet::default());
+        let mut fed_back_w = 0.0;
+        let [now, before] = &self.most;
+        for &axis in &self.axes {
+            let v = larger(now.speed_mm_s[axis], before.speed_mm_s[axis]);
+            if v == 0.0 || !converter.axes.contains(axis) {
+                continue;
+            }
+            let power = &model.axes[axis];
+            let along = larger(now.accel_mm_s2[axis], before.accel_mm_s2[axis]);
+            let steps = (now.step_mm_s[axis] + before.step_mm_s[axis]) / self.response_s;
+            let [v, a] = [v, along + steps].map(|it| it * power.si_per_unit);
+            let weight = power.gravity.abs();
+            let drag = power.coulomb + power.viscous * v + weight;
+            let [motor, regen] = [(Side::Motor, true), (Side::Regen, false)]
+                .map(|(side, grows)| power.mass * a * power.accel_factor(side, grows));
+            let force = larger(motor, regen) + drag;
+            drawn_w += v * (motor + drag) * power.inverse_efficiency;
+            drawn_w += power.copper * force * force;
+            let held = power.coulomb * power.friction_factor(Side::Regen);
+            fed_back_w += v * larger(regen + weight - held, 0.0);
+        }
+        [drawn_w, fed_back_w]
+    }
+}
+
+impl Placed {
+    fn end_s(&self) -> f64 {
+        self.start_s + self.span.duration_s
+    }
+
+    /// Speed along the path and way since its start at an instant, mm/s and mm.
+    fn at(&self, t: f64) -> [f64; 2] {
+        let own = (t - self.start_s).clamp(0.0, self.span.duration_s);
+        let [from, to] = self.span.speeds_mm_s;
+        let change = (to - from) * (own / self.span.duration_s);
+        [from + change, (from + 0.5 * change) * own]
+    }
+}
