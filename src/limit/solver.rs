@@ -156,7 +156,7 @@ impl<'m> Solver<'m> {
         let share = &share(case, mv);
         let speed_mm_s = blended_speed(self.machine, mv, self.largest);
         if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
-            let ramps = ramps(self.machine, mv, self.largest);
+            let ramps = ramps(self.machine, mv, self.largest, [f64::INFINITY; 2]);
             let demand = self.model.demand(mv, &ramps, Want::PEAKS);
             return self.model.load_beside(&demand, share, speed_mm_s);
         }

@@ -332,12 +332,17 @@ impl PathLimits {
     }
 }
 
-/// The ramps between rest and the largest speed of a move on one path, however long
-/// they are, without limits of jerk: what a move that may begin and end at any speed
-/// meets at most. Where drives have curves of force the ramps follow them.
+/// The ramps between rest and the largest speed of a straight move on one path,
+/// however long they are, without limits of jerk: what a move that begins and ends
+/// at any speeds up to `ends_mm_s` meets at most. Where drives have curves of force
+/// the ramps follow them.
 #[must_use]
-pub fn ramps(machine: &Machine, mv: &Move, overrides: Overrides) -> Plan {
-    let limits = PathLimits::of(machine, mv, overrides, &Caps::default());
+pub fn ramps(machine: &Machine, mv: &Move, overrides: Overrides, ends_mm_s: [f64; 2]) -> Plan {
+    let mut limits = PathLimits::of(machine, mv, overrides, &Caps::default());
+    let [start, end] = ends_mm_s;
+    // No curve leaves more than the axes' own acceleration.
+    let reached = 0.5 * (start * start + end * end) + limits.accel_mm_s2 * mv.length_mm;
+    limits.speed_mm_s = limits.speed_mm_s.min(start.max(end).max(reached.sqrt()));
     if machine.force_curves.is_empty() {
         return Plan::ramps(limits.speed_mm_s, limits.accel_mm_s2);
     }

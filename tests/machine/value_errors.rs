@@ -260,7 +260,7 @@ fn unknown_mode() {
 #[test]
 fn response_of_no_time() {
     assert_snapshot!(findings(&with("[path]\nresponse_time_s = 0")), @r"
-    line 20, error machine-range: `response_time_s` must be between 0.001 and 1, but is 0
+    line 20, error machine-range: `response_time_s` must be at least 0.001, but is 0
       | response_time_s = 0
       |                   ^
     ");

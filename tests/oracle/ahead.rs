@@ -5,6 +5,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+use gwatt::machine::OverrideAt;
 use gwatt::pipeline::{self, Certificate, Options, Summary};
 
 use super::compare::{machine, rows};
@@ -13,7 +14,7 @@ use super::plant::Plant;
 use super::programs;
 use super::random::Random;
 use super::series::{Rules, Watch};
-use super::switches::{ENERGY_OF_SERIES, LOWER_OVERRIDES, PEAKS_OF_SERIES, STEPS_OF_SPEED};
+use super::switches::{ENERGY_OF_SERIES, LOWER_OVERRIDES, PEAKS_OF_SERIES};
 
 const CONTROLLERS: [&str; 5] = ["grbl", "marlin", "reprap", "klipper", "linuxcnc"];
 /// Programs of others that last longer are left out.
@@ -37,7 +38,7 @@ fn rules(controller: &str) -> Rules {
         chord: if linuxcnc { 0.5 } else { 0.02 },
         // It passes a kink without a blend where one cycle's acceleration suffices.
         kink_s: if linuxcnc { 1e-3 } else { 0.0 },
-        steps: !STEPS_OF_SPEED && !linuxcnc && controller != "iso",
+        steps: !linuxcnc && controller != "iso",
         blends: controller != "iso",
     }
 }
@@ -46,31 +47,37 @@ fn rules(controller: &str) -> Rules {
 fn check(toml: &str, controller: &str, program: &str, step_s: f64) -> (u64, Vec<String>) {
     let machine = machine(toml);
     let plant = Plant::new(toml);
-    let (rows, summary) = rows(&machine, program);
-    let mut watch = Watch::new(&plant, rules(controller));
+    let rules = rules(controller);
+    let mut watch = Watch::new(&plant, rules);
     let input = Cursor::new(program.to_owned());
     pipeline::series(input, &machine, &Options::default(), step_s, &mut watch)
         .unwrap_or_else(|failure| panic!("{failure:?}\n{program}"));
-    if summary.certificate != Some(Certificate::Robust) {
-        // The series runs at 100 %.
-        if LOWER_OVERRIDES || plant.overrides == [1.0; 2] {
-            watch.compare(&rows);
-        }
-        let energy_j = rows.iter().map(|row| row.energy_j).sum();
-        whole(
-            &plant,
-            &summary,
-            &mut watch,
-            energy_j,
-            controller == "linuxcnc",
-        );
+    // The series runs at 100 %, or at the largest override below.
+    let mut usual = machine.clone();
+    let limits = &mut usual.limits;
+    limits.override_at = Some(OverrideAt {
+        feed: limits.feed_override_max.min(1.0),
+        rapid: limits.rapid_override_max.min(1.0),
+        spindle: limits.spindle_override_max.min(1.0),
+    });
+    let (rows_of_all, all) = rows(&machine, program);
+    let (own_rows, own) = rows(&usual, program);
+    if own.certificate != Some(Certificate::Robust) {
+        watch.compare(&own_rows);
+        let energy_j = own_rows.iter().map(|row| row.energy_j).sum();
+        whole(&plant, &own, &mut watch, energy_j, rules);
+    }
+    if LOWER_OVERRIDES && all.certificate != Some(Certificate::Robust) {
+        watch.compare(&rows_of_all);
     }
     (watch.rows, watch.wrong)
 }
 
 /// The program as a whole: its time, its energy, its largest powers.
-fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64, bounded: bool) {
+fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64, rules: Rules) {
     let duration_s = watch.duration_s();
+    // Two moves at once are bounded; a series does not show steps of speed.
+    let bounded = rules.steps || rules.kink_s > 0.0;
     let mut differs = |what: &str, own: f64, told: f64| {
         watch
             .wrong
@@ -81,10 +88,8 @@ fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64,
     }
     let [one] = watch.peaks_w[..] else { return };
     let told = [summary.peak_w, summary.regen_w];
-    // Two moves at once are bounded.
     let exact = !bounded
         && plant.spindle.is_none()
-        && plant.overrides == [1.0; 2]
         && plant
             .axes
             .iter()
@@ -92,15 +97,16 @@ fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64,
     for (what, own, told) in [("peak", one[0], told[0]), ("fed back", one[1], told[1])] {
         let slack_w = 1e-6 * (one[0].abs() + one[1]) + 1e-6;
         let high = PEAKS_OF_SERIES && exact && own < told - 0.01 * told - slack_w;
-        let low = own > told + slack_w && (LOWER_OVERRIDES || plant.overrides == [1.0; 2]);
-        if low || high {
+        if own > told + slack_w || high {
             differs(what, own, told);
         }
     }
     let scale_j = duration_s * one[0].abs();
     let apart_j = energy_j - watch.energy_j;
     let slack_j = 2e-3 * energy_j.abs() + 1e-4 * scale_j;
-    if ENERGY_OF_SERIES && (apart_j < -slack_j || apart_j > slack_j && !bounded) {
+    // Steps that brake are credited like everything else.
+    let credited = rules.steps && plant.converters.iter().any(|own| own.credit);
+    if ENERGY_OF_SERIES && (apart_j < -slack_j && !credited || apart_j > slack_j && !bounded) {
         differs("energy", watch.energy_j, energy_j);
     }
 }

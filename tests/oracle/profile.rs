@@ -4,8 +4,7 @@
 //! * S-curve: a ramp to v takes `v/A + A/J`, or `2·√(v/J)` where A is not
 //!   reached; by its symmetry it is `v·t/2` long.
 //! * Under a curve: `dt = dv/a(v)`, `ds = v·dv/a(v)` in small steps of speed.
-//! * S-curve under a curve: small steps of time, the acceleration growing by J at
-//!   most, below `a(v)` and below `√(2·J·(V − v))`, from where it can still fall.
+//! * S-curve under a curve: small steps of speed, in which `da²/dv = 2·J` at most.
 
 /// Steps of speed of a ramp under a curve.
 const STEPS: usize = 250;
@@ -130,28 +129,26 @@ impl Limits<'_> {
     }
 }
 
-/// The fastest ramp within a jerk and a curve, in steps of time.
+/// The fastest ramp within a jerk and a curve, in steps of speed: within one the
+/// square of the acceleration changes by `2·J·dv` at most, forwards and backwards.
 fn under_both(v_top: f64, accel: f64, jerk: f64, curve: &dyn Fn(f64) -> f64) -> Ramp {
-    let lowest = (0..=64).map(|i| curve(v_top * f64::from(i) / 64.0));
-    let lowest = lowest.fold(accel, f64::min);
-    let dt = (v_top / lowest + 2.0 * (v_top / jerk).sqrt()) / (3.0 * STEPS as f64);
-    let (mut v, mut a) = (0.0, 0.0_f64);
-    let mut ramp = Ramp::new();
-    while v < v_top * (1.0 - 1e-9) && ramp.len() < 60 * STEPS {
-        let ahead = (v + dt * a).min(v_top);
-        let free = (a + jerk * dt).min(accel).min(curve(ahead));
-        let next = free.min((2.0 * jerk * (v_top - ahead)).sqrt()).max(0.0);
-        let mean = 0.5 * (a + next);
-        if v + dt * mean >= v_top || mean * dt < 1e-12 * v_top {
-            let last = (v_top - v) * 2.0 / a.max(1e-9 * accel);
-            ramp.push([last, a, 0.0]);
-            break;
-        }
-        ramp.push([dt, a, next]);
-        v += dt * mean;
-        a = next;
+    let steps = 4 * STEPS;
+    let dv = v_top / steps as f64;
+    let mut squares: Vec<f64> = (0..=steps)
+        .map(|i| accel.min(curve(dv * i as f64)).powi(2))
+        .collect();
+    (squares[0], squares[steps]) = (0.0, 0.0);
+    for i in 1..=steps {
+        squares[i] = squares[i].min(squares[i - 1] + 2.0 * jerk * dv);
     }
-    ramp
+    for i in (0..steps).rev() {
+        squares[i] = squares[i].min(squares[i + 1] + 2.0 * jerk * dv);
+    }
+    let step = |pair: &[f64]| {
+        let (a0, a1) = (pair[0].sqrt(), pair[1].sqrt());
+        [2.0 * dv / (a0 + a1), a0, a1]
+    };
+    squares.windows(2).map(step).collect()
 }
 
 impl Profile {

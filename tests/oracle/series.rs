@@ -260,7 +260,16 @@ impl<'p> Watch<'p> {
         for (at, own) in &self.by_line {
             let Some(told) = told.get(at) else { continue };
             let slack_w = ROUNDING * (own[0].abs() + own[1]) + 1e-6;
-            if own[0] > told[0] + slack_w || own[1] > told[1] + slack_w {
+            let low_by = [own[0] - told[0], own[1] - told[1]];
+            let converter = &self.plant.converters[at.1];
+            let limits = [converter.limit_w, converter.regen_limit_w];
+            // Of several converters a row has the figures of its worst moment.
+            let ratio = |[drawn_w, fed_w]: [f64; 2]| (drawn_w / limits[0]).max(fed_w / limits[1]);
+            let several = self.plant.converters.len() > 1;
+            if several && ratio(*own) <= ratio(*told) * (1.0 + ROUNDING) + 1e-9 {
+                continue;
+            }
+            if low_by.into_iter().any(|low_w| low_w > slack_w) {
                 low.push((at.0, *own, *told));
             }
         }

@@ -10,14 +10,14 @@ pub const ALL_CORNERS: bool = false;
 
 /// The peaks hold at every override from 0 to the largest, not at the largest
 /// alone: each axis of an independent rapid then has other ramps.
-pub const LOWER_OVERRIDES: bool = false;
+pub const LOWER_OVERRIDES: bool = true;
 
 /// Axes may have jerk limits and force curves at once: an S-curve of which the
 /// acceleration stays below what the curve leaves.
-pub const CURVES_WITH_JERK: bool = false;
+pub const CURVES_WITH_JERK: bool = true;
 
 /// Force curves may have any number of kinks (off: two or three points).
-pub const CURVES_WITH_MANY_POINTS: bool = false;
+pub const CURVES_WITH_MANY_POINTS: bool = true;
 
 /// A drive's base load is never credited against what is fed back before the
 /// spindle is switched on.
@@ -28,12 +28,9 @@ pub const SPINDLE_BASE_LOAD: bool = false;
 /// errors of mass or friction count by default.
 pub const NEVER_TOO_HIGH: bool = true;
 
-/// The controllers under which axes step in speed at corners: what the step
-/// draws is in the series and in the peaks, so that no speed jumps.
-pub const STEPS_OF_SPEED: bool = false;
-
-/// The reported peak is the largest power of the series, not a bound of it.
+/// The reported peak at one override is the largest power of the series, not a bound
+/// of it; but for steps of speed at corners, which a series does not show.
 pub const PEAKS_OF_SERIES: bool = true;
 
-/// The reported energies are the integral of the series.
+/// The reported energies are the integral of the series, and what steps of speed add.
 pub const ENERGY_OF_SERIES: bool = true;

@@ -3,36 +3,47 @@
 //! The planner takes the lowest acceleration that the drives leave up to the speed of
 //! a move: so much is certain, and the times hold. Where the drives leave more at
 //! lower speeds, the motion may be ahead of the plan, and more is drawn. A move at
-//! one speed throughout has nothing to gain; any other one between two stops may
-//! run up and down the curves as far as its own speed.
+//! one speed throughout has nothing to gain; any other one may run up and down the
+//! curves as far as its own speed, or as its length permits after the speeds of its
+//! neighbours.
 
 use super::open::Open;
 use crate::machine::Machine;
-use crate::plan::{Overrides, ramps};
+use crate::plan::{Overrides, blended_bound, ramps};
 use crate::power::demand::Want;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 
 impl Open {
-    /// Counts what the curves of force permit. Of an arc, and over time, the robust
-    /// bound does.
+    /// Counts what the curves of force permit; over time the robust bound does.
+    /// It begins and ends at `ends_mm_s` at most.
     #[cold]
     pub(super) fn drive(
         &mut self,
+        ends_mm_s: [f64; 2],
         machine: &Machine,
         model: &PowerModel,
         eye: &Eye,
         largest: Overrides,
     ) {
-        if self.mv.arc.is_some() || eye.watch.is_some() {
+        if eye.watch.is_some() {
             self.certain = false;
+            return;
+        }
+        let mv = &self.mv;
+        if mv.arc.is_some() {
+            // Where on its circle it speeds up is not known.
+            let bound = blended_bound(machine, mv, largest);
+            let demand = model.robust(mv, &bound, &mv.accel_mm_s2);
+            self.assessment.demand.include(&demand);
             return;
         }
         let want = Want {
             energy: false,
             ..self.want
         };
-        let demand = model.demand(&self.mv, &ramps(machine, &self.mv, largest), want);
+        let ramps = ramps(machine, mv, largest, ends_mm_s);
+        let demand = model.demand(mv, &ramps, want);
         self.assessment.demand.include(&demand);
     }
 }

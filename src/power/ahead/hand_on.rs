@@ -5,7 +5,7 @@ use super::open::Open;
 use super::queue::Leaving;
 use crate::interpret::Move;
 use crate::machine::Machine;
-use crate::plan::{Overrides, blended_bound};
+use crate::plan::{Overrides, blended_bound, blended_speed};
 use crate::power::assessment::{Assessment, Certificate};
 use crate::power::demand::Demand;
 use crate::power::eye::Eye;
@@ -58,7 +58,14 @@ impl Ahead {
             let next = next.filter(|_| !own.rests);
             let before = before.filter(|before| !before.rests);
             if self.driven && !own.steady {
-                own.drive(machine, model, eye, self.largest.overrides);
+                let largest = self.largest.overrides;
+                let doubtful = self.in_doubt || self.unwaited.is_some();
+                let ends_mm_s = [before, next].map(|beside| match beside {
+                    _ if doubtful => f64::INFINITY,
+                    Some(beside) => blended_speed(machine, &beside.mv, largest),
+                    None => 0.0,
+                });
+                own.drive(ends_mm_s, machine, model, eye, largest);
             }
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
             // What no piece speaks of is not known.
