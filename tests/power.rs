@@ -171,6 +171,27 @@ fn servo_factors_and_warm_friction_change_peaks_but_not_energy() {
     close(demand(&real, &mv).energy_j, demand(&plain, &mv).energy_j);
 }
 
+/// 500 N to speed up and to brake, and up to 750 N while braking.
+#[test]
+fn braking_harder_than_commanded_costs_copper() {
+    let with = |copper_w_n2: f64| {
+        machine(&[Axis {
+            servo_factor_regen: 1.5,
+            copper_w_n2,
+            ..axis()
+        }])
+    };
+    let lossy = with(0.004);
+    let mv = straight(&lossy, &[500.0], f64::INFINITY);
+    // At the end of braking, where nothing is fed back any more.
+    close(demand(&lossy, &mv).peak_w, 0.004 * 750.0 * 750.0);
+    close(demand(&lossy, &mv).regen_w, 0.0);
+    // Most is fed back at 625 N = v/(2·R): v²/(4·R).
+    let good = with(0.0004);
+    close(demand(&good, &mv).regen_w, 0.5 * 0.5 / (4.0 * 0.0004));
+    close(demand(&good, &mv).peak_w, 0.5 * 500.0 + 0.0004 * 500.0 * 500.0);
+}
+
 #[test]
 fn the_converter_closest_to_its_limit_is_reported() {
     let mut machine = machine(&[axis(), axis()]);

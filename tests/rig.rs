@@ -246,22 +246,36 @@ fn power_on_path(
         let (v, a) = on_path(mv, i, phase, t);
         let (v, a) = (v * k, a * k);
         let direction = on_path(mv, i, phase, sign_t).0.signum();
-        let (factor, friction) = match reading {
-            Reading::Motor if a * direction > 0.0 => (axis.servo_factor_motor, 1.0),
-            Reading::Nominal | Reading::Motor => (1.0, 1.0),
-            Reading::Regen if a * direction > 0.0 => (1.0, axis.friction_min_ratio),
-            Reading::Regen => (axis.servo_factor_regen, axis.friction_min_ratio),
+        let force = |factor: f64, friction: f64| {
+            axis.mass_kg * a * factor
+                + friction * (axis.viscous_n_s_m * v + axis.coulomb_n * direction)
+                + axis.gravity_n
         };
-        let force = axis.mass_kg * a * factor
-            + friction * (axis.viscous_n_s_m * v + axis.coulomb_n * direction)
-            + axis.gravity_n;
-        let p = v * force;
-        let converted = if p > 0.0 {
-            p / axis.efficiency
+        let grows = a * direction > 0.0;
+        let (motor, regen) = if grows {
+            (axis.servo_factor_motor, 1.0)
         } else {
-            p * axis.efficiency
+            (1.0, axis.servo_factor_regen)
         };
-        powers.push(converted + axis.copper_w_n2 * force * force);
+        let [most, least] = [force(motor, 1.0), force(regen, axis.friction_min_ratio)];
+        let electrical = |force: f64| {
+            let p = v * force;
+            let converted = if p > 0.0 {
+                p / axis.efficiency
+            } else {
+                p * axis.efficiency
+            };
+            converted + axis.copper_w_n2 * force * force
+        };
+        // Any force between both may act; copper loss is convex in it.
+        let turning = -axis.efficiency * v / (2.0 * axis.copper_w_n2);
+        let inside = (turning - most) * (turning - least) < 0.0;
+        powers.push(match reading {
+            Reading::Nominal => electrical(force(1.0, 1.0)),
+            Reading::Motor => electrical(most).max(electrical(least)),
+            Reading::Regen if inside => electrical(turning),
+            Reading::Regen => electrical(most).min(electrical(least)),
+        });
     }
     let base = converter.base_load_w;
     if converter.credit_regen {

@@ -69,10 +69,12 @@ impl<'a> Piece<'a> {
         let signs = circle.signs(phase, 0.5 * (from + to));
         let bounds = circle.axes.iter().zip(signs).map(|(arc_axis, sign)| {
             let axis = arc_axis.axis;
-            let factor = f64::max(
-                axis.accel_factor(side, true),
-                axis.accel_factor(side, false),
-            );
+            let factor = if axis.is_spread() {
+                axis.largest_factor()
+            } else {
+                axis.accel_factor(side, true)
+                    .max(axis.accel_factor(side, false))
+            };
             let (mechanical, copper) = arc_axis.curvature(reach, factor);
             let (jerk, force_slope) = arc_axis.slopes(reach, factor);
             let conversion = match side {
@@ -105,23 +107,39 @@ impl<'a> Piece<'a> {
         let sign = self.axes[index].sign;
         let axis = arc_axis.axis;
         let (v, a) = arc_axis.motion_towards(sign, m);
-        let friction = axis.friction_factor(self.side);
-        let steady = friction * (axis.viscous * v + axis.coulomb * sign) + axis.gravity;
-        let power = |factor: f64| {
-            let force = axis.mass * a * factor + steady;
-            let (p, copper) = (v * force, axis.copper * force * force);
-            let [first, second] = match self.side {
-                Side::Regen => [
-                    -p * axis.efficiency - copper,
-                    -p * axis.inverse_efficiency - copper,
-                ],
-                _ => [axis.converted(p) + copper; 2],
+        let forces = |side: Side, growing: bool| {
+            let friction = axis.friction_factor(side);
+            let steady = friction * (axis.viscous * v + axis.coulomb * sign) + axis.gravity;
+            axis.mass * a * axis.accel_factor(side, growing) + steady
+        };
+        let power = |growing: bool| {
+            let own = forces(self.side, growing);
+            let lowest = forces(Side::Regen, growing) * sign;
+            if self.side != Side::Regen {
+                let drawn = if axis.is_spread() && self.side == Side::Motor {
+                    axis.most(v, [own, forces(Side::Regen, growing)])
+                } else {
+                    axis.electrical(v, own)
+                };
+                return ([drawn; 2], lowest);
+            }
+            let fed_back = |conversion: f64| {
+                let force = if axis.is_spread() {
+                    let other = forces(Side::Motor, growing);
+                    let best = -0.5 * conversion * v / axis.copper;
+                    best.max(own.min(other)).min(own.max(other))
+                } else {
+                    own
+                };
+                -v * force * conversion - axis.copper * force * force
             };
-            (first, second, force * sign)
+            (
+                [axis.efficiency, axis.inverse_efficiency].map(fed_back),
+                lowest,
+            )
         };
         let growing = a * sign > 0.0;
-        let factor = axis.accel_factor(self.side, growing);
-        let (first, second, force) = power(factor);
+        let ([first, second], force) = power(growing);
         let mut sample = AxisSample {
             first,
             second,
@@ -129,9 +147,14 @@ impl<'a> Piece<'a> {
             accel: a * sign,
             force,
         };
-        let other = axis.accel_factor(self.side, !growing);
-        if other != factor {
-            let (other_first, other_second, other_force) = power(other);
+        let factors = |growing: bool| {
+            [Side::Motor, Side::Regen].map(|side| match side {
+                own if own == self.side || axis.is_spread() => axis.accel_factor(own, growing),
+                _ => 1.0,
+            })
+        };
+        if factors(true) != factors(false) {
+            let ([other_first, other_second], other_force) = power(!growing);
             sample.excess = f64::max(0.0, (other_first - first).max(other_second - second));
             sample.force = force.min(other_force);
         }

@@ -9,6 +9,10 @@
 //! ```
 //!
 //! At rest an axis holds its weight: `F = Fg`, `el = R·Fg²`.
+//!
+//! With servo factors and warm friction the force lies anywhere between that of the
+//! motor side and that of the regenerative side. `el` is convex in F: it is largest at
+//! one of them, and least at `F = −η·v/(2·R)` or at what is next to it.
 
 use crate::machine::Axis;
 
@@ -49,6 +53,8 @@ pub(super) struct AxisPower {
     braking: [f64; 3],
     /// Factors of friction.
     friction: [f64; 3],
+    /// Copper loss meets factors: which force draws most depends on the speed.
+    spread: bool,
 }
 
 /// Electrical power of an axis in W at a speed (m/s or rad/s) and a force of its
@@ -72,11 +78,12 @@ impl AxisPower {
         growing: [1.0; 3],
         braking: [1.0; 3],
         friction: [1.0; 3],
+        spread: false,
     };
 
     /// Takes over the data of an axis.
     pub fn new(axis: &Axis) -> Self {
-        Self {
+        let mut own = Self {
             si_per_unit: axis.si_per_unit,
             mass: axis.mass_kg,
             viscous: axis.viscous_n_s_m,
@@ -88,7 +95,22 @@ impl AxisPower {
             growing: [1.0, axis.servo_factor_motor, 1.0],
             braking: [1.0, 1.0, axis.servo_factor_regen],
             friction: [1.0, 1.0, axis.friction_min_ratio],
-        }
+            spread: false,
+        };
+        own.spread = own.copper != 0.0 && own.has_factors();
+        own
+    }
+
+    /// True where the force that draws or feeds back most is not that of one side.
+    #[inline]
+    pub fn is_spread(&self) -> bool {
+        self.spread
+    }
+
+    /// The largest factor of acceleration.
+    pub fn largest_factor(&self) -> f64 {
+        let all = self.growing.into_iter().chain(self.braking);
+        all.fold(1.0, f64::max)
     }
 
     /// True when power is not linear in speed.
@@ -131,6 +153,46 @@ impl AxisPower {
     #[inline]
     pub fn electrical(&self, v: f64, f: f64) -> f64 {
         self.converted(v * f) + self.copper * f * f
+    }
+
+    /// Force at a speed `v` and an acceleration `a`, moving in the direction of `sign`
+    /// (0 at rest).
+    #[inline]
+    pub fn force(&self, side: Side, v: f64, a: f64, sign: f64) -> f64 {
+        let inertia = self.mass * a * self.accel_factor(side, a * sign > 0.0);
+        let drag = (self.coulomb * sign + self.viscous * v) * self.friction_factor(side);
+        inertia + drag + self.gravity
+    }
+
+    /// Electrical power in the same state: the largest that may be drawn (motor side),
+    /// the least (regenerative side), or that of the command.
+    #[inline]
+    pub fn power(&self, side: Side, v: f64, a: f64, sign: f64) -> f64 {
+        let own = self.force(side, v, a, sign);
+        match side {
+            Side::Motor if self.spread => {
+                self.most(v, [own, self.force(Side::Regen, v, a, sign)])
+            }
+            Side::Regen if self.spread => {
+                self.least(v, [own, self.force(Side::Motor, v, a, sign)])
+            }
+            _ => self.electrical(v, own),
+        }
+    }
+
+    /// The largest electrical power at a speed and any force between two.
+    pub fn most(&self, v: f64, forces: [f64; 2]) -> f64 {
+        let [a, b] = forces.map(|force| self.electrical(v, force));
+        a.max(b)
+    }
+
+    /// The least electrical power at a speed and any force between two.
+    pub fn least(&self, v: f64, [a, b]: [f64; 2]) -> f64 {
+        if self.copper == 0.0 {
+            return self.electrical(v, a).min(self.electrical(v, b));
+        }
+        let best = -0.5 * self.efficiency * v / self.copper;
+        self.electrical(v, best.max(a.min(b)).min(a.max(b)))
     }
 
     /// Power lost while holding the weight, W.

@@ -258,7 +258,8 @@ impl ArcAxis<'_> {
             }
         };
         let constant = axis.coulomb + axis.gravity.abs();
-        let force = axis.mass * accel * factors[0] + axis.viscous * speed + constant;
+        let largest = factors[0].max(factors[1]);
+        let force = axis.mass * accel * largest + axis.viscous * speed + constant;
         let resisting = speed * (constant + axis.viscous * speed);
         [
             (axis.mass * drawn * factors[0] + resisting) * axis.inverse_efficiency

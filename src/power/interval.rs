@@ -5,9 +5,9 @@
 //!
 //! On the interval the speed of each axis is affine in time and keeps its
 //! sign. Motoring power is convex in time (p is convex as b ≥ 0, conversion is
-//! convex and growing as 1/η ≥ η, R·F² is convex), so its peak is at an end.
-//! Regenerated power is not: it is a parabola for each axis between the
-//! instants at which p or el changes its sign. Between these instants, of all
+//! convex and growing as 1/η ≥ η, R·F² is convex, and so is the larger one of two),
+//! so its peak is at an end. Regenerated power is not: it is a parabola for each axis
+//! between the instants at which p or el changes its sign or the force its law. Between these instants, of all
 //! axes together, the sum is one parabola: its vertex and Simpson's rule are
 //! exact.
 
@@ -15,6 +15,9 @@ use super::axis::{AxisPower, Side};
 use super::demand::{Totals, Want};
 use crate::machine::AXES;
 use arrayvec::ArrayVec;
+
+/// Places at most at which the law of an axis' power changes.
+const CHANGES: usize = 6;
 
 /// An axis whose speed changes steadily, SI, signed.
 pub(super) struct Ramp<'a> {
@@ -35,21 +38,22 @@ struct Force {
 }
 
 impl Ramp<'_> {
-    /// The force `constant + per_speed·v`.
-    fn force(&self, side: Side) -> Force {
-        let sign = if self.start + self.end > 0.0 {
+    /// The direction of motion.
+    fn sign(&self) -> f64 {
+        if self.start + self.end > 0.0 {
             1.0
         } else if self.start + self.end < 0.0 {
             -1.0
         } else {
             0.0
-        };
-        let axis = self.axis;
-        let friction = axis.friction_factor(side);
-        let accel = self.accel * axis.accel_factor(side, self.accel * sign > 0.0);
+        }
+    }
+
+    /// The force `constant + per_speed·v`.
+    fn force(&self, side: Side) -> Force {
         Force {
-            constant: axis.mass * accel + axis.coulomb * friction * sign + axis.gravity,
-            per_speed: axis.viscous * friction,
+            constant: self.axis.force(side, 0.0, self.accel, self.sign()),
+            per_speed: self.axis.viscous * self.axis.friction_factor(side),
         }
     }
 
@@ -60,24 +64,35 @@ impl Ramp<'_> {
 
     /// Electrical power at the fraction `x` of the interval, W.
     fn electrical(&self, side: Side, x: f64) -> f64 {
-        let force = self.force(side);
-        let v = self.speed(x);
-        self.axis
-            .electrical(v, force.constant + force.per_speed * v)
+        let axis = self.axis;
+        axis.power(side, self.speed(x), self.accel, self.sign())
     }
 
-    /// Fractions at which mechanical or electrical power may change sign.
+    /// Fractions at which the law of the electrical power may change.
     ///
-    /// Mechanical power changes it where F = 0. Electrical power, below it,
-    /// is `η·v·F + R·F² = F·(η·v + R·F)`.
-    fn sign_changes(&self, side: Side) -> [f64; 2] {
-        let Force {
-            constant,
-            per_speed,
-        } = self.force(side);
+    /// Mechanical power changes its sign where F = 0. Electrical power, below it,
+    /// is `η·v·F + R·F² = F·(η·v + R·F)`. Where the force lies between two, the least
+    /// power leaves either for `F = −η·v/(2·R)`.
+    fn changes(&self, side: Side) -> ArrayVec<f64, CHANGES> {
         let (r, eta) = (self.axis.copper, self.axis.efficiency);
-        [-constant / per_speed, -r * constant / (eta + r * per_speed)]
-            .map(|v| (v - self.start) / (self.end - self.start))
+        let spread = self.axis.is_spread() && side == Side::Regen;
+        let forces = [side, Side::Motor];
+        let mut changes = ArrayVec::new();
+        for side in forces.into_iter().take(if spread { 2 } else { 1 }) {
+            let Force {
+                constant,
+                per_speed,
+            } = self.force(side);
+            changes.push(-constant / per_speed);
+            changes.push(-r * constant / (eta + r * per_speed));
+            if spread {
+                changes.push(-r * constant / (0.5 * eta + r * per_speed));
+            }
+        }
+        for v in &mut changes {
+            *v = (*v - self.start) / (self.end - self.start);
+        }
+        changes
     }
 }
 
@@ -149,9 +164,9 @@ impl Interval<'_> {
     /// Visits the pieces, as fractions of the interval, on which the power of
     /// each axis is one parabola.
     fn pieces(&self, side: Side, mut visit: impl FnMut(f64, f64)) {
-        let mut ends = ArrayVec::<f64, { 2 * AXES + 1 }>::new();
+        let mut ends = ArrayVec::<f64, { CHANGES * AXES + 1 }>::new();
         for ramp in self.ramps {
-            for x in ramp.sign_changes(side) {
+            for x in ramp.changes(side) {
                 if x > 0.0 && x < 1.0 {
                     ends.push(x);
                 }

@@ -349,18 +349,12 @@ fn phase_w(peak: Peak, power: &AxisPower, sign: f64, accel: f64, speeds: [f64; 2
         Peak::Drawn => Side::Motor,
         Peak::FedBack => Side::Regen,
     };
-    let factor = power.accel_factor(side, accel > 0.0);
-    let friction = power.friction_factor(side);
-    let constant = sign * (power.mass * accel * factor + power.coulomb * friction) + power.gravity;
-    let drawn = |speed: f64| {
-        let v = sign * speed;
-        power.electrical(v, constant + power.viscous * friction * v)
-    };
+    let drawn = |speed: f64| power.power(side, sign * speed, sign * accel, sign);
     let ends = speeds.map(drawn);
     match peak {
         Peak::Drawn => larger(ends[0], ends[1]),
         Peak::FedBack => {
-            let forces = speeds.map(|speed| constant + power.viscous * friction * sign * speed);
+            let forces = speeds.map(|speed| power.force(side, sign * speed, sign * accel, sign));
             let turns = forces[0] * forces[1] < 0.0;
             let most = larger(-ends[0], -ends[1]);
             let most = if turns { most.max(0.0) } else { most };

@@ -115,7 +115,8 @@ impl PowerModel {
                 + weight;
             let braking = inertia * power.accel_factor(Side::Regen, false) + weight
                 - power.coulomb * power.friction_factor(Side::Regen);
-            drawn_w += v * force * power.inverse_efficiency + power.copper * force * force;
+            let largest = larger(force, braking);
+            drawn_w += v * force * power.inverse_efficiency + power.copper * largest * largest;
             fed_back_w += v * larger(braking, 0.0);
         }
         Demand::below_floor(drawn_w, fed_back_w, want)
@@ -200,7 +201,9 @@ fn motoring(axis: &AxisPower, v: f64, accel: f64, gravity: f64) -> f64 {
     let driven =
         axis.mass * accel * axis.accel_factor(Side::Motor, true) + axis.viscous * v + axis.coulomb;
     // Weight that helps still costs copper when it has to be braked.
-    let largest_force = driven + gravity.abs();
+    let held = axis.coulomb * axis.friction_factor(Side::Regen);
+    let braked = axis.mass * accel * axis.accel_factor(Side::Regen, false) - held;
+    let largest_force = larger(driven, braked) + gravity.abs();
     v * (driven + gravity.max(0.0)) * axis.inverse_efficiency
         + axis.copper * largest_force * largest_force
 }

@@ -15,7 +15,7 @@
 //!
 //! with w = z at constant power and 1 otherwise. Between the points at which
 //! the mechanical or electrical power of an axis changes its sign (`F = 0`,
-//! `η·v + R·F = 0`) the power of all together is one such function, whose
+//! `η·v + R·F = 0`), or its force the law that counts, the power of all together is one such function, whose
 //! derivative has a numerator of the fourth degree: all extremes are found, and
 //! every piece is evaluated up to both its ends. The energy is an exact
 //! integral over time, and a quadrature `dt = dv/a` over speed.
@@ -28,9 +28,9 @@ use crate::machine::AXES;
 use crate::plan::{Phase, PhaseKind};
 use arrayvec::ArrayVec;
 
-/// Points at which the power of an axis may change its sign: two roots each of
-/// two functions.
-const SIGN_CHANGES: usize = 4 * AXES;
+/// Points at which the law of an axis' power may change: two roots each of six
+/// functions, four of one.
+const CHANGES: usize = 16 * AXES;
 
 /// What z stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,20 +127,34 @@ pub(super) struct Follower<'a> {
     pub direction: f64,
 }
 
-/// Force and power of one axis on one side.
+/// Force and speed of one axis, both times w.
+#[derive(Clone, Copy)]
 struct Work {
-    /// `F·w`.
+    /// On the side that is asked for.
     force: [f64; 3],
-    /// `v·w`.
+    /// On the other one, where the force may be anything between them.
+    other: Option<[f64; 3]>,
     speed: [f64; 3],
-    /// `v·F·w²`.
-    mechanical: Polynomial,
-    /// `R·F²·w²`.
-    copper: Polynomial,
 }
 
 impl Follower<'_> {
     fn work(&self, side: Side) -> Work {
+        let other = match side {
+            Side::Motor => Some(Side::Regen),
+            Side::Regen => Some(Side::Motor),
+            Side::Nominal => None,
+        };
+        Work {
+            force: self.force(side),
+            other: other
+                .filter(|_| self.axis.is_spread())
+                .map(|other| self.force(other)),
+            speed: self.course.speed.map(|c| self.direction * c),
+        }
+    }
+
+    /// `F·w`.
+    fn force(&self, side: Side) -> [f64; 3] {
         let (axis, course, u) = (self.axis, &self.course, self.direction);
         let growing = course.sign * course.accel_sign > 0.0;
         let mass = axis.mass * axis.accel_factor(side, growing) * u;
@@ -148,18 +162,86 @@ impl Follower<'_> {
         let constant = axis.coulomb * friction * sign(u * course.sign) + axis.gravity;
         let viscous = axis.viscous * friction * u;
         let weight = course.weight();
-        let force = std::array::from_fn(|i| {
+        std::array::from_fn(|i| {
             mass * course.accel[i] + viscous * course.speed[i] + constant * weight[i]
-        });
-        let speed = course.speed.map(|c| u * c);
-        let mut copper = Polynomial::ZERO;
-        copper.add(axis.copper, &Polynomial::product(force, force));
-        Work {
-            force,
-            speed,
-            mechanical: Polynomial::product(speed, force),
-            copper,
+        })
+    }
+}
+
+/// `x·a + y·b`.
+fn sum([x, y]: [f64; 2], a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| x * a[i] + y * b[i])
+}
+
+impl Work {
+    /// The functions at whose roots the law of the power changes.
+    fn changes(&self, axis: &AxisPower, side: Side) -> ArrayVec<Polynomial, 7> {
+        let (eta, r) = (axis.efficiency, axis.copper);
+        let quadratic = |[a, b, c]: [f64; 3]| Polynomial([a, b, c, 0.0, 0.0]);
+        let mut changes = ArrayVec::new();
+        for force in [Some(self.force), self.other].into_iter().flatten() {
+            changes.push(quadratic(force));
+            if r > 0.0 {
+                changes.push(quadratic(sum([eta, r], self.speed, force)));
+            }
         }
+        let Some(other) = self.other else {
+            return changes;
+        };
+        if side == Side::Motor {
+            // Both draw the same: braking both, or one of them.
+            let both = sum([1.0, 1.0], self.force, other);
+            changes.push(quadratic(sum([eta, r], self.speed, both)));
+            let apart = sum([1.0, -1.0], self.force, other);
+            let converted = sum([axis.inverse_efficiency, -eta], self.force, other);
+            let mut same = Polynomial::product(self.speed, converted);
+            same.add(r, &Polynomial::product(both, apart));
+            changes.push(same);
+        } else {
+            changes.push(quadratic(sum([eta, 2.0 * r], self.speed, self.force)));
+            changes.push(quadratic(sum([eta, 2.0 * r], self.speed, other)));
+        }
+        changes
+    }
+
+    /// The force that counts between two changes, times w; `z` lies there. On the motor
+    /// side it is that of both which draws more, on the regenerative side the one between
+    /// them that feeds most back.
+    fn counted(&self, axis: &AxisPower, side: Side, z: f64) -> [f64; 3] {
+        let Some(other) = self.other else {
+            return self.force;
+        };
+        let at = |[a, b, c]: [f64; 3]| a + z * (b + z * c);
+        let v = at(self.speed);
+        let forces = [self.force, other].map(at);
+        if side == Side::Motor {
+            let [own, beside] = forces.map(|force| axis.electrical(v, force));
+            return if beside > own { other } else { self.force };
+        }
+        let best_by_speed = -0.5 * axis.efficiency / axis.copper;
+        let [own, beside] = forces.map(|force| best_by_speed * v - force);
+        if own * beside < 0.0 {
+            self.speed.map(|c| best_by_speed * c)
+        } else if beside.abs() < own.abs() {
+            other
+        } else {
+            self.force
+        }
+    }
+
+    /// The electrical power times w² between two changes; `z` lies there.
+    fn electrical(&self, axis: &AxisPower, side: Side, z: f64) -> Polynomial {
+        let force = self.counted(axis, side, z);
+        let mechanical = Polynomial::product(self.speed, force);
+        let conversion = if mechanical.value(z) > 0.0 {
+            axis.inverse_efficiency
+        } else {
+            axis.efficiency
+        };
+        let mut electrical = Polynomial::ZERO;
+        electrical.add(axis.copper, &Polynomial::product(force, force));
+        electrical.add(conversion, &mechanical);
+        electrical
     }
 }
 
@@ -209,15 +291,10 @@ impl Stretch<'_> {
             .take(AXES)
             .map(|follower| (follower.axis, follower.work(side)))
             .collect();
-        let mut ends = ArrayVec::<f64, { SIGN_CHANGES + 1 }>::new();
+        let mut ends = ArrayVec::<f64, { CHANGES + 1 }>::new();
         for (axis, work) in &works {
-            let quadratic = |c: [f64; 3]| Polynomial([c[0], c[1], c[2], 0.0, 0.0]);
-            ends.extend(roots(&quadratic(work.force), course));
-            if axis.copper > 0.0 {
-                let electrical = std::array::from_fn(|i| {
-                    axis.efficiency * work.speed[i] + axis.copper * work.force[i]
-                });
-                ends.extend(roots(&quadratic(electrical), course));
+            for change in work.changes(axis, side) {
+                ends.extend(change.roots(course.from, course.to).into_iter().take(4));
             }
         }
         ends.push(course.to);
@@ -227,13 +304,7 @@ impl Stretch<'_> {
             let middle = 0.5 * (from + to);
             let mut sum = Polynomial::ZERO;
             for (axis, work) in &works {
-                let mut electrical = work.copper;
-                let conversion = if work.mechanical.value(middle) > 0.0 {
-                    axis.inverse_efficiency
-                } else {
-                    axis.efficiency
-                };
-                electrical.add(conversion, &work.mechanical);
+                let electrical = work.electrical(axis, side, middle);
                 if self.credit_regen || direction * electrical.value(middle) > 0.0 {
                     sum.add(direction, &electrical);
                 }
@@ -242,11 +313,6 @@ impl Stretch<'_> {
             from = to;
         }
     }
-}
-
-/// The roots of a function of the second degree: two at most.
-fn roots(function: &Polynomial, course: &Course) -> impl Iterator<Item = f64> + use<> {
-    function.roots(course.from, course.to).into_iter().take(2)
 }
 
 /// Largest value of `power/w²` between two points.

@@ -27,13 +27,11 @@ const BYTES_MAX: u64 = 300_000;
 fn rules(controller: &str) -> Rules {
     let linuxcnc = controller == "linuxcnc";
     Rules {
-        // LinuxCNC: helices; next to each other two moves run at once. The others
-        // run arcs in chords, in the series as arcs.
-        accel: match controller {
-            "linuxcnc" => 4.0 / 3.0,
-            "iso" => 1.0,
-            _ => 1.1,
-        },
+        // LinuxCNC: helices; next to each other two moves run at once, the second one
+        // with its full acceleration where rotary axes move. The others run arcs in
+        // chords, in the series as arcs: what limits the speed is the step from one
+        // chord to the next, not the curvature.
+        accel: if controller == "iso" { 1.0 } else { 2.0 },
         // A corner of LinuxCNC is rounded in a few milliseconds.
         chord: if linuxcnc { 0.5 } else { 0.02 },
         // It passes a kink without a blend where one cycle's acceleration suffices.

@@ -134,11 +134,14 @@ impl<'p> Watch<'p> {
                 sign: sign(own),
             };
         }
-        // Whether an axis speeds up or comes to rest cannot be seen of one instant.
+        // Whether an axis speeds up or comes to rest cannot be seen of one instant, and
+        // with limits of jerk not even whether it moves.
         let known = now
             .axes
             .iter()
             .all(|own| own.velocity_mm_s != 0.0 || own.accel_mm_s2 == 0.0);
+        let soft = plant.axes.iter().any(|axis| axis.jerk < f64::INFINITY);
+        let known = known && !(soft && now.axes.iter().all(|own| own.velocity_mm_s == 0.0));
         let spindle = plant.spindle.as_ref().map(|spindle| spindle.converter);
         for (which, converter) in plant.converters.iter().enumerate() {
             let own = |axis: &&Axis| converter.axes.contains(&axis.index);

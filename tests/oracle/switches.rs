@@ -6,7 +6,7 @@
 /// Accelerations between the command and the servo factors count, and friction
 /// between cold and warm: with copper loss the braking of a drive may draw more
 /// than its command, `v·F + R·F²`, by `servo_factor_regen`.
-pub const ALL_CORNERS: bool = false;
+pub const ALL_CORNERS: bool = true;
 
 /// The peaks hold at every override from 0 to the largest, not at the largest
 /// alone: each axis of an independent rapid then has other ramps.
@@ -21,7 +21,7 @@ pub const CURVES_WITH_MANY_POINTS: bool = true;
 
 /// A drive's base load is never credited against what is fed back before the
 /// spindle is switched on.
-pub const SPINDLE_BASE_LOAD: bool = false;
+pub const SPINDLE_BASE_LOAD: bool = true;
 
 /// Figures are exact where nothing is uncertain: not only never too low, but
 /// never higher either by more than sampling explains. To be switched off where

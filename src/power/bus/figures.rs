@@ -31,7 +31,8 @@ impl SpindleBus<'_> {
         let by = if credit {
             // What is drawn anyhow is taken off already, as far as it goes.
             let spare = if demand.beside[1] > 0.0 { 0.0 } else { idle_w };
-            [largest + base_w + cutting_w, -least - base_w - spare]
+            let credited_w = self.credited_w();
+            [largest + base_w + cutting_w, -least - credited_w - spare]
         } else {
             [largest.max(0.0) + base_w + cutting_w, (-least).max(0.0)]
         };
@@ -41,6 +42,16 @@ impl SpindleBus<'_> {
     pub(super) fn credits(&self) -> bool {
         let converter = self.model.converters.get(self.spindle.converter);
         converter.is_some_and(|converter| converter.credit_regen)
+    }
+
+    /// What its drive takes of what is fed back, W: its base load, once it has been
+    /// switched on.
+    pub(super) fn credited_w(&self) -> f64 {
+        if self.credits() && self.switched_on {
+            self.spindle.base_load_w
+        } else {
+            0.0
+        }
     }
 
     /// What the converter of the spindle draws besides the axes that move.

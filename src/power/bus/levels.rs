@@ -27,7 +27,7 @@ impl SpindleBus<'_> {
                 Level {
                     duration_s,
                     drawn_w: largest_w + more_w,
-                    fed_back_w: -least_w - base_w,
+                    fed_back_w: -least_w - self.credited_w(),
                 }
             } else {
                 Level {

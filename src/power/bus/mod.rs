@@ -79,6 +79,8 @@ pub(super) struct SpindleBus<'m> {
     handed: u64,
     /// ±1, or 0 at rest.
     direction: f64,
+    /// It has been switched on: what its drive draws before is not certain.
+    switched_on: bool,
     /// S; `None`: the program has not said.
     rpm: Option<f64>,
     surface: Option<Surface>,
@@ -124,6 +126,7 @@ impl<'m> SpindleBus<'m> {
             pushed: 0,
             handed: 0,
             direction: 0.0,
+            switched_on: false,
             rpm: None,
             surface: None,
             clamp_rpm: spindle.max_rpm,
@@ -221,8 +224,8 @@ impl<'m> SpindleBus<'m> {
             let plan = plan(self.machine, mv, self.overrides[0]);
             let [peak_w, regen_w] = overlap::peaks(&self.model, converter, mv, &plan, run);
             let base_w = self.spindle.base_load_w;
-            let credit_w = if self.credits() { base_w } else { 0.0 };
-            let peaks = [peak_w + base_w + cutting_w, (regen_w - credit_w).max(0.0)];
+            let fed_back_w = (regen_w - self.credited_w()).max(0.0);
+            let peaks = [peak_w + base_w + cutting_w, fed_back_w];
             judged.demand.set_spindle(index, &self.model, peaks);
         } else {
             let rests = mv.moving.is_empty() && mv.unknown_start.is_empty();

@@ -3,7 +3,7 @@
 use super::{Placed, Steps};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
-use crate::power::axis::{AxisPower, Side};
+use crate::power::axis::Side;
 use crate::power::demand::{Demand, Totals};
 use crate::power::model::{ConverterPower, PowerModel};
 
@@ -174,10 +174,16 @@ fn raise(
         }
         let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         for v in speeds {
-            for a in accels {
-                most = most.max(electrical(power, Side::Motor, v, a));
-                least = least.min(electrical(power, Side::Regen, v, a));
-            }
+            let sign = if v == 0.0 { 0.0 } else { v.signum() };
+            let forces = accels.map(|a| {
+                [Side::Regen, Side::Motor].map(|side| power.force(side, v, a, sign))
+            });
+            let [low, high] = [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| {
+                let [a, b] = forces.map(|[a, b]| f(a, b));
+                f(a, b)
+            });
+            most = most.max(power.most(v, [low, high]));
+            least = least.min(power.least(v, [low, high]));
         }
         if converter.credit_regen {
             drawn_w += most;
@@ -194,12 +200,4 @@ fn raise(
     };
     totals.raise_peak(totals.idle_w + drawn_w);
     totals.raise_regen(fed_back_w - credit_w);
-}
-
-/// Electrical power of an axis, SI.
-fn electrical(power: &AxisPower, side: Side, v: f64, a: f64) -> f64 {
-    let direction = if v == 0.0 { 0.0 } else { v.signum() };
-    let drag = (power.coulomb * direction + power.viscous * v) * power.friction_factor(side);
-    let inertia = power.mass * a * power.accel_factor(side, v * a > 0.0);
-    power.electrical(v, inertia + drag + power.gravity)
 }
