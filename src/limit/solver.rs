@@ -157,7 +157,10 @@ impl<'m> Solver<'m> {
         let speed_mm_s = blended_speed(self.machine, mv, self.largest);
         if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
             let ramps = ramps(self.machine, mv, self.largest, [f64::INFINITY; 2]);
-            let demand = self.model.demand(mv, &ramps, Want::PEAKS);
+            let mut demand = self.model.demand(mv, &ramps, Want::PEAKS);
+            if let Some(cruises) = self.model.cruises(mv, speed_mm_s) {
+                demand.include(&cruises);
+            }
             return self.model.load_beside(&demand, share, speed_mm_s);
         }
         let bound = blended_bound(self.machine, mv, self.largest);
@@ -173,7 +176,7 @@ impl<'m> Solver<'m> {
         let plan = plan(self.machine, mv, self.largest);
         let demand = self.model.demand(mv, &plan, Want::PEAKS);
         let any = demand.load_ratio <= 1.0 + 1e-9;
-        let demand = if any && matches!(plan.trajectory, Trajectory::Axes(_)) {
+        let demand = if any && !matches!(plan.trajectory, Trajectory::Rest) {
             // Whether another override has more is of interest only where this one fits.
             let want = self.model.around_limits(mv);
             let (machine, largest) = (self.machine, self.largest);

@@ -71,12 +71,19 @@ impl PowerModel {
         want: Want,
     ) -> Demand {
         let mut demand = self.demand(mv, planned, want);
-        let Trajectory::Axes(profiles) = &planned.trajectory else {
-            return demand;
-        };
         if machine.limits.override_at.is_some() {
             return demand;
         }
+        let profiles = match &planned.trajectory {
+            Trajectory::Axes(profiles) => profiles,
+            Trajectory::Path(_) => {
+                if let Some(cruises) = self.cruises(mv, planned.top_speed_mm_s) {
+                    demand.include(&cruises);
+                }
+                return demand;
+            }
+            Trajectory::Rest | Trajectory::Unknown(_) => return demand,
+        };
         let at = |knob: f64| {
             let rapid = largest.rapid * knob;
             plan(machine, mv, Overrides { rapid, ..largest })

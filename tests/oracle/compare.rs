@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use gwatt::interpret::MoveKind;
-use gwatt::machine::Machine;
+use gwatt::machine::{Machine, OverrideAt};
 use gwatt::pipeline::{self, Options, Row, Summary};
 
 use super::judge::{Figures, Judge, Step};
@@ -20,8 +20,6 @@ pub const SAMPLED: f64 = 1e-4;
 const OVER_TIME: f64 = 5e-3;
 /// By what share sums of peaks that gwatt bounds may be above samples.
 const LOOSE: f64 = 5e-3;
-/// The same of independent rapids at any override.
-const INDEPENDENT: f64 = 0.15;
 /// By what share of power times duration an energy may.
 const ENERGY: f64 = 1e-3;
 /// By what share steps of time may miss an S-curve under a curve of force.
@@ -93,7 +91,15 @@ impl Compared {
         let machine = machine(toml);
         let plant = Plant::new(toml);
         let steps = steps(&machine, program);
-        let (rows, summary) = rows(&machine, program);
+        let (rows_of_all, summary) = self::rows(&machine, program);
+        let mut fastest = machine.clone();
+        let limits = &mut fastest.limits;
+        limits.override_at = Some(OverrideAt {
+            feed: limits.feed_override_max,
+            rapid: limits.rapid_override_max,
+            spindle: limits.spindle_override_max,
+        });
+        let (rows, _) = self::rows(&fastest, program);
         let judged = |overrides: [f64; 2]| {
             let mut judge = Judge::new(&plant, overrides);
             steps
@@ -106,6 +112,10 @@ impl Compared {
         let mut nominal = Judge::new(&plant, usual).keeping();
         let at_full: Vec<Figures> = steps.iter().filter_map(|step| nominal.take(step)).collect();
         let mut at_most = judged(plant.overrides);
+        assert_eq!(rows.len(), at_full.len(), "{program}");
+        for ((row, full), most) in rows.iter().zip(&at_full).zip(&at_most) {
+            self.row(&plant, row, full, most, true);
+        }
         if LOWER_OVERRIDES && plant.spindle.is_none() {
             for lower in [0.85, 0.7, 0.5, 0.3, 0.1] {
                 let lowered = judged(plant.overrides.map(|factor| lower * factor));
@@ -114,9 +124,8 @@ impl Compared {
                 }
             }
         }
-        assert_eq!(rows.len(), at_full.len(), "{program}");
-        for ((row, full), most) in rows.iter().zip(&at_full).zip(&at_most) {
-            self.row(&plant, row, full, most);
+        for ((row, full), most) in rows_of_all.iter().zip(&at_full).zip(&at_most) {
+            self.row(&plant, row, full, most, false);
         }
         for found in &summary.over_time {
             let converter = plant
@@ -134,8 +143,10 @@ impl Compared {
         }
     }
 
-    fn row(&mut self, plant: &Plant, row: &Row, full: &Figures, most: &Figures) {
-        self.blocks += 1;
+    /// Compares a row; `only` says that it is of these overrides alone, and not of all
+    /// lower ones, of which a few are looked at here.
+    fn row(&mut self, plant: &Plant, row: &Row, full: &Figures, most: &Figures, only: bool) {
+        self.blocks += usize::from(only);
         if full.duration_s == 0.0 {
             return;
         }
@@ -163,7 +174,9 @@ impl Compared {
             ));
         };
         let later_s = row.duration_s - full.duration_s;
-        if later_s < -share * full.duration_s || later_s > later * full.duration_s {
+        // Its times are those of these overrides.
+        let late = later_s < -share * full.duration_s || later_s > later * full.duration_s;
+        if late && !only {
             differs("duration", full.duration_s);
         }
         let named = plant
@@ -199,22 +212,14 @@ impl Compared {
             .is_some_and(|spindle| spindle.base_w > 0.0);
         let apart_j = row.energy_j - full.energy_j;
         let slack_j = ENERGY.max(2.0 * later) * scale_j + 1e-6;
-        if apart_j < -slack_j || apart_j > slack_j && !drives {
+        if !only && (apart_j < -slack_j || apart_j > slack_j && !drives) {
             differs("energy", full.energy_j);
         }
         // Of several converters the one that the spindle relieves keeps its larger
         // power: whether another one is loaded more then is not known.
         let relieved = plant.spindle.is_some() && plant.converters.len() > 1;
-        if NEVER_TOO_HIGH && !relieved && !drives {
-            // At which override the axes of an independent rapid come together worst is
-            // bounded; here a few overrides are looked at.
-            let bound = LOWER_OVERRIDES && plant.independent && row.kind == MoveKind::Rapid;
-            let loose = if bound {
-                INDEPENDENT
-            } else {
-                LOOSE.max(2.0 * later)
-            };
-            let loose_w = loose * (peak_w.abs() + regen_w) + 1e-3;
+        if NEVER_TOO_HIGH && only && !relieved && !drives {
+            let loose_w = LOOSE.max(2.0 * later) * (peak_w.abs() + regen_w) + 1e-3;
             if row.peak_w > peak_w + loose_w {
                 differs("peak too high", peak_w);
             }

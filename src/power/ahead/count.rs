@@ -140,6 +140,12 @@ impl Ahead {
             if let Some(surge) = self.surge(model, planned) {
                 demand.include(&surge);
             }
+            if self.surges.is_some()
+                && let Some(open) = self.open.get(own)
+                && let Some(turned) = model.turned_down(&open.mv, planned)
+            {
+                demand.include(&turned);
+            }
         }
         let certain = !peaks || self.is_certain(eye, planned, from, to);
         // Half of a blend belongs to what is behind it, if that is another move: it

@@ -67,6 +67,11 @@ impl Ahead {
                 });
                 own.drive(ends_mm_s, machine, model, eye, largest);
             }
+            if self.surges.is_some()
+                && let Some(cruises) = model.cruises(&own.mv, own.assessment.top_speed_mm_s)
+            {
+                own.assessment.demand.include(&cruises);
+            }
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
             // What no piece speaks of is not known.
             let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;

@@ -21,6 +21,20 @@ impl Ahead {
     /// Follows a planned piece of a move's own path, at the largest overrides.
     #[inline]
     pub(super) fn follow(&mut self, model: &PowerModel, number: u64, planned: &Planned<u64>) {
+        self.follow_piece(model, number, planned);
+        let (Some(steps), Some(own)) = (&mut self.steps, self.open.get_mut(number)) else {
+            return;
+        };
+        if own.in_doubt || self.reach2.is_some() {
+            steps.doubt();
+        } else if steps.is_doubtful() {
+            // Means reach back to where it may have stopped.
+            own.certain = false;
+        }
+    }
+
+    #[inline]
+    fn follow_piece(&mut self, model: &PowerModel, number: u64, planned: &Planned<u64>) {
         let Some(steps) = self.steps.as_deref_mut() else {
             return;
         };

@@ -80,6 +80,8 @@ pub(super) struct Steps {
     end_mm_s: AxisValues,
     /// When the last step was.
     last_step_s: f64,
+    /// Until when means reach back to where the motion was in doubt.
+    doubtful_to_s: f64,
     /// Since `since_s`, and in at least 2·τ before.
     most: [Most; 2],
     since_s: f64,
@@ -96,6 +98,7 @@ impl Steps {
             end_mm: [0.0; AXES],
             end_mm_s: [0.0; AXES],
             last_step_s: f64::NEG_INFINITY,
+            doubtful_to_s: f64::NEG_INFINITY,
             most: [Most::default(); 2],
             since_s: 0.0,
         }
@@ -175,6 +178,16 @@ impl Steps {
             return false;
         };
         want.passes(self.bound_w(model, converter, mv))
+    }
+
+    /// How the motion has run up to now is in doubt.
+    pub fn doubt(&mut self) {
+        self.doubtful_to_s = self.end_s + 2.0 * self.response_s;
+    }
+
+    /// Whether a mean may reach back to where the motion was in doubt.
+    pub fn is_doubtful(&self) -> bool {
+        self.end_s <= self.doubtful_to_s
     }
 
     /// An upper bound of what is drawn and fed back, W.

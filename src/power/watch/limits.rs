@@ -134,7 +134,11 @@ impl Limits {
             None => supplied(slice, time_s),
         }
         if let Some((store, ..)) = brake {
-            store.take(slice, time_s, place, &mut |_, _| {});
+            let mut now_s = time_s;
+            for part in heating(slice) {
+                store.take(&part, now_s, place, &mut |_, _| {});
+                now_s += part.duration_s;
+            }
         }
     }
 
@@ -170,14 +174,21 @@ impl Limits {
             bus.store.pass(energy_j, duration_s);
         }
         if let Some((store, ..)) = &mut self.brake {
-            store.pass(energy_j, duration_s);
+            store.pass(energy_j.max(0.0), duration_s);
         }
     }
 
     /// The same as [`Self::take`], of a slice that is nowhere above that power.
     #[inline]
     pub fn take_calm(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        self.pass(slice.energy_j(), slice.duration_s);
+        if let Some(bus) = &mut self.bus {
+            bus.store.pass(slice.energy_j(), slice.duration_s);
+        }
+        if let Some((store, ..)) = &mut self.brake {
+            for part in heating(slice) {
+                store.pass(part.energy_j(), part.duration_s);
+            }
+        }
         for (overload, ..) in &mut self.overload {
             overload.pass(slice.duration_s);
         }
@@ -203,7 +214,7 @@ impl Limits {
             continuous.span(supplied_w, span, time_s, place);
         }
         if let Some((store, ..)) = &mut self.brake {
-            store.span(power_w, span, time_s, place);
+            store.span(power_w.max(0.0), span, time_s, place);
         }
     }
 
@@ -268,4 +279,16 @@ impl Bus {
             _ => (nominal_v * nominal_v + squares).sqrt(),
         }
     }
+}
+
+/// A slice of what is fed back as a resistor sees it: what is drawn does not cool it.
+fn heating(slice: &Slice) -> impl Iterator<Item = Slice> {
+    let parts = slice.sides(0.0).into_iter();
+    parts.map(|(part, above)| {
+        if above {
+            part
+        } else {
+            Slice::constant(part.duration_s, 0.0)
+        }
+    })
 }

@@ -117,7 +117,8 @@ impl Ahead {
         text: &[u8],
         want: Want,
     ) -> bool {
-        let doubtful = self.in_doubt || self.reach2.is_some();
+        let steps_in_doubt = self.steps.as_ref().is_some_and(|steps| steps.is_doubtful());
+        let doubtful = self.in_doubt || self.reach2.is_some() || steps_in_doubt;
         if doubtful || want.accel || !eye.is_closed() || !self.glider.terms.suit(mv) {
             return false;
         }

@@ -1,0 +1,142 @@
+//! Cruises at lower overrides.
+//!
+//! Input: a move and its largest speed. Output: what it draws and feeds back at most
+//! while it cruises at any speed up to that.
+//!
+//! While axes speed up or brake, a lower override only cuts the ramps short: each of
+//! their states is one of the largest override as well. A cruise is not. Without
+//! viscous friction and copper loss its power is in proportion to the speed, and largest
+//! at the top. With them it is convex in the speed: most may be drawn next to rest,
+//! where a weight that is let down feeds nothing back, and most be fed back in between.
+//! Where the path turns, the robust bound counts for what such a weight feeds back.
+
+use super::axis::Side;
+use super::demand::{Demand, Totals, Want, larger};
+use super::interval::{Interval, Ramp};
+use super::model::{ConverterPower, PowerModel};
+use super::surge::{Surge, arc_demand, surge_demand};
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisSet};
+use crate::plan::PathShares;
+use crate::plan::lookahead::{Piece, Planned};
+use arrayvec::ArrayVec;
+
+/// A cruise as a surge without acceleration.
+fn cruise_at(top_mm_s: f64) -> Surge {
+    Surge {
+        rises_mm_s: Some(top_mm_s),
+        falls_mm_s: None,
+        accel_mm_s2: 0.0,
+    }
+}
+
+impl PowerModel {
+    /// The demand of cruises at `top_mm_s` and below; `None` where they have no more than
+    /// the fastest one.
+    #[must_use]
+    pub fn cruises(&self, mv: &Move, top_mm_s: f64) -> Option<Demand> {
+        let curved = |converter: &ConverterPower| AxisSet(mv.moving.0 & converter.curved.0);
+        let known = mv.unknown_start.is_empty() && mv.length_mm > 0.0;
+        if !known || self.converters.iter().all(|own| curved(own).is_empty()) {
+            return None;
+        }
+        let mut demand = Demand::NONE;
+        for (index, converter) in self.converters.iter().enumerate() {
+            let active = AxisSet(mv.moving.0 & converter.axes.0);
+            let mut totals = Totals::new(converter.idle_w(mv, &self.axes, active));
+            if mv.arc.is_some() {
+                self.creep(active, mv, &mut totals);
+            } else {
+                self.cruise(converter, active, mv, top_mm_s, &mut totals);
+            }
+            demand.add(index, converter, totals);
+        }
+        if mv.arc.is_some() && self.lets_down(mv) {
+            let turned = arc_demand(self, mv, [0.0, mv.length_mm], cruise_at(top_mm_s));
+            demand.include(&self.fed_back(mv, &turned));
+        }
+        Some(demand)
+    }
+
+    /// What a piece of plan that turns may feed back at lower speeds, where that may be
+    /// more.
+    pub(super) fn turned_down(&self, mv: &Move, planned: &Planned<u64>) -> Option<Demand> {
+        if !matches!(planned.piece, Piece::Blend(_)) || !self.lets_down(mv) {
+            return None;
+        }
+        let surge = cruise_at(planned.top_speed_mm_s());
+        let turned = surge_demand(self, mv, planned, surge, Want::PEAKS);
+        Some(self.fed_back(mv, &turned))
+    }
+
+    /// Whether a moving axis has a weight that its friction does not hold, and feeds back
+    /// out of proportion to its speed.
+    fn lets_down(&self, mv: &Move) -> bool {
+        mv.moving.iter().any(|axis| {
+            let own = &self.axes[axis];
+            let held = own.coulomb * own.friction_factor(Side::Regen);
+            own.is_curved() && own.gravity.abs() > held
+        })
+    }
+
+    /// Of a demand what is fed back alone; of several converters all of it.
+    fn fed_back(&self, mv: &Move, whole: &Demand) -> Demand {
+        let [converter] = self.converters.as_slice() else {
+            return *whole;
+        };
+        let mut totals = Totals::new(converter.idle_w(mv, &self.axes, mv.moving));
+        totals.raise_regen(whole.regen_w);
+        let mut demand = Demand::NONE;
+        demand.add(0, converter, totals);
+        demand
+    }
+
+    /// Next to rest friction and weight cost copper loss alone.
+    fn creep(&self, active: AxisSet, mv: &Move, totals: &mut Totals) {
+        let ways = PathShares::of(mv, [0.0, mv.length_mm]).along;
+        let powers = active.iter().map(|axis| {
+            let signs = [(1.0, ways.positive[axis]), (-1.0, ways.negative[axis])];
+            let taken = signs.into_iter().filter(|(_, share)| *share > 0.0);
+            taken.fold(0.0, |most, (sign, _)| {
+                larger(most, self.axes[axis].power(Side::Motor, 0.0, 0.0, sign))
+            })
+        });
+        totals.raise_peak(totals.idle_w + powers.sum::<f64>());
+    }
+
+    /// All speeds on a straight path.
+    fn cruise(
+        &self,
+        converter: &ConverterPower,
+        active: AxisSet,
+        mv: &Move,
+        top_mm_s: f64,
+        totals: &mut Totals,
+    ) {
+        let per_length = top_mm_s / mv.length_mm;
+        let ramps: ArrayVec<Ramp<'_>, AXES> = active
+            .iter()
+            .map(|axis| {
+                let power = &self.axes[axis];
+                Ramp {
+                    axis: power,
+                    start: 0.0,
+                    end: (mv.end[axis] - mv.start[axis]) * power.si_per_unit * per_length,
+                    accel: 0.0,
+                }
+            })
+            .collect();
+        let cruise = Interval {
+            credit_regen: converter.credit_regen,
+            curved: true,
+            idle_w: totals.idle_w,
+            ramps: &ramps,
+            duration_s: 0.0,
+        };
+        let want = Want {
+            energy: false,
+            ..Want::PEAKS
+        };
+        cruise.evaluate(want, totals);
+    }
+}
