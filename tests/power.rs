@@ -189,7 +189,10 @@ fn braking_harder_than_commanded_costs_copper() {
     // Most is fed back at 625 N = v/(2·R): v²/(4·R).
     let good = with(0.0004);
     close(demand(&good, &mv).regen_w, 0.5 * 0.5 / (4.0 * 0.0004));
-    close(demand(&good, &mv).peak_w, 0.5 * 500.0 + 0.0004 * 500.0 * 500.0);
+    close(
+        demand(&good, &mv).peak_w,
+        0.5 * 500.0 + 0.0004 * 500.0 * 500.0,
+    );
 }
 
 #[test]

@@ -170,12 +170,8 @@ impl AxisPower {
     pub fn power(&self, side: Side, v: f64, a: f64, sign: f64) -> f64 {
         let own = self.force(side, v, a, sign);
         match side {
-            Side::Motor if self.spread => {
-                self.most(v, [own, self.force(Side::Regen, v, a, sign)])
-            }
-            Side::Regen if self.spread => {
-                self.least(v, [own, self.force(Side::Motor, v, a, sign)])
-            }
+            Side::Motor if self.spread => self.most(v, [own, self.force(Side::Regen, v, a, sign)]),
+            Side::Regen if self.spread => self.least(v, [own, self.force(Side::Motor, v, a, sign)]),
             _ => self.electrical(v, own),
         }
     }

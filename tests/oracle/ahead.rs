@@ -5,8 +5,9 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+use gwatt::interpret::MoveKind;
 use gwatt::machine::OverrideAt;
-use gwatt::pipeline::{self, Certificate, Options, Summary};
+use gwatt::pipeline::{self, Certificate, Options, Row, Summary};
 
 use super::compare::{machine, rows};
 use super::machines;
@@ -24,8 +25,8 @@ const STEPS: f64 = 10_000.0;
 /// Largest size of such a program.
 const BYTES_MAX: u64 = 300_000;
 
-fn rules(controller: &str, program: &str) -> Rules {
-    let arcs = program.contains("G2 ") || program.contains("G3 ");
+fn rules(controller: &str, rows: &[Row]) -> Rules {
+    let arcs = rows.iter().any(|row| row.kind == MoveKind::Arc);
     let linuxcnc = controller == "linuxcnc";
     Rules {
         // LinuxCNC: helices; next to each other two moves run at once, the second one
@@ -36,7 +37,7 @@ fn rules(controller: &str, program: &str) -> Rules {
             "iso" => 1.0,
             "linuxcnc" => 2.0,
             _ if arcs => f64::INFINITY,
-            _ => 1.0,
+            _ => 1.1,
         },
         // A corner of LinuxCNC is rounded in a few milliseconds.
         chord: if linuxcnc { 0.5 } else { 0.02 },
@@ -51,7 +52,8 @@ fn rules(controller: &str, program: &str) -> Rules {
 fn check(toml: &str, controller: &str, program: &str, step_s: f64) -> (u64, Vec<String>) {
     let machine = machine(toml);
     let plant = Plant::new(toml);
-    let rules = rules(controller, program);
+    let (rows_of_all, all) = rows(&machine, program);
+    let rules = rules(controller, &rows_of_all);
     let mut watch = Watch::new(&plant, rules);
     let input = Cursor::new(program.to_owned());
     pipeline::series(input, &machine, &Options::default(), step_s, &mut watch)
@@ -64,7 +66,6 @@ fn check(toml: &str, controller: &str, program: &str, step_s: f64) -> (u64, Vec<
         rapid: limits.rapid_override_max.min(1.0),
         spindle: limits.spindle_override_max.min(1.0),
     });
-    let (rows_of_all, all) = rows(&machine, program);
     let (own_rows, own) = rows(&usual, program);
     if own.certificate != Some(Certificate::Robust) {
         watch.compare(&own_rows);

@@ -77,7 +77,14 @@ pub fn value(converter: &Converter, measure: Measure, slices: &[Slice], share: f
                 let beyond = |it: &Slice| it.0 * (mean(drawn(it)) - converter.limit_w);
                 (-1.0, store(slices, beyond))
             } else {
-                let beyond = |it: &Slice| it.0 * (mean(fed(it)) - converter.regen_limit_w);
+                // With credit, what motors draw empties the capacitor.
+                let signed = |it: &Slice| {
+                    it.1.map(|bus| match converter.credit {
+                        true => bus.nominal_fed_w - bus.nominal_w.max(0.0),
+                        false => bus.nominal_fed_w,
+                    })
+                };
+                let beyond = |it: &Slice| it.0 * (mean(signed(it)) - converter.regen_limit_w);
                 (1.0, store(slices, beyond))
             };
             (nominal_v * nominal_v + sign * 2.0 * joules / farads)

@@ -175,9 +175,8 @@ fn raise(
         let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         for v in speeds {
             let sign = if v == 0.0 { 0.0 } else { v.signum() };
-            let forces = accels.map(|a| {
-                [Side::Regen, Side::Motor].map(|side| power.force(side, v, a, sign))
-            });
+            let forces = accels
+                .map(|a| [Side::Regen, Side::Motor].map(|side| power.force(side, v, a, sign)));
             let [low, high] = [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| {
                 let [a, b] = forces.map(|[a, b]| f(a, b));
                 f(a, b)
