@@ -186,6 +186,24 @@ fn programs_are_limited_under_look_ahead_too() {
     }
 }
 
+/// A slower arc leaves more of its jerk to the acceleration along the path.
+#[test]
+fn a_slower_arc_may_speed_up_harder() {
+    let shop = Shop::mill("isg", "", "", "");
+    shop.put(
+        "mill.toml",
+        "schema = 1\nname = \"arcs\"\ncontroller = \"isg\"\n[converter]\npeak_power_w = 850\n\
+         base_load_w = 780\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n\
+         [axes.X]\nrapid_mm_min = 108000\naccel_mm_s2 = 13000\nmass_kg = 2.5\n\
+         coulomb_n = 5\njerk_mm_s3 = 2300000\n[axes.Y]\nrapid_mm_min = 36000\n\
+         accel_mm_s2 = 15000\nmass_kg = 316\njerk_mm_s3 = 210000\n",
+    );
+    shop.put("a.ngc", "G17 G3 I2.8756 J14.4646 F59213\nM30\n");
+    let (code, out, told) = shop.run("limit a.ngc --allow feed");
+    assert_eq!(code, 0, "{told}");
+    assert!(out.contains("G131 = ") && out.contains("F13"), "{out}");
+}
+
 /// The series of speeds and powers adds up to the report, on arcs and rounded
 /// corners as well.
 #[test]

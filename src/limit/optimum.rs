@@ -3,6 +3,8 @@
 //! For each acceleration there is one highest speed that fits, and the time of
 //! the block has one minimum between the pair with full acceleration and the
 //! one with full speed (for a trapezoid: minimise L/v + v/a under the limit).
+//! An arc may have several, since its speed decides what is left to accelerate
+//! with: the search begins next to the best of a few.
 
 use super::change::Change;
 use super::lever::SpeedLever;
@@ -11,6 +13,8 @@ use crate::plan::plan;
 
 /// Steps of the search; each narrows the bracket to 0.618.
 const STEPS: u32 = 24;
+/// Parts of the range that are looked at first on an arc.
+const ARC_STEPS: u32 = 12;
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 /// Lowest acceleration that is tried, as a share.
@@ -43,6 +47,15 @@ pub(super) fn best_pair(
         .and_then(|change| share(case, solver, &change))
         .unwrap_or(LOWEST);
     let mut high = 1.0;
+    if case.mv.arc.is_some() {
+        let at = |step: u32| low + (high - low) * f64::from(step) / f64::from(ARC_STEPS);
+        let best = (0..=ARC_STEPS)
+            .map(|step| (step, time_of(at(step))))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((step, _)) = best {
+            (low, high) = (at(step.saturating_sub(1)), at((step + 1).min(ARC_STEPS)));
+        }
+    }
     let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
     let (mut time_left, mut time_right) = (time_of(left), time_of(right));
     for _ in 0..STEPS {
