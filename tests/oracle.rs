@@ -1,8 +1,6 @@
 //! A second implementation of motion and power, written from the physics alone:
 //! slow, dense in time, with nothing of `plan` or `power` in it. It reads the
 //! machine file itself and takes of a program its moves: geometry, kind and feed.
-//!
-//! `switches` says which rules gwatt is held to.
 
 mod ahead;
 mod axes;
@@ -18,7 +16,6 @@ mod programs;
 mod random;
 mod series;
 mod spindle;
-mod switches;
 mod worked;
 
 use compare::Compared;

@@ -15,7 +15,6 @@ use super::plant::Plant;
 use super::programs;
 use super::random::Random;
 use super::series::{Rules, Watch};
-use super::switches::{ENERGY_OF_SERIES, LOWER_OVERRIDES, PEAKS_OF_SERIES};
 
 const CONTROLLERS: [&str; 5] = ["grbl", "marlin", "reprap", "klipper", "linuxcnc"];
 /// Programs of others that last longer are left out.
@@ -72,7 +71,7 @@ fn check(toml: &str, controller: &str, program: &str, step_s: f64) -> (u64, Vec<
         let energy_j = own_rows.iter().map(|row| row.energy_j).sum();
         whole(&plant, &own, &mut watch, energy_j, rules);
     }
-    if LOWER_OVERRIDES && all.certificate != Some(Certificate::Robust) {
+    if all.certificate != Some(Certificate::Robust) {
         watch.compare(&rows_of_all);
     }
     (watch.rows, watch.wrong)
@@ -101,7 +100,7 @@ fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64,
             .all(|axis| (axis.factors, axis.warm) == ([1.0; 2], 1.0));
     for (what, own, told) in [("peak", one[0], told[0]), ("fed back", one[1], told[1])] {
         let slack_w = 1e-6 * (one[0].abs() + one[1]) + 1e-6;
-        let high = PEAKS_OF_SERIES && exact && own < told - 0.01 * told - slack_w;
+        let high = exact && own < told - 0.01 * told - slack_w;
         if own > told + slack_w || high {
             differs(what, own, told);
         }
@@ -111,7 +110,7 @@ fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64,
     let slack_j = 2e-3 * energy_j.abs() + 1e-4 * scale_j;
     // Steps that brake are credited like everything else.
     let credited = rules.steps && plant.converters.iter().any(|own| own.credit);
-    if ENERGY_OF_SERIES && (apart_j < -slack_j && !credited || apart_j > slack_j && !bounded) {
+    if apart_j < -slack_j && !credited || apart_j > slack_j && !bounded {
         differs("energy", watch.energy_j, energy_j);
     }
 }

@@ -4,7 +4,6 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
 use super::random::Random;
-use super::switches::{ALL_CORNERS, CURVES_WITH_MANY_POINTS};
 
 /// How the axes' motion is limited.
 #[derive(Clone, Copy, PartialEq)]
@@ -94,11 +93,7 @@ impl Load {
     fn write_curve(&self, random: &mut Random, toml: &mut String) {
         let [mass, coulomb, viscous, gravity, _] = self.values;
         let drag = coulomb + viscous * self.speed * self.unit + gravity.abs();
-        let points = if CURVES_WITH_MANY_POINTS {
-            2 + random.below(4)
-        } else {
-            2
-        };
+        let points = 2 + random.below(4);
         let mut share = random.within(0.6, 1.4);
         let k = self.motor_per_load();
         let mut list = Vec::new();
@@ -137,7 +132,7 @@ pub fn write(random: &mut Random, toml: &mut String, letter: char, motion: Motio
         let _ = writeln!(toml, "efficiency = {:?}", random.within(0.6, 1.0));
     }
     let factors = random.once_in(3);
-    if factors && (load.values[4] == 0.0 || ALL_CORNERS) {
+    if factors {
         let (motor, regen) = (random.within(1.0, 1.4), random.within(1.0, 1.4));
         let warm = random.within(0.4, 1.0);
         let _ = writeln!(

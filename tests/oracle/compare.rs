@@ -9,7 +9,6 @@ use gwatt::pipeline::{self, Options, Row, Summary};
 use super::judge::{Figures, Judge, Step};
 use super::over_time;
 use super::plant::Plant;
-use super::switches::{CURVES_WITH_MANY_POINTS, LOWER_OVERRIDES, NEVER_TOO_HIGH};
 use crate::rows::Rows;
 
 /// By what share a closed form may differ.
@@ -116,7 +115,7 @@ impl Compared {
         for ((row, full), most) in rows.iter().zip(&at_full).zip(&at_most) {
             self.row(&plant, row, full, most, true);
         }
-        if LOWER_OVERRIDES && plant.spindle.is_none() {
+        if plant.spindle.is_none() {
             for lower in [0.85, 0.7, 0.5, 0.3, 0.1] {
                 let lowered = judged(plant.overrides.map(|factor| lower * factor));
                 for (most, own) in at_most.iter_mut().zip(&lowered) {
@@ -158,7 +157,7 @@ impl Compared {
             false => SAMPLED,
         };
         // S-curves under curves, and curves of many kinks, may be bounded.
-        let bounded = both || curved && CURVES_WITH_MANY_POINTS;
+        let bounded = curved;
         let later = if bounded { BOUNDED } else { share };
         let mut differs = |what: &str, own: f64| {
             self.wrong.push(format!(
@@ -226,7 +225,7 @@ impl Compared {
         // Of several converters the one that the spindle relieves keeps its larger
         // power: whether another one is loaded more then is not known.
         let relieved = plant.spindle.is_some() && plant.converters.len() > 1;
-        if NEVER_TOO_HIGH && only && !relieved && !drives {
+        if only && !relieved && !drives {
             let loose_w = LOOSE.max(2.0 * later) * (peak_w.abs() + regen_w) + 1e-3;
             if row.peak_w > peak_w + loose_w {
                 differs("peak too high", peak_w);

@@ -7,7 +7,6 @@
 //! machine's and `friction_min_ratio` of it.
 
 use super::plant::{Axis, LETTERS, Plant};
-use super::switches::ALL_CORNERS;
 
 /// An axis at an instant: speed and acceleration in its units, and the sign of
 /// the motion, 0 where it stands.
@@ -53,23 +52,13 @@ impl Axis {
         let real = if growing { motor } else { regen };
         let w = |corner| self.electrical_w(state.v, self.force(state, corner));
         let all = [[1.0, 1.0], [real, 1.0], [1.0, self.warm], [real, self.warm]];
-        let one = if growing {
-            [[motor, 1.0], [1.0, self.warm]]
-        } else {
-            [[1.0, 1.0], [regen, self.warm]]
-        };
-        let (driven, fed) = if ALL_CORNERS {
-            (&all[..], &all[..])
-        } else {
-            (&one[..1], &one[1..])
-        };
-        let most = |list: &[[f64; 2]], sign: f64| {
-            let powers = list.iter().map(|corner| sign * w(*corner));
+        let most = |sign: f64| {
+            let powers = all.iter().map(|corner| sign * w(*corner));
             powers.fold(f64::NEG_INFINITY, f64::max)
         };
         AxisPower {
-            drawn_w: most(driven, 1.0),
-            fed_w: most(fed, -1.0),
+            drawn_w: most(1.0),
+            fed_w: most(-1.0),
             nominal_w: w([1.0, 1.0]),
         }
     }

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 
 use super::axes::{self, Motion};
 use super::random::Random;
-use super::switches::{CURVES_WITH_JERK, SPINDLE_BASE_LOAD};
 
 /// A machine and what programs for it may have.
 #[derive(Debug, Clone)]
@@ -38,7 +37,7 @@ pub fn of(controller: &str, random: &mut Random, curves: bool) -> Described {
     let motion = match random.below(6) {
         0 => Motion::Jerk,
         1 if curves => Motion::Curve,
-        2 if curves && CURVES_WITH_JERK => Motion::Both,
+        2 if curves => Motion::Both,
         _ => Motion::Plain,
     };
     let several = random.once_in(4);
@@ -97,9 +96,7 @@ pub fn of(controller: &str, random: &mut Random, curves: bool) -> Described {
         if random.once_in(2) {
             let _ = writeln!(toml, "base_rpm = {:?}", max_rpm * random.within(0.2, 0.9));
         }
-        if SPINDLE_BASE_LOAD {
-            let _ = writeln!(toml, "base_load_w = {:?}", random.within(0.0, 300.0));
-        }
+        let _ = writeln!(toml, "base_load_w = {:?}", random.within(0.0, 300.0));
     }
     let _ = writeln!(toml, "[limits]\nmargin = {margin:?}");
     if !spindle && random.once_in(2) {
