@@ -9,6 +9,7 @@ mod random;
 use std::fmt::Write as _;
 use std::io::Cursor;
 
+use gwatt::interpret::ParameterFile;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Limits, Options, moves};
 
@@ -27,6 +28,7 @@ fn machine(controller: &str, peak_w: f64) -> Machine {
 
 fn options(depth: usize, repeated_moves: u64, idle_lines: u64) -> Options {
     let mut options = Options::default();
+    options.reading.parameters = Some(ParameterFile::default().into());
     options.reading.limits = Limits {
         depth,
         repeated_moves,

@@ -39,6 +39,7 @@ mod cli;
 mod readme;
 mod listing;
 mod isg;
+mod kept;
 mod okuma;
 mod fanuc;
 mod turning;

@@ -105,6 +105,7 @@ fn controller() -> Controller {
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,
+            kept_variables: Vec::new(),
             dialect: gwatt::machine::Dialect::default(),
         },
         queue: gwatt::machine::Queue::default(),

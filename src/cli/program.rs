@@ -4,9 +4,25 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
-use gwatt::interpret::BlockDelete;
+use clap::{Args, ValueEnum};
+use gwatt::interpret::{BlockDelete, GivenVariable, ProbeResult};
 use gwatt::machine::AxisId;
+
+/// What probes find.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum ProbeArg {
+    Hit,
+    Miss,
+}
+
+impl From<ProbeArg> for ProbeResult {
+    fn from(given: ProbeArg) -> Self {
+        match given {
+            ProbeArg::Hit => Self::Hit,
+            ProbeArg::Miss => Self::Miss,
+        }
+    }
+}
 
 /// How programs are read.
 #[derive(Debug, Args)]
@@ -19,9 +35,17 @@ pub struct ProgramArgs {
     #[arg(long, value_name = "FILE", help_heading = "Program")]
     pub tool_table: Option<PathBuf>,
     /// Parameters that the control has kept, as LinuxCNC writes them (number
-    /// and value in a line each): work offsets, G92, points of G28 and G30
+    /// and value in a line each): variables, work offsets, G92, points of G28 and G30
     #[arg(long, value_name = "FILE", help_heading = "Program")]
     pub parameters: Option<PathBuf>,
+    /// A variable that the control has kept, and its value: such as '#500=1.5',
+    /// '#<_depth>=2', R1=3 or VC1=4; may be given many times
+    #[arg(long = "set", value_name = "NAME=VALUE", help_heading = "Program")]
+    pub given: Vec<GivenVariable>,
+    /// What probes find: `hit`, they touch somewhere on their way, or `miss`, they reach
+    /// their targets; without it, what depends on a probe is refused
+    #[arg(long, value_name = "RESULT", help_heading = "Program")]
+    pub probe: Option<ProbeArg>,
     /// Pass over blocks that begin with `/`; with levels only those, as in
     /// --block-delete=1,3 for `/`, `/1` and `/3`
     #[arg(

@@ -58,6 +58,14 @@ impl Setup {
                 "--sub-path {shown}: there is no such folder"
             );
         }
+        let language_of = &machine.controller.language;
+        for given in &reading.given {
+            let controller = &language_of.name;
+            ensure!(
+                given.suits(language_of),
+                "--set {given}: `{controller}` has no such variable"
+            );
+        }
         let options = Options {
             reading: Reading {
                 start: start(reading.start.as_ref(), &machine)?,
@@ -70,6 +78,8 @@ impl Setup {
                     ParameterFile::parse,
                     terminal,
                 )?,
+                given: reading.given.clone().into(),
+                probe: reading.probe.map(Into::into),
                 sub_paths: reading.sub_path.clone().into(),
                 limits: Limits {
                     depth: reading.max_depth,

@@ -103,9 +103,17 @@ impl Control<'_> {
         report: &mut Report<'_, '_>,
     ) -> bool {
         if *name == Name::Number(3000) && self.raises_alarm(value) {
-            let message = "#3000 raises an alarm: the program ends here";
-            report.note_once("alarm", message, span);
             self.ended = true;
+            if self.moved {
+                let message = "#3000 raises an alarm: the program ends here";
+                report.note_once("alarm", message, span);
+            } else {
+                let message = "#3000 raises an alarm before anything has moved: \
+                               whether the program fits is not known";
+                report.error("alarm", message, span).help(
+                    "give what it checks: arguments, --set '#NUMBER=VALUE', --parameters or --tool-table",
+                );
+            }
             return false;
         }
         if let Err(reason) = self.assign(name, value) {
@@ -149,6 +157,29 @@ impl Control<'_> {
                 block.issues.clear();
                 false
             }
+        }
+    }
+
+    /// Words that no code has used: they might mean motion.
+    pub(super) fn complain_about_rest(&mut self, run: &mut Run<'_, '_>) {
+        if run.words.unused == 0 {
+            return;
+        }
+        if self.machine.controller.language.family != Family::Rs274 {
+            // Numbers of tool offsets without a code that uses them: that of a
+            // radius stays in force.
+            if let Some(number) = run.words.take(b'D') {
+                self.choice.number = Some(number as u32);
+            }
+            run.words.take(b'H');
+        }
+        while let Some(letter) = run.words.left_over() {
+            run.words.take(letter);
+            let span = run.words.span(letter, run.block);
+            let message = format!("nothing in this block uses the {} word", letter as char);
+            run.report
+                .error("unused-word", message, span)
+                .help("take it out, or write the word that it belongs to");
         }
     }
 

@@ -80,6 +80,7 @@ impl Control<'_> {
         }
 
         // From here on, it happens.
+        self.moved = true;
         steps.push(Step::Move(Move {
             line,
             number: block.number.map(|word| word.value),

@@ -13,7 +13,7 @@ use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::osp::Osp;
 use super::parameters::Parameters;
-use super::position::{BlockDelete, Position, Reading};
+use super::position::{BlockDelete, Position, ProbeResult, Reading};
 use super::printer;
 use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
@@ -59,6 +59,8 @@ pub(super) struct Control<'m> {
     pub(super) saved: Vec<Option<Box<Saved>>>,
     /// Parameters 5061 to 5070, as far as they are known; M66 has asked.
     pub(super) probe: [Option<f64>; 10],
+    /// What probes are taken to find; `None`: not known.
+    pub(super) probing: Option<ProbeResult>,
     pub(super) input_unknown: bool,
     /// What a restored state still has to do and to say.
     pub(super) debts: Vec<(ActionKind, f64)>,
@@ -82,6 +84,8 @@ pub(super) struct Control<'m> {
     pub(super) block_delete: BlockDelete,
     pub(super) begun: bool,
     pub(super) ended: bool,
+    /// Some axis has been moved.
+    pub(super) moved: bool,
     pub(super) has_program_number: bool,
     /// Which run of the line this is, from 1.
     pub(super) run: u32,
@@ -148,6 +152,7 @@ impl<'m> Interpreter<'m> {
             switches: Switches::default(),
             saved: vec![None],
             probe: [Some(0.0); 10],
+            probing: reading.probe,
             input_unknown: false,
             debts: Vec::new(),
             lost: None,
@@ -163,6 +168,7 @@ impl<'m> Interpreter<'m> {
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
+            moved: false,
             has_program_number: false,
             run: 1,
             text: 0,
@@ -177,6 +183,9 @@ impl<'m> Interpreter<'m> {
         };
         if let Some(file) = &reading.parameters {
             control.parameters.keep(file);
+        }
+        for given in reading.given.iter() {
+            control.give(given);
         }
         control.note_bent();
         Self {
@@ -456,29 +465,6 @@ impl Control<'_> {
             self.complain_about_rest(run);
         }
         self.end_of_block(run);
-    }
-
-    /// Words that no code has used: they might mean motion.
-    pub(super) fn complain_about_rest(&mut self, run: &mut Run<'_, '_>) {
-        if run.words.unused == 0 {
-            return;
-        }
-        if self.machine.controller.language.family != Family::Rs274 {
-            // Numbers of tool offsets without a code that uses them: that of a
-            // radius stays in force.
-            if let Some(number) = run.words.take(b'D') {
-                self.choice.number = Some(number as u32);
-            }
-            run.words.take(b'H');
-        }
-        while let Some(letter) = run.words.left_over() {
-            run.words.take(letter);
-            let span = run.words.span(letter, run.block);
-            let message = format!("nothing in this block uses the {} word", letter as char);
-            run.report
-                .error("unused-word", message, span)
-                .help("take it out, or write the word that it belongs to");
-        }
     }
 
     /// Stops and the end come after the motion.

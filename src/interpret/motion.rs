@@ -261,6 +261,7 @@ impl Control<'_> {
             }
             rapid_factor = self.printer_speed_factor(&course);
         }
+        self.moved = true;
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),

@@ -5,11 +5,14 @@
 //! without `_` in front belong to it too. Fanuc (B-63944EN, "Variables"): #1 to
 //! #33 belong to the macro that runs, #100 to #199 and #500 to #999 to all, and
 //! each is null until it is set; from #1000 on they belong to the control.
+//!
+//! Those that the control keeps from one program to the next (`kept_variables` of the
+//! profile) are unknown until a parameter file, `--set` or the program gives them a value.
 
 use std::collections::HashMap;
 
 use super::execute::Control;
-use super::expression::{Name, Read, Value, Variables};
+use super::expression::{KEPT, Name, PROBED, Read, Value, Variables};
 use super::moves::FeedMode;
 use super::parameter_file::ParameterFile;
 use crate::machine::{Family, Lathe};
@@ -33,6 +36,8 @@ pub(super) struct Parameters {
     callers: Vec<Saved>,
     /// Numbers below this one belong to the subroutine that runs.
     own: u32,
+    /// All that the control has kept is known.
+    complete: bool,
 }
 
 /// Which variables a subprogram has of its own.
@@ -60,11 +65,13 @@ impl Parameters {
             local_names: HashMap::new(),
             callers: Vec::new(),
             own: if family == Family::Rs274 { 31 } else { 34 },
+            complete: false,
         }
     }
 
     /// Takes over what the control has kept; what shows its state is not here.
     pub(super) fn keep(&mut self, file: &ParameterFile) {
+        self.complete = true;
         for (number, value) in file.iter() {
             // The file has as many as there are numbers, which is not too many.
             let _ = self.set(&Name::Number(number), Some(value));
@@ -173,14 +180,16 @@ impl Variables for Control<'_> {
             return Read::Value(Some(value));
         }
         match number {
-            5061..=5070 => Read::Unknown("the result of probing"),
+            5061..=5070 => Read::Unknown(PROBED),
             5399 => Read::Unknown("an input (M66)"),
             5400..=5413 => Read::Unknown("the tool, without a tool table"),
             5420..=5428 => Read::Unknown("the start position"),
             0 | 5602.. => Read::Missing,
-            _ => Read::Value(Some(
-                self.parameters.number(number).flatten().unwrap_or(0.0),
-            )),
+            _ => match self.parameters.number(number) {
+                Some(value) => Read::Value(Some(value.unwrap_or(0.0))),
+                None if self.is_kept(number) => Read::Unknown(KEPT),
+                None => Read::Value(Some(0.0)),
+            },
         }
     }
 
@@ -225,8 +234,12 @@ impl Control<'_> {
         if shifted && matches!(number, 5001..=5009 | 5021..=5029 | 5041..=5049) {
             return Read::Unknown(UNDER_COMPENSATION);
         }
+        if self.is_kept(number) {
+            return Read::Unknown(KEPT);
+        }
         let axis = |first: u32| (number - first) as usize;
         let known = match number {
+            _ if self.is_common(number) => return Read::Value(None),
             0 | 100..=199 | 500..=999 => return Read::Value(None),
             4001..=4021 => self.modal_code(number),
             4120 => Some(f64::from(self.tools.selected)),
@@ -242,6 +255,18 @@ impl Control<'_> {
             None if number >= 1000 => Read::Unknown("the state of the control"),
             None => Read::Missing,
         }
+    }
+
+    /// Whether the control keeps a variable whose value is not given.
+    fn is_kept(&self, number: u32) -> bool {
+        !self.parameters.complete && self.is_common(number)
+    }
+
+    /// Whether it keeps a variable from one program to the next.
+    fn is_common(&self, number: u32) -> bool {
+        let kept = &self.machine.controller.language.kept_variables;
+        kept.iter()
+            .any(|[first, last]| (*first..=*last).contains(&number))
     }
 
     /// #4001 and so on: the G codes in force, by group.
@@ -289,6 +314,7 @@ impl Control<'_> {
                     return Err("it can only be read");
                 }
             }
+            Name::Number(number) if self.is_common(*number) => {}
             Name::Number(3000) => return Err("#3000 raises an alarm, which ends the program"),
             Name::Number(number @ 1000..) if !(3000..4000).contains(number) => {
                 return Err("it belongs to the control, and may change offsets");

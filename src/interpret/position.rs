@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::flow::Limits;
 use super::frame::Frame;
+use super::given::GivenVariable;
 use super::offsets::Offsets;
 use super::parameter_file::ParameterFile;
 use super::tool_table::ToolTable;
@@ -49,6 +50,15 @@ impl BlockDelete {
     }
 }
 
+/// What probes are taken to find.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProbeResult {
+    /// They touch somewhere on their way.
+    Hit,
+    /// They reach their targets.
+    Miss,
+}
+
 /// How a program is to be read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
@@ -60,6 +70,10 @@ pub struct Reading {
     pub tools: Option<Arc<ToolTable>>,
     /// Parameters that the control has kept, if they are known.
     pub parameters: Option<Arc<ParameterFile>>,
+    /// Single variables that the control has kept.
+    pub given: Arc<[GivenVariable]>,
+    /// What probes find; `None`: not known, and what depends on it is refused.
+    pub probe: Option<ProbeResult>,
     /// Folders where subprograms are looked for, in this order.
     pub sub_paths: Arc<[PathBuf]>,
     /// Where repetition stops.
@@ -73,6 +87,8 @@ impl Default for Reading {
             block_delete: BlockDelete::NONE,
             tools: None,
             parameters: None,
+            given: Arc::default(),
+            probe: None,
             sub_paths: Arc::default(),
             limits: Limits::default(),
         }

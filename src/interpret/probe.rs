@@ -2,10 +2,12 @@
 //! (`LinuxCNC` "G38.n Straight Probe").
 //!
 //! The move is that to the target: nothing is faster or longer. Where it ends
-//! is not known, and with it the place of every axis that moved.
+//! is not known, and with it the place of every axis that moved and the result
+//! (#5061 to #5070); unless it is taken for granted that the probe touches nothing.
 
 use super::execute::{Control, Run};
 use super::moves::{MoveKind, Step};
+use super::position::ProbeResult;
 use crate::units::MM_PER_INCH;
 
 /// Shortest way to the target that is taken for a probing move, inches.
@@ -13,7 +15,7 @@ const SHORTEST_INCH: f64 = 0.01;
 
 impl Control<'_> {
     /// A block under G38.2 to G38.5.
-    pub(super) fn probe(&mut self, run: &mut Run<'_, '_>) {
+    pub(super) fn probe(&mut self, code: u16, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some("it probes");
         self.special.active = 0;
         let mut end = self.position.at;
@@ -38,7 +40,14 @@ impl Control<'_> {
                 .help("probing needs a way of 0.254 mm (0.01 inch) at least");
             return;
         }
-        self.forget(commanded, run);
+        self.found(commanded, run);
+        // G38.2 and G38.4 stop the program where nothing is found.
+        if self.probing == Some(ProbeResult::Miss) && matches!(code, 382 | 384) {
+            let whole = run.whole();
+            let message = "the probe touches nothing: the program stops here with an error";
+            run.report.note_once("probe-missed", message, whole);
+            self.ended = true;
+        }
     }
 
     /// G31, which is not modal (Fanuc "Skip function", Haas "G31 Feed until
@@ -54,12 +63,17 @@ impl Control<'_> {
         self.go(run, MoveKind::Probe, &end, unknown, None);
         if let Some(Step::Move(mv)) = run.steps.get(before) {
             let commanded = mv.moving.0 | mv.unknown_start.0;
-            self.forget(commanded, run);
+            self.found(commanded, run);
         }
     }
 
-    /// The place of these axes is not known any more.
-    fn forget(&mut self, axes: u16, run: &mut Run<'_, '_>) {
+    /// These axes have probed.
+    fn found(&mut self, axes: u16, run: &mut Run<'_, '_>) {
+        if self.probing == Some(ProbeResult::Miss) {
+            self.probe_missed();
+            return;
+        }
+        self.forget_probe(self.probing.map(|_| true));
         self.position.unknown.0 |= axes;
         let whole = run.whole();
         let message = "where a probe touches is not known: the next absolute move of an axis \

@@ -212,7 +212,7 @@ impl Control<'_> {
             330 | 331 => self.thread(number, run),
             830..=890 if self.dialect().lathe.is_some() => self.turning_motion(number, run),
             THREAD | BOX | THREAD_BOX | FACE => self.turning_motion(number, run),
-            380..=389 => self.probe(run),
+            380..=389 => self.probe(number, run),
             760 if !iso => self.thread_cycle(run),
             _ if iso => self.iso_cycle(number, run),
             _ => self.rs274_cycle(number, run),

@@ -71,10 +71,24 @@ impl Control<'_> {
         }
     }
 
-    /// A probe has moved: nobody knows what it has found.
-    #[allow(dead_code, reason = "for those who probe")]
-    pub(super) fn forget_probe(&mut self) {
+    /// A probe has moved: nobody knows where it has touched, nor, unless that is taken
+    /// for granted, whether it has.
+    pub(super) fn forget_probe(&mut self, touches: Option<bool>) {
         self.probe = [None; 10];
+        let [.., success] = &mut self.probe;
+        *success = touches.map(f64::from);
+    }
+
+    /// A probe has moved to its target without touching anything.
+    pub(super) fn probe_missed(&mut self) {
+        for axis in 0..self.probe.len() - 1 {
+            let place = self.place(axis);
+            if let Some(slot) = self.probe.get_mut(axis) {
+                *slot = place;
+            }
+        }
+        let [.., success] = &mut self.probe;
+        *success = Some(0.0);
     }
 
     /// Place of an axis in machine coordinates, in units of the program.

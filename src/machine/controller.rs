@@ -78,6 +78,8 @@ pub struct Language {
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
+    /// Numbered variables that outlast a program: first and last of each range.
+    pub kept_variables: Vec<[u32; 2]>,
     /// What Fanuc, Haas and their relatives have besides.
     pub dialect: Dialect,
 }

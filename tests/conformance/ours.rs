@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use gwatt::interpret::{Move, MoveKind, ToolTable};
+use gwatt::interpret::{Move, MoveKind, ParameterFile, ToolTable};
 use gwatt::machine::{ALL_AXES, Machine};
 use gwatt::pipeline::{Failure, Options, Reading, moves};
 
@@ -44,6 +44,8 @@ pub fn run(
     });
     let reading = Reading {
         tools,
+        // What the other one starts with.
+        parameters: Some(ParameterFile::default().into()),
         sub_paths: subs.to_vec().into(),
         ..Reading::default()
     };

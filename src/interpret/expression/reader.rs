@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::function::Function;
 use super::operator;
 use super::tape::{Op, Tape, parameter_number};
-use super::value::{Fault, Read, Value, Variables};
+use super::value::{Fault, KEPT, PROBED, Read, Value, Variables};
 use crate::diagnostic::excerpt;
 use crate::interpret::operator::Operator;
 use crate::source::Span;
@@ -289,6 +289,18 @@ impl<'t> Reader<'t> {
         self.tape.load(from, &name);
         match read {
             Read::Value(value) => Ok(value),
+            Read::Unknown(KEPT) => Err(self.fault(
+                "unknown-value",
+                format!("{name} holds {KEPT}, which is not known"),
+                "give it by --set '#NUMBER=VALUE', give all by --parameters, or assign it before",
+                start,
+            )),
+            Read::Unknown(PROBED) => Err(self.fault(
+                "unknown-value",
+                format!("{name} depends on {PROBED}, which is not known"),
+                "--probe hit and --probe miss each follow one way; where a probe touches stays unknown",
+                start,
+            )),
             Read::Unknown(reason) => Err(self.fault(
                 "unknown-value",
                 format!("{name} depends on {reason}, which only the machine knows"),

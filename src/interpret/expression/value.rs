@@ -5,6 +5,12 @@ use crate::source::Span;
 /// A value; `None` is Fanuc's null, a variable that was never given one.
 pub(in crate::interpret) type Value = Option<f64>;
 
+/// Why a variable that outlasts a program is unknown.
+pub(in crate::interpret) const KEPT: &str = "what the control has kept from before";
+
+/// Why a variable that a probe sets is unknown.
+pub(in crate::interpret) const PROBED: &str = "the result of probing";
+
 /// What is known of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::interpret) enum Read {

@@ -53,6 +53,12 @@ impl Osp {
         }
     }
 
+    /// Gives a common variable the value that the control has kept.
+    pub(super) fn keep(&mut self, name: &str, value: f64) {
+        self.common
+            .insert(super::formula::Ident::of(format_args!("{name}")), value);
+    }
+
     /// Whether a line must be read here, though the scanner took it for plain
     /// words.
     pub(super) fn is_beyond_words(&self, block: &Block) -> bool {

@@ -164,6 +164,11 @@ pub(super) struct Siemens {
 }
 
 impl Siemens {
+    /// Gives an R parameter the value that the control has kept.
+    pub(super) fn keep(&mut self, number: u32, value: f64) {
+        self.r.insert(number, value);
+    }
+
     pub(super) fn new() -> Self {
         Self {
             r: HashMap::new(),

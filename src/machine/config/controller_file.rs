@@ -82,6 +82,9 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// Numbered variables that the control keeps from one program to the next: first
+    /// and last of each range; default 500 to 999, with family = "rs274" 31 to 5000.
+    pub(crate) kept_variables: Option<Vec<[u32; 2]>>,
     /// What a number without a decimal point means; default: what it says,
     /// without a note.
     pub(crate) decimal_point: Option<PointName>,

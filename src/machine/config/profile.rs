@@ -50,15 +50,16 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
     let dwell = dwell(findings, table);
     let (ignored_g, ignored_m) = ignored(findings, table);
     let power_on = path_mode(table.power_on?);
+    let family = match table.family? {
+        FamilyName::Iso => Family::Iso,
+        FamilyName::Rs274 => Family::Rs274,
+        FamilyName::Marlin => Family::Marlin,
+        FamilyName::Isg => Family::Isg,
+        FamilyName::Siemens => Family::Siemens,
+    };
     Some(Language {
         name: String::new(),
-        family: match table.family? {
-            FamilyName::Iso => Family::Iso,
-            FamilyName::Rs274 => Family::Rs274,
-            FamilyName::Marlin => Family::Marlin,
-            FamilyName::Isg => Family::Isg,
-            FamilyName::Siemens => Family::Siemens,
-        },
+        family,
         dwell,
         rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
         loose_o_words: table.loose_o_words.unwrap_or(false),
@@ -81,8 +82,22 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        kept_variables: table
+            .kept_variables
+            .clone()
+            .unwrap_or_else(|| kept_variables(family)),
         dialect: dialect(table),
     })
+}
+
+/// Fanuc (B-63944EN, "Variables"): #500 to #999 are kept. `LinuxCNC`: what the
+/// parameter file may hold besides its own.
+fn kept_variables(family: Family) -> Vec<[u32; 2]> {
+    match family {
+        Family::Iso => vec![[500, 999]],
+        Family::Rs274 => vec![[31, 5000]],
+        _ => Vec::new(),
+    }
 }
 
 /// How G41 and G42 shift the path.

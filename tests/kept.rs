@@ -1,0 +1,134 @@
+//! What only the control knows: variables that it keeps from one program to the next,
+//! and what probes find.
+
+use crate::shop::Shop;
+
+/// Exit code and what is said of a program read as `dialect`.
+fn check(dialect: &str, program: &str, options: &str) -> (i32, String) {
+    let shop = Shop::mill("iso", "peak_power_w = 1e6\nregen_power_w = 1e6", "", "");
+    shop.put("a.nc", program);
+    shop.put("kept.var", "500 12.5\n31 4\n");
+    let (code, out, told) = shop.run(
+        &format!("check a.nc --dialect {dialect} {options}")
+            .trim_end()
+            .to_owned(),
+    );
+    (code, out + &told)
+}
+
+#[track_caller]
+fn refused(dialect: &str, program: &str, part: &str) {
+    let (code, told) = check(dialect, program, "");
+    assert!(code == 2 && told.contains(part), "{code} {told}");
+}
+
+#[track_caller]
+fn fits(dialect: &str, program: &str, options: &str) {
+    let (code, told) = check(dialect, program, options);
+    assert_eq!(code, 0, "{told}");
+}
+
+const HELD: &str = "holds what the control has kept from before, which is not known";
+
+#[test]
+fn variables_that_outlast_a_program_are_unknown() {
+    let program = "G21 G90\nG0 X#500\nM30\n";
+    refused("fanuc", program, &format!("#500 {HELD}"));
+    refused(
+        "fanuc",
+        "IF[#501 GT 0]GOTO 10\nG0 X9.\nN10 G0 X1.\nM30\n",
+        HELD,
+    );
+    fits("fanuc", "#500=5\nG0 X#500\nM30\n", "");
+    fits("fanuc", program, "--set #500=1.5");
+    fits("fanuc", program, "--parameters kept.var");
+    // With the file the others are null.
+    fits("fanuc", "G0 X[#500+#501]\nM30\n", "--parameters kept.var");
+    // Those that a control clears are null.
+    fits(
+        "fanuc",
+        "IF[#100 EQ #0]GOTO 10\nG0 X9.\nN10 G0 X1.\nM30\n",
+        "",
+    );
+    refused("haas", "G0 X#149\nM30\n", HELD);
+    refused("haas", "G0 X#10500\nM30\n", HELD);
+    fits("haas", "#10500=5.\nG0 X#10500\nM30\n", "");
+    refused("linuxcnc", "G0 X#31\nM2\n", HELD);
+    fits("linuxcnc", "G0 X#31\nM2\n", "--parameters kept.var");
+    fits("linuxcnc", "G0 X[#32+1]\nM2\n", "--parameters kept.var");
+    fits("linuxcnc", "G0 X#<_far>\nM2\n", "--set #<_far>=7");
+    refused("siemens", "G0 X=R1\nM30\n", "R1 has no value");
+    fits("siemens", "G0 X=R1\nM30\n", "--set R1=3");
+    refused("okuma", "G0 X=VC1\nM30\n", "VC1 has no value");
+    fits("okuma", "G0 X=VC1\nM30\n", "--set VC1=3");
+}
+
+#[test]
+fn a_variable_that_a_control_does_not_have_is_not_given() {
+    let (code, told) = check("fanuc", "G0 X1.\nM30\n", "--set R1=2");
+    assert!(
+        code == 2 && told.contains("--set R1=2: `fanuc` has no such variable"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_loop_that_waits_for_the_control_is_named_at_once() {
+    let program = "WHILE[#1000 EQ 0]DO1\nEND1\nG0 X1.\nM30\n";
+    refused(
+        "fanuc",
+        program,
+        "#1000 depends on the state of the control",
+    );
+    refused("fanuc", "N10 IF[#500 EQ 0]GOTO 10\nG0 X1.\nM30\n", HELD);
+}
+
+#[test]
+fn a_program_that_ends_in_an_alarm_is_not_judged() {
+    let alarm = "IF[#1 NE #0]GOTO 10\n#3000=1(NO TOOL)\nN10 G0 X1.\nM30\n";
+    refused(
+        "fanuc",
+        alarm,
+        "alarm before anything has moved: whether the program fits is not known",
+    );
+    let (code, told) = check("fanuc", &format!("G0 X1.\n{alarm}"), "");
+    assert!(
+        code == 0 && told.contains("raises an alarm: the program ends here"),
+        "{told}"
+    );
+}
+
+#[test]
+fn what_depends_on_a_probe_is_refused() {
+    let found = "G38.3 Z-20 F50\no1 if [#5070 EQ 0]\nM2\no1 endif\nG0 X5000 Y5000\nM2\n";
+    refused("linuxcnc", found, "#5070 depends on the result of probing");
+    refused(
+        "linuxcnc",
+        "G38.2 Z-20 F50\nG1 Z#5063\nM2\n",
+        "#5063 depends on the result",
+    );
+    // Before the first probe it is 0.
+    fits("linuxcnc", "G0 X#5070\nM2\n", "");
+    let moves = |options: &str| check("linuxcnc", found, options).1;
+    assert!(moves("--probe hit --format json").contains("robust"));
+    let missed = moves("--probe miss --format json");
+    // Z alone: 20 mm at 50 mm/min.
+    assert!(missed.contains("\"duration_s\": 24.0"), "{missed}");
+    // With an error the program stops at a G38.2 that finds nothing.
+    let (code, told) = check("linuxcnc", "G38.2 Z-20 F50\nG0 Z5\nM2\n", "--probe miss");
+    assert!(
+        code == 0 && told.contains("stops here with an error"),
+        "{told}"
+    );
+    // Where it touches is not known either way.
+    let (code, told) = check("linuxcnc", "G38.3 Z-20 F50\nG1 Z#5063\nM2\n", "--probe hit");
+    assert!(
+        code == 2 && told.contains("#5063 depends on the result"),
+        "{told}"
+    );
+    fits(
+        "linuxcnc",
+        "G38.3 Z-20 F50\nG1 Z#5063\nM2\n",
+        "--probe miss",
+    );
+}
