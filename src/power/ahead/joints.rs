@@ -8,6 +8,7 @@ use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
 use crate::power::model::PowerModel;
 use crate::power::steps::{Heading, Span, StepEnergy, Steps, spans, velocity};
+use crate::power::surge::Surge;
 
 /// The means over the drives' response time, where the rules know steps of speed.
 pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps>> {
@@ -55,6 +56,23 @@ impl Ahead {
                 take(steps, &mut self.open, model, number, span);
             });
             joint = false;
+        }
+    }
+
+    /// The last piece that was followed may be sped up or braked at lower overrides:
+    /// that comes on top of steps of speed next to it.
+    pub(super) fn follow_surge(&mut self, model: &PowerModel, number: u64, surge: &Surge) {
+        let Some(steps) = self.steps.as_deref_mut() else {
+            return;
+        };
+        let Some(own) = self.open.get(number) else {
+            return;
+        };
+        let sides = [surge.rises_mm_s, surge.falls_mm_s].map(|it| it.is_some());
+        steps.surge(&Heading::of(&own.mv).extremes(), sides, surge.accel_mm_s2);
+        if steps.is_surged() && !steps.is_quiet(model, &own.mv, own.want) {
+            let demand = steps.surged_demand(model, &own.mv);
+            include(&mut self.open, number, &demand);
         }
     }
 
@@ -109,7 +127,10 @@ fn take(steps: &mut Steps, open: &mut Queue, model: &PowerModel, number: u64, sp
     if steps.is_quiet(model, &own.mv, own.want) {
         return;
     }
-    let demand = steps.demand(model, &own.mv);
+    let mut demand = steps.demand(model, &own.mv);
+    if steps.is_surged() {
+        demand.include(&steps.surged_demand(model, &own.mv));
+    }
     include(open, number, &demand);
 }
 
