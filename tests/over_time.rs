@@ -1,5 +1,7 @@
 //! Limits over time and series from outside: what the commands say and write.
 
+mod lower;
+
 use std::process::Command;
 
 use crate::shop::Shop;

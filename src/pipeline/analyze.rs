@@ -7,11 +7,12 @@ use super::conditions::conditions;
 use super::front::Front;
 use super::relay::relay;
 use super::tally::Tally;
+use super::watching::watching;
 use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Move, Step};
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, Want};
+use crate::power::{Assessment, Assessor, Want, rungs};
 
 /// Reads a program and gives its figures; with `rows`, every move too.
 ///
@@ -24,7 +25,8 @@ pub fn analyze<R: Read + Seek + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut front = Front::new(input, machine, options);
-    let mut analysis = Analysis::new(machine, options, rows);
+    let rungs = rungs(machine);
+    let mut analysis = Analysis::new(machine, &rungs, options, rows);
     // Where little is to be judged, handing lines over costs as much.
     if options.threads > 1 && analysis.weighs() {
         front = relay(front, |files, line| {
@@ -55,16 +57,14 @@ struct Analysis<'m, 'r> {
 impl<'m, 'r> Analysis<'m, 'r> {
     fn new(
         machine: &'m Machine,
+        rungs: &'m [Machine],
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
         let energy = rows.is_some();
         Self {
             machine,
-            assessor: Assessor::new(machine, options.certificate, Want::ALL)
-                .starting(options.reading.start)
-                .watching()
-                .repeating(!options.once),
+            assessor: watching(machine, rungs, options),
             tally: Tally::new(machine, options, rows),
             adviser: Adviser::new(machine),
             energy,

@@ -14,6 +14,7 @@ use std::collections::VecDeque;
 use super::batch::Batch;
 use super::expected::{Expected, ExpectedMove, Originals, added_stop, different};
 use super::tally::Tally;
+use super::watching::watching;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
@@ -114,6 +115,7 @@ pub(super) struct Certified {
 impl<'m, 'r> Certifier<'m, 'r> {
     pub(super) fn new(
         machine: &'m Machine,
+        rungs: &'m [Machine],
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {
@@ -124,10 +126,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             behind: false,
             interpreter,
             diagnostics: Diagnostics::default(),
-            assessor: Assessor::new(machine, options.certificate, Want::ALL)
-                .starting(options.reading.start)
-                .watching()
-                .repeating(!options.once),
+            assessor: watching(machine, rungs, options),
             block: Block::default(),
             steps: Vec::new(),
             facts: Facts::default(),

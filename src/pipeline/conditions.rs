@@ -3,6 +3,7 @@
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
 use crate::machine::{CornerRule, Machine, PathMode, Spindle, SpindleWait};
+use crate::power::rungs_in_words;
 
 /// How the spindle counts.
 fn spindle_condition(spindle: &Spindle) -> &'static str {
@@ -135,10 +136,15 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         } else {
             "of a program that runs again at once, for ever"
         };
-        conditions.push(format!(
-            "limits over time are less the margin, {runs}; at the largest overrides, times of \
-             overload with cruises at any lower one"
-        ));
+        conditions.push(format!("limits over time are less the margin, {runs}"));
+        if limits.override_at.is_none() {
+            conditions.push(format!(
+                "limits over time are looked at with {}, the spindle at its largest, and times of \
+                 overload with cruises at any lower one; between these overrides they are not \
+                 checked",
+                rungs_in_words()
+            ));
+        }
         if summary.certificate == Some(Certificate::Robust) {
             conditions.push(
                 "blended moves last no longer than with a stop at both ends, and no shorter than \

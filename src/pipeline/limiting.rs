@@ -19,7 +19,7 @@ use super::{
 use crate::diagnostic::Diagnostic;
 use crate::limit::{Depths, Law, Limiter};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
-use crate::power::PowerModel;
+use crate::power::{PowerModel, rungs};
 
 /// Pieces that may wait for the certifier.
 const BATCHES: usize = 2;
@@ -114,11 +114,13 @@ impl Job<'_> {
         } = self;
         let exact = rows.is_some();
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
-        let mut certifier = Certifier::new(machine, options, sink);
+        let [own, aimed] = [machine, target].map(rungs);
+        let mut certifier = Certifier::new(machine, &own, options, sink);
         let limiter = Limiter::new(target, how, depths.clone());
         let writer = Writer::new(
             &mut input,
             target,
+            &aimed,
             options,
             limiter,
             exact,

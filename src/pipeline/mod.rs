@@ -26,6 +26,7 @@ mod spindle_rows;
 mod summary;
 mod table;
 mod tally;
+mod watching;
 mod whole;
 mod writer;
 

@@ -1,7 +1,7 @@
 //! Limits over time, with the names of converters and files.
 
 use crate::diagnostic::Diagnostic;
-use crate::machine::Machine;
+use crate::machine::{Machine, OverrideAt};
 use crate::power::{Measure, Rating};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -58,6 +58,9 @@ impl OverTime {
             title.push_str(", converter ");
             title.push_str(&self.converter);
         }
+        if let Some(at) = &self.rating.overrides {
+            title.push_str(&at_overrides(at));
+        }
         title
     }
 
@@ -94,5 +97,15 @@ impl OverTime {
         let mut reason = Diagnostic::error(measure.name(), message).help(self.help());
         reason.line = self.rating.line;
         reason
+    }
+}
+
+/// At which lower overrides it is, such as ` at feed and rapid 50 %`.
+fn at_overrides(at: &OverrideAt) -> String {
+    let [feed, rapid] = [at.feed, at.rapid].map(|factor| (factor * 1000.0).round() / 10.0);
+    if feed.to_bits() == rapid.to_bits() {
+        format!(" at feed and rapid {feed} %")
+    } else {
+        format!(" at feed {feed} %, rapid {rapid} %")
     }
 }

@@ -12,12 +12,13 @@ use super::expected::{Expected, ExpectedMove};
 use super::front::Front;
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
+use super::watching::watching;
 use super::writer::{Writer, Written};
 use super::{Failure, Options, RowSink};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::Limiter;
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::power::{Assessment, Assessor, PowerModel, Want, rungs};
 use crate::rewrite::{BlockView, Rewriter};
 use crate::source::lines;
 
@@ -42,9 +43,11 @@ pub(super) fn limit_whole<R: Read + Seek>(
     let exact = rows.is_some();
     let table = survey(&program, machine, options)?;
     let source = Cursor::new(&program);
+    let aimed = rungs(target);
     let writer = Writer::new(
         source,
         target,
+        &aimed,
         options,
         limiter,
         exact,
@@ -323,11 +326,9 @@ fn certify(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Certified, Failure> {
     let mut verdict = Verdict::new(machine, options, rows);
+    let rungs = rungs(machine);
     let mut written = Front::new(Cursor::new(text), machine, options);
-    let mut assessor = Assessor::new(machine, options.certificate, Want::ALL)
-        .starting(options.reading.start)
-        .watching()
-        .repeating(!options.once);
+    let mut assessor = watching(machine, &rungs, options);
     let mut expected = Vec::new();
     let mut more = true;
     while more {

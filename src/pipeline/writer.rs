@@ -15,6 +15,7 @@ use super::judge::{Flight, Judge, Queue};
 use super::spindle_rows::SpindleRows;
 use super::table::Table;
 use super::tally::Tally;
+use super::watching::watching;
 use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
 use crate::limit::{Change, Limiter, Outcome};
@@ -81,6 +82,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     pub(super) fn new(
         input: R,
         machine: &'m Machine,
+        rungs: &'m [Machine],
         options: &Options,
         limiter: Limiter<'m>,
         exact: bool,
@@ -97,10 +99,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
-            assessor: Assessor::new(machine, options.certificate, Want::ALL)
-                .starting(options.reading.start)
-                .watching()
-                .repeating(!options.once),
+            assessor: watching(machine, rungs, options),
             limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),

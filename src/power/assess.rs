@@ -50,6 +50,8 @@ pub struct Assessor<'m> {
     switched: Switched,
     /// The spindle beside the axes, where the machine has one.
     pub(super) bus: Option<Box<SpindleBus<'m>>>,
+    /// The same program at lower overrides, for limits over time.
+    pub(super) lower: Vec<Assessor<'m>>,
 }
 
 impl<'m> Assessor<'m> {
@@ -82,6 +84,7 @@ impl<'m> Assessor<'m> {
             eye: Eye::default(),
             switched: Switched::default(),
             bus: SpindleBus::new(machine, [largest, nominal], false).map(Box::new),
+            lower: Vec::new(),
         }
     }
 
@@ -124,10 +127,8 @@ impl<'m> Assessor<'m> {
     /// What was found about limits over time, of the moves handed on so far.
     #[must_use]
     pub fn ratings(&self) -> Vec<Rating> {
-        self.eye
-            .watch
-            .as_ref()
-            .map_or_else(Vec::new, |watch| watch.ratings())
+        let watch = self.eye.watch.as_ref();
+        self.worst_ratings(watch.map_or_else(Vec::new, |watch| watch.ratings()))
     }
 
     /// The certificate that was asked for.
@@ -153,6 +154,7 @@ impl<'m> Assessor<'m> {
     /// Takes something that moves no axis: it may stop the motion. Hands on what
     /// can be judged then.
     pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        self.act_lower(action);
         let Some(mut bus) = self.bus.take() else {
             return self.act_on_axes(action, sink);
         };
@@ -245,6 +247,9 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
+        if !self.lower.is_empty() {
+            self.push_lower(mv, text);
+        }
         if self.bus.is_none() {
             self.push_axes(mv, text, sink);
         } else {
@@ -306,6 +311,7 @@ impl<'m> Assessor<'m> {
 
     /// Hands on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        self.finish_lower();
         let Some(mut bus) = self.bus.take() else {
             return self.finish_axes(sink);
         };

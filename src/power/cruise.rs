@@ -8,13 +8,13 @@
 //! viscous friction and copper loss its power is in proportion to the speed, and largest
 //! at the top. With them it is convex in the speed: most may be drawn next to rest,
 //! where a weight that is let down feeds nothing back, and most be fed back in between.
-//! Where the path turns, the robust bound counts for what such a weight feeds back.
+//! Where a blend turns, the robust bound counts for what such a weight feeds back.
 
 use super::axis::Side;
 use super::demand::{Demand, Totals, Want, larger};
 use super::interval::{Interval, Ramp};
 use super::model::{ConverterPower, PowerModel};
-use super::surge::{Surge, arc_demand, surge_demand};
+use super::surge::{Surge, surge_demand};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::PathShares;
@@ -32,7 +32,7 @@ fn cruise_at(top_mm_s: f64) -> Surge {
 
 impl PowerModel {
     /// The demand of cruises at `top_mm_s` and below; `None` where they have no more than
-    /// the fastest one.
+    /// the fastest one. Of an arc the instants next to rest alone.
     #[must_use]
     pub fn cruises(&self, mv: &Move, top_mm_s: f64) -> Option<Demand> {
         let curved = |converter: &ConverterPower| AxisSet(mv.moving.0 & converter.curved.0);
@@ -50,10 +50,6 @@ impl PowerModel {
                 self.cruise(converter, active, mv, top_mm_s, &mut totals);
             }
             demand.add(index, converter, totals);
-        }
-        if mv.arc.is_some() && self.lets_down(mv) {
-            let turned = arc_demand(self, mv, [0.0, mv.length_mm], cruise_at(top_mm_s));
-            demand.include(&self.fed_back(mv, &turned));
         }
         Some(demand)
     }

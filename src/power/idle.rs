@@ -34,6 +34,9 @@ impl Assessor<'_> {
     /// handed on with the robust bound, and what follows begins in doubt.
     #[inline]
     pub fn end_line(&mut self, moved: bool, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        for lower in &mut self.lower {
+            lower.end_line_lower(moved);
+        }
         if moved {
             self.idle.lines = 0;
             return;

@@ -14,6 +14,7 @@
 
 use super::axis::{AxisPower, Side};
 use super::demand::{Demand, Totals, Want, larger};
+use super::independent;
 use super::model::{ConverterPower, PowerModel};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet, Machine};
@@ -26,8 +27,12 @@ const CLOSE: f64 = 1e-6;
 const RANGES_MAX: usize = 400;
 /// Parts of a ramp on which the bend of what is fed back counts.
 const PARTS: u32 = 16;
-/// Overrides that are looked at where the ramps are no straight lines.
-const SAMPLES: u32 = 64;
+/// Overrides that are looked at of arcs on axes with copper loss, and by what share they
+/// differ.
+const SAMPLES: i32 = 24;
+const SAMPLE_RATIO: f64 = 0.92;
+/// What may lie between two of them.
+const BETWEEN: f64 = 1.01;
 
 /// One axis at one override: speeds in SI.
 #[derive(Debug, Clone, Copy)]
@@ -80,6 +85,11 @@ impl PowerModel {
                 if let Some(cruises) = self.cruises(mv, planned.top_speed_mm_s) {
                     demand.include(&cruises);
                 }
+                let mut axes = mv.moving.iter();
+                let hangs = |axis: usize| self.axes.get(axis).is_some_and(|it| it.gravity != 0.0);
+                if self.loses_in_turns(mv) || mv.arc.is_some() && axes.any(hangs) {
+                    self.turn_slower(machine, mv, largest, &mut demand);
+                }
                 return demand;
             }
             Trajectory::Rest | Trajectory::Unknown(_) => return demand,
@@ -89,14 +99,7 @@ impl PowerModel {
             plan(machine, mv, Overrides { rapid, ..largest })
         };
         if !profiles.iter().all(|(_, profile)| is_trapezoid(profile)) {
-            for sample in 1..SAMPLES {
-                let lower = at(f64::from(sample) / f64::from(SAMPLES));
-                let want = Want {
-                    energy: false,
-                    ..want
-                };
-                demand.include(&self.demand(mv, &lower, want));
-            }
+            demand.include(&self.each_at_its_worst(mv, profiles, want));
             return demand;
         }
         let mut any = Demand::NONE;
@@ -140,6 +143,91 @@ impl PowerModel {
 }
 
 impl PowerModel {
+    /// Whether friction that grows with speed counts in a move.
+    pub(super) fn has_viscous(&self, mv: &Move) -> bool {
+        let mut axes = mv.moving.iter();
+        axes.any(|axis| self.axes.get(axis).is_some_and(|it| it.viscous > 0.0))
+    }
+
+    /// Whether a lower override may have more fed back, since an axis that loses power in
+    /// its copper is turned more gently.
+    pub(super) fn loses_in_turns(&self, mv: &Move) -> bool {
+        let mut axes = mv.moving.iter();
+        let loses = |axis: &AxisPower| axis.copper > 0.0;
+        mv.arc.is_some() && axes.any(|axis| self.axes.get(axis).is_some_and(loses))
+    }
+
+    /// Includes what is asked for on an arc at lower overrides, where turning leaves more
+    /// acceleration along it: hardly more than at one of a ladder of overrides.
+    fn turn_slower(&self, machine: &Machine, mv: &Move, largest: Overrides, demand: &mut Demand) {
+        let mut lower = Demand::NONE;
+        for sample in 1..=SAMPLES {
+            let knob = libm::pow(SAMPLE_RATIO, f64::from(sample));
+            let overrides = Overrides {
+                feed: largest.feed * knob,
+                rapid: largest.rapid * knob,
+                ..largest
+            };
+            lower.include(&self.demand(mv, &plan(machine, mv, overrides), Want::PEAKS));
+        }
+        let near = |lower: f64, own: f64| {
+            if lower * BETWEEN <= own {
+                own
+            } else {
+                lower * BETWEEN
+            }
+        };
+        lower.peak_w = near(lower.peak_w, demand.peak_w);
+        lower.regen_w = near(lower.regen_w, demand.regen_w);
+        lower.load_ratio = near(lower.load_ratio, demand.load_ratio);
+        demand.include(&lower);
+    }
+
+    /// The same without losses in the copper.
+    pub(super) fn lossless(&self) -> Self {
+        let mut lossless = self.clone();
+        lossless.axes.iter_mut().for_each(|axis| axis.copper = 0.0);
+        lossless
+    }
+
+    /// The largest powers of all axes at once, whenever each of them has its own: with
+    /// other speeds they meet otherwise. An axis that is given less speed has no more
+    /// acceleration at any, so that its largest power is that at its largest speed; what
+    /// is fed back counts without the loss in the copper, which may fall faster.
+    fn each_at_its_worst(&self, mv: &Move, profiles: &[(usize, Profile)], want: Want) -> Demand {
+        let want = Want {
+            energy: false,
+            floor_w: f64::NEG_INFINITY,
+            regen_floor_w: f64::NEG_INFINITY,
+            ..want
+        };
+        let lossless = self.lossless();
+        let mut demand = Demand::NONE;
+        for (index, converter) in self.converters.iter().enumerate() {
+            let active = AxisSet(mv.moving.0 & converter.axes.0);
+            if active.iter().count() < 2 {
+                continue;
+            }
+            let idle_w = converter.idle_w(mv, &self.axes, active);
+            let mut peaks_w = [0.0; 2];
+            for own in profiles.iter().filter(|(axis, _)| active.contains(*axis)) {
+                let mut alone = mv.clone();
+                alone.moving = AxisSet::default();
+                alone.moving.insert(own.0);
+                let one = std::slice::from_ref(own);
+                let of = |model| independent::totals(model, converter, &alone, one, 0.0, want);
+                let holding_w = self.axes.get(own.0).map_or(0.0, AxisPower::holding_w);
+                peaks_w[0] += larger(of(self).peak_w, holding_w);
+                peaks_w[1] += of(&lossless).regen_w;
+            }
+            let mut totals = Totals::new(idle_w);
+            totals.raise_peak(idle_w + peaks_w[0]);
+            totals.raise_regen(peaks_w[1]);
+            demand.add(index, converter, totals);
+        }
+        demand
+    }
+
     /// What is wanted of a move of which it is to be known whether it fits alone: peaks
     /// far below the limits need not be exact.
     #[must_use]

@@ -79,13 +79,7 @@ fn line_demand(model: &PowerModel, mv: &Move, surge: Surge, want: Want) -> Deman
     demand
 }
 
-/// The same of an arc or a part of it, mm.
-pub(super) fn arc_demand(
-    model: &PowerModel,
-    mv: &Move,
-    [from_mm, to_mm]: [f64; 2],
-    surge: Surge,
-) -> Demand {
+fn arc_demand(model: &PowerModel, mv: &Move, [from_mm, to_mm]: [f64; 2], surge: Surge) -> Demand {
     let sweep_rad = mv.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs());
     let turns = sweep_rad * (to_mm - from_mm) / (mv.length_mm * 2.0 * PI);
     let stretches = libm::ceil(turns * STRETCHES_A_TURN).clamp(1.0, STRETCHES_MAX);

@@ -80,6 +80,10 @@ pub(super) struct OverTimeRecord<'a> {
     above_w: Option<Figure>,
     #[serde(skip_serializing_if = "Option::is_none")]
     window_s: Option<Figure>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    feed_override: Option<Figure>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rapid_override: Option<Figure>,
 }
 
 impl<'a> OverTimeRecord<'a> {
@@ -113,6 +117,8 @@ impl<'a> From<&'a OverTime> for OverTimeRecord<'a> {
             lasting: rating.lasting,
             above_w: above_w.map(Figure),
             window_s: window_s.map(Figure),
+            feed_override: rating.overrides.map(|at| Figure(at.feed)),
+            rapid_override: rating.overrides.map(|at| Figure(at.rapid)),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Lower overrides: what holds at the largest holds at each.
 
+mod features;
+
 use std::fmt::Write as _;
 use std::io::Cursor;
 

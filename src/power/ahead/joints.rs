@@ -8,6 +8,7 @@ use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
 use crate::power::model::PowerModel;
 use crate::power::steps::{Heading, Span, StepEnergy, Steps, spans, velocity};
+use crate::power::surge::Surge;
 
 /// The means over the drives' response time, where the rules know steps of speed.
 pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps>> {
@@ -72,6 +73,23 @@ impl Ahead {
         }
     }
 
+    /// The last piece that was followed may be sped up or braked at lower overrides:
+    /// that comes on top of steps of speed next to it.
+    pub(super) fn follow_surge(&mut self, model: &PowerModel, number: u64, surge: &Surge) {
+        let Some(steps) = self.steps.as_deref_mut() else {
+            return;
+        };
+        let Some(own) = self.open.get(number) else {
+            return;
+        };
+        let sides = [surge.rises_mm_s, surge.falls_mm_s].map(|it| it.is_some());
+        steps.surge(&Heading::of(&own.mv).extremes(), sides, surge.accel_mm_s2);
+        if steps.is_surged() && !steps.is_quiet(model, &own.mv, own.want) {
+            let demand = steps.surged_demand(model, &own.mv);
+            include(&mut self.open, number, &demand);
+        }
+    }
+
     /// The axes rest after the last move: what they do until then is followed by rest.
     pub(super) fn follow_rest(&mut self, model: &PowerModel) {
         let Some(steps) = self.steps.as_deref_mut() else {
@@ -123,7 +141,10 @@ fn take(steps: &mut Steps, open: &mut Queue, model: &PowerModel, number: u64, sp
     if steps.is_quiet(model, &own.mv, own.want) {
         return;
     }
-    let demand = steps.demand(model, &own.mv);
+    let mut demand = steps.demand(model, &own.mv);
+    if steps.is_surged() {
+        demand.include(&steps.surged_demand(model, &own.mv));
+    }
     include(open, number, &demand);
 }
 

@@ -64,12 +64,23 @@ pub(super) struct Course {
     /// It is straight, and its acceleration does not change but for its sign: what it
     /// speeds up with it has at any lower speed as well.
     pub plain: bool,
+    /// Changes of speed up to here are too short to matter as ramps, mm/s.
+    pub brief_mm_s: f64,
 }
 
 impl Course {
     /// Whether it speeds up to its largest speed, and brakes from it.
     pub fn ramps(&self) -> [bool; 2] {
-        [self.start2, self.end2].map(|end2| self.plain && self.top2 > end2 * (1.0 + ROUNDING))
+        [self.start2, self.end2].map(|end2| {
+            self.plain
+                && self.top2 > end2 * (1.0 + ROUNDING)
+                && (self.brief_mm_s <= 0.0 || self.top2.sqrt() - end2.sqrt() > self.brief_mm_s)
+        })
+    }
+
+    /// Whether it ends slower than it runs.
+    pub fn brakes(&self) -> bool {
+        self.top2 > self.end2 * (1.0 + ROUNDING)
     }
 }
 

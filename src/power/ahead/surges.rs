@@ -8,6 +8,7 @@ use crate::machine::{CornerRule, LookAhead};
 use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
 use crate::power::model::PowerModel;
+use crate::power::piece::piece_demand;
 use crate::power::surge::{Surge, surge_demand};
 
 /// What is known of the path before and behind a piece.
@@ -15,6 +16,8 @@ use crate::power::surge::{Surge, surge_demand};
 pub(super) struct Surges {
     past: Past,
     pub runs: Runs,
+    /// The machine without losses in copper, once it is needed.
+    lossless: Option<Box<PowerModel>>,
     /// Of the acceleration that is certain: kinks may take of it.
     ramp_share: f64,
     path_accel_mm_s2: f64,
@@ -29,6 +32,7 @@ impl Surges {
         Self {
             past: Past::default(),
             runs: Runs::default(),
+            lossless: None,
             ramp_share,
             path_accel_mm_s2: rules.path_accel_mm_s2,
         }
@@ -75,20 +79,35 @@ impl Ahead {
             Piece::Blend(_) => false,
         };
         let top_mm_s = planned.top_speed_mm_s();
+        // The drives' mean over a step takes in what is around a shorter ramp as well.
+        let response_s = self.steps.as_ref().map_or(0.0, |steps| steps.response_s());
         let course = Course {
             start2: planned.speeds2.start,
             end2: planned.speeds2.end,
             top2: top_mm_s * top_mm_s,
             ramp2: 2.0 * planned.accel_mm_s2 * planned.length_mm,
             plain: straight && planned.section.is_none(),
+            brief_mm_s: planned.accel_mm_s2 * response_s,
         };
+        let turned = model.loses_in_turns(&open.mv).then(|| {
+            // Turned more gently an axis loses less of what it feeds back.
+            let lossless = &mut surges.lossless;
+            let lossless = lossless.get_or_insert_with(|| Box::new(model.lossless()));
+            let want = Want {
+                energy: false,
+                ..open.want
+            };
+            piece_demand(lossless, &open.mv, planned, want)
+        });
         surges.runs.forget(planned.first);
         let rises2 = surges.past.pass(&open.pace, &course);
         let falls2 = surges.runs.falls2(planned.tag, &open.pace, &course);
-        if rises2.is_none() && falls2.is_none() {
-            return None;
+        // Slower, friction takes less of what is fed back.
+        let slows = straight && course.brakes() && model.has_viscous(&open.mv);
+        if rises2.is_none() && falls2.is_none() && !slows {
+            return turned;
         }
-        let surge = Surge {
+        let mut surge = Surge {
             rises_mm_s: rises2.map(f64::sqrt),
             falls_mm_s: falls2.map(f64::sqrt),
             accel_mm_s2: planned.accel_mm_s2,
@@ -97,10 +116,22 @@ impl Ahead {
             energy: false,
             ..open.want
         };
+        let surges = surge.rises_mm_s.is_some() || surge.falls_mm_s.is_some();
+        if surges && matches!(planned.piece, Piece::Along { .. }) {
+            self.follow_surge(model, planned.tag, &surge);
+        }
+        if slows {
+            surge.falls_mm_s = Some(top_mm_s);
+        }
+        let open = self.open.get(planned.tag)?;
         let extremes = [surge.speed_mm_s(), surge.accel_mm_s2];
         if straight && model.is_straight_below_floor(&open.mv, extremes, want) {
-            return None;
+            return turned;
         }
-        Some(surge_demand(model, &open.mv, planned, surge, want))
+        let mut demand = surge_demand(model, &open.mv, planned, surge, want);
+        if let Some(turned) = &turned {
+            demand.include(turned);
+        }
+        Some(demand)
     }
 }

@@ -9,11 +9,16 @@ use crate::power::watch::{Level, Steps};
 const STEP: f64 = 0.002;
 /// Depth of halving.
 const DEPTH: u32 = 12;
+/// How well the time of a move is known that is planned with others, where the knobs
+/// stand: what a blend takes of it, s.
+const SPREAD_S: f64 = 0.5;
 
 impl SpindleBus<'_> {
     /// What it draws at most while a move lasts, step by step: base load and
     /// cutting are in it. Where the move is planned with others its time is not
-    /// known as well as a run is steep: the largest power counts throughout.
+    /// known as well as a run is steep: the largest power counts throughout, and where
+    /// the knobs stand, so that no lower override is meant, for [`SPREAD_S`] more on both
+    /// sides.
     pub(super) fn levels(
         &self,
         window: &Window<'_>,
@@ -45,17 +50,19 @@ impl SpindleBus<'_> {
             Window::Run(trace, from_s) => {
                 let to_s = from_s + duration_s;
                 let whole = trace.over(*from_s, to_s);
-                if ahead || !duration_s.is_finite() {
+                let stands = self.machine.limits.override_at.is_some();
+                if ahead && !stands || !duration_s.is_finite() {
                     return Steps::Steady(level(duration_s, whole.largest_w, whole.least_w));
                 }
                 let most_w = whole.largest_w.abs().max(whole.least_w.abs());
                 let mut levels = Vec::new();
                 let mut from_s = *from_s;
+                let spread_s = if ahead { SPREAD_S } else { 0.0 };
                 for end_s in trace.ends(from_s, to_s) {
                     steps(
                         trace,
                         [from_s, end_s],
-                        STEP * most_w,
+                        (STEP * most_w, spread_s),
                         DEPTH,
                         &mut |span, part| {
                             levels.push(level(span, part.largest_w, part.least_w));
@@ -73,16 +80,23 @@ impl SpindleBus<'_> {
 fn steps(
     trace: &SpindleTrace,
     [from_s, to_s]: [f64; 2],
-    step_w: f64,
+    (step_w, spread_s): (f64, f64),
     depth: u32,
     out: &mut impl FnMut(f64, &SpindleSpan),
 ) {
-    let part = trace.over(from_s, to_s);
-    if depth == 0 || part.largest_w - part.least_w <= step_w {
+    let part = trace.over((from_s - spread_s).max(0.0), to_s + spread_s);
+    let short = to_s - from_s < 0.25 * spread_s;
+    if depth == 0 || short || part.largest_w - part.least_w <= step_w {
         out(to_s - from_s, &part);
         return;
     }
     let middle_s = f64::midpoint(from_s, to_s);
-    steps(trace, [from_s, middle_s], step_w, depth - 1, out);
-    steps(trace, [middle_s, to_s], step_w, depth - 1, out);
+    steps(
+        trace,
+        [from_s, middle_s],
+        (step_w, spread_s),
+        depth - 1,
+        out,
+    );
+    steps(trace, [middle_s, to_s], (step_w, spread_s), depth - 1, out);
 }

@@ -21,6 +21,7 @@
 
 mod energy;
 mod spans;
+mod surged;
 mod windows;
 
 pub(super) use energy::{StepEnergy, velocity};
@@ -67,6 +68,8 @@ struct Most {
     accel_mm_s2: AxisValues,
     /// Sum of all steps.
     step_mm_s: AxisValues,
+    /// What lower overrides may add to the acceleration, up and down.
+    surge_mm_s2: [AxisValues; 2],
 }
 
 /// The last of the motion, as far as steps in it still count.
@@ -82,6 +85,8 @@ pub(super) struct Steps {
     last_step_s: f64,
     /// Until when means reach back to where the motion was in doubt.
     doubtful_to_s: f64,
+    /// Until when the last piece lasts that lower overrides may speed up or brake.
+    last_surge_s: f64,
     /// Since `since_s`, and in at least 2·τ before.
     most: [Most; 2],
     since_s: f64,
@@ -99,6 +104,7 @@ impl Steps {
             end_mm_s: [0.0; AXES],
             last_step_s: f64::NEG_INFINITY,
             doubtful_to_s: f64::NEG_INFINITY,
+            last_surge_s: f64::NEG_INFINITY,
             most: [Most::default(); 2],
             since_s: 0.0,
         }

@@ -65,6 +65,22 @@ impl Heading {
         direction
     }
 
+    /// The least and the largest part of each axis in it, at any place.
+    pub fn extremes(&self) -> [AxisValues; 2] {
+        let mut parts = [self.along; 2];
+        if let Some(arc) = &self.arc {
+            let flat = (arc.radius_mm * arc.rad_per_mm).abs();
+            for axis in arc.plane {
+                for (values, part) in parts.iter_mut().zip([-flat, flat]) {
+                    if let Some(value) = values.get_mut(axis) {
+                        *value = part;
+                    }
+                }
+            }
+        }
+        parts
+    }
+
     /// By which it turns over a length, rad.
     fn turn_rad(&self, length_mm: f64) -> f64 {
         self.arc

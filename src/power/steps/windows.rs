@@ -16,9 +16,9 @@ const LONGER: usize = 8;
 
 /// Mean speeds and accelerations of the axes, mm/s and mm/s².
 #[derive(Clone, Copy)]
-struct Mean {
-    speed: AxisValues,
-    accel: AxisValues,
+pub(super) struct Mean {
+    pub speed: AxisValues,
+    pub accel: AxisValues,
 }
 
 /// One end of a mean: a span, or rest where there is none, and an instant.
@@ -147,7 +147,7 @@ impl Steps {
 /// Raises the peaks by all that lies between two means `step_s` apart: the
 /// acceleration changes evenly, and the power of an axis is largest at a corner of
 /// what speed and acceleration may be.
-fn raise(
+pub(super) fn raise(
     model: &PowerModel,
     converter: &ConverterPower,
     axes: &[usize],

@@ -1,6 +1,7 @@
 //! What was found about a limit over time.
 
 use crate::interpret::Move;
+use crate::machine::OverrideAt;
 
 /// By how much a limit may be exceeded by rounding alone.
 const ROUNDING: f64 = 1e-9;
@@ -80,6 +81,8 @@ pub struct Rating {
     /// The motion there is not known in time: its largest power counts as if it
     /// lasted.
     pub lasting: bool,
+    /// The overrides at which it is worst, where those are lower than the largest.
+    pub overrides: Option<OverrideAt>,
 }
 
 impl Rating {
@@ -159,6 +162,7 @@ impl Worst {
             line: self.place.line,
             text: self.place.text,
             lasting: self.lasting,
+            overrides: None,
         }
     }
 }

@@ -1,0 +1,106 @@
+//! Steps of speed next to pieces that are sped up or braked at lower overrides alone.
+//!
+//! At a lower override the steps at joints are no larger than at the largest, and no
+//! more of them lie within the response time τ. The acceleration along the path comes
+//! on top: within τ each axis is accelerated by no more than
+//!
+//! ```text
+//! max(Σ of the steps up, Σ of the steps down)/τ + a·|u|
+//! ```
+//!
+//! with the largest a and |u| of the pieces around, in the direction in which they may
+//! be sped up or braked.
+
+use super::windows::{Mean, raise};
+use super::{Placed, Steps};
+use crate::interpret::Move;
+use crate::machine::{AXES, AxisValues};
+use crate::power::demand::{Demand, Totals};
+use crate::power::model::PowerModel;
+
+impl Steps {
+    /// The last piece may be sped up or braked, or both, with an acceleration along the
+    /// path; `parts`: the least and the largest share that each axis has in it.
+    pub fn surge(
+        &mut self,
+        [least, largest]: &[AxisValues; 2],
+        [rises, falls]: [bool; 2],
+        accel_mm_s2: f64,
+    ) {
+        let most = &mut self.most[0];
+        for &axis in &self.axes {
+            let ahead = largest[axis].max(0.0) * accel_mm_s2;
+            let back = (-least[axis]).max(0.0) * accel_mm_s2;
+            let mut raise = |side: usize, accel: f64| {
+                most.surge_mm_s2[side][axis] = most.surge_mm_s2[side][axis].max(accel);
+                most.accel_mm_s2[axis] = most.accel_mm_s2[axis].max(accel);
+            };
+            if rises {
+                raise(0, ahead);
+                raise(1, back);
+            }
+            if falls {
+                raise(0, back);
+                raise(1, ahead);
+            }
+        }
+        self.last_surge_s = self.end_s;
+    }
+
+    /// Whether such a piece and a step lie so near that they count together.
+    pub fn is_surged(&self) -> bool {
+        let reach_s = self.end_s - 2.0 * self.response_s;
+        let last = self.spans.back().map_or(0.0, |last| last.span.duration_s);
+        self.last_surge_s >= reach_s - last && self.last_step_s >= reach_s - last
+    }
+
+    /// What the last span and the response time before it ask for at most, together
+    /// with the acceleration along the path, on the loads of `mv`.
+    pub fn surged_demand(&self, model: &PowerModel, mv: &Move) -> Demand {
+        let mut means = [Mean {
+            speed: [0.0; AXES],
+            accel: [0.0; AXES],
+        }; 2];
+        let [least, most] = &mut means;
+        let [now, earlier] = [0, 1].map(|index| self.most[index].surge_mm_s2);
+        let [mut up, mut down]: [AxisValues; 2] =
+            [0, 1].map(|side| std::array::from_fn(|axis| now[side][axis].max(earlier[side][axis])));
+        let mut before: Option<&Placed> = None;
+        let from_s = self.spans.back().map_or(0.0, |last| last.start_s) - self.response_s;
+        for placed in &self.spans {
+            let [first, last] = placed.span.speeds_mm_s;
+            for &axis in &self.axes {
+                let u = placed.span.direction[axis];
+                let last_mm_s = before.map_or(0.0, |before| {
+                    before.span.direction[axis] * before.span.speeds_mm_s[1]
+                });
+                let step = u * first - last_mm_s;
+                if placed.start_s >= from_s {
+                    most.accel[axis] += step.max(0.0) / self.response_s;
+                    least.accel[axis] += step.min(0.0) / self.response_s;
+                }
+                if placed.end_s() >= from_s {
+                    let accel = u * (last - first) / placed.span.duration_s;
+                    up[axis] = up[axis].max(accel);
+                    down[axis] = down[axis].max(-accel);
+                    let top = u * first.max(last);
+                    most.speed[axis] = most.speed[axis].max(top);
+                    least.speed[axis] = least.speed[axis].min(top);
+                }
+            }
+            before = Some(placed);
+        }
+        for &axis in &self.axes {
+            most.accel[axis] += up[axis];
+            least.accel[axis] -= down[axis];
+        }
+        let mut demand = Demand::NONE;
+        for (index, converter) in model.converters.iter().enumerate() {
+            let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
+            let mut totals = Totals::new(idle_w);
+            raise(model, converter, &self.axes, &means, 0.0, &mut totals);
+            demand.add(index, converter, totals);
+        }
+        demand
+    }
+}
