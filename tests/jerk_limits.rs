@@ -201,7 +201,7 @@ fn a_slower_arc_may_speed_up_harder() {
     shop.put("a.ngc", "G17 G3 I2.8756 J14.4646 F59213\nM30\n");
     let (code, out, told) = shop.run("limit a.ngc --allow feed");
     assert_eq!(code, 0, "{told}");
-    assert!(out.contains("G131 = ") && out.contains("F13"), "{out}");
+    assert!(out.contains("G131 = ") && out.contains("F11211"), "{out}");
 }
 
 /// The series of speeds and powers adds up to the report, on arcs and rounded

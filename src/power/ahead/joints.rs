@@ -28,7 +28,7 @@ impl Ahead {
         };
         if own.in_doubt || self.reach2.is_some() {
             steps.doubt();
-        } else if steps.is_doubtful() {
+        } else if steps.has_doubtful_steps() {
             // Means reach back to where it may have stopped.
             own.certain = false;
         }

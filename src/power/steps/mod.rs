@@ -196,6 +196,11 @@ impl Steps {
         self.end_s <= self.doubtful_to_s
     }
 
+    /// Whether there were steps since that may have come otherwise.
+    pub fn has_doubtful_steps(&self) -> bool {
+        self.is_doubtful() && self.last_step_s >= self.end_s - 4.0 * self.response_s
+    }
+
     /// An upper bound of what is drawn and fed back, W.
     fn bound_w(&self, model: &PowerModel, converter: &ConverterPower, mv: &Move) -> [f64; 2] {
         let mut drawn_w = converter.idle_w(mv, &model.axes, AxisSet::default());

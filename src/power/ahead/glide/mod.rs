@@ -117,8 +117,7 @@ impl Ahead {
         text: &[u8],
         want: Want,
     ) -> bool {
-        let steps_in_doubt = self.steps.as_ref().is_some_and(|steps| steps.is_doubtful());
-        let doubtful = self.in_doubt || self.reach2.is_some() || steps_in_doubt;
+        let doubtful = self.in_doubt || self.reach2.is_some();
         if doubtful || want.accel || !eye.is_closed() || !self.glider.terms.suit(mv) {
             return false;
         }
@@ -189,6 +188,9 @@ impl Ahead {
     fn begin_gliding(&mut self, model: &PowerModel, eye: &mut Eye) -> Option<Glide> {
         self.largest.planner.settle();
         self.pump(model, eye);
+        if self.steps.as_ref().is_some_and(|steps| steps.is_doubtful()) {
+            return None;
+        }
         let Gliding {
             first,
             open,
