@@ -240,7 +240,7 @@ pub(super) fn axis(
 pub(super) fn ramps(machine: &Machine, mv: &Move, limits: &PathLimits) -> Profile {
     let parts = parts(machine, mv);
     let curves = curves(machine, &parts, limits);
-    if let Some((up, down)) = curves.as_ref().and_then(|curves| accel_curves(curves)) {
+    if let Some((up, down)) = curves.as_ref().and_then(accel_curves) {
         let top = limits.speed_mm_s;
         let length = up.length_to(top) + down.length_to(top);
         if let Ok(profile) = fastest(length, top, &up, &down) {

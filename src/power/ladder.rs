@@ -61,7 +61,7 @@ pub fn rungs_in_words() -> String {
     )
 }
 
-impl<'m> Assessor<'m> {
+impl Assessor<'_> {
     /// Watches the program at lower overrides too, each by an assessor for itself.
     #[must_use]
     pub fn with_lower(mut self, lower: Vec<Self>) -> Self {

@@ -67,6 +67,7 @@ impl Steps {
             [0, 1].map(|side| std::array::from_fn(|axis| now[side][axis].max(earlier[side][axis])));
         let mut before: Option<&Placed> = None;
         let from_s = self.spans.back().map_or(0.0, |last| last.start_s) - self.response_s;
+        let until_s = self.last_step_s.max(from_s) + self.response_s;
         for placed in &self.spans {
             let [first, last] = placed.span.speeds_mm_s;
             for &axis in &self.axes {
@@ -83,6 +84,8 @@ impl Steps {
                     let accel = u * (last - first) / placed.span.duration_s;
                     up[axis] = up[axis].max(accel);
                     down[axis] = down[axis].max(-accel);
+                    // No further away than the means reach.
+                    let [first, last] = [from_s, until_s].map(|at_s| placed.at(at_s)[0]);
                     let top = u * first.max(last);
                     most.speed[axis] = most.speed[axis].max(top);
                     least.speed[axis] = least.speed[axis].min(top);
