@@ -30,6 +30,8 @@ pub(crate) fn axis() -> Axis {
         servo_factor_motor: 1.0,
         servo_factor_regen: 1.0,
         friction_min_ratio: 1.0,
+        mass_error: 0.0,
+        friction_error: 0.0,
         si_per_unit: 1e-3,
     }
 }

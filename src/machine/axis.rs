@@ -137,6 +137,10 @@ pub struct Axis {
     /// Friction of the warm machine by that of the cold one, for
     /// regenerative peaks; (0, 1].
     pub friction_min_ratio: f64,
+    /// By what share the mass may be more or less than it says; [0, 1).
+    pub mass_error: f64,
+    /// The same of friction.
+    pub friction_error: f64,
     /// Metres in one mm, or radians in one degree: motion to SI.
     pub si_per_unit: f64,
 }

@@ -10,8 +10,9 @@
 //!
 //! At rest an axis holds its weight: `F = Fg`, `el = R·Fg²`.
 //!
-//! With servo factors and warm friction the force lies anywhere between that of the
-//! motor side and that of the regenerative side. `el` is convex in F: it is largest at
+//! With servo factors, warm friction and errors of mass and friction the force lies
+//! anywhere between that of the motor side (heavier while speed grows, lighter while it
+//! falls, the most friction) and that of the regenerative side (the other way round). `el` is convex in F: it is largest at
 //! one of them, and least at `F = −η·v/(2·R)` or at what is next to it.
 
 use crate::machine::Axis;
@@ -83,6 +84,8 @@ impl AxisPower {
 
     /// Takes over the data of an axis.
     pub fn new(axis: &Axis) -> Self {
+        let [light, heavy] = [1.0 - axis.mass_error, 1.0 + axis.mass_error];
+        let [loose, stiff] = [1.0 - axis.friction_error, 1.0 + axis.friction_error];
         let mut own = Self {
             si_per_unit: axis.si_per_unit,
             mass: axis.mass_kg,
@@ -92,9 +95,9 @@ impl AxisPower {
             efficiency: axis.efficiency,
             inverse_efficiency: 1.0 / axis.efficiency,
             copper: axis.copper_w_n2,
-            growing: [1.0, axis.servo_factor_motor, 1.0],
-            braking: [1.0, 1.0, axis.servo_factor_regen],
-            friction: [1.0, 1.0, axis.friction_min_ratio],
+            growing: [1.0, axis.servo_factor_motor * heavy, light],
+            braking: [1.0, light, axis.servo_factor_regen * heavy],
+            friction: [1.0, stiff, axis.friction_min_ratio * loose],
             spread: false,
         };
         own.spread = own.copper != 0.0 && own.has_factors();
@@ -131,6 +134,18 @@ impl AxisPower {
         } else {
             self.braking[side as usize]
         }
+    }
+
+    /// The most Coulomb friction.
+    #[inline]
+    pub fn coulomb_most(&self) -> f64 {
+        self.coulomb * self.friction_factor(Side::Motor)
+    }
+
+    /// The most viscous friction.
+    #[inline]
+    pub fn viscous_most(&self) -> f64 {
+        self.viscous * self.friction_factor(Side::Motor)
     }
 
     /// Factor of friction.

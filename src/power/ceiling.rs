@@ -51,10 +51,10 @@ impl Ceiling {
             ceiling.si_per_unit = ceiling.si_per_unit.max(power.si_per_unit);
             ceiling.mass = ceiling.mass.max(power.mass * factor);
             let gravity = power.gravity.abs();
-            ceiling.friction += power.coulomb + gravity;
+            ceiling.friction += power.coulomb_most() + gravity;
             let held = power.coulomb * power.friction_factor(Side::Regen);
             ceiling.excess += (gravity - held).max(0.0);
-            ceiling.viscous += power.viscous;
+            ceiling.viscous += power.viscous_most();
             ceiling.copper += power.copper;
             ceiling.inverse_efficiency = ceiling.inverse_efficiency.max(power.inverse_efficiency);
         }

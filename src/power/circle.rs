@@ -157,18 +157,18 @@ impl ArcAxis<'_> {
             let [_, accel, jerk, _] = reach.derivatives(self.shape);
             return (
                 jerk,
-                self.axis.mass * factor * jerk + self.axis.viscous * accel,
+                self.axis.mass * factor * jerk + self.axis.viscous_most() * accel,
             );
         }
         match self.shape {
-            Shape::Line(direction) => (0.0, self.axis.viscous * (direction * m.a).abs()),
+            Shape::Line(direction) => (0.0, self.axis.viscous_most() * (direction * m.a).abs()),
             Shape::Cosine(r) | Shape::Sine(r) | Shape::Turn { radius: r, .. } => {
                 let square = m.omega * m.omega;
                 let jerk = r * m.omega * amplitude(3.0 * m.alpha, square);
                 let accel = r * amplitude(m.alpha, square);
                 (
                     jerk,
-                    self.axis.mass * factor * jerk + self.axis.viscous * accel,
+                    self.axis.mass * factor * jerk + self.axis.viscous_most() * accel,
                 )
             }
         }
@@ -182,12 +182,12 @@ impl ArcAxis<'_> {
         let axis = self.axis;
         let m = &reach.fastest;
         let mass = axis.mass * factor;
-        let constant = axis.coulomb + axis.gravity.abs();
+        let constant = axis.coulomb_most() + axis.gravity.abs();
         if !reach.is_steady() {
             let [x1, x2, x3, x4] = reach.derivatives(self.shape);
-            let force = mass * x2 + axis.viscous * x1 + constant;
-            let slope = mass * x3 + axis.viscous * x2;
-            let bend = mass * x4 + axis.viscous * x3;
+            let force = mass * x2 + axis.viscous_most() * x1 + constant;
+            let slope = mass * x3 + axis.viscous_most() * x2;
+            let bend = mass * x4 + axis.viscous_most() * x3;
             return (
                 x3 * force + 2.0 * x2 * slope + x1 * bend,
                 axis.copper * 2.0 * (slope * slope + force * bend),
@@ -197,7 +197,7 @@ impl ArcAxis<'_> {
         match self.shape {
             Shape::Line(direction) => {
                 let accel = direction * m.a;
-                let slope = axis.viscous * accel;
+                let slope = axis.viscous_most() * accel;
                 (
                     2.0 * (slope * accel).abs(),
                     2.0 * axis.copper * slope * slope,
@@ -213,15 +213,15 @@ impl ArcAxis<'_> {
                 let inertial = amplitude(36.0 * w2 * alpha, f64::max(24.0 * a2, 8.0 * w4));
                 let viscous = 2.0 * a2 + amplitude(10.0 * w2 * alpha, f64::max(2.0 * a2, 4.0 * w4));
                 let mechanical = mass * r * r * w * 0.25 * inertial
-                    + axis.viscous * r * r * 0.5 * viscous
+                    + axis.viscous_most() * r * r * 0.5 * viscous
                     + constant * x3;
                 if axis.copper == 0.0 {
                     return (mechanical, 0.0);
                 }
                 let x4 = r * amplitude(3.0 * a2 + w4, 6.0 * alpha * w2);
-                let force = mass * x2 + axis.viscous * x1 + constant;
-                let slope = mass * x3 + axis.viscous * x2;
-                let bend = mass * x4 + axis.viscous * x3;
+                let force = mass * x2 + axis.viscous_most() * x1 + constant;
+                let slope = mass * x3 + axis.viscous_most() * x2;
+                let bend = mass * x4 + axis.viscous_most() * x3;
                 (
                     mechanical,
                     axis.copper * 2.0 * (slope * slope + force * bend),
@@ -257,10 +257,10 @@ impl ArcAxis<'_> {
                 (r * m.omega, r * swing, drawn, fed_back)
             }
         };
-        let constant = axis.coulomb + axis.gravity.abs();
+        let constant = axis.coulomb_most() + axis.gravity.abs();
         let largest = factors[0].max(factors[1]);
-        let force = axis.mass * accel * largest + axis.viscous * speed + constant;
-        let resisting = speed * (constant + axis.viscous * speed);
+        let force = axis.mass * accel * largest + axis.viscous_most() * speed + constant;
+        let resisting = speed * (constant + axis.viscous_most() * speed);
         [
             (axis.mass * drawn * factors[0] + resisting) * axis.inverse_efficiency
                 + axis.copper * force * force,

@@ -434,7 +434,7 @@ fn ordered([a, b]: [f64; 2]) -> [f64; 2] {
 
 /// An eighth of how much what is fed back bends with speed.
 fn bend(power: &AxisPower) -> f64 {
-    let viscous = power.viscous * power.friction_factor(Side::Regen).max(1.0);
+    let viscous = power.viscous_most();
     0.25 * (power.inverse_efficiency * viscous + power.copper * viscous * viscous)
 }
 

@@ -110,8 +110,8 @@ impl PowerModel {
             let inertia = power.mass * accel;
             let weight = power.gravity.abs();
             let force = inertia * power.accel_factor(Side::Motor, true)
-                + power.viscous * v
-                + power.coulomb
+                + power.viscous_most() * v
+                + power.coulomb_most()
                 + weight;
             let braking = inertia * power.accel_factor(Side::Regen, false) + weight
                 - power.coulomb * power.friction_factor(Side::Regen);
@@ -198,8 +198,9 @@ fn larger(a: f64, b: f64) -> f64 {
 /// Largest electrical power of an axis at speeds up to `v` in a direction in
 /// which `gravity` has to be overcome.
 fn motoring(axis: &AxisPower, v: f64, accel: f64, gravity: f64) -> f64 {
-    let driven =
-        axis.mass * accel * axis.accel_factor(Side::Motor, true) + axis.viscous * v + axis.coulomb;
+    let driven = axis.mass * accel * axis.accel_factor(Side::Motor, true)
+        + axis.viscous_most() * v
+        + axis.coulomb_most();
     // Weight that helps still costs copper when it has to be braked.
     let held = axis.coulomb * axis.friction_factor(Side::Regen);
     let braked = axis.mass * accel * axis.accel_factor(Side::Regen, false) - held;

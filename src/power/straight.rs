@@ -142,7 +142,7 @@ pub(super) fn axis_bound_w(
     let speed = direction.abs() * v;
     let drive = inertia * power.accel_factor(Side::Motor, true);
     let brake = inertia * power.accel_factor(Side::Regen, false);
-    let drag = power.coulomb + power.viscous * speed;
+    let drag = power.coulomb_most() + power.viscous_most() * speed;
     let force = drive.max(brake) + drag + gravity.abs();
     let drawn_w = (speed * (drive + drag + gravity)).max(0.0) * power.inverse_efficiency;
     let least = power.coulomb * power.friction_factor(Side::Regen) + gravity;

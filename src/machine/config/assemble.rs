@@ -47,13 +47,20 @@ pub(crate) fn machine(
             language.compensation = profile::compensation(own);
         }
     }
+    let errors = file
+        .limits
+        .as_ref()
+        .map_or_else(axis::Errors::default, |table| axis::Errors {
+            mass: table.value.mass_error.as_ref(),
+            friction: table.value.friction_error.as_ref(),
+        });
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();
     let mut force_curves = Vec::new();
     let mut responses = Responses::default();
     let mut complete = true;
     for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
-        axes[id as usize] = axis::axis(findings, id, table);
+        axes[id as usize] = axis::axis(findings, id, table, errors);
         axis_set.insert(id as usize);
         let curve = drive_curve::force(findings, id, &table.value, axes[id as usize].as_ref());
         force_curves.extend(curve.map(|curve| (id, curve)));

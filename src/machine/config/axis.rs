@@ -13,12 +13,24 @@ use super::findings::Findings;
 use super::machine_file::{AxisTable, KindName};
 use super::plausible;
 use super::quantity::{Quantities, form};
-use super::value::{At, Num};
+use super::value::{At, Num, Part};
 use crate::machine::axis::{Axis, AxisId, AxisKind};
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
 
+/// Errors of all axes that give none of their own.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Errors<'t> {
+    pub(crate) mass: Option<&'t Part>,
+    pub(crate) friction: Option<&'t Part>,
+}
+
 /// Makes an axis of its table; `None` if something is missing or given twice.
-pub(crate) fn axis(findings: &mut Findings<'_>, id: AxisId, table: &At<AxisTable>) -> Option<Axis> {
+pub(crate) fn axis(
+    findings: &mut Findings<'_>,
+    id: AxisId,
+    table: &At<AxisTable>,
+    errors: Errors<'_>,
+) -> Option<Axis> {
     let kind = kind(id, &table.value);
     let builder = Builder {
         letter: id.letter() as char,
@@ -35,6 +47,8 @@ pub(crate) fn axis(findings: &mut Findings<'_>, id: AxisId, table: &At<AxisTable
         servo_factor_motor: value(table.value.servo_factor_motor.as_ref(), 1.0),
         servo_factor_regen: value(table.value.servo_factor_regen.as_ref(), 1.0),
         friction_min_ratio: value(table.value.friction_min_ratio.as_ref(), 1.0),
+        mass_error: value(table.value.mass_error.as_ref().or(errors.mass), 0.0),
+        friction_error: value(table.value.friction_error.as_ref().or(errors.friction), 0.0),
         ..axis
     })
 }
@@ -236,6 +250,8 @@ impl Builder {
             servo_factor_motor: 1.0,
             servo_factor_regen: 1.0,
             friction_min_ratio: 1.0,
+            mass_error: 0.0,
+            friction_error: 0.0,
             si_per_unit: 1.0,
         }
     }

@@ -226,6 +226,11 @@ pub(crate) struct AxisTable {
     pub(crate) servo_factor_regen: Option<AtLeastOne>,
     /// Friction of the warm machine by that of the cold one; default 1.
     pub(crate) friction_min_ratio: Option<Share>,
+    /// By what share the mass may be more or less than it says: peaks hold for all of
+    /// them; default: that of `[limits]`.
+    pub(crate) mass_error: Option<Part>,
+    /// The same of friction.
+    pub(crate) friction_error: Option<Part>,
     /// How the load follows the position command.
     pub(crate) response: Option<At<ResponseTable>>,
     /// Filter of the position command that makes the axes answer alike.
@@ -397,6 +402,11 @@ pub(crate) struct PresetTable {
 pub(crate) struct LimitsTable {
     /// Share of the peak power that is kept free; default 0.1.
     pub(crate) margin: Option<Part>,
+    /// By what share the mass of each axis may be more or less than it says: peaks hold
+    /// for all of them; default 0.
+    pub(crate) mass_error: Option<Part>,
+    /// The same of friction.
+    pub(crate) friction_error: Option<Part>,
     /// Largest overrides that the operator may set.
     pub(crate) override_max_percent: Option<OverrideTable>,
     /// No cutting feed is lowered below this, in mm/min; default: no floor.

@@ -216,7 +216,7 @@ impl Steps {
             let steps = (now.step_mm_s[axis] + before.step_mm_s[axis]) / self.response_s;
             let [v, a] = [v, along + steps].map(|it| it * power.si_per_unit);
             let weight = power.gravity.abs();
-            let drag = power.coulomb + power.viscous * v + weight;
+            let drag = power.coulomb_most() + power.viscous_most() * v + weight;
             let [motor, regen] = [(Side::Motor, true), (Side::Regen, false)]
                 .map(|(side, grows)| power.mass * a * power.accel_factor(side, grows));
             let force = larger(motor, regen) + drag;
