@@ -1,5 +1,6 @@
 //! Tests.
 
+mod accuracy;
 mod bus;
 mod layers;
 mod conformance;

@@ -171,28 +171,6 @@ fn servo_factors_and_warm_friction_change_peaks_but_not_energy() {
     close(demand(&real, &mv).energy_j, demand(&plain, &mv).energy_j);
 }
 
-/// 500 N to speed up and to brake, 100 N of friction; 10 % and 30 % more or less.
-#[test]
-fn errors_of_mass_and_friction_count_to_the_worse_side() {
-    let plain = machine(&[Axis {
-        coulomb_n: 100.0,
-        ..axis()
-    }]);
-    let mut doubtful = plain.clone();
-    doubtful.axes[0] = doubtful.axes[0].map(|axis| Axis {
-        mass_error: 0.1,
-        friction_error: 0.3,
-        ..axis
-    });
-    let mv = straight(&plain, &[500.0], f64::INFINITY);
-    close(demand(&doubtful, &mv).peak_w, 0.5 * (550.0 + 130.0));
-    close(demand(&doubtful, &mv).regen_w, 0.5 * (550.0 - 70.0));
-    close(
-        demand(&doubtful, &mv).energy_j,
-        demand(&plain, &mv).energy_j,
-    );
-}
-
 /// 500 N to speed up and to brake, and up to 750 N while braking.
 #[test]
 fn braking_harder_than_commanded_costs_copper() {
@@ -384,37 +362,6 @@ proptest! {
         if agree(&sampled).is_err() {
             agree(&sample(&machine, &mv, &plan, 60_000))?;
         }
-    }
-
-    /// Whatever the axes weigh and rub within their errors, they ask for no more.
-    #[test]
-    fn any_axis_within_its_errors_is_covered(
-        machine in any_machine(), shape in any_arc(), delta in any_delta(), feed in any_feed(),
-        errors in [0.0..0.4_f64, 0.0..0.9], turned in any::<bool>(),
-        real in [[-1.0..1.0_f64, -1.0..1.0], [-1.0..1.0, -1.0..1.0], [-1.0..1.0, -1.0..1.0]],
-    ) {
-        let [mass_error, friction_error] = errors;
-        let (mut stated, mut plant) = (machine.clone(), machine);
-        for axis in stated.axes.iter_mut().flatten() {
-            *axis = Axis { mass_error, friction_error, ..*axis };
-        }
-        for (axis, real) in plant.axes.iter_mut().flatten().zip(real) {
-            axis.mass_kg *= 1.0 + mass_error * real[0];
-            axis.coulomb_n *= 1.0 + friction_error * real[1];
-            axis.viscous_n_s_m *= 1.0 + friction_error * real[1];
-        }
-        let (plane, radius, angles, lift, arc_feed) = shape;
-        let mv = if turned {
-            arc(&stated, plane, radius, angles, lift, arc_feed)
-        } else {
-            straight(&stated, &delta, feed)
-        };
-        let plan = plan(&stated, &mv, Overrides::default());
-        let found = PowerModel::new(&stated).demand(&mv, &plan, Want::PEAKS);
-        let sampled = sample(&plant, &mv, &plan, 60);
-        let scale = 1e-9 * gross_w(&plant, plan.top_speed_mm_s);
-        prop_assert!(found.peak_w >= sampled.peak_w - scale, "{found:?} {}", sampled.peak_w);
-        prop_assert!(found.regen_w >= sampled.regen_w - scale, "{found:?} {}", sampled.regen_w);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use gwatt::machine::{builtin, schema};
+use gwatt::pipeline::assumptions;
 use gwatt::power::spindle_run;
 use gwatt::report::{Verdict, axis_table, duration, power};
 
@@ -99,6 +100,9 @@ fn check(file: &str, terminal: Terminal) -> Result<()> {
         if let (Some(spindle), Some(run)) = (&machine.spindle, &run) {
             let (max, time, peak) = (spindle.max_rpm, duration(run.duration_s), power(run.peak_w));
             writeln!(out, "  spindle: {max} 1/min in {time}, peak {peak}")?;
+        }
+        for assumption in assumptions(&machine) {
+            writeln!(out, "  {assumption}")?;
         }
         Ok(())
     })

@@ -19,14 +19,30 @@ use crate::power::{Assessment, Assessor, Want, rungs};
 /// # Errors
 /// See [`Failure`].
 pub fn analyze<R: Read + Seek + Send>(
-    input: R,
+    mut input: R,
     machine: &Machine,
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
-    let mut front = Front::new(input, machine, options);
+    let mut summary = judge(&mut input, machine, &[], options, rows)?;
     let rungs = rungs(machine);
-    let mut analysis = Analysis::new(machine, &rungs, options, rows);
+    if !rungs.is_empty() && summary.may_exceed_over_time(machine) {
+        input.rewind().map_err(Failure::Input)?;
+        summary.over_time = judge(input, machine, &rungs, options, None)?.over_time;
+    }
+    Ok(summary)
+}
+
+/// The same, watched at `rungs` as well.
+fn judge<R: Read + Seek + Send>(
+    input: R,
+    machine: &Machine,
+    rungs: &[Machine],
+    options: &Options,
+    rows: Option<&mut dyn RowSink>,
+) -> Result<Summary, Failure> {
+    let mut front = Front::new(input, machine, options);
+    let mut analysis = Analysis::new(machine, rungs, options, rows);
     // Where little is to be judged, handing lines over costs as much.
     if options.threads > 1 && analysis.weighs() {
         front = relay(front, |files, line| {

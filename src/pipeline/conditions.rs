@@ -1,8 +1,9 @@
 //! What the figures of a run rest on.
 
+use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
-use crate::machine::{Axis, CornerRule, Machine, PathMode, Spindle, SpindleWait};
+use crate::machine::{CornerRule, Machine, PathMode, Spindle, SpindleWait};
 use crate::power::rungs_in_words;
 
 /// How the spindle counts.
@@ -38,22 +39,6 @@ fn curve_condition(machine: &Machine) -> Option<&'static str> {
         "force curves: moves from rest to rest follow them; with look-ahead peaks are those of \
          ramps along the curves, and times those of the lowest acceleration up to the move's speed",
     )
-}
-
-/// Errors of the description that the figures hold for.
-fn errors_condition(machine: &Machine) -> Option<String> {
-    let axes = || machine.axes.iter().flatten();
-    let most = |of: fn(&Axis) -> f64| axes().map(of).fold(0.0, f64::max) * 100.0;
-    let (mass, friction) = (
-        most(|axis| axis.mass_error),
-        most(|axis| axis.friction_error),
-    );
-    (mass > 0.0 || friction > 0.0).then(|| {
-        format!(
-            "peaks hold for any axis within its errors: mass up to {mass} % more or less, \
-             friction up to {friction} %"
-        )
-    })
 }
 
 /// Which overrides the figures hold for.
@@ -114,6 +99,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         "margin {} % of the converter's power",
         percent(limits.margin)
     ));
+    conditions.extend(assumptions(machine));
     conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),
@@ -171,6 +157,5 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
     }
     conditions.extend(jerk_condition(machine, summary).map(str::to_owned));
     conditions.extend(curve_condition(machine).map(str::to_owned));
-    conditions.extend(errors_condition(machine));
     conditions
 }

@@ -2,6 +2,7 @@
 
 mod advice;
 mod analyze;
+mod assumptions;
 mod batch;
 mod by_line;
 mod certify;
@@ -31,6 +32,7 @@ mod whole;
 mod writer;
 
 pub use analyze::{analyze, moves};
+pub use assumptions::assumptions;
 pub use by_line::LineSummary;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};

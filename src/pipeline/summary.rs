@@ -2,7 +2,8 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::MoveKind;
-use crate::machine::AxisSet;
+use crate::machine::{AxisSet, Machine};
+use crate::power::Measure;
 
 use super::by_line::LineSummary;
 use super::over_time::OverTime;
@@ -86,6 +87,27 @@ impl Summary {
     #[must_use]
     pub fn fits(&self) -> bool {
         self.unfit_count == 0 && self.over_time.iter().all(|found| found.rating.fits())
+    }
+
+    /// Whether the largest powers leave it open that a limit over time is exceeded at some
+    /// override: a power that lies nowhere above what a limit counts fills nothing.
+    pub(super) fn may_exceed_over_time(&self, machine: &Machine) -> bool {
+        let [converter] = machine.converters.as_slice() else {
+            return true;
+        };
+        let share = 1.0 - machine.limits.margin;
+        let fed_back_w = converter
+            .regen_power_w
+            .map_or(0.0, |power_w| share * power_w);
+        self.over_time
+            .iter()
+            .any(|found| match found.rating.measure {
+                Measure::Overload { above_w, .. } => self.peak_w > above_w,
+                Measure::Continuous { .. } => self.peak_w > found.rating.limit,
+                Measure::LowestVoltage => self.peak_w > share * converter.peak_power_w,
+                Measure::HighestVoltage => self.regen_w > fed_back_w,
+                Measure::Brake { power_w } => self.regen_w > power_w,
+            })
     }
 }
 

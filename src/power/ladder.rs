@@ -15,9 +15,9 @@ use crate::interpret::{Action, Move};
 use crate::machine::{Machine, OverrideAt};
 
 /// Shares of the largest overrides, of feeds and rapids together.
-const TOGETHER: [f64; 9] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
+const TOGETHER: [f64; 5] = [0.75, 0.5, 0.4, 0.25, 0.1];
 /// Shares of one while the other is the largest.
-const ALONE: [f64; 3] = [0.75, 0.5, 0.25];
+const ALONE: [f64; 1] = [0.5];
 /// By how much a lower override must be worse to be the one that is shown, as a share.
 const WORSE: f64 = 1e-9;
 
