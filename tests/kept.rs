@@ -8,11 +8,8 @@ fn check(dialect: &str, program: &str, options: &str) -> (i32, String) {
     let shop = Shop::mill("iso", "peak_power_w = 1e6\nregen_power_w = 1e6", "", "");
     shop.put("a.nc", program);
     shop.put("kept.var", "500 12.5\n31 4\n");
-    let (code, out, told) = shop.run(
-        &format!("check a.nc --dialect {dialect} {options}")
-            .trim_end()
-            .to_owned(),
-    );
+    let (code, out, told) =
+        shop.run(format!("check a.nc --dialect {dialect} {options}").trim_end());
     (code, out + &told)
 }
 

@@ -157,9 +157,8 @@ impl<'m> Solver<'m> {
         let speed_mm_s = blended_speed(self.machine, mv, self.largest);
         if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
             let ramps = ramps(self.machine, mv, self.largest, [f64::INFINITY; 2]);
-            let mut demand = self.model.demand(mv, &ramps, Want::PEAKS);
-            let cruises = self.model.cruises(mv, speed_mm_s);
-            cruises.iter().for_each(|own| demand.include(own));
+            let demand = self.model.demand(mv, &ramps, Want::PEAKS);
+            let demand = self.model.with_cruises(demand, mv, speed_mm_s);
             return self.model.load_beside(&demand, share, speed_mm_s);
         }
         let bound = blended_bound(self.machine, mv, self.largest);

@@ -54,6 +54,15 @@ impl PowerModel {
         Some(demand)
     }
 
+    /// A demand with the [cruises](Self::cruises).
+    #[must_use]
+    pub fn with_cruises(&self, mut demand: Demand, mv: &Move, top_mm_s: f64) -> Demand {
+        if let Some(cruises) = self.cruises(mv, top_mm_s) {
+            demand.include(&cruises);
+        }
+        demand
+    }
+
     /// What a piece of plan that turns may feed back at lower speeds, where that may be
     /// more.
     pub(super) fn turned_down(&self, mv: &Move, planned: &Planned<u64>) -> Option<Demand> {

@@ -70,7 +70,7 @@ impl Demand {
     /// Takes in what another part of the same move asks for; the energy is left
     /// aside.
     #[inline]
-    pub(crate) fn include(&mut self, other: &Self) {
+    pub(super) fn include(&mut self, other: &Self) {
         let beside = std::array::from_fn(|i| larger(self.beside[i], other.beside[i]));
         if other.converter == self.converter || self.load_ratio == f64::NEG_INFINITY {
             self.converter = other.converter;

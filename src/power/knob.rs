@@ -82,9 +82,7 @@ impl PowerModel {
         let profiles = match &planned.trajectory {
             Trajectory::Axes(profiles) => profiles,
             Trajectory::Path(_) => {
-                if let Some(cruises) = self.cruises(mv, planned.top_speed_mm_s) {
-                    demand.include(&cruises);
-                }
+                demand = self.with_cruises(demand, mv, planned.top_speed_mm_s);
                 let mut axes = mv.moving.iter();
                 let hangs = |axis: usize| self.axes.get(axis).is_some_and(|it| it.gravity != 0.0);
                 if self.loses_in_turns(mv) || mv.arc.is_some() && axes.any(hangs) {

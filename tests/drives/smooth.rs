@@ -155,7 +155,7 @@ proptest! {
         let plan = plan(&machine, &mv, Overrides::default());
         holds(&machine, &mv, &plan)?;
         let phases = &profile(&plan).phases;
-        let cruise = phases.iter().position(|phase| phase.is_cruise()).unwrap();
+        let cruise = phases.iter().position(gwatt::plan::Phase::is_cruise).unwrap();
         for (range, side) in [(0..cruise, 1.0), (cruise + 1..phases.len(), -1.0)] {
             let found: f64 = phases[range].iter().map(|phase| phase.duration_s).sum();
             let reference = time(&hardest(&machine, 1000.0, jerk, side), 1000.0);

@@ -79,9 +79,9 @@ pub fn value(converter: &Converter, measure: Measure, slices: &[Slice], share: f
             } else {
                 // With credit, what motors draw empties the capacitor.
                 let signed = |it: &Slice| {
-                    it.1.map(|bus| match converter.credit {
-                        true => bus.nominal_fed_w - bus.nominal_w.max(0.0),
-                        false => bus.nominal_fed_w,
+                    it.1.map(|bus| {
+                        let drawn_w = if converter.credit { bus.nominal_w } else { 0.0 };
+                        bus.nominal_fed_w - drawn_w.max(0.0)
                     })
                 };
                 let beyond = |it: &Slice| it.0 * (mean(signed(it)) - converter.regen_limit_w);
