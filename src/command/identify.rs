@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use gwatt::identify::flexible::{self, Choice, Flexible, Method};
 use gwatt::identify::merge::{self, AxisFigures, force_per_torque, six_digits};
 use gwatt::identify::response_table::{self, ResponseFigures};
-use gwatt::identify::rigid::{self, Friction, Rigid};
+use gwatt::identify::rigid::{self, Figure, Friction, Rigid};
 use gwatt::identify::tune::Zero;
 use gwatt::identify::{Given, Kind, Quantity, Recording, TransferFunction};
 use gwatt::report::{Heading, Verdict, flexible_json, flexible_text, rigid_json, rigid_text};
@@ -210,7 +210,13 @@ fn figures(heading: &Heading, found: &Found) -> AxisFigures {
         ),
         Found::Flexible(axis) => (axis.inertia.map_or(f64::NAN, |f| f.value), None, None),
     };
+    let std_of = |figure: Option<Figure>| figure.map_or(0.0, |figure| figure.std);
+    let std = match found {
+        Found::Rigid(rigid) => Some([rigid.mass.std, std_of(rigid.viscous), std_of(rigid.coulomb)]),
+        Found::Flexible(axis) => axis.inertia.map(|figure| [figure.std, 0.0, 0.0]),
+    };
     AxisFigures {
+        std,
         rotary: heading.rotary,
         mass,
         viscous,

@@ -89,6 +89,7 @@ fn figures(log: &PowerLog, model: &PowerModel) -> AxisFigures {
         viscous: Some(model.viscous.value),
         coulomb: Some(model.coulomb.value),
         gravity: None,
+        std: Some([model.mass, model.viscous, model.coulomb].map(|figure| figure.std)),
         efficiency: (model.efficiency < 1.0).then_some(model.efficiency),
     }
 }

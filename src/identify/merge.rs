@@ -7,7 +7,7 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::rigid::Figure;
 use super::trouble::{Outcome, Trouble};
-use crate::machine::{AxisId, Machine};
+use crate::machine::{Axis, AxisId, AxisKind, Machine};
 use crate::units::M_PER_MM;
 
 /// What is written of an axis; N·m and kg·m² for N and kg where `rotary`.
@@ -26,6 +26,9 @@ pub struct AxisFigures {
     pub gravity: Option<Figure>,
     /// Efficiency.
     pub efficiency: Option<f64>,
+    /// Standard errors of mass, viscous and Coulomb friction, where they are known; 0
+    /// for a friction that is not.
+    pub std: Option<[f64; 3]>,
 }
 
 /// Newtons per newton metre of a screw: `2π·gear/lead`.
@@ -59,6 +62,11 @@ pub fn into_machine(
             "state lead_mm (and gear_ratio) of the axis, or record load-side quantities",
         )
     })?;
+    if let Ok((machine, _)) = Machine::from_toml(path, text)
+        && let Some(Some(known)) = machine.axes.get(axis as usize)
+    {
+        raise_errors(table, known, figures);
+    }
     if let Some(margin) = margin {
         raise_margin(&mut document, margin);
     }
@@ -172,6 +180,61 @@ fn write_axis(
     Ok(())
 }
 
+/// How far mass and friction may be off, as shares, by two standard errors of
+/// each figure.
+///
+/// Friction is off by `(σ_c + σ_b·v)/(Fc + b·v)`, which grows or falls with the speed:
+/// it is largest at rest or at the largest speed, `speed` (m/s or rad/s).
+fn relative_errors(figures: &AxisFigures, speed: f64) -> [Option<f64>; 2] {
+    let Some([mass, viscous, coulomb]) = figures.std else {
+        return [None; 2];
+    };
+    let given = |figure: Option<f64>| figure.unwrap_or(0.0).max(0.0);
+    let [b, c] = [given(figures.viscous), given(figures.coulomb)];
+    let friction = [0.0, speed]
+        .map(|v| 2.0 * (coulomb + viscous * v) / (c + b * v))
+        .into_iter()
+        .fold(
+            0.0,
+            |most: f64, error| if error > most { error } else { most },
+        );
+    let known = figures.viscous.is_some() || figures.coulomb.is_some();
+    [Some(2.0 * mass / figures.mass), known.then_some(friction)]
+        // From 1 on a figure says nothing, and a machine file would be refused.
+        .map(|error| error.filter(|error| *error > 0.0 && *error < 1.0))
+}
+
+/// Writes errors of an axis that are larger than those in force.
+fn raise_errors(table: &mut dyn TableLike, axis: &Axis, figures: &AxisFigures) {
+    let travel = axis.rapid_mm_s * axis.si_per_unit;
+    let number = |key: &str| table.get(key).and_then(number_of);
+    let gear = number("gear_ratio").unwrap_or(1.0);
+    // Speed on the side of the figures: of the motor, where they are its.
+    let per_travel = match axis.kind {
+        AxisKind::Rotary => gear,
+        AxisKind::Linear if figures.rotary => {
+            number("lead_mm").map_or(1.0, |lead| force_per_torque(lead, gear))
+        }
+        AxisKind::Linear => 1.0,
+    };
+    let found = relative_errors(figures, travel * per_travel);
+    let present = [axis.mass_error, axis.friction_error];
+    for ((key, error), present) in ["mass_error", "friction_error"]
+        .into_iter()
+        .zip(found)
+        .zip(present)
+    {
+        if let Some(error) = error.filter(|error| *error > present) {
+            set(table, key, error);
+        }
+    }
+}
+
+fn number_of(item: &Item) -> Option<f64> {
+    let whole = || item.as_integer().map(|n| n as f64);
+    item.as_float().or_else(whole)
+}
+
 /// Standard errors from which on an offset is a weight.
 const CLEAR: f64 = 3.0;
 
@@ -269,6 +332,7 @@ lead_mm = 10
             coulomb: Some(-0.5),
             gravity: None,
             efficiency: None,
+            std: None,
         }
     }
 
@@ -286,6 +350,38 @@ lead_mm = 10
         // A smaller margin than the one in force changes nothing.
         let kept = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.05)).unwrap();
         assert!(!kept.contains("margin"));
+    }
+
+    #[test]
+    fn errors_are_two_standard_errors_as_a_share() {
+        let with = |text: &str, std, coulomb| {
+            let figures = AxisFigures {
+                mass: 400.0,
+                viscous: Some(100.0),
+                coulomb: Some(coulomb),
+                std: Some(std),
+                ..figures()
+            };
+            into_machine("m.toml", text, AxisId::X, &figures, None).unwrap()
+        };
+        // At rest 2·10/200, at 0.4 m/s 2·(10 + 0.4·15)/(200 + 0.4·100).
+        let known = with(MACHINE, [10.0, 15.0, 10.0], 200.0);
+        assert!(known.contains("mass_error = 0.05\n"), "{known}");
+        assert!(known.contains("friction_error = 0.133333\n"), "{known}");
+        let (machine, _) = Machine::from_toml("m.toml", &known).unwrap();
+        let axis = machine.axes[AxisId::X as usize].unwrap();
+        assert_eq!([axis.mass_error, axis.friction_error], [0.05, 0.133_333]);
+        // Friction that is well known at speed only is as little known as at rest.
+        let known = with(MACHINE, [10.0, 0.0, 20.0], 200.0);
+        assert!(known.contains("friction_error = 0.2\n"), "{known}");
+        // Of a friction that may be none nothing can be said.
+        let unknown = with(MACHINE, [10.0, 15.0, 10.0], 0.0);
+        assert!(!unknown.contains("friction_error"), "{unknown}");
+        // Larger errors in force stay.
+        let careful = format!("{MACHINE}\n[limits]\nmass_error = 0.1\nfriction_error = 0.1\n");
+        let kept = with(&careful, [10.0, 15.0, 10.0], 200.0);
+        assert!(!kept.contains("mass_error = 0.05"), "{kept}");
+        assert!(kept.contains("friction_error = 0.133333\n"), "{kept}");
     }
 
     #[test]

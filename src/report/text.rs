@@ -205,7 +205,9 @@ fn axis_row(letter: char, axis: &Axis) -> [String; 6] {
     };
     let speed = axis.rapid_mm_s * axis.si_per_unit;
     let driving = axis.mass_kg * axis.accel_mm_s2 * axis.si_per_unit * axis.servo_factor_motor;
-    let load = axis.coulomb_n + axis.viscous_n_s_m * speed + axis.gravity_n.abs();
+    let driving = driving * (1.0 + axis.mass_error);
+    let friction = axis.coulomb_n + axis.viscous_n_s_m * speed;
+    let load = friction * (1.0 + axis.friction_error) + axis.gravity_n.abs();
     let peak = driving + load;
     let peak_w = speed * peak / axis.efficiency + axis.copper_w_n2 * peak * peak;
     [
