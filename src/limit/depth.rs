@@ -63,12 +63,8 @@ impl Depths {
     }
 
     fn go_deeper(&mut self, lines: &[Place]) -> bool {
-        let late = self.rounds >= ROUNDS;
-        if late || self.lines.len() + lines.len() > LINES_MAX {
-            let before = self.everywhere;
-            let stride = if late { STRIDE } else { 1 };
-            self.everywhere = (before + stride).min(Self::DEEPEST);
-            return self.everywhere > before;
+        if self.rounds >= ROUNDS || self.lines.len() + lines.len() > LINES_MAX {
+            return self.all_deeper();
         }
         let mut deeper = false;
         let mut last = None;
@@ -83,7 +79,17 @@ impl Depths {
                 deeper = true;
             }
         }
-        deeper
+        // Where a line is as deep as can be, others have their share in it.
+        deeper || self.all_deeper()
+    }
+
+    /// Lowers all lines together.
+    fn all_deeper(&mut self) -> bool {
+        let before = self.everywhere;
+        let late = self.rounds >= ROUNDS;
+        let stride = if late { STRIDE } else { 1 };
+        self.everywhere = (before + stride).min(Self::DEEPEST);
+        self.everywhere > before
     }
 
     /// Lines that [`Self::deepen`] is to be told at most.
@@ -103,8 +109,12 @@ mod tests {
         for _ in 0..Depths::DEEPEST {
             assert!(depths.deepen(&[(0, 7), (0, 7), (0, 9)]));
         }
-        assert!(!depths.deepen(&[(0, 7)]));
+        assert_eq!(depths.everywhere, 0);
         assert!(depths.deepen(&[(0, 7), (1, 7)]));
+        assert_eq!(depths.everywhere, 0);
+        // As deep as can be: all go with it.
+        assert!(depths.deepen(&[(0, 7)]));
+        assert_eq!(depths.everywhere, 1);
     }
 
     /// However the lines take turns, there is a last round.
