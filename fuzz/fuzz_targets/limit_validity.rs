@@ -64,6 +64,7 @@ fuzz_target!(|bytes: &[u8]| {
         allow_feed: strategy & 8 == 0,
     };
     let options = Options {
+        once: false,
         reading: Reading {
             start: if options & 1 == 0 {
                 Reading::default().start
