@@ -17,6 +17,7 @@ mod profile;
 #[cfg(test)]
 pub(crate) mod random;
 mod s_curve;
+mod section;
 mod slope;
 mod spindle;
 mod track;
@@ -25,7 +26,7 @@ mod trajectory;
 pub use bound::{PathShares, SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
 pub use profile::{Phase, PhaseKind, Phases, Profile, State};
-pub use s_curve::Section;
+pub use section::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{

@@ -17,6 +17,8 @@ use smallvec::SmallVec;
 
 /// Steps at most in the search for an instant.
 const STEPS: u32 = 100;
+/// Share of a phase or of a speed that is rounding of where it ends.
+const TURN_ROUNDING: f64 = 1e-9;
 
 /// What a phase keeps constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -170,7 +172,9 @@ impl Phase {
         let mut from = 0.0;
         let mut speed = v;
         let top = -a / j;
-        for to in [if top > 0.0 && top < end { top } else { end }, end] {
+        // An acceleration that ends at 0 does not turn by rounding.
+        let turns = top > 0.0 && top < end * (1.0 - TURN_ROUNDING);
+        for to in [if turns { top } else { end }, end] {
             let last = to >= end;
             // A phase that ends at rest does not turn back by rounding.
             let reached = if last {
@@ -178,7 +182,9 @@ impl Phase {
             } else {
                 self.state_at(to).velocity_mm_s
             };
+            let least = TURN_ROUNDING * speed.abs().max(reached.abs());
             if speed * reached < 0.0
+                && speed.abs().min(reached.abs()) > least
                 && let Some(stop) = stops.into_iter().find(|stop| *stop > from && *stop < to)
             {
                 parts.push(self.between(from, stop));

@@ -74,7 +74,7 @@ impl Steepness {
     /// How long the phases of a change of speed last, s: jerk, acceleration,
     /// jerk.
     #[inline]
-    fn phases_s(self, change: f64) -> [f64; 3] {
+    pub(super) fn phases_s(self, change: f64) -> [f64; 3] {
         if change <= 0.0 {
             return [0.0; 3];
         }
@@ -288,7 +288,7 @@ impl SCurve {
     }
 
     /// Appends the phases from one speed to another, beginning at a position.
-    fn ramp(&self, profile: &mut Profile, [v0, v1]: [f64; 2], position: f64) {
+    pub(super) fn ramp(&self, profile: &mut Profile, [v0, v1]: [f64; 2], position: f64) {
         let change = (v1 - v0).abs();
         if change <= 0.0 {
             return;
@@ -315,82 +315,6 @@ impl SCurve {
         if jerk_s > 0.0 {
             push(profile, -sign * j, jerk_s, position, [v, v1], sign * a);
         }
-    }
-}
-
-/// A piece of the path of an S-curve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
-    curve: SCurve,
-    from_mm: f64,
-    /// When it begins and ends.
-    time_s: [f64; 2],
-}
-
-impl Section {
-    /// The piece from `from_mm` on between two instants.
-    #[inline]
-    pub(super) fn new(curve: SCurve, from_mm: f64, time_s: [f64; 2]) -> Self {
-        Self {
-            curve,
-            from_mm,
-            time_s,
-        }
-    }
-
-    /// How long it takes, s.
-    #[must_use]
-    #[inline]
-    pub fn duration_s(&self) -> f64 {
-        self.time_s[1] - self.time_s[0]
-    }
-
-    /// How it runs, from position 0 on.
-    #[must_use]
-    pub fn profile(&self) -> Profile {
-        let [from_s, to_s] = self.time_s;
-        let mut part = self.curve.profile().part(from_s, to_s);
-        for phase in &mut part.phases {
-            phase.position_mm -= self.from_mm;
-        }
-        part
-    }
-
-    /// The largest speed, of those at both ends and that of the curve, and a
-    /// bound of the acceleration.
-    #[inline]
-    pub(super) fn extremes(&self, start: f64, end: f64) -> (f64, f64) {
-        let curve = &self.curve;
-        let [up, down] = [curve.start, curve.end].map(|own| curve.top - own);
-        let [from_s, to_s] = self.time_s;
-        let up_s = curve.steepness.time(up);
-        let down_s = curve.duration_s() - curve.steepness.time(down);
-        let slack = 1e-9 * (to_s - from_s);
-        let mut accel = 0.0_f64;
-        if from_s < up_s + slack {
-            accel = curve.steepness.peak(up);
-        }
-        if to_s > down_s - slack {
-            accel = accel.max(curve.steepness.peak(down));
-        }
-        let cruises = to_s >= up_s - slack && from_s <= down_s + slack;
-        let top = if cruises { curve.top } else { start.max(end) };
-        (top.max(start).max(end), accel)
-    }
-
-    /// A speed that is reached over the piece at least from another one, with
-    /// half of the limits and without acceleration at both ends, mm/s.
-    #[must_use]
-    pub fn reached(&self, speed_mm_s: f64, length_mm: f64) -> f64 {
-        let Steepness {
-            accel_mm_s2,
-            jerk_mm_s3,
-        } = self.curve.steepness;
-        let half = Steepness {
-            accel_mm_s2: 0.5 * accel_mm_s2,
-            jerk_mm_s3: 0.5 * jerk_mm_s3,
-        };
-        half.farthest(speed_mm_s, length_mm)
     }
 }
 

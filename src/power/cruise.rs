@@ -21,15 +21,6 @@ use crate::plan::PathShares;
 use crate::plan::lookahead::{Piece, Planned};
 use arrayvec::ArrayVec;
 
-/// A cruise as a surge without acceleration.
-fn cruise_at(top_mm_s: f64) -> Surge {
-    Surge {
-        rises_mm_s: Some(top_mm_s),
-        falls_mm_s: None,
-        accel_mm_s2: 0.0,
-    }
-}
-
 impl PowerModel {
     /// The demand of cruises at `top_mm_s` and below; `None` where they have no more than
     /// the fastest one. Of an arc the instants next to rest alone.
@@ -66,10 +57,24 @@ impl PowerModel {
     /// What a piece of plan that turns may feed back at lower speeds, where that may be
     /// more.
     pub(super) fn turned_down(&self, mv: &Move, planned: &Planned<u64>) -> Option<Demand> {
-        if !matches!(planned.piece, Piece::Blend(_)) || !self.lets_down(mv) {
+        if !matches!(planned.piece, Piece::Blend(_)) {
             return None;
         }
-        let surge = cruise_at(planned.top_speed_mm_s());
+        // Slower, viscous friction takes less of what braking feeds back.
+        let brakes = !planned.speeds2.are_one() && self.has_viscous(mv);
+        if !brakes && !self.lets_down(mv) {
+            return None;
+        }
+        let surge = Surge {
+            rises_mm_s: Some(planned.top_speed_mm_s()),
+            falls_mm_s: None,
+            accel_mm_s2: if brakes {
+                planned.largest_accel_mm_s2()
+            } else {
+                0.0
+            },
+            section: None,
+        };
         let turned = surge_demand(self, mv, planned, surge, Want::PEAKS);
         Some(self.fed_back(mv, &turned))
     }

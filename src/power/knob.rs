@@ -16,6 +16,7 @@ use super::axis::{AxisPower, Side};
 use super::demand::{Demand, Totals, Want, larger};
 use super::independent;
 use super::model::{ConverterPower, PowerModel};
+use super::slower;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet, Machine};
 use crate::plan::{Overrides, PhaseKind, Plan, Profile, Trajectory, plan};
@@ -27,13 +28,6 @@ const CLOSE: f64 = 1e-6;
 const RANGES_MAX: usize = 400;
 /// Parts of a ramp on which the bend of what is fed back counts.
 const PARTS: u32 = 16;
-/// Overrides that are looked at of arcs on axes with copper loss, and by what share they
-/// differ.
-const SAMPLES: i32 = 24;
-const SAMPLE_RATIO: f64 = 0.92;
-/// What may lie between two of them.
-const BETWEEN: f64 = 1.01;
-
 /// One axis at one override: speeds in SI.
 #[derive(Debug, Clone, Copy)]
 struct Ride {
@@ -83,10 +77,13 @@ impl PowerModel {
             Trajectory::Axes(profiles) => profiles,
             Trajectory::Path(_) => {
                 demand = self.with_cruises(demand, mv, planned.top_speed_mm_s);
-                let mut axes = mv.moving.iter();
-                let hangs = |axis: usize| self.axes.get(axis).is_some_and(|it| it.gravity != 0.0);
-                if self.loses_in_turns(mv) || mv.arc.is_some() && axes.any(hangs) {
-                    self.turn_slower(machine, mv, largest, &mut demand);
+                let jerks = |axis: usize| {
+                    let axis = machine.axes.get(axis).and_then(Option::as_ref);
+                    axis.is_some_and(|it| it.jerk_mm_s3 > 0.0)
+                };
+                let gentler = mv.moving.iter().any(jerks) && self.has_copper(mv);
+                if mv.arc.is_some() || gentler {
+                    self.turn_slower(machine, mv, largest, want, &mut demand);
                 }
                 return demand;
             }
@@ -147,38 +144,47 @@ impl PowerModel {
         axes.any(|axis| self.axes.get(axis).is_some_and(|it| it.viscous > 0.0))
     }
 
-    /// Whether a lower override may have more fed back, since an axis that loses power in
-    /// its copper is turned more gently.
-    pub(super) fn loses_in_turns(&self, mv: &Move) -> bool {
+    /// Whether an axis that moves loses power in its copper: turned or sped up more gently
+    /// it may feed more back.
+    pub(super) fn has_copper(&self, mv: &Move) -> bool {
         let mut axes = mv.moving.iter();
-        let loses = |axis: &AxisPower| axis.copper > 0.0;
-        mv.arc.is_some() && axes.any(|axis| self.axes.get(axis).is_some_and(loses))
+        axes.any(|axis| self.axes.get(axis).is_some_and(|it| it.copper > 0.0))
     }
 
-    /// Includes what is asked for on an arc at lower overrides, where turning leaves more
-    /// acceleration along it: hardly more than at one of a ladder of overrides.
-    fn turn_slower(&self, machine: &Machine, mv: &Move, largest: Overrides, demand: &mut Demand) {
-        let mut lower = Demand::NONE;
-        for sample in 1..=SAMPLES {
-            let knob = libm::pow(SAMPLE_RATIO, f64::from(sample));
-            let overrides = Overrides {
-                feed: largest.feed * knob,
-                rapid: largest.rapid * knob,
-                ..largest
-            };
-            lower.include(&self.demand(mv, &plan(machine, mv, overrides), Want::PEAKS));
-        }
-        let near = |lower: f64, own: f64| {
-            if lower * BETWEEN <= own {
-                own
-            } else {
-                lower * BETWEEN
-            }
+    /// Includes what is asked for on an arc at lower overrides, if that is of interest.
+    fn turn_slower(
+        &self,
+        machine: &Machine,
+        mv: &Move,
+        largest: Overrides,
+        want: Want,
+        demand: &mut Demand,
+    ) {
+        let at = |knob: f64| {
+            let (feed, rapid) = (largest.feed * knob, largest.rapid * knob);
+            plan(
+                machine,
+                mv,
+                Overrides {
+                    feed,
+                    rapid,
+                    ..largest
+                },
+            )
         };
-        lower.peak_w = near(lower.peak_w, demand.peak_w);
-        lower.regen_w = near(lower.regen_w, demand.regen_w);
-        lower.load_ratio = near(lower.load_ratio, demand.load_ratio);
-        demand.include(&lower);
+        // Where less is taken for turning, more is left for speeding up.
+        let steepest_mm_s2 = at(slower::LEAST).accel_mm_s2;
+        let fastest_mm_s = at(1.0).top_speed_mm_s;
+        let per_mm = mv.arc.as_ref().map_or(0.0, |arc| 1.0 / arc.radius_mm);
+        let turning_mm_s2 = fastest_mm_s * fastest_mm_s * per_mm;
+        if self.is_below_floor(mv, [fastest_mm_s, steepest_mm_s2 + turning_mm_s2], want) {
+            return;
+        }
+        let mut lower = Demand::NONE;
+        for knob in slower::shares() {
+            lower.include(&self.demand(mv, &at(knob), Want::PEAKS));
+        }
+        demand.include_slower(lower);
     }
 
     /// The same without losses in the copper.

@@ -43,6 +43,7 @@ mod robust;
 #[cfg(test)]
 mod sample;
 mod search;
+mod slower;
 mod overlap;
 mod spindle;
 mod spindle_state;

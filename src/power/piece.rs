@@ -7,6 +7,7 @@
 use super::blend;
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
+use super::slower::shares;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::lookahead::{Piece, Planned};
@@ -33,6 +34,36 @@ pub(super) fn piece_demand(
         }
         Piece::Blend(blend) => model.blend_demand(mv, blend, &profile, want),
     }
+}
+
+/// What a piece that turns asks for at its own speeds or at lower ones, if that is of
+/// interest. `None` for lines; of an S-curve that others share, too.
+pub(super) fn slower_demand(
+    model: &PowerModel,
+    mv: &Move,
+    planned: &Planned<u64>,
+    want: Want,
+) -> Option<Demand> {
+    let turns = match planned.piece {
+        Piece::Along { .. } => mv.arc.is_some(),
+        Piece::Joined { .. } => false,
+        Piece::Blend(_) => true,
+    };
+    if !turns || is_quiet(model, mv, planned, want) {
+        return None;
+    }
+    let want = Want {
+        energy: false,
+        ..Want::PEAKS
+    };
+    planned.slowed(1.0)?;
+    let mut slower = Demand::NONE;
+    for piece in shares().filter_map(|share| planned.slowed(share)) {
+        slower.include(&piece_demand(model, mv, &piece, want));
+    }
+    let mut demand = piece_demand(model, mv, planned, want);
+    demand.include_slower(slower);
+    Some(demand)
 }
 
 /// Whether a quick bound shows that the peaks of a piece are of no interest.

@@ -11,7 +11,7 @@ use super::piece::straight_line;
 use crate::interpret::Move;
 use crate::machine::AxisValues;
 use crate::plan::lookahead::{Piece, Planned};
-use crate::plan::{Blend, PathShares, Plan, SpeedBound, Trajectory};
+use crate::plan::{Blend, PathShares, Plan, Section, SpeedBound, Trajectory};
 use std::f64::consts::PI;
 
 /// Stretches of a turn over which the directions change little, and of a piece at most.
@@ -26,6 +26,8 @@ pub(super) struct Surge {
     pub falls_mm_s: Option<f64>,
     /// mm/s².
     pub accel_mm_s2: f64,
+    /// With limits of jerk: the piece whose ramp from rest is as steep as may be.
+    pub section: Option<Section>,
 }
 
 /// What a piece of a plan, which belongs to the move `mv`, may ask for.
@@ -69,10 +71,15 @@ fn line_demand(model: &PowerModel, mv: &Move, surge: Surge, want: Want) -> Deman
         };
         let mut plan = Plan::ramps(speed_mm_s, surge.accel_mm_s2);
         if let Trajectory::Path(profile) = &mut plan.trajectory {
-            if last {
-                profile.phases.reverse();
+            match &surge.section {
+                Some(section) => *profile = section.ramp(speed_mm_s, last),
+                None => {
+                    if last {
+                        profile.phases.reverse();
+                    }
+                    profile.phases.truncate(1);
+                }
             }
-            profile.phases.truncate(1);
         }
         demand.include(&model.demand(mv, &plan, want));
     }

@@ -15,14 +15,19 @@
 use super::demand::Demand;
 use super::model::PowerModel;
 use super::piece::straight_line;
+use super::slower::shares;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::lookahead::{Piece, Planned};
-use crate::plan::{PathShares, Profile, SpeedBound, State};
+use crate::plan::{PathShares, Phase, PhaseKind, Profile, SpeedBound, State};
 
 /// Slices of the time that two moves share, of which one turns: over each the
 /// directions change little.
 const SLICES: u32 = 8;
+/// Halvings in the search for the override at which they share most.
+const HALVINGS: u32 = 40;
+/// By what share two times may differ by rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// A piece of path that may share its time with another one.
 #[derive(Debug, Clone)]
@@ -32,11 +37,18 @@ pub(super) struct Ride {
     path: Move,
     profile: Profile,
     accel_mm_s2: f64,
+    length_mm: f64,
+    /// Where the piece begins on the path, mm.
+    from_mm: f64,
+    /// The speed that is asked for, and as far as axes and curvature permit it, mm/s.
+    asked_mm_s: f64,
+    cap_mm_s: f64,
 }
 
 impl Ride {
-    /// A piece of the path of `mv`; `None` for a blend.
-    pub fn of(mv: &Move, planned: &Planned<u64>) -> Option<Self> {
+    /// A piece of the path of `mv`, with the speed that is asked for and as far as it is
+    /// permitted, mm/s; `None` for a blend.
+    pub fn of(mv: &Move, planned: &Planned<u64>, [asked_mm_s, cap_mm_s]: [f64; 2]) -> Option<Self> {
         let mut profile = planned.profile();
         let path = match &planned.piece {
             Piece::Blend(_) => return None,
@@ -48,12 +60,61 @@ impl Ride {
                 mv.clone()
             }
         };
+        let from_mm = match planned.piece {
+            Piece::Along { from_mm, .. } => from_mm,
+            _ => 0.0,
+        };
         Some(Self {
             moves: [planned.first, planned.tag],
             path,
             profile,
             accel_mm_s2: planned.largest_accel_mm_s2(),
+            length_mm: planned.length_mm,
+            from_mm,
+            asked_mm_s,
+            cap_mm_s,
         })
+    }
+
+    /// The speed that it gets to from rest and to rest at a share of the override, mm/s.
+    fn speed_mm_s(&self, share: f64) -> f64 {
+        let peak = (self.accel_mm_s2 * self.length_mm).sqrt();
+        let asked = share * self.asked_mm_s;
+        peak.min(asked).min(self.cap_mm_s)
+    }
+
+    /// The same, where it only comes to rest, or begins, over some seconds.
+    fn ramp(&self, speed_mm_s: f64, duration_s: f64, begins: bool) -> Self {
+        let accel = self.accel_mm_s2;
+        let mut profile = Profile::default();
+        let mut push = |duration_s: f64, position_mm: f64, ends: [f64; 2], accel_mm_s2: f64| {
+            profile.phases.push(Phase {
+                kind: PhaseKind::ConstantAcceleration,
+                duration_s,
+                position_mm,
+                velocity_mm_s: ends[0],
+                end_velocity_mm_s: ends[1],
+                accel_mm_s2,
+            });
+        };
+        if begins {
+            let up_s = duration_s.min(speed_mm_s / accel);
+            let top = accel * up_s;
+            push(up_s, self.from_mm, [0.0, top], accel);
+            if duration_s > up_s {
+                let from_mm = self.from_mm + 0.5 * top * up_s;
+                push(duration_s - up_s, from_mm, [top; 2], 0.0);
+            }
+        } else {
+            let top = accel * duration_s;
+            let back_mm = (0.5 * top * duration_s).min(self.length_mm);
+            let from_mm = self.from_mm + self.length_mm - back_mm;
+            push(duration_s, from_mm, [top, 0.0], -accel);
+        }
+        Self {
+            profile,
+            ..self.clone()
+        }
     }
 
     fn state(&self, t: f64) -> State {
@@ -74,6 +135,56 @@ impl Ride {
         let places = [from_s, to_s].map(|t| self.state(t).position_mm);
         PathShares::of(&self.path, places)
     }
+}
+
+/// What two rides ask for while they share their time at any override: where the ramps
+/// at the largest are as long as the paths, they share more of it at lower ones, as long
+/// as the longer ramp lasts. `overlap_s` is that at the largest.
+pub(super) fn tandem_demand_at_any(
+    model: &PowerModel,
+    mv: &Move,
+    rides: [&Ride; 2],
+    overlap_s: f64,
+) -> Demand {
+    let mut demand = tandem_demand(model, mv, rides, overlap_s);
+    // As long as the longer ramp lasts, unless a path is passed sooner: the one falls with
+    // the speeds, the other grows.
+    let lasts_s = |share: f64| {
+        let speeds = rides.map(|ride| ride.speed_mm_s(share));
+        let ramps_s = [0, 1].map(|i| speeds[i] / rides[i].accel_mm_s2);
+        let paths_s = [0, 1].map(|i| rides[i].length_mm / speeds[i]);
+        let longer_s = ramps_s[0].max(ramps_s[1]);
+        (longer_s, paths_s[0].min(paths_s[1]), ramps_s[0], speeds[1])
+    };
+    let (longer_s, passed_s, own_s, _) = lasts_s(1.0);
+    let at_largest_s = longer_s.min(passed_s).min(own_s);
+    if longer_s <= passed_s || overlap_s < at_largest_s * (1.0 - ROUNDING) {
+        // The tolerance may end it sooner, at any override.
+        return demand;
+    }
+    let mut shares_of = [0.0, 1.0];
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (shares_of[0] + shares_of[1]);
+        let (longer_s, passed_s, ..) = lasts_s(middle);
+        shares_of[usize::from(longer_s > passed_s)] = middle;
+    }
+    let longest = shares_of[1];
+    let mut slower = Demand::NONE;
+    for share in shares()
+        .take_while(|share| *share > longest)
+        .chain([longest])
+    {
+        let (longer_s, passed_s, own_s, speed_mm_s) = lasts_s(share);
+        let lower_s = longer_s.min(passed_s).min(own_s);
+        if lower_s > overlap_s * (1.0 + ROUNDING) {
+            let [first, next] = rides;
+            let first = first.ramp(0.0, lower_s, false);
+            let next = next.ramp(speed_mm_s, lower_s, true);
+            slower.include(&tandem_demand(model, mv, [&first, &next], lower_s));
+        }
+    }
+    demand.include_slower(slower);
+    demand
 }
 
 /// What two rides ask for while they share their time: `overlap_s` before the end of

@@ -54,7 +54,8 @@ pub struct Element<T> {
     pub rapid: bool,
     /// Path length in mm, positive.
     pub length_mm: f64,
-    /// Speed that is asked for in mm/s; infinite for a rapid.
+    /// Speed that is asked for in mm/s; of a rapid infinite, unless its override is
+    /// below 100 %.
     pub feed_mm_s: f64,
     /// Speed that the axes permit, mm/s. Of an arc without its curvature.
     pub speed_mm_s: f64,
@@ -160,6 +161,11 @@ impl<T> Element<T> {
             None => limits::straight(machine, mv, overrides, &caps),
         };
         self.speed_mm_s = limits.speed_mm_s;
+        if self.rapid && overrides.rapid > 0.0 && overrides.rapid < 1.0 {
+            // The knob is turned while it runs; what is decided before knows nothing of it.
+            self.feed_mm_s = limits.speed_mm_s;
+            self.speed_mm_s = limits.speed_mm_s / overrides.rapid;
+        }
         self.accel_mm_s2 = limits.accel_mm_s2.min(mv.path_accel_mm_s2);
         self.jerk_mm_s3 = limits.jerk_mm_s3;
         if let Some(arc) = &mv.arc {

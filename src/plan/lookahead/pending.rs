@@ -72,7 +72,11 @@ impl<T: Copy> Pending<T> {
         let element = &self.element;
         let max_speed = element.speed_mm_s.min(element.curve_speed_mm_s);
         self.is_line = is_line;
-        self.expected_mm_s = element.feed_mm_s * feed_ratio;
+        self.expected_mm_s = if element.rapid {
+            f64::INFINITY
+        } else {
+            element.feed_mm_s * feed_ratio
+        };
         self.from_mm = 0.0;
         self.length_mm = element.length_mm;
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());

@@ -122,6 +122,30 @@ impl<T> Planned<T> {
         (own_s - self.overlap_s).max(0.0)
     }
 
+    /// The same at a share of its speeds; `None` where it is part of a longer S-curve.
+    #[must_use]
+    pub fn slowed(&self, share: f64) -> Option<Self>
+    where
+        T: Clone,
+    {
+        let Speeds2 { start, end, top } = self.speeds2;
+        let whole = start == 0.0 && end == 0.0;
+        if self.section.is_some() && !whole {
+            return None;
+        }
+        let share2 = share * share;
+        let section = self.section.map(|section| section.slowed(share));
+        Some(Self {
+            speeds2: Speeds2 {
+                start: share2 * start,
+                end: share2 * end,
+                top: share2 * top,
+            },
+            section,
+            ..self.clone()
+        })
+    }
+
     /// How it runs.
     #[must_use]
     #[inline]

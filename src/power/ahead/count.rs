@@ -9,7 +9,7 @@ use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 use crate::power::piece::{is_quiet, piece_demand};
 use crate::power::steps::StepEnergy;
-use crate::power::tandem::{Ride, tandem_demand};
+use crate::power::tandem::{Ride, tandem_demand, tandem_demand_at_any};
 
 impl Ahead {
     /// Counts a piece of path.
@@ -192,13 +192,22 @@ impl Ahead {
     fn ride(&mut self, model: &PowerModel, planned: &Planned<u64>) {
         let last = self.last_ride.take();
         let open = self.open.get(planned.tag).filter(|_| planned.overlaps);
-        let Some(ride) = open.and_then(|open| Ride::of(&open.mv, planned)) else {
+        let ride = open.and_then(|open| {
+            let speeds2 = [open.pace.asked2, open.pace.cap2];
+            Ride::of(&open.mv, planned, speeds2.map(f64::sqrt))
+        });
+        let Some(ride) = ride else {
             return;
         };
         if let Some(last) = last.filter(|_| planned.overlap_s > 0.0)
             && let Some(open) = self.open.get(planned.tag)
         {
-            let demand = tandem_demand(model, &open.mv, [&last, &ride], planned.overlap_s);
+            let (rides, overlap_s) = ([&last, &ride], planned.overlap_s);
+            let demand = if self.surges.is_some() {
+                tandem_demand_at_any(model, &open.mv, rides, overlap_s)
+            } else {
+                tandem_demand(model, &open.mv, rides, overlap_s)
+            };
             for number in last.moves[0]..=ride.moves[1] {
                 if let Some(open) = self.open.get_mut(number) {
                     open.assessment.demand.include(&demand);

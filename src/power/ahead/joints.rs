@@ -15,7 +15,9 @@ pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps
     // LinuxCNC takes the acceleration for a kink from that along the path.
     let stepped = !matches!(rules.corner, CornerRule::LinuxCnc { .. });
     let response_s = machine.path.response_time_s;
-    stepped.then(|| Box::new(Steps::new(machine.axis_set, response_s)))
+    let alone = machine.limits.override_at.is_some();
+    let gentlest = if alone { 1.0 } else { 0.0 };
+    stepped.then(|| Box::new(Steps::new(machine.axis_set, response_s, gentlest)))
 }
 
 impl Ahead {

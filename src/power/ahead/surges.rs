@@ -5,10 +5,11 @@ use super::Ahead;
 use super::pace::{Course, Pace, Past};
 use super::runs::Runs;
 use crate::machine::{CornerRule, LookAhead};
+use crate::plan::Section;
 use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
 use crate::power::model::PowerModel;
-use crate::power::piece::piece_demand;
+use crate::power::piece::{piece_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
 
 /// What is known of the path before and behind a piece.
@@ -16,6 +17,9 @@ use crate::power::surge::{Surge, surge_demand};
 pub(super) struct Surges {
     past: Past,
     pub runs: Runs,
+    /// With limits of jerk the speed, squared, that is not exceeded at the end of the
+    /// last piece, mm²/s².
+    reached2: f64,
     /// The machine without losses in copper, once it is needed.
     lossless: Option<Box<PowerModel>>,
     /// Of the acceleration that is certain: kinks may take of it.
@@ -32,6 +36,7 @@ impl Surges {
         Self {
             past: Past::default(),
             runs: Runs::default(),
+            reached2: 0.0,
             lossless: None,
             ramp_share,
             path_accel_mm_s2: rules.path_accel_mm_s2,
@@ -43,7 +48,7 @@ impl Surges {
     pub fn push(&mut self, number: u64, element: &Element<u64>) -> Pace {
         let top_mm_s = element.top_mm_s();
         let asked_mm_s = if element.rapid {
-            element.speed_mm_s
+            top_mm_s
         } else {
             element.feed_mm_s
         };
@@ -58,6 +63,41 @@ impl Surges {
         };
         self.runs.push(number, &mut pace);
         pace
+    }
+
+    /// The machine without losses in copper.
+    fn lossless(&mut self, model: &PowerModel) -> &PowerModel {
+        let lossless = &mut self.lossless;
+        lossless.get_or_insert_with(|| Box::new(model.lossless()))
+    }
+
+    /// A piece with limits of jerk: where other speeds are asked for, the curve that it
+    /// is part of begins and ends elsewhere and has other limits. So it may be sped up
+    /// and braked at any of its speeds, unless it is a curve for itself.
+    #[cold]
+    fn free(&mut self, section: &Section, planned: &Planned<u64>) -> Option<Surge> {
+        let [from_rest, to_rest] =
+            [planned.speeds2.start, planned.speeds2.end].map(|end2| end2 == 0.0);
+        let accel_mm_s2 = section.peak_accel_mm_s2();
+        let cap2 = section.cap_mm_s() * section.cap_mm_s();
+        let start2 = if from_rest { 0.0 } else { self.reached2 };
+        let ramp2 = 2.0 * accel_mm_s2 * planned.length_mm;
+        let end2 = cap2.min(start2 + ramp2);
+        self.reached2 = end2;
+        if from_rest && to_rest {
+            return None;
+        }
+        let top2 = if to_rest {
+            end2.min(0.5 * (start2 + ramp2))
+        } else {
+            end2
+        };
+        Some(Surge {
+            rises_mm_s: Some(top2.sqrt()),
+            falls_mm_s: Some(top2.sqrt()),
+            accel_mm_s2,
+            section: Some(*section),
+        })
     }
 
     /// Whether nothing but one knob has a say at a speed, squared.
@@ -89,48 +129,78 @@ impl Ahead {
             plain: straight && planned.section.is_none(),
             brief_mm_s: planned.accel_mm_s2 * response_s,
         };
-        let turned = model.loses_in_turns(&open.mv).then(|| {
-            // Turned more gently an axis loses less of what it feeds back.
-            let lossless = &mut surges.lossless;
-            let lossless = lossless.get_or_insert_with(|| Box::new(model.lossless()));
+        let gentler = open.mv.arc.is_some() || !straight || planned.section.is_some();
+        let turned = (gentler && model.has_copper(&open.mv)).then(|| {
+            // Sped up or turned more gently an axis loses less of what it feeds back.
+            let lossless = surges.lossless(model);
             let want = Want {
                 energy: false,
                 ..open.want
             };
             piece_demand(lossless, &open.mv, planned, want)
         });
+        let slower = slower_demand(model, &open.mv, planned, open.want);
         surges.runs.forget(planned.first);
-        let rises2 = surges.past.pass(&open.pace, &course);
-        let falls2 = surges.runs.falls2(planned.tag, &open.pace, &course);
-        // Slower, friction takes less of what is fed back.
-        let slows = straight && course.brakes() && model.has_viscous(&open.mv);
-        if rises2.is_none() && falls2.is_none() && !slows {
-            return turned;
-        }
-        let mut surge = Surge {
-            rises_mm_s: rises2.map(f64::sqrt),
-            falls_mm_s: falls2.map(f64::sqrt),
-            accel_mm_s2: planned.accel_mm_s2,
+        let mut surge = if let Some(section) = &planned.section {
+            surges.free(section, planned)
+        } else {
+            let rises2 = surges.past.pass(&open.pace, &course);
+            let falls2 = surges.runs.falls2(planned.tag, &open.pace, &course);
+            let either = rises2.is_some() || falls2.is_some();
+            either.then(|| Surge {
+                rises_mm_s: rises2.map(f64::sqrt),
+                falls_mm_s: falls2.map(f64::sqrt),
+                accel_mm_s2: planned.accel_mm_s2,
+                section: None,
+            })
         };
+        if let Some(surge) = surge
+            && matches!(planned.piece, Piece::Along { .. })
+        {
+            self.follow_surge(model, planned.tag, &surge);
+        }
+        let open = self.open.get(planned.tag)?;
+        // Slower, friction takes less of what is fed back.
+        if straight && course.brakes() && model.has_viscous(&open.mv) {
+            let slowed = surge.get_or_insert(Surge {
+                rises_mm_s: None,
+                falls_mm_s: None,
+                accel_mm_s2: planned.accel_mm_s2,
+                section: None,
+            });
+            slowed.falls_mm_s = Some(slowed.falls_mm_s.unwrap_or(0.0).max(top_mm_s));
+        }
+        let surged = surge.and_then(|surge| self.surged(model, planned, &surge, straight));
+        [turned, slower, surged]
+            .into_iter()
+            .flatten()
+            .reduce(|mut all, one| {
+                all.include(&one);
+                all
+            })
+    }
+
+    /// What a surge asks for, if that is of interest.
+    fn surged(
+        &mut self,
+        model: &PowerModel,
+        planned: &Planned<u64>,
+        surge: &Surge,
+        straight: bool,
+    ) -> Option<Demand> {
+        let open = self.open.get(planned.tag)?;
         let want = Want {
             energy: false,
             ..open.want
         };
-        let surges = surge.rises_mm_s.is_some() || surge.falls_mm_s.is_some();
-        if surges && matches!(planned.piece, Piece::Along { .. }) {
-            self.follow_surge(model, planned.tag, &surge);
-        }
-        if slows {
-            surge.falls_mm_s = Some(top_mm_s);
-        }
-        let open = self.open.get(planned.tag)?;
         let extremes = [surge.speed_mm_s(), surge.accel_mm_s2];
         if straight && model.is_straight_below_floor(&open.mv, extremes, want) {
-            return turned;
+            return None;
         }
-        let mut demand = surge_demand(model, &open.mv, planned, surge, want);
-        if let Some(turned) = &turned {
-            demand.include(turned);
+        let mut demand = surge_demand(model, &open.mv, planned, *surge, want);
+        if surge.section.is_some() && model.has_copper(&open.mv) {
+            let lossless = self.surges.as_mut()?.lossless(model);
+            demand.include(&surge_demand(lossless, &open.mv, planned, *surge, want));
         }
         Some(demand)
     }

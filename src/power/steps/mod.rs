@@ -76,6 +76,8 @@ struct Most {
 #[derive(Debug)]
 pub(super) struct Steps {
     response_s: f64,
+    /// The least share of a step that there may be at lower overrides; 1 at one alone.
+    gentlest: f64,
     axes: ArrayVec<usize, AXES>,
     spans: VecDeque<Placed>,
     end_s: f64,
@@ -93,10 +95,13 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Nothing moves yet. `response_s`: over how long the drives spread a step.
-    pub fn new(axes: AxisSet, response_s: f64) -> Self {
+    /// Nothing moves yet. `response_s`: over how long the drives spread a step;
+    /// `gentlest`: the least share of it that lower overrides leave, 1 where they do not
+    /// count.
+    pub fn new(axes: AxisSet, response_s: f64, gentlest: f64) -> Self {
         Self {
             response_s,
+            gentlest,
             axes: axes.iter().collect(),
             spans: VecDeque::with_capacity(64),
             end_s: 0.0,
@@ -120,7 +125,7 @@ impl Steps {
         if !self.spans.is_empty() {
             let mut axes = AxisSet::default();
             self.axes.iter().for_each(|axis| axes.insert(*axis));
-            *self = Self::new(axes, self.response_s);
+            *self = Self::new(axes, self.response_s, self.gentlest);
         }
     }
 

@@ -101,7 +101,7 @@ impl Steps {
         for (index, converter) in model.converters.iter().enumerate() {
             let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
             let mut totals = Totals::new(idle_w);
-            raise(model, converter, &self.axes, &means, 0.0, &mut totals);
+            raise(model, converter, &self.axes, &means, [0.0; 2], &mut totals);
             demand.add(index, converter, totals);
         }
         demand

@@ -91,7 +91,14 @@ impl Steps {
                     tau,
                 )
             });
-            raise(model, converter, &self.axes, &means, step_s, totals);
+            raise(
+                model,
+                converter,
+                &self.axes,
+                &means,
+                [step_s, self.gentlest],
+                totals,
+            );
             let next_s = end_s + step_s;
             if next_s <= end_s {
                 break;
@@ -126,7 +133,14 @@ impl Steps {
                 rest_mm: &last.place_mm,
             };
             let mean = self.mean([from, to], away_s(placed));
-            raise(model, converter, &self.axes, &[mean; 2], 0.0, totals);
+            raise(
+                model,
+                converter,
+                &self.axes,
+                &[mean; 2],
+                [0.0, self.gentlest],
+                totals,
+            );
         }
     }
 
@@ -146,13 +160,14 @@ impl Steps {
 
 /// Raises the peaks by all that lies between two means `step_s` apart: the
 /// acceleration changes evenly, and the power of an axis is largest at a corner of
-/// what speed and acceleration may be.
+/// what speed and acceleration may be. What is fed back takes in any share of the
+/// acceleration from the `gentlest` on.
 pub(super) fn raise(
     model: &PowerModel,
     converter: &ConverterPower,
     axes: &[usize],
     means: &[Mean; 2],
-    step_s: f64,
+    [step_s, gentlest]: [f64; 2],
     totals: &mut Totals,
 ) {
     let (mut drawn_w, mut fed_back_w) = (0.0, 0.0);
@@ -182,7 +197,9 @@ pub(super) fn raise(
                 f(a, b)
             });
             most = most.max(power.most(v, [low, high]));
-            least = least.min(power.least(v, [low, high]));
+            // Stepped more gently an axis loses less in its copper.
+            let held = power.force(Side::Regen, v, gentlest * accels[0], sign);
+            least = least.min(power.least(v, [low.min(held), high.max(held)]));
         }
         if converter.credit_regen {
             drawn_w += most;

@@ -30,7 +30,8 @@ mod tests;
 use std::collections::VecDeque;
 
 use super::super::profile::Profile;
-use super::super::s_curve::{SCurve, Section, Steepness};
+use super::super::s_curve::{SCurve, Steepness};
+use super::super::section::Section;
 use super::window::{Node, OPEN_MAX, Span, lower};
 
 /// How far a higher speed may lower another one by rounding, as a share.
@@ -80,6 +81,8 @@ struct Growing {
 #[derive(Debug, Clone)]
 struct Current {
     curve: SCurve,
+    /// The largest speed that it might have.
+    cap: f64,
     profile: Profile,
     /// Elements that are left.
     left: usize,
@@ -382,6 +385,7 @@ impl<P> Runs<P> {
         };
         Some(Current {
             curve,
+            cap: run.top,
             profile: if run.count > 1 {
                 curve.profile()
             } else {
@@ -411,7 +415,8 @@ impl Current {
             self.from_mm += element.length;
             self.advance();
         }
-        let section = Section::new(self.curve, from_mm, [from_s, self.from_s]);
+        let times_s = [from_s, self.from_s];
+        let section = Section::new(self.curve, [from_mm, self.cap], times_s, element.steepness);
         let (top, accel) = section.extremes(start, self.speed);
         Span {
             start2: start * start,

@@ -26,7 +26,8 @@ mod tests;
 
 use std::collections::VecDeque;
 
-use super::super::s_curve::{Section, Steepness};
+use super::super::s_curve::Steepness;
+use super::super::section::Section;
 use super::runs::Runs;
 
 /// Elements that are not final, at most; beyond it the older half is released
