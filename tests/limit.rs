@@ -10,6 +10,7 @@ mod random;
 mod reader;
 mod rewriting;
 mod rows;
+mod stops;
 mod whole;
 
 use gwatt::diagnostic::Diagnostic;

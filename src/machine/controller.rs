@@ -114,6 +114,20 @@ pub struct Dialect {
     pub g28_all: bool,
 }
 
+impl Language {
+    /// The shortest dwell as a block, and how long it lasts, s. Where the letter counts
+    /// whole units, one of them, since it is not known that a dwell of no time stops.
+    #[must_use]
+    pub fn shortest_dwell(&self) -> (String, f64) {
+        if let Some((letter, unit_s)) = self.dialect.dwell_whole.first() {
+            return (format!("G4 {}1", char::from(*letter)), *unit_s);
+        }
+        let letter = self.dwell.first();
+        let letter = letter.map_or('P', |(letter, _)| char::from(*letter));
+        (format!("G4 {letter}0"), 0.0)
+    }
+}
+
 impl Dialect {
     /// Whether the words of a block need a second look.
     #[must_use]
@@ -222,8 +236,8 @@ pub struct Planner {
     pub arc_rule: ArcRule,
     /// What happens at the ends of rapids in a mode that blends.
     pub rapid_joint: RapidJoint,
-    /// Whether a dwell of no time ends the move before it at rest, so that a
-    /// rapid may be written as a feed between two of them.
+    /// Whether the [shortest dwell](Language::shortest_dwell) ends the move before it at
+    /// rest, so that a rapid may be written as a feed between two of them.
     pub dwell_stops: bool,
     /// What waits for the spindle's speed, if the machine does not say.
     pub spindle_wait: SpindleWait,

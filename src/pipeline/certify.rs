@@ -61,6 +61,8 @@ pub(super) struct Verdict<'m, 'r> {
     /// lowered with it.
     before: Option<Place>,
     deepen_next: bool,
+    /// How long the dwells last that are put in for stops, s.
+    stop_s: f64,
     /// Rows of the spindle in the written program that no row of the original
     /// has met yet.
     spindle: VecDeque<Assessment>,
@@ -250,6 +252,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         Self {
             model: PowerModel::new(machine),
             tally: Tally::new(machine, options, rows),
+            stop_s: machine.controller.language.shortest_dwell().1,
             originals: Originals::default(),
             done: 0,
             judged: 0,
@@ -331,7 +334,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             return;
         }
         let original = self.originals.get(self.done).map(|original| &*original);
-        if matches!(step, Step::Move(mv) if added_stop(mv, original)) {
+        if matches!(step, Step::Move(mv) if added_stop(mv, original, self.stop_s)) {
             return;
         }
         self.done += 1;
@@ -362,7 +365,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         self.pass_to_move();
         let original = self.originals.get(self.judged).map(|original| &*original);
-        if added_stop(mv, original) {
+        if added_stop(mv, original, self.stop_s) {
             return;
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {

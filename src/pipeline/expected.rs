@@ -97,10 +97,10 @@ impl Originals {
     }
 }
 
-/// Whether a move is a dwell of no time that the original does not have: it
+/// Whether a move is the shortest dwell, `stop_s`, that the original does not have: it
 /// only makes the axes stop.
-pub(super) fn added_stop(mv: &Move, original: Option<&Expected>) -> bool {
-    let is_stop = |kind, dwell_s| kind == MoveKind::Dwell && dwell_s == 0.0;
+pub(super) fn added_stop(mv: &Move, original: Option<&Expected>, stop_s: f64) -> bool {
+    let is_stop = |kind, dwell_s: f64| kind == MoveKind::Dwell && dwell_s == stop_s;
     is_stop(mv.kind, mv.dwell_s)
         && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
 }

@@ -32,8 +32,8 @@ pub struct BlockView<'a> {
     pub feeds: bool,
     /// What its moves get.
     pub change: &'a Change,
-    /// A dwell of no time stands before and behind it, so that it starts and
-    /// ends at rest.
+    /// The shortest dwell stands before and after it, so that it starts and ends at
+    /// rest.
     pub stops: bool,
 }
 
@@ -48,7 +48,9 @@ pub struct Rewriter<'m> {
     /// The last line that was written has an end.
     complete: bool,
     edits: Vec<Edit>,
-    /// The last line that was written is a dwell of no time.
+    /// The block at which the axes stop.
+    stop: String,
+    /// The last line that was written is that block.
     stopped: bool,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
@@ -70,6 +72,7 @@ impl<'m> Rewriter<'m> {
             line_end: b"\n".to_vec(),
             complete: true,
             edits: Vec::new(),
+            stop: machine.controller.language.shortest_dwell().0,
             stopped: false,
             edited_lines: 0,
         }
@@ -102,7 +105,7 @@ impl<'m> Rewriter<'m> {
             self.turn_knobs(view, out);
         }
         if view.stops && !self.stopped {
-            self.insert_line(&self.dwell(), out);
+            self.insert_stop(out);
         }
         self.edits.clear();
         self.motion_word(view);
@@ -120,7 +123,7 @@ impl<'m> Rewriter<'m> {
                 out.extend_from_slice(&self.line_end);
                 self.complete = true;
             }
-            self.insert_line(&self.dwell(), out);
+            self.insert_stop(out);
         }
         fine
     }
@@ -147,13 +150,6 @@ impl<'m> Rewriter<'m> {
         if !end.is_empty() && end != self.line_end {
             self.line_end = end.to_vec();
         }
-    }
-
-    /// A dwell of no time.
-    fn dwell(&self) -> String {
-        let letter = self.machine.controller.language.dwell.first();
-        let letter = letter.map_or('P', |(letter, _)| char::from(*letter));
-        format!("G4 {letter}0")
     }
 
     /// Writes a block by itself: what it changes is put back right behind it, so
@@ -384,6 +380,12 @@ impl<'m> Rewriter<'m> {
         if !words.is_empty() {
             self.insert_line(&words.join(" "), out);
         }
+    }
+
+    fn insert_stop(&mut self, out: &mut Vec<u8>) {
+        out.extend_from_slice(self.stop.as_bytes());
+        out.extend_from_slice(&self.line_end);
+        self.edited_lines += 1;
     }
 
     fn insert_line(&mut self, words: &str, out: &mut Vec<u8>) {

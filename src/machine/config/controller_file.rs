@@ -216,9 +216,10 @@ pub(crate) struct PlannerTable {
     /// What happens at the ends of rapids where the path mode blends; default
     /// "all", which is the safe one.
     pub(crate) rapid_joint: Option<RapidJointName>,
-    /// Whether a dwell of no time ends the move before it at rest: where feeds
-    /// blend and rapids stop, a rapid may then be written as a feed between two
-    /// such dwells; default false.
+    /// Whether the shortest dwell (of no time, or of one whole unit where whole numbers
+    /// have a unit of their own) ends the move before it at rest: where feeds blend and
+    /// rapids stop, a rapid may then be written as a feed between two such dwells;
+    /// default false.
     pub(crate) dwell_stops: Option<bool>,
     /// Whether a rapid may be written as a feed to lower its speed; default none.
     /// With "g1-where-linear" only on a machine whose file says that its rapids

@@ -1,0 +1,62 @@
+//! Rapids under G64 that are written as feeds between two dwells, so that they keep their
+//! stops.
+
+use crate::shop::Shop;
+
+/// What `limit` writes on a mill with linear rapids.
+fn limited(controller: &str, program: &str) -> String {
+    let shop = Shop::mill(
+        controller,
+        "peak_power_w = 600",
+        "[path]\nrapid = \"linear\"",
+        "",
+    );
+    shop.put("a.nc", program);
+    let (code, _, errors) = shop.run("limit a.nc -o out.nc");
+    assert_eq!(code, 0, "{controller}: {errors}");
+    let (code, _, errors) = shop.run("check out.nc");
+    assert_eq!(code, 0, "{controller}: {errors}");
+    shop.get("out.nc")
+}
+
+/// X moves 410 mm, Y 300: together they draw (0.5·(200·3 + 100) + 0.366·(200·2.195 +
+/// 100))/0.8 = 684 W, and 100 W at rest.
+#[test]
+fn a_rapid_keeps_its_stops() {
+    let program = "G21 G90\nG1 Z-1. F500\nG1 X-10.\nG0 X400. Y300.\nG1 X410.\nM30\n";
+    for controller in ["fanuc", "haas", "mitsubishi", "mazak", "syntec"] {
+        let text = limited(controller, program);
+        let expected = "G1 X-10.\nG4 P1\nG1 X400. Y300. F";
+        assert!(text.contains(expected), "{controller}: {text}");
+        let after = text.split(expected).nth(1).unwrap_or_default();
+        // 619.6 mm/s by (600 − 100)/684.
+        let (feed, rest) = after.split_once('\n').unwrap_or_default();
+        let feed: f64 = feed.parse().unwrap_or_default();
+        assert!((feed - 27174.0).abs() < 2.0, "{controller}: {feed}");
+        assert_eq!(rest, "G4 P1\nG1 X410. F500\nM30\n", "{controller}");
+    }
+}
+
+/// A dwell that the program has itself is one of its own.
+#[test]
+fn a_dwell_of_a_millisecond_of_its_own_stays() {
+    let program = "G21 G90 G1 Z-1. F500\nG4 P1\nG0 X400. Y300.\nG4 P1\nG4 P1\nG1 X410. F500\nM30\n";
+    let text = limited("fanuc", program);
+    assert_eq!(text.matches("G4 P1\n").count(), 5, "{text}");
+}
+
+/// Each word of the shortest dwell as its control reads it.
+#[test]
+fn a_lathe_in_feed_per_minute() {
+    let shop = Shop::mill(
+        "fanuc-lathe",
+        "peak_power_w = 700",
+        "[path]\nrapid = \"linear\"",
+        "",
+    );
+    shop.put("a.nc", "G98 G21\nG1 X-20. F500\nG0 X400. Z300.\nM30\n");
+    let (code, _, errors) = shop.run("limit a.nc -o out.nc");
+    assert_eq!(code, 0, "{errors}");
+    let text = shop.get("out.nc");
+    assert!(text.contains("G4 P1\nG1 X400. Z300. F"), "{text}");
+}
