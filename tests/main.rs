@@ -16,6 +16,7 @@ mod siemens;
 mod spindle;
 mod syntax;
 mod period;
+mod plain_moves;
 mod plan;
 mod jerk;
 mod curve;

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""How many real programs `limit` can make fit, by control.
+
+    benches/fit-rate.py target/release/gwatt fanuc=FOLDER haas=FOLDER siemens=FOLDER ...
+
+Each program is read with a machine that suits its control: linear rapids, the control's
+own path modes, a converter of 60 % and of 80 % of the program's own largest peak, no
+margin. Printed are, by control and share, how many programs are certified, and why the
+others are not, by the rules that refuse them.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import json
+import pathlib
+import subprocess
+import tempfile
+
+PRINTERS = {"marlin", "klipper", "reprap"}
+LATHES = {"fanuc-lathe", "fanuc-lathe-b", "okuma-lathe"}
+# Rapid in mm/min or deg/min, acceleration in mm/s² or deg/s², mass or inertia, friction.
+MILL = {"X": (30000, 4000, 600, 500), "Y": (30000, 4000, 700, 500), "Z": (30000, 4000, 500, 700)}
+PRINTER = {"X": (12000, 3000, 0.5, 2), "Y": (12000, 3000, 1.2, 3), "Z": (900, 100, 2, 5), "E": (3000, 3000, 0.2, 5)}
+LATHE = {"X": (20000, 6000, 150, 250), "Z": (24000, 6000, 250, 400)}
+ROTARY = {"A": (9000, 600, 5, 20), "B": (9000, 600, 5, 20), "C": (9000, 600, 3, 15)}
+
+
+def machine(profile, peak_w):
+    """A machine file for a profile."""
+    if profile in PRINTERS:
+        axes, rotary, rest = PRINTER, {}, "[path]\nrapid = \"linear\"\n"
+    elif profile in LATHES:
+        axes, rotary, rest = LATHE, {}, "[path]\nrapid = \"linear\"\n"
+    else:
+        axes, rotary, rest = MILL, ROTARY, "[path]\nrapid = \"linear\"\n"
+    text = f'schema = 1\nname = "fit rate"\ncontroller = "{profile}"\n{rest}'
+    text += f"[converter]\npeak_power_w = {peak_w!r}\n[limits]\nmargin = 0.0\n"
+    for name, (rapid, accel, mass, friction) in axes.items():
+        text += f"[axes.{name}]\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\nmass_kg = {mass}\ncoulomb_n = {friction}\n"
+    for name, (rapid, accel, inertia, friction) in rotary.items():
+        text += f'[axes.{name}]\nkind = "rotary"\nrapid_deg_min = {rapid}\naccel_deg_s2 = {accel}\ninertia_kg_m2 = {inertia}\nfriction_nm = {friction}\n'
+    return text
+
+
+def run(arguments, seconds):
+    try:
+        found = subprocess.run(arguments, capture_output=True, timeout=seconds, check=False)
+    except subprocess.TimeoutExpired:
+        return -1, "", "took too long"
+    return found.returncode, found.stdout.decode("latin1"), found.stderr.decode("latin1")
+
+
+def judge(gwatt, profile, program, shares, options, seconds):
+    """By share: "certified", "fits", "unread", or the rules that refuse it."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        file = folder / "machine.toml"
+        file.write_text(machine(profile, 1e9))
+        common = ["-m", str(file), "--sub-path", str(program.parent)]
+        code, out, _ = run([gwatt, "check", str(program), *common, "--format", "json"], seconds)
+        if code != 0:
+            return {share: "unread" for share in shares}
+        found = json.loads(out)
+        found = found[0] if isinstance(found, list) else found
+        peak_w = found.get("peak_w") or 0.0
+        results = {}
+        for share in shares:
+            if peak_w <= 0.0:
+                results[share] = "fits"
+                continue
+            file.write_text(machine(profile, share * peak_w))
+            written = folder / "written"
+            code, _, errors = run([gwatt, "limit", str(program), *common, *options, "-o", str(written)], seconds)
+            if code == 0:
+                results[share] = "certified"
+            else:
+                rules = [line.split("]:", 1)[1].strip() for line in errors.splitlines() if line.startswith("error[")]
+                results[share] = "; ".join(sorted(set(rules))) or errors.strip().splitlines()[0][:100]
+        return results
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("gwatt")
+    parser.add_argument("folders", nargs="+", metavar="PROFILE=FOLDER")
+    parser.add_argument("--allow", default="feed")
+    parser.add_argument("--shares", default="0.6,0.8")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--list", action="store_true", help="name every program that is refused")
+    given = parser.parse_args()
+    shares = [float(share) for share in given.shares.split(",")]
+    options = ["--allow", given.allow] if given.allow else []
+    jobs = []
+    for pair in given.folders:
+        profile, folder = pair.split("=", 1)
+        files = [file for file in sorted(pathlib.Path(folder).rglob("*")) if file.is_file()]
+        jobs += [(profile, file) for file in files]
+    work = lambda job: (job, judge(given.gwatt, job[0], job[1], shares, options, given.seconds))
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        results = list(pool.map(work, jobs))
+    table = collections.defaultdict(collections.Counter)
+    reasons = collections.defaultdict(collections.Counter)
+    for (profile, file), found in results:
+        for share, outcome in found.items():
+            if outcome == "fits":
+                continue
+            kind = outcome if outcome in ("certified", "unread") else "refused"
+            table[profile, share][kind] += 1
+            if kind == "refused":
+                reasons[profile][outcome] += 1
+                if given.list:
+                    print(f"{profile} {share} {file}: {outcome}")
+    print(f"{'control':14} {'share':>5} {'certified':>9} {'refused':>8} {'unread':>7}  rate")
+    whole = collections.Counter()
+    for (profile, share), counts in sorted(table.items()):
+        whole.update(counts)
+        read = counts["certified"] + counts["refused"]
+        rate = f"{100 * counts['certified'] / read:.0f} %" if read else "-"
+        print(f"{profile:14} {share:5} {counts['certified']:9} {counts['refused']:8} {counts['unread']:7}  {rate}")
+    read = whole["certified"] + whole["refused"]
+    print(f"all: {whole['certified']} of {read} certified ({100 * whole['certified'] / max(read, 1):.0f} %)")
+    for profile, counts in sorted(reasons.items()):
+        for outcome, count in counts.most_common(8):
+            print(f"  {profile}: {count} × {outcome[:160]}")
+
+
+if __name__ == "__main__":
+    main()
