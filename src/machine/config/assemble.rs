@@ -7,7 +7,7 @@ use super::machine_file::{
 };
 use super::value::{At, Num};
 use super::{
-    axis, converter, drive_curve, plausible, preset, profile, response, spindle, tool, word,
+    axis, converter, drive_curve, plausible, preset, profile, response, servo, spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
@@ -81,6 +81,7 @@ pub(crate) fn machine(
     let converters = file.converter.as_ref().map_or_else(Vec::new, |tables| {
         converter::converters(findings, tables, axis_set, limits.margin)
     });
+    servo::factors(findings, file, &mut axes, &converters);
     let loads = file
         .load
         .iter()
