@@ -149,14 +149,14 @@ fn a_servo_that_is_described_sets_its_factors() {
 #[test]
 fn servos_of_a_converter_count_together() {
     let text = |converters: &str| {
-        let mut text = format!("schema = 1\nname = \"t\"\ncontroller = \"iso\"\n{converters}");
-        for (letter, gain) in [("X", 20), ("Y", 40)] {
-            text += &format!(
+        let axis = |(letter, gain)| {
+            format!(
                 "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 100\n\
                  position_gain_1_s = {gain}\nvelocity_bandwidth_hz = 60\n"
-            );
-        }
-        text
+            )
+        };
+        let axes = [("X", 20), ("Y", 40)].map(axis).concat();
+        format!("schema = 1\nname = \"t\"\ncontroller = \"iso\"\n{converters}{axes}")
     };
     let factors = |converters: &str| {
         let (machine, _) = Machine::from_toml("t.toml", &text(converters)).expect("it is valid");

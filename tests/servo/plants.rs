@@ -228,8 +228,8 @@ pub fn program(random: &mut Random, blocks: usize) -> String {
     let mut text = String::from("G21 G90 G17 G94\nG1 F3000\n");
     let (mut x, mut y) = (0.0, 0.0);
     for _ in 0..blocks {
-        let length = random.scale(0.5, 60.0);
-        let feed = random.scale(600.0, 12000.0);
+        let length = random.scale(0.5, 50.0);
+        let feed = random.scale(2500.0, 15000.0);
         let angle = random.within(0.0, std::f64::consts::TAU);
         let (dx, dy) = (length * libm::cos(angle), length * libm::sin(angle));
         match random.below(5) {
