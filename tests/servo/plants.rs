@@ -159,6 +159,27 @@ pub const SETTINGS: [(&str, [Loops; SIMULATED]); 5] = [
     ),
 ];
 
+/// Drives set at random, from loops that swing to slow ones; each axis has its own
+/// bandwidth every other time.
+pub fn any_loops(random: &mut Random) -> [Loops; SIMULATED] {
+    let share = |random: &mut Random| match random.below(3) {
+        0 => 0.0,
+        1 => 1.0,
+        _ => random.within(0.0, 1.0),
+    };
+    let gain = random.scale(15.0, 60.0);
+    let forward = [share(random), share(random)];
+    let integral = random.once_in(2).then(|| random.scale(6.0, 20.0));
+    let alike = random.once_in(2);
+    let ratio = random.scale(4.0, 12.0);
+    [0, 1, 2].map(|_| {
+        let own = if alike { 1.0 } else { random.scale(0.7, 1.4) };
+        let rate = gain * ratio * own;
+        let integral_s = integral.map_or(0.0, |times| times / rate);
+        loops(gain, rate / std::f64::consts::TAU, integral_s, forward)
+    })
+}
+
 fn axis(rapid_mm_min: f64, accel_mm_s2: f64, mass: f64, friction: [f64; 2]) -> Described {
     let load = Load {
         mass,
@@ -203,9 +224,9 @@ pub fn rigs() -> [Rig; 3] {
         peak_w: 2000.0,
         base_w: 100.0,
         axes: [
-            heavy(axis(36000.0, 5000.0, 700.0, [500.0, 300.0]), 0.0, 1e-5),
-            heavy(axis(30000.0, 5000.0, 600.0, [400.0, 0.0]), 0.0, 1e-5),
-            heavy(axis(24000.0, 4000.0, 400.0, [300.0, 200.0]), 600.0, 1e-5),
+            heavy(axis(36000.0, 5000.0, 700.0, [500.0, 300.0]), 0.0, 3e-6),
+            heavy(axis(30000.0, 5000.0, 600.0, [400.0, 0.0]), 0.0, 3e-6),
+            heavy(axis(24000.0, 4000.0, 400.0, [300.0, 200.0]), 600.0, 3e-6),
         ],
         loops,
     };
