@@ -137,6 +137,8 @@ fn a_servo_that_is_described_sets_its_factors() {
              friction (Y), losses of the drive (Y)",
         ]
     );
+    // Y, of which nothing is known, takes 10 ms for a step of speed.
+    assert_eq!(machine.path.response_time_s, 0.005);
     // 100 kg at 5 m/s² to 0.5 m/s, 50 N of friction, 90 %.
     machine.axes[1] = None;
     let mv = straight(&machine, &[500.0], f64::INFINITY);

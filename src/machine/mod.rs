@@ -20,4 +20,4 @@ pub use model::*;
 pub use printer::*;
 pub use queue::*;
 pub use response::*;
-pub use servo::{Servo, servo_factor};
+pub use servo::{Servo, servo_factor, servo_response_s};

@@ -253,7 +253,7 @@ pub fn program(random: &mut Random, blocks: usize) -> String {
         let feed = random.scale(2500.0, 15000.0);
         let angle = random.within(0.0, std::f64::consts::TAU);
         let (dx, dy) = (length * libm::cos(angle), length * libm::sin(angle));
-        match random.below(5) {
+        match random.below(6) {
             0 => {
                 let z = random.within(-30.0, 30.0);
                 let _ = writeln!(text, "G0 X{:.3} Y{:.3} Z{z:.3}", x + dx, y + dy);
@@ -269,6 +269,18 @@ pub fn program(random: &mut Random, blocks: usize) -> String {
                 );
             }
             2 => {
+                // A curve of chords, passed at speed, and from its end on.
+                let turn = random.within(-0.3, 0.3);
+                let (mut at_x, mut at_y) = (x, y);
+                for chord in 1..=10 {
+                    let heading = angle + turn * f64::from(chord);
+                    at_x += 3.0 * libm::cos(heading);
+                    at_y += 3.0 * libm::sin(heading);
+                    let _ = writeln!(text, "G1 X{at_x:.3} Y{at_y:.3} F{feed:.0}");
+                }
+                let _ = writeln!(text, "G1 X{:.3} Y{:.3}", x + dx, y + dy);
+            }
+            3 => {
                 // There and back in X and Y by turns.
                 for turn in 1..=6 {
                     let (far, near) = if turn % 2 == 0 { (dx, dy) } else { (-dy, dx) };

@@ -25,7 +25,7 @@ pub(crate) fn machine(
     file: &MachineFile,
     mut controller: Controller,
 ) -> Option<Machine> {
-    let path = path(file.path.as_ref().map(|table| &table.value), &controller);
+    let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
     if path.rapid == RapidPath::Independent {
         // A feed is straight: written as one, such a rapid would take another path.
         controller.rapid_knob = RapidKnob::None;
@@ -82,6 +82,13 @@ pub(crate) fn machine(
         converter::converters(findings, tables, axis_set, limits.margin)
     });
     servo::factors(findings, file, &mut axes, &converters);
+    let given = file
+        .path
+        .as_ref()
+        .and_then(|table| table.value.response_time_s.as_ref());
+    if given.is_none() {
+        path.response_time_s = servo::response_s(&axes, RESPONSE_TIME_S);
+    }
     let loads = file
         .load
         .iter()

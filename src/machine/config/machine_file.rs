@@ -113,7 +113,7 @@ pub(crate) struct PathTable {
     /// Straight rapids, or each axis for itself; absent: the controller's.
     pub(crate) rapid: Option<RapidName>,
     /// Over how long the drives spread a step of speed at a corner, in s; default
-    /// 0.01.
+    /// 0.01, or what follows for axes that give `position_gain_1_s`.
     pub(crate) response_time_s: Option<ResponseTime>,
 }
 

@@ -7,9 +7,11 @@ use super::machine_file::{AxisTable, MachineFile};
 use super::value::Num;
 use crate::machine::axis::{AXES, Axis, AxisId, AxisSet};
 use crate::machine::model::Converter;
-use crate::machine::servo::{Servo, servo_factor};
+use crate::machine::servo::{Servo, servo_factor, servo_response_s};
 
 const RULE: &str = "machine-servo";
+/// The shortest and the longest time that a machine file may give, s.
+const RESPONSE_S: [f64; 2] = [0.001, 1.0];
 
 /// What the table of an axis says of its drive; nothing if it says nothing, or what
 /// does not go together.
@@ -143,4 +145,17 @@ pub(crate) fn factors(
             findings.error(RULE, &gain.span, message, Some(help.to_owned()));
         }
     }
+}
+
+/// The time over which drives spread a step of speed, s: that of the quickest servo that
+/// is described, and `otherwise_s` for axes of which nothing is known.
+pub(crate) fn response_s(axes: &[Option<Axis>; AXES], otherwise_s: f64) -> f64 {
+    let [shortest, longest] = RESPONSE_S;
+    let own = |axis: &Axis| {
+        let servo = axis.servo.map(|servo| (servo, axis.mass_error));
+        // What does not settle was reported.
+        let found = servo.and_then(|servo| servo_response_s(&[servo]));
+        found.map_or(otherwise_s, |found| found.max(shortest))
+    };
+    axes.iter().flatten().map(own).fold(longest, f64::min)
 }
