@@ -232,7 +232,7 @@ pub fn rigs() -> [Rig; 3] {
     };
     let router = Rig {
         controller: "grbl",
-        peak_w: 30.0,
+        peak_w: 40.0,
         base_w: 5.0,
         axes: [
             axis(8000.0, 1000.0, 60.0, [40.0, 20.0]),
