@@ -26,18 +26,20 @@ struct Found {
     most: f64,
 }
 
-/// The program as `limit` writes it with cutting feeds, which must fit.
-fn limited(machine: &Machine, program: &str) -> Vec<u8> {
+/// The program as `limit` writes it with cutting feeds, if it can be made to fit.
+fn limited(machine: &Machine, program: &str) -> Option<Vec<u8>> {
     let (text, summary) = run(machine, RIG.options, program.as_bytes())
         .unwrap_or_else(|failure| panic!("{failure:?}\n{program}"));
-    assert!(summary.certified, "{:?}\n{program}", summary.reasons);
-    text
+    summary.certified.then_some(text)
 }
 
-/// Drives a program through so many plants.
-fn drive(rig: &Rig, says: Says, program: &str, seed: u64, plants: usize, found: &mut Found) {
+/// Drives a program through so many plants: the first of a seed's that can be made to
+/// fit.
+fn drive(rig: &Rig, says: Says, seed: u64, plants: usize, found: &mut Found) {
     let (machine, _) = Machine::from_toml("rig.toml", &rig.toml(says)).expect("a machine");
-    let command = Command::of(&machine, &limited(&machine, program), STEP_S);
+    let mut random = Random::new(seed);
+    let fits = (0..5).find_map(|_| limited(&machine, &plants::program(&mut random, BLOCKS)));
+    let command = Command::of(&machine, &fits.expect("one of five fits"), STEP_S);
     let mut random = Random::new(seed);
     for _ in 0..plants {
         let share = rig.peak_w(&command, &mut random) / rig.peak_w;
@@ -63,9 +65,7 @@ fn experiment(
             };
             let mut found = Found::default();
             for number in 0..programs {
-                let seed = 1000 * number + setting;
-                let program = plants::program(&mut Random::new(seed), BLOCKS);
-                drive(&rig, says, &program, seed, plants, &mut found);
+                drive(&rig, says, 1000 * number + setting, plants, &mut found);
             }
             found
         })
@@ -198,8 +198,7 @@ fn what_is_not_stated_is_not_covered() {
     };
     let mut found = Found::default();
     for seed in 0..3 {
-        let program = plants::program(&mut Random::new(1000 * seed + 1), BLOCKS);
-        drive(&rig, says, &program, seed, 3, &mut found);
+        drive(&rig, says, 1000 * seed + 1, 3, &mut found);
     }
     assert!(found.above > 0 && found.most < 1.6, "{found:?}");
 }
