@@ -212,6 +212,8 @@ fn what_each_choice_bears() {
         (0.0, false, true),
         (0.0, true, true),
         (0.1, false, false),
+        (0.1, true, false),
+        (0.1, false, true),
     ];
     for (margin, errors, servo) in choices {
         let says = Says {
