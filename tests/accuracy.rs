@@ -1,6 +1,7 @@
 //! Errors of mass and friction: peaks are those of the worst machine within them.
 
 use crate::rig::{any_arc, any_delta, any_feed, any_machine, arc, axis, machine, straight};
+use gwatt::diagnostic::Severity;
 use gwatt::interpret::Move;
 use gwatt::machine::{Axis, Machine};
 use gwatt::pipeline::assumptions;
@@ -112,6 +113,124 @@ fn without_errors_it_is_said_what_counts_as_exact() {
              friction (Y), losses of the drive (Y)",
         ]
     );
+}
+
+/// Two poles at 2·Kv and the speed fed forward: full braking, then full acceleration,
+/// overshoots by 2·e⁻² = 0.2707 (see `machine::servo`).
+#[test]
+fn a_servo_that_is_described_sets_its_factors() {
+    let bandwidth = 200.0 / std::f64::consts::TAU;
+    let servo = format!(
+        "position_gain_1_s = 50\nvelocity_bandwidth_hz = {bandwidth}\nvelocity_feedforward = 1"
+    );
+    let mut machine = file("", &servo);
+    let factors = machine.axes[0].map(|it| [it.servo_factor_motor, it.servo_factor_regen]);
+    assert_eq!(factors, Some([1.271; 2]));
+    assert_eq!(
+        assumptions(&machine),
+        [
+            "servos as described (X): the power of acceleration exceeds that of the \
+             command by a factor of at most 1.271",
+            "taken as exact, with the margin alone for what differs: \
+             mass (XY), friction (X), how servos follow (Y)",
+            "counted as none, as the machine file gives none: \
+             friction (Y), losses of the drive (Y)",
+        ]
+    );
+    // Y, of which nothing is known, takes 10 ms for a step of speed.
+    assert_eq!(machine.path.response_time_s, 0.005);
+    // 100 kg at 5 m/s² to 0.5 m/s, 50 N of friction, 90 %.
+    machine.axes[1] = None;
+    let mv = straight(&machine, &[500.0], f64::INFINITY);
+    let found = demand(&machine, &mv);
+    close(found.peak_w, 0.5 * (500.0 * 1.271 + 50.0) / 0.9);
+    close(found.regen_w, 0.5 * (500.0 * 1.271 - 50.0) * 0.9);
+}
+
+/// Only axes that share a converter draw from it one after the other.
+#[test]
+fn servos_of_a_converter_count_together() {
+    let text = |converters: &str| {
+        let axis = |(letter, gain)| {
+            format!(
+                "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 100\n\
+                 position_gain_1_s = {gain}\nvelocity_bandwidth_hz = 60\n"
+            )
+        };
+        let axes = [("X", 20), ("Y", 40)].map(axis).concat();
+        format!("schema = 1\nname = \"t\"\ncontroller = \"iso\"\n{converters}{axes}")
+    };
+    let factors = |converters: &str| {
+        let (machine, _) = Machine::from_toml("t.toml", &text(converters)).expect("it is valid");
+        [0, 1].map(|axis| machine.axes[axis].map_or(0.0, |axis| axis.servo_factor_motor))
+    };
+    let shared = factors("[converter]\npeak_power_w = 3500\n");
+    assert!(
+        shared[0] > 1.2 && shared[0] < 2.0 && shared[0] == shared[1],
+        "{shared:?}"
+    );
+    let own = |name: &str, axis: &str| {
+        format!("[[converter]]\nname = \"{name}\"\naxes = [\"{axis}\"]\npeak_power_w = 3500\n")
+    };
+    assert_eq!(factors(&(own("A", "X") + &own("B", "Y"))), [1.0; 2]);
+}
+
+/// The message and the help of the error in the last line of an axis.
+fn refused(x: &str) -> (String, String) {
+    let text = "schema = 1\nname = \"t\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 9\n\
+                [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 100\n";
+    let errors = Machine::from_toml("t.toml", &format!("{text}{x}\n")).expect_err(x);
+    let line = 9 + x.lines().count();
+    let found = errors
+        .iter()
+        .find(|it| it.line as usize == line && it.severity == Severity::Error);
+    let found = found.unwrap_or_else(|| panic!("{errors:?}"));
+    (
+        found.message.clone(),
+        found.help.clone().unwrap_or_default(),
+    )
+}
+
+#[test]
+fn half_a_servo_and_two_of_them_are_refused() {
+    let (message, help) = refused("position_gain_1_s = 50");
+    assert_eq!(message, "`position_gain_1_s` needs `velocity_bandwidth_hz`");
+    assert_eq!(
+        help,
+        "give both, or set servo_factor_motor and _regen of axis X"
+    );
+    for key in [
+        "velocity_bandwidth_hz",
+        "velocity_integral_time_s",
+        "velocity_feedforward",
+        "acceleration_feedforward",
+    ] {
+        let (message, _) = refused(&format!("{key} = 1"));
+        assert_eq!(message, format!("`{key}` needs `position_gain_1_s`"));
+    }
+    for key in ["servo_factor_motor", "servo_factor_regen"] {
+        let (message, help) = refused(&format!(
+            "position_gain_1_s = 50\nvelocity_bandwidth_hz = 60\n{key} = 1.2"
+        ));
+        assert_eq!(
+            message,
+            format!("`{key}` and `position_gain_1_s` say the same twice")
+        );
+        assert_eq!(
+            help,
+            "keep the factors, or the servo from which they would follow"
+        );
+    }
+    let (message, help) = refused(
+        "velocity_bandwidth_hz = 5\nvelocity_integral_time_s = 0.01\nposition_gain_1_s = 100",
+    );
+    assert_eq!(message, "the servo of axis X swings and does not settle");
+    assert_eq!(
+        help,
+        "with a lower gain, a larger bandwidth or a longer integral time it does"
+    );
+    let (_, help) = refused("velocity_feedforward = 100");
+    assert_eq!(help, "in percent? 100 % is 1");
 }
 
 #[test]

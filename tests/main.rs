@@ -1,6 +1,7 @@
 //! Tests.
 
 mod accuracy;
+mod servo;
 mod bus;
 mod layers;
 mod conformance;

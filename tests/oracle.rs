@@ -13,7 +13,7 @@ mod over_time;
 mod plant;
 mod profile;
 mod programs;
-mod random;
+pub(crate) mod random;
 mod series;
 mod spindle;
 mod worked;

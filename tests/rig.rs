@@ -29,6 +29,7 @@ pub(crate) fn axis() -> Axis {
         copper_w_n2: 0.0,
         servo_factor_motor: 1.0,
         servo_factor_regen: 1.0,
+        servo: None,
         friction_min_ratio: 1.0,
         mass_error: 0.0,
         friction_error: 0.0,

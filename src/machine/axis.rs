@@ -1,5 +1,7 @@
 //! Axes: their names, and what gwatt knows of each.
 
+use super::servo::Servo;
+
 /// Number of axis letters that a program can move.
 pub const AXES: usize = 10;
 
@@ -134,6 +136,8 @@ pub struct Axis {
     pub servo_factor_motor: f64,
     /// The same when braking; ≥ 1.
     pub servo_factor_regen: f64,
+    /// How the drive follows, where the file says so: both factors come from it.
+    pub servo: Option<Servo>,
     /// Friction of the warm machine by that of the cold one, for
     /// regenerative peaks; (0, 1].
     pub friction_min_ratio: f64,

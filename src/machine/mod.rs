@@ -9,6 +9,7 @@ mod model;
 mod printer;
 mod queue;
 mod response;
+mod servo;
 
 pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
 pub use builtin::builtin_controller;
@@ -19,3 +20,4 @@ pub use model::*;
 pub use printer::*;
 pub use queue::*;
 pub use response::*;
+pub use servo::{Servo, servo_factor, servo_response_s};

@@ -8,10 +8,10 @@ use crate::machine::{ALL_AXES, Axis, AxisId, AxisSet, Machine};
 /// What the figures of a machine assume of its description, a sentence each.
 #[must_use]
 pub fn assumptions(machine: &Machine) -> Vec<String> {
-    [within(machine), exact(machine), absent(machine)]
-        .into_iter()
-        .flatten()
-        .collect()
+    let servos = servos(machine);
+    let others = [exact(machine), absent(machine)];
+    let all = within(machine).into_iter().chain(servos);
+    all.chain(others.into_iter().flatten()).collect()
 }
 
 /// The axes for which `holds`.
@@ -48,6 +48,28 @@ fn within(machine: &Machine) -> Option<String> {
     })
 }
 
+/// How far servos exceed their commands, a sentence for each factor.
+fn servos(machine: &Machine) -> Vec<String> {
+    let mut named: Vec<(f64, AxisSet)> = Vec::new();
+    for (id, axis) in ALL_AXES.into_iter().zip(&machine.axes) {
+        let Some(axis) = axis.filter(|axis| axis.servo.is_some()) else {
+            continue;
+        };
+        let factor = axis.servo_factor_motor;
+        match named.iter_mut().find(|(other, _)| *other == factor) {
+            Some((_, set)) => set.insert(id as usize),
+            None => named.push((factor, AxisSet(1 << id as usize))),
+        }
+    }
+    let sentence = |(factor, set): (f64, AxisSet)| {
+        format!(
+            "servos as described ({set}): the power of acceleration exceeds that of \
+             the command by a factor of at most {factor}"
+        )
+    };
+    named.into_iter().map(sentence).collect()
+}
+
 /// What counts exactly as the machine file has it.
 fn exact(machine: &Machine) -> Option<String> {
     let listed = list([
@@ -59,7 +81,8 @@ fn exact(machine: &Machine) -> Option<String> {
         (
             "how servos follow",
             axes(machine, |_, axis| {
-                axis.servo_factor_motor == 1.0 || axis.servo_factor_regen == 1.0
+                axis.servo.is_none()
+                    && (axis.servo_factor_motor == 1.0 || axis.servo_factor_regen == 1.0)
             }),
         ),
     ])?;

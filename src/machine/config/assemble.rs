@@ -7,7 +7,7 @@ use super::machine_file::{
 };
 use super::value::{At, Num};
 use super::{
-    axis, converter, drive_curve, plausible, preset, profile, response, spindle, tool, word,
+    axis, converter, drive_curve, plausible, preset, profile, response, servo, spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
@@ -25,7 +25,7 @@ pub(crate) fn machine(
     file: &MachineFile,
     mut controller: Controller,
 ) -> Option<Machine> {
-    let path = path(file.path.as_ref().map(|table| &table.value), &controller);
+    let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
     if path.rapid == RapidPath::Independent {
         // A feed is straight: written as one, such a rapid would take another path.
         controller.rapid_knob = RapidKnob::None;
@@ -81,6 +81,14 @@ pub(crate) fn machine(
     let converters = file.converter.as_ref().map_or_else(Vec::new, |tables| {
         converter::converters(findings, tables, axis_set, limits.margin)
     });
+    servo::factors(findings, file, &mut axes, &converters);
+    let given = file
+        .path
+        .as_ref()
+        .and_then(|table| table.value.response_time_s.as_ref());
+    if given.is_none() {
+        path.response_time_s = servo::response_s(&axes, RESPONSE_TIME_S);
+    }
     let loads = file
         .load
         .iter()

@@ -13,6 +13,7 @@ use super::findings::Findings;
 use super::machine_file::{AxisTable, KindName};
 use super::plausible;
 use super::quantity::{Quantities, form};
+use super::servo;
 use super::value::{At, Num, Part};
 use crate::machine::axis::{Axis, AxisId, AxisKind};
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
@@ -46,6 +47,7 @@ pub(crate) fn axis(
         efficiency: value(table.value.efficiency.as_ref(), 1.0),
         servo_factor_motor: value(table.value.servo_factor_motor.as_ref(), 1.0),
         servo_factor_regen: value(table.value.servo_factor_regen.as_ref(), 1.0),
+        servo: servo::take(findings, id, &table.value),
         friction_min_ratio: value(table.value.friction_min_ratio.as_ref(), 1.0),
         mass_error: value(table.value.mass_error.as_ref().or(errors.mass), 0.0),
         friction_error: value(table.value.friction_error.as_ref().or(errors.friction), 0.0),
@@ -249,6 +251,7 @@ impl Builder {
             copper_w_n2: 0.0,
             servo_factor_motor: 1.0,
             servo_factor_regen: 1.0,
+            servo: None,
             friction_min_ratio: 1.0,
             mass_error: 0.0,
             friction_error: 0.0,

@@ -77,8 +77,14 @@ pub(crate) fn example(schema: &Value) -> Option<String> {
 pub(crate) fn out_of_range(name: &str, number: f64) -> Option<String> {
     let percent = || format!("in percent? {number} % is {}", number / 100.0);
     match name {
-        "efficiency" | "margin" | "min_feed_ratio" | "friction_min_ratio" | "mass_error"
+        "efficiency"
+        | "margin"
+        | "min_feed_ratio"
+        | "friction_min_ratio"
+        | "mass_error"
         | "friction_error"
+        | "velocity_feedforward"
+        | "acceleration_feedforward"
             if number >= 1.0 =>
         {
             Some(percent())

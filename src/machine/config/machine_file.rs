@@ -113,7 +113,7 @@ pub(crate) struct PathTable {
     /// Straight rapids, or each axis for itself; absent: the controller's.
     pub(crate) rapid: Option<RapidName>,
     /// Over how long the drives spread a step of speed at a corner, in s; default
-    /// 0.01.
+    /// 0.01, or what follows for axes that give `position_gain_1_s`.
     pub(crate) response_time_s: Option<ResponseTime>,
 }
 
@@ -220,7 +220,20 @@ pub(crate) struct AxisTable {
     /// rapid speed or beyond. What friction and weight leave of it limits the
     /// acceleration at each speed.
     pub(crate) torque_curve: Option<Vec<At<TorquePointTable>>>,
-    /// How far real acceleration exceeds the command when driving; default 1.
+    /// Gain of the position loop in 1/s. With it the file describes how the drive
+    /// follows, and the servo factors come from that.
+    pub(crate) position_gain_1_s: Option<Positive>,
+    /// Bandwidth of the velocity loop in Hz, at the mass of the file; needed with
+    /// `position_gain_1_s`.
+    pub(crate) velocity_bandwidth_hz: Option<Positive>,
+    /// Reset time of the velocity loop in s; without it the loop is proportional.
+    pub(crate) velocity_integral_time_s: Option<ResponseTime>,
+    /// Share of the commanded speed that is fed forward, 0 to 1; default 0.
+    pub(crate) velocity_feedforward: Option<Fraction>,
+    /// Share of the commanded acceleration that is fed forward, 0 to 1; default 0.
+    pub(crate) acceleration_feedforward: Option<Fraction>,
+    /// How far real acceleration exceeds the command when driving; default 1, or
+    /// what follows from `position_gain_1_s`, with which it is not to be given.
     pub(crate) servo_factor_motor: Option<AtLeastOne>,
     /// The same when braking; default 1.
     pub(crate) servo_factor_regen: Option<AtLeastOne>,

@@ -2,7 +2,7 @@
 //!
 //! Text → tree (`document`) → checked against the schema (`structure`) →
 //! structs (`machine_file`, `controller_file`) → `Machine`, `Controller`
-//! (`assemble`, `axis`, `converter`, `preset`, `profile`, `spindle`). All mistakes of a file are
+//! (`assemble`, `axis`, `converter`, `preset`, `profile`, `servo`, `spindle`). All mistakes of a file are
 //! collected on the way, each with its line.
 
 mod assemble;
@@ -24,6 +24,7 @@ mod quantity;
 mod ratings;
 mod response;
 mod schema;
+mod servo;
 mod spindle;
 mod structure;
 mod tool;

@@ -22,7 +22,7 @@ struct Usual {
 const NONE: f64 = f64::INFINITY;
 
 /// Usual values of fields as they are written.
-const FIELDS: [Usual; 10] = [
+const FIELDS: [Usual; 12] = [
     Usual {
         key: "rapid_mm_min",
         unit: "mm/min",
@@ -70,6 +70,22 @@ const FIELDS: [Usual; 10] = [
         if_below: "motor revolutions per screw or table revolution are meant",
         high: 1000.0,
         if_above: "motor revolutions per screw or table revolution are meant",
+    },
+    Usual {
+        key: "position_gain_1_s",
+        unit: "1/s",
+        low: 5.0,
+        if_below: "in (m/min)/mm? 1 (m/min)/mm is 16.67 1/s",
+        high: 500.0,
+        if_above: "in 1/min?",
+    },
+    Usual {
+        key: "velocity_bandwidth_hz",
+        unit: "Hz",
+        low: 3.0,
+        if_below: "kHz given?",
+        high: 3000.0,
+        if_above: "Hz are meant",
     },
     Usual {
         key: "servo_factor_motor",
@@ -194,6 +210,16 @@ fn fields(findings: &mut Findings<'_>, table: &AxisTable) {
     field(findings, "lead_mm", table.lead_mm.as_ref());
     field(findings, "gear_ratio", table.gear_ratio.as_ref());
     field(findings, "efficiency", table.efficiency.as_ref());
+    field(
+        findings,
+        "position_gain_1_s",
+        table.position_gain_1_s.as_ref(),
+    );
+    field(
+        findings,
+        "velocity_bandwidth_hz",
+        table.velocity_bandwidth_hz.as_ref(),
+    );
     field(
         findings,
         "servo_factor_motor",
