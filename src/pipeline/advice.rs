@@ -1,5 +1,6 @@
 //! What would bring a move down, in a few words.
 
+use super::entry::turns_apart;
 use crate::interpret::{FeedMode, Interpreter, Move, MoveKind};
 use crate::limit::{Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::{AxisValues, Machine};
@@ -16,7 +17,7 @@ const NEIGHBOURS_HELP: &str = "lower feed or acceleration here and in the neighb
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Circumstances {
     compensates: bool,
-    per_minute: bool,
+    feed_mode: FeedMode,
     mm_per_unit: f64,
     feed_accel_mm_s2: AxisValues,
 }
@@ -26,7 +27,7 @@ impl Circumstances {
         let modal = interpreter.modal();
         Self {
             compensates: interpreter.compensates(),
-            per_minute: modal.feed_mode == FeedMode::PerMinute,
+            feed_mode: modal.feed_mode,
             mm_per_unit: modal.mm_per_unit,
             feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
         }
@@ -64,10 +65,12 @@ impl<'m> Adviser<'m> {
             return "lower the feed by hand: `limit` changes nothing under cutter compensation"
                 .to_owned();
         }
+        let per_minute = at.feed_mode == FeedMode::PerMinute;
+        let apart = at.feed_mode == FeedMode::PerRevolution && turns_apart(self.machine);
         let permit = Permit {
             edit: true,
-            feed_word: at.per_minute,
-            as_feed: at.per_minute,
+            feed_word: per_minute,
+            as_feed: per_minute || apart,
             reason: "",
             reason_help: "",
             mm_per_unit: at.mm_per_unit,

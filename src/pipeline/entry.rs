@@ -4,7 +4,7 @@ use super::front::Line;
 use super::table::LineKey;
 use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{Lathe, Machine, PathMode, RapidJoint};
+use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
@@ -179,7 +179,13 @@ impl Entry {
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",
             ),
-            (self.feed_mode == FeedMode::PerRevolution, PER_REVOLUTION),
+            (
+                self.feed_mode == FeedMode::PerRevolution
+                    && !(mv.kind == MoveKind::Rapid
+                        && turns_apart(machine)
+                        && !self.sets_feed_mode()),
+                PER_REVOLUTION,
+            ),
         ];
         let rapid = [
             (facts.machine_coordinates, "G53 is for rapids"),
@@ -238,10 +244,25 @@ impl Entry {
             && (self.mode_before == PathMode::LookAhead || self.steps.iter().any(blends))
     }
 
+    /// Whether one of its words may say what F means.
+    fn sets_feed_mode(&self) -> bool {
+        let mut words = self.block.words.iter();
+        words.any(|word| word.letter == b'G' && (93.0..=99.0).contains(&word.value))
+    }
+
     /// The F in force, in program units.
     pub(super) fn feed_before(&self) -> Option<f64> {
         self.mark.feed.as_ref().map(|feed| feed.value)
     }
+}
+
+/// Whether the mode of the feed is a matter of its own: with others it also switches
+/// constant surface speed off.
+pub(super) fn turns_apart(machine: &Machine) -> bool {
+    matches!(
+        machine.controller.language.family,
+        Family::Rs274 | Family::Iso
+    )
 }
 
 /// The knobs in force, where the controller has any.

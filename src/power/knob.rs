@@ -17,7 +17,7 @@ use super::demand::{Demand, Totals, Want, larger};
 use super::independent;
 use super::model::{ConverterPower, PowerModel};
 use super::slower;
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::machine::{AXES, AxisSet, Machine};
 use crate::plan::{Overrides, PhaseKind, Plan, Profile, Trajectory, plan};
 use arrayvec::ArrayVec;
@@ -175,14 +175,19 @@ impl PowerModel {
         // Where less is taken for turning, more is left for speeding up.
         let steepest_mm_s2 = at(slower::LEAST).accel_mm_s2;
         let fastest_mm_s = at(1.0).top_speed_mm_s;
+        let asked_mm_s = match mv.kind {
+            MoveKind::Rapid => fastest_mm_s,
+            _ => (mv.feed_mm_s * largest.feed).max(fastest_mm_s),
+        };
         let per_mm = mv.arc.as_ref().map_or(0.0, |arc| 1.0 / arc.radius_mm);
         let turning_mm_s2 = fastest_mm_s * fastest_mm_s * per_mm;
         if self.is_below_floor(mv, [fastest_mm_s, steepest_mm_s2 + turning_mm_s2], want) {
             return;
         }
         let mut lower = Demand::NONE;
-        for knob in slower::shares() {
-            lower.include(&self.demand(mv, &at(knob), Want::PEAKS));
+        for speed_mm_s in slower::speeds_mm_s(fastest_mm_s) {
+            let plan = at(speed_mm_s / asked_mm_s);
+            lower.include(&self.demand(mv, &plan, Want::PEAKS));
         }
         demand.include_slower(lower);
     }

@@ -7,7 +7,7 @@
 use super::blend;
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
-use super::slower::shares;
+use super::slower::speeds_mm_s;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::lookahead::{Piece, Planned};
@@ -58,7 +58,11 @@ pub(super) fn slower_demand(
     };
     planned.slowed(1.0)?;
     let mut slower = Demand::NONE;
-    for piece in shares().filter_map(|share| planned.slowed(share)) {
+    let top_mm_s = planned.top_speed_mm_s();
+    for speed_mm_s in speeds_mm_s(top_mm_s) {
+        let Some(piece) = planned.slowed(speed_mm_s / top_mm_s) else {
+            continue;
+        };
         slower.include(&piece_demand(model, mv, &piece, want));
     }
     let mut demand = piece_demand(model, mv, planned, want);

@@ -10,27 +10,36 @@
 use super::demand::Demand;
 
 /// How many lower speeds are looked at, and by what share they differ; far below the
-/// largest, where limits of jerk alone matter, by more.
+/// largest, where limits of jerk alone matter, every third of them.
 const RUNGS: i32 = 24;
 const RUNG_RATIO: f64 = 0.92;
-const FAR_RUNGS: i32 = 8;
-const FAR_RATIO: f64 = 0.75;
+const FAR_RUNGS: i32 = 27;
+const FAR: i32 = 3;
+/// Speeds nearer to the largest are not looked at.
+const NEAREST: f64 = 0.96;
 /// The least that a share of a speed may be here.
 pub(super) const LEAST: f64 = 1e-3;
 /// What may lie between two of them.
 const BETWEEN: f64 = 1.01;
 
-/// Shares of a speed at which a path that turns is looked at.
-pub(super) fn shares() -> impl Iterator<Item = f64> {
-    let power = |ratio: f64, rung: i32| libm::pow(ratio, f64::from(rung));
-    let far = (1..=FAR_RUNGS).map(move |rung| power(FAR_RATIO, rung) * power(RUNG_RATIO, RUNGS));
-    (1..=RUNGS)
-        .map(move |rung| power(RUNG_RATIO, rung))
-        .chain(far)
+/// Speeds below `top_mm_s` at which a path that turns is looked at. They are the same for
+/// every path, so that what a lower top leaves out is nothing but what lies above it.
+pub(super) fn speeds_mm_s(top_mm_s: f64) -> impl Iterator<Item = f64> {
+    let known = top_mm_s > 0.0 && top_mm_s < f64::INFINITY;
+    let exponent = libm::log(NEAREST * top_mm_s) / libm::log(RUNG_RATIO);
+    let first = if known {
+        libm::ceil(exponent) as i32
+    } else {
+        0
+    };
+    let near = first..first.saturating_add(RUNGS);
+    let far = (near.end..near.end.saturating_add(FAR_RUNGS)).filter(|rung| rung % FAR == 0);
+    let rungs = near.chain(far).filter(move |_| known);
+    rungs.map(|rung| libm::pow(RUNG_RATIO, f64::from(rung)))
 }
 
 impl Demand {
-    /// Includes the largest demand of all [`shares`], with what may lie between.
+    /// Includes the largest demand at all [`speeds_mm_s`], with what may lie between.
     pub(super) fn include_slower(&mut self, mut slower: Self) {
         let near = |slower: f64, own: f64| {
             if slower * BETWEEN <= own {

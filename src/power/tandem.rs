@@ -15,7 +15,7 @@
 use super::demand::Demand;
 use super::model::PowerModel;
 use super::piece::straight_line;
-use super::slower::shares;
+use super::slower::speeds_mm_s;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::lookahead::{Piece, Planned};
@@ -170,10 +170,9 @@ pub(super) fn tandem_demand_at_any(
     }
     let longest = shares_of[1];
     let mut slower = Demand::NONE;
-    for share in shares()
-        .take_while(|share| *share > longest)
-        .chain([longest])
-    {
+    let asked_mm_s = rides[1].asked_mm_s;
+    let shares = speeds_mm_s(asked_mm_s).map(|speed| speed / asked_mm_s);
+    for share in shares.take_while(|share| *share > longest).chain([longest]) {
         let (longer_s, passed_s, own_s, speed_mm_s) = lasts_s(share);
         let lower_s = longer_s.min(passed_s).min(own_s);
         if lower_s > overlap_s * (1.0 + ROUNDING) {

@@ -1,12 +1,14 @@
 //! One block at a time: its edits, and the lines before it.
 
+use std::fmt::Write as _;
+
 use super::knob_line;
 use super::number::{Style, decimal, feed_again, has_point, with_digit};
 use super::state::{FeedValue, Mark, Written};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, Family, KnobTarget, Machine};
+use crate::machine::{AXES, AxisValues, Family, KnobTarget, Lathe, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
@@ -104,6 +106,13 @@ impl<'m> Rewriter<'m> {
         if view.rapids || view.feeds {
             self.turn_knobs(view, out);
         }
+        // Its F is by the minute where the others are by the revolution.
+        let apart = view.change.as_feed && !view.after.per_minute;
+        if apart {
+            self.restore(view.before, view.knobs, out);
+            self.insert_line(self.feed_modes()[0], out);
+            self.written.feed = None;
+        }
         if view.stops && !self.stopped {
             self.insert_stop(out);
         }
@@ -125,7 +134,42 @@ impl<'m> Rewriter<'m> {
             }
             self.insert_stop(out);
         }
+        if apart {
+            self.back_to_revolutions(view, out);
+        }
         fine
+    }
+
+    /// The words for a feed per minute and per revolution.
+    fn feed_modes(&self) -> [&'static str; 2] {
+        match self.machine.controller.language.dialect.lathe {
+            Some(Lathe::A) => ["G98", "G99"],
+            _ => ["G94", "G95"],
+        }
+    }
+
+    /// A line that puts back what was in force, after a feed per minute among feeds per
+    /// revolution.
+    fn back_to_revolutions(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        if !self.complete {
+            out.extend_from_slice(&self.line_end);
+            self.complete = true;
+        }
+        let [_, per_revolution] = self.feed_modes();
+        let mut words = String::new();
+        if let Some(digit) = view.after.motion.digit() {
+            let _ = write!(words, "G{} ", char::from(digit));
+        }
+        words.push_str(per_revolution);
+        if let Some(feed) = &view.after.feed {
+            let _ = write!(words, " F{}", feed_again(feed, view.after.mm_per_unit));
+        }
+        self.insert_line(&words, out);
+        self.written = Written {
+            motion: view.after.motion,
+            feed: view.after.feed_value(),
+        };
+        self.stopped = false;
     }
 
     /// Copies a block that moves and changes nothing else of the state `mark`;

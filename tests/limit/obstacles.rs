@@ -179,13 +179,14 @@ fn rapids_that_another_mode_would_help() {
          feed by hand",
     );
     let revolution = "the feed in force is per revolution";
-    no_knob(
-        RIG,
-        "G95 S100 M3\nG0 X400\n",
-        2,
-        revolution,
-        "program G94 (feed per minute) and F in it before the rapid",
-    );
+    // Where G94 would end constant surface speed, and where the block itself says G95.
+    let siemens = Rig {
+        controller: "siemens",
+        ..RIG
+    };
+    let help = "program G94 (feed per minute) and F in it before the rapid";
+    no_knob(siemens, "G95 S100 M3\nG0 X400\n", 2, revolution, help);
+    no_knob(RIG, "S100 M3\nG95 G0 X400\n", 2, revolution, help);
     let lathe = Rig {
         controller: "fanuc-lathe",
         rest: "[path]\nrapid = \"linear\"\n",
@@ -193,7 +194,7 @@ fn rapids_that_another_mode_would_help() {
     };
     no_knob(
         lathe,
-        "G0 X400.\n",
+        "G99 G0 X400.\n",
         1,
         revolution,
         "program G98 (feed per minute) and F in it before the rapid",

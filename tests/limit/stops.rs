@@ -60,3 +60,30 @@ fn a_lathe_in_feed_per_minute() {
     let text = shop.get("out.nc");
     assert!(text.contains("G4 P1\nG1 X400. Z300. F"), "{text}");
 }
+
+/// Under feed per revolution the feed per minute stands apart: what was in force is put
+/// back at once.
+#[test]
+fn a_rapid_among_feeds_per_revolution() {
+    let converter = "peak_power_w = 600";
+    for (controller, [minute, revolution], dwell) in [
+        ("fanuc-lathe", ["G98", "G99"], "G4 P1\n"),
+        ("fanuc-lathe-b", ["G94", "G95"], "G4 P1\n"),
+        ("linuxcnc", ["G94", "G95"], "G4 P0\n"),
+    ] {
+        let shop = Shop::mill(controller, converter, "[path]\nrapid = \"linear\"", "");
+        shop.put(
+            "a.nc",
+            &format!("{revolution} G21\nM3 S500\nG1 X-20. F.2\nG0 X400. Z300.\nG1 X401.\nX402. F.1\nM30\n"),
+        );
+        let (code, _, errors) = shop.run("limit a.nc -o out.nc");
+        assert_eq!(code, 0, "{controller}: {errors}");
+        let text = shop.get("out.nc");
+        let before = format!("F.2\n{minute}\n{dwell}G1 X400. Z300. F");
+        assert!(text.contains(&before), "{controller}: {text}");
+        let after = format!("\n{dwell}G0 {revolution} F.2\nG1 X401.\nX402. F.1\nM30\n");
+        assert!(text.ends_with(&after), "{controller}: {text}");
+        let (code, _, errors) = shop.run("check out.nc");
+        assert_eq!(code, 0, "{controller}: {errors}");
+    }
+}
