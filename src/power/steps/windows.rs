@@ -11,6 +11,8 @@ use crate::power::model::{ConverterPower, PowerModel};
 const PARTS: f64 = 4.0;
 /// Share of a response time that is rounding.
 const NO_TIME: f64 = 1e-9;
+/// Speeds below are rounding of a mean over places, in m/s or rad/s.
+const AT_REST: f64 = 1e-9;
 /// Means longer than the response time that are looked at for one step.
 const LONGER: usize = 8;
 
@@ -189,7 +191,7 @@ pub(super) fn raise(
         }
         let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         for v in speeds {
-            let sign = if v == 0.0 { 0.0 } else { v.signum() };
+            let sign = if v.abs() < AT_REST { 0.0 } else { v.signum() };
             let forces = accels
                 .map(|a| [Side::Regen, Side::Motor].map(|side| power.force(side, v, a, sign)));
             let [low, high] = [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| {
