@@ -463,3 +463,15 @@ fn the_largest_override_counts() {
     near(found[0].peak_w, 0.8 * FULL_W);
     near(found[0].energy_j, 0.5 * FULL_W * 4.0 / 9.0);
 }
+
+/// X brakes with 1000 kg at 1 m/s² from 1 m/s: 1000 W. The spindle's drive takes 300 W of
+/// that while it is switched on, and nothing that is certain before and after.
+#[test]
+fn a_drive_that_is_switched_off_takes_nothing_of_what_is_fed_back() {
+    let machine = machine("iso", "credit_regen = true", "base_load_w = 300", "");
+    let program = "G0 X2000\nM3 S10\nG4 P5\nG0 X0\nM5\nG4 P5\nG0 X2000\n";
+    let (rows, _) = run(&machine, program, &Options::default());
+    let rapids = rows.iter().filter(|row| row.kind == MoveKind::Rapid);
+    let back: Vec<f64> = rapids.map(|row| row.regen_w.round()).collect();
+    assert_eq!(back, [1000.0, 700.0, 1000.0]);
+}

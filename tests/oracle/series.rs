@@ -179,12 +179,17 @@ impl<'p> Watch<'p> {
                 self.differs("bus power", time_s, line, &[shown_w, drawn_w, fed_w]);
                 continue;
             };
-            let expected_w = if converter.credit {
-                (-sum(mask)).max(0.0)
+            // Of a drive that is switched off nothing is certain.
+            let base_w = plant.spindle.as_ref().filter(|_| spindle == Some(which));
+            let base_w = base_w.map_or(0.0, |spindle| spindle.base_w);
+            let (expected_w, uncertain_w) = if converter.credit {
+                let uncredited_w = (base_w - sum(mask)).max(0.0);
+                ((-sum(mask)).max(0.0), uncredited_w)
             } else {
-                fed_w
+                (fed_w, fed_w)
             };
-            if !near(now.regen_w[which], expected_w, scale) {
+            let shown_w = now.regen_w[which];
+            if !(near(shown_w, expected_w, scale) || near(shown_w, uncertain_w, scale)) {
                 self.differs(
                     "power fed back",
                     time_s,
@@ -192,7 +197,7 @@ impl<'p> Watch<'p> {
                     &[now.regen_w[which], expected_w],
                 );
             }
-            self.peaks_w[which][0] = self.peaks_w[which][0].max(shown_w);
+            self.peaks_w[which][0] = self.peaks_w[which][0].max(now.bus_w[which]);
             self.peaks_w[which][1] = self.peaks_w[which][1].max(now.regen_w[which]);
             let beside = Beside {
                 power_w: beside_w,

@@ -140,7 +140,7 @@ impl SpindleBus<'_> {
             return;
         };
         self.commands = self.commands.wrapping_add(1);
-        self.switched_on |= self.direction != 0.0;
+        self.switched_on = self.direction != 0.0;
         for side in 0..2 {
             let target = self.target(self.overrides[side].spindle);
             self.states[side].command(&self.motor, target);

@@ -44,8 +44,8 @@ impl SpindleBus<'_> {
         converter.is_some_and(|converter| converter.credit_regen)
     }
 
-    /// What its drive takes of what is fed back, W: its base load, once it has been
-    /// switched on.
+    /// What its drive takes of what is fed back, W: its base load, while it is switched
+    /// on.
     pub(super) fn credited_w(&self) -> f64 {
         if self.credits() && self.switched_on {
             self.spindle.base_load_w

@@ -79,7 +79,7 @@ pub(super) struct SpindleBus<'m> {
     handed: u64,
     /// ±1, or 0 at rest.
     direction: f64,
-    /// It has been switched on: what its drive draws before is not certain.
+    /// It is switched on: what its drive draws before and after is not certain.
     switched_on: bool,
     /// S; `None`: the program has not said.
     rpm: Option<f64>,

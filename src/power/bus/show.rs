@@ -30,6 +30,8 @@ pub struct Turning {
     power: SpindlePower,
     converter: usize,
     base_load_w: f64,
+    /// What of it takes of what is fed back.
+    credited_w: f64,
     /// Electrical power of cutting, W, and by speed of the path, W/(mm/s).
     cutting_w: f64,
     cutting_w_s_mm: f64,
@@ -77,6 +79,7 @@ impl SpindleBus<'_> {
     /// Shows it during a move, which is judged.
     pub(super) fn show(&mut self, mv: &Move, judged: &Assessment, followed: Option<&Followed>) {
         let taken = self.taken(mv);
+        let credited_w = self.credited_w();
         let Some(shown) = &mut self.shown else { return };
         let target = followed.and_then(|it| it.target);
         if let Some(target) = target {
@@ -98,6 +101,7 @@ impl SpindleBus<'_> {
                 power: self.motor.power,
                 converter: self.spindle.converter,
                 base_load_w: self.spindle.base_load_w,
+                credited_w,
                 cutting_w: taken.power_w / self.spindle.efficiency,
                 cutting_w_s_mm: judged.spindle.cutting_w_s_mm,
             });
@@ -111,6 +115,7 @@ impl SpindleBus<'_> {
     /// Shows a wait before a move, whose axes stand for so long.
     pub(super) fn show_wait(&mut self, mv: &Move, duration_s: f64) {
         let place = self.place(Some(mv));
+        let credited_w = self.credited_w();
         let Some(shown) = &mut self.shown else { return };
         if let Some(place) = place
             && duration_s > 0.0
@@ -122,6 +127,7 @@ impl SpindleBus<'_> {
                 power: self.motor.power,
                 converter: self.spindle.converter,
                 base_load_w: self.spindle.base_load_w,
+                credited_w,
                 cutting_w: 0.0,
                 cutting_w_s_mm: 0.0,
             });
@@ -212,7 +218,8 @@ impl Turning {
         let more_w = self.base_load_w + cutting_w;
         if converter.credit_regen {
             *bus_w += motor_w + more_w;
-            *regen_w = (-*bus_w).max(0.0);
+            let uncertain_w = self.base_load_w - self.credited_w;
+            *regen_w = (uncertain_w - *bus_w).max(0.0);
         } else {
             *bus_w += motor_w.max(0.0) + more_w;
             *regen_w += (-motor_w).max(0.0);
