@@ -353,16 +353,16 @@ fn keeps(language: &Language, seed: u64, programs: usize) -> usize {
     let mut dice = Dice(seed);
     let mut accepted = 0;
     for _ in 0..programs {
+        let begin = match language.controller {
+            "siemens" => "G71 G90\n",
+            "okuma" | "isg" => "G90\n",
+            _ => "G21 G90\n",
+        };
         let mut written = Written {
-            text: "G21 G90\n".to_owned(),
+            text: begin.to_owned(),
             ends: Vec::new(),
             numbers: 0,
         };
-        if language.controller == "siemens" {
-            written.text = "G71 G90\n".to_owned();
-        } else if matches!(language.controller, "okuma" | "isg") {
-            written.text = "G90\n".to_owned();
-        }
         for _ in 0..4 {
             written.piece(&mut dice, language, 0);
         }

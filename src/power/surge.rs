@@ -71,14 +71,13 @@ fn line_demand(model: &PowerModel, mv: &Move, surge: Surge, want: Want) -> Deman
         };
         let mut plan = Plan::ramps(speed_mm_s, surge.accel_mm_s2);
         if let Trajectory::Path(profile) = &mut plan.trajectory {
-            match &surge.section {
-                Some(section) => *profile = section.ramp(speed_mm_s, last),
-                None => {
-                    if last {
-                        profile.phases.reverse();
-                    }
-                    profile.phases.truncate(1);
+            if let Some(section) = &surge.section {
+                *profile = section.ramp(speed_mm_s, last);
+            } else {
+                if last {
+                    profile.phases.reverse();
                 }
+                profile.phases.truncate(1);
             }
         }
         demand.include(&model.demand(mv, &plan, want));

@@ -190,7 +190,7 @@ fn any_path(dice: &mut Dice, controller: &str) -> String {
         );
     }
     let (mut x, mut y, mut z, mut turn) = (0.0, 0.0, 0.0, dice.next() * 6.25);
-    for block in 0..1 + (dice.next() * 6.0) as usize {
+    for block in 0..=(dice.next() * 6.0) as usize {
         let length = dice.between(0.3, 150.0);
         if dice.chance(0.6) {
             turn += (dice.next() + dice.next() - 1.0) * 1.2;
