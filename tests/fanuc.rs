@@ -198,9 +198,9 @@ fn alarms_and_state() {
     for note in ["alarm-not-raised", "alarm", "behind-the-end"] {
         assert!(found.contains(&note), "{found:?}");
     }
-    let time = moves("fanuc", "#3001=0\n#1=#3001\n");
+    let time = moves("fanuc", "#3001=0\n#1=#3001\nG0 X#1\n");
     assert!(
-        time.contains("unknown-value: #3001 depends on the time"),
+        time.contains("unknown-value: #1 depends on the time"),
         "{time}"
     );
 }

@@ -61,6 +61,57 @@ fn variables_that_outlast_a_program_are_unknown() {
 }
 
 #[test]
+fn what_is_worked_out_from_an_unknown_value_is_unknown() {
+    let from = "#2 depends on a variable that the control keeps, which is not known";
+    // Nothing moves by it: it need not be known.
+    let saved = "#1=#500\n#2=[#1+1]*2\n#<_kept>=#2\nG0 X10\nM30\n";
+    fits("linuxcnc", saved, "");
+    refused("linuxcnc", &saved.replace("X10", "X#2"), from);
+    fits("linuxcnc", &saved.replace("X10", "X#2"), "--set #500=3");
+    refused(
+        "linuxcnc",
+        &saved.replace("X10", "X#<_kept>"),
+        "#<_kept> depends on a variable that the control keeps",
+    );
+    let fanuc = "#1=#500\n#2=#1\nG0 X9.\nIF[#2 EQ #0]GOTO 5\nG0 X1.\nN5 M30\n";
+    refused("fanuc", fanuc, from);
+    fits("fanuc", &fanuc.replace("#2=#1", "#2=7"), "");
+    // A local variable of a subprogram is another one; a line that runs again finds it
+    // known or not each time.
+    fits(
+        "fanuc",
+        "#1=0\n#2=#500\nWHILE[#1 LT 4]DO1\n#1=#1+1\n#3=#2\n#2=#1\nEND1\nG0 X#3\nM30\n",
+        "",
+    );
+    refused(
+        "fanuc",
+        "#1=0\n#2=1\nWHILE[#1 LT 4]DO1\n#1=#1+1\n#3=#2\n#2=#500\nEND1\nG0 X#3\nM30\n",
+        "#3 depends on a variable that the control keeps",
+    );
+    // What the control acts on at once has to be known.
+    for program in ["#1=#500\n#5220=#1\nG0 X1\nM2\n", "#5221=#500\nG0 X1\nM2\n"] {
+        refused("linuxcnc", program, "what is assigned here depends on");
+    }
+    refused(
+        "fanuc",
+        "#3000=#500\nG0 X1.\nM30\n",
+        "what is assigned here depends on",
+    );
+    // What stands in for it while the line is read has no say.
+    refused("linuxcnc", "#1=ACOS[#500*3]\nM2\n", &format!("#500 {HELD}"));
+    refused(
+        "linuxcnc",
+        "#[#500]=1\nG0 X1\nM2\n",
+        &format!("#500 {HELD}"),
+    );
+    refused(
+        "linuxcnc",
+        "G38.2 Z-20 F50\n#1=#5063\nG1 Z#1\nM2\n",
+        "#1 depends on the result of probing",
+    );
+}
+
+#[test]
 fn a_variable_that_a_control_does_not_have_is_not_given() {
     let (code, told) = check("fanuc", "G0 X1.\nM30\n", "--set R1=2");
     assert!(

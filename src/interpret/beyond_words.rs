@@ -2,7 +2,7 @@
 //! order of execution takes effect.
 
 use super::execute::{Control, Run};
-use super::expression::{Fault, Name, Value};
+use super::expression::{Fault, Held, Name, Value, Variables, remedy};
 use super::report::Report;
 use super::statement::Unread;
 use super::transfer::{Go, Transfer};
@@ -84,8 +84,8 @@ impl Control<'_> {
                 "whether this alarm (#3000) is raised only the machine knows: taken as not";
             report.note_once("alarm-not-raised", message, span);
         }
-        for (name, value, span) in &statement.assignments {
-            if !self.take_assignment(name, *value, *span, report) {
+        for (name, held, span) in &statement.assignments {
+            if !self.take_assignment(name, *held, *span, report) {
                 block.words.clear();
                 return false;
             }
@@ -98,11 +98,20 @@ impl Control<'_> {
     pub(super) fn take_assignment(
         &mut self,
         name: &Name<'_>,
-        value: Value,
+        held: Held,
         span: Span,
         report: &mut Report<'_, '_>,
     ) -> bool {
-        if *name == Name::Number(3000) && self.raises_alarm(value) {
+        if let Err(reason) = held
+            && self.matters_at_once(name)
+        {
+            let message = format!("what is assigned here depends on {reason}: it is not known");
+            report
+                .error("unknown-value", message, span)
+                .help(remedy(reason));
+            return true;
+        }
+        if *name == Name::Number(3000) && held.is_ok_and(|value| self.raises_alarm(value)) {
             self.ended = true;
             if self.moved {
                 let message = "#3000 raises an alarm: the program ends here";
@@ -116,13 +125,22 @@ impl Control<'_> {
             }
             return false;
         }
-        if let Err(reason) = self.assign(name, value) {
+        if let Err(reason) = self.assign(name, held) {
             let message = format!("this cannot be assigned: {reason}");
             report
                 .error("assignment", message, span)
                 .help("use another parameter");
         }
         true
+    }
+
+    /// Whether the control acts on what this parameter holds, which must be known then.
+    fn matters_at_once(&self, name: &Name<'_>) -> bool {
+        match *name {
+            Name::Number(number) if self.fanuc() => number >= 1000 && !self.is_common(number),
+            Name::Number(number) => self.is_system_parameter(number),
+            Name::Text(_) => false,
+        }
     }
 
     fn raises_alarm(&self, value: Value) -> bool {

@@ -96,7 +96,7 @@ impl Interpreter<'_> {
             let _ = self
                 .control
                 .parameters
-                .set(&Name::Text(name.into()), Some(value));
+                .set(&Name::Text(name.into()), Ok(Some(value)));
         }
     }
 

@@ -111,10 +111,12 @@ impl Control<'_> {
         match &given.name {
             // There are fewer than a program may keep.
             Given::Number(number) => {
-                let _ = self.parameters.set(&Name::Number(*number), Some(value));
+                let _ = self.parameters.set(&Name::Number(*number), Ok(Some(value)));
             }
             Given::Named(name) => {
-                let _ = self.parameters.set(&Name::Text(name.into()), Some(value));
+                let _ = self
+                    .parameters
+                    .set(&Name::Text(name.into()), Ok(Some(value)));
             }
             Given::R(number) => {
                 if let Some(siemens) = &mut self.siemens {

@@ -12,7 +12,7 @@
 use std::collections::HashMap;
 
 use super::execute::Control;
-use super::expression::{KEPT, Name, PROBED, Read, Value, Variables};
+use super::expression::{Held, KEPT, Name, PROBED, Read, Value, Variables};
 use super::moves::FeedMode;
 use super::parameter_file::ParameterFile;
 use crate::machine::{Family, Lathe};
@@ -28,11 +28,11 @@ const UNDER_COMPENSATION: &str = "where the path ends under cutter compensation"
 /// What a program has assigned.
 #[derive(Debug)]
 pub(super) struct Parameters {
-    numbered: HashMap<u32, Value>,
-    locals: [Value; LOCALS],
-    named: HashMap<String, f64>,
+    numbered: HashMap<u32, Held>,
+    locals: [Held; LOCALS],
+    named: HashMap<String, Held>,
     /// Names of the subroutine that runs.
-    local_names: HashMap<String, f64>,
+    local_names: HashMap<String, Held>,
     callers: Vec<Saved>,
     /// Numbers below this one belong to the subroutine that runs.
     own: u32,
@@ -52,15 +52,15 @@ pub(super) enum Scope {
 /// What a caller goes on with.
 #[derive(Debug)]
 struct Saved {
-    locals: [Value; LOCALS],
-    names: HashMap<String, f64>,
+    locals: [Held; LOCALS],
+    names: HashMap<String, Held>,
 }
 
 impl Parameters {
     pub(super) fn new(family: Family) -> Self {
         Self {
             numbered: HashMap::new(),
-            locals: [None; LOCALS],
+            locals: [Ok(None); LOCALS],
             named: HashMap::new(),
             local_names: HashMap::new(),
             callers: Vec::new(),
@@ -74,7 +74,7 @@ impl Parameters {
         self.complete = true;
         for (number, value) in file.iter() {
             // The file has as many as there are numbers, which is not too many.
-            let _ = self.set(&Name::Number(number), Some(value));
+            let _ = self.set(&Name::Number(number), Ok(Some(value)));
         }
     }
 
@@ -85,7 +85,7 @@ impl Parameters {
             return;
         }
         let locals = if scope == Scope::Own {
-            *arguments
+            arguments.map(Ok)
         } else {
             self.locals
         };
@@ -109,17 +109,17 @@ impl Parameters {
     }
 
     /// What a number of the subroutine that runs holds; `None` for others.
-    fn local(&self, number: u32) -> Option<Value> {
-        let value = self.locals.get(number as usize).copied()?;
+    fn local(&self, number: u32) -> Option<Held> {
+        let held = self.locals.get(number as usize).copied()?;
         (1..self.own).contains(&number).then(|| {
             // Without null it is 0.
             let rs274 = self.own < LOCALS as u32;
-            if rs274 { value.or(Some(0.0)) } else { value }
+            held.map(|value| if rs274 { value.or(Some(0.0)) } else { value })
         })
     }
 
-    /// A value that was assigned; `None` if none was.
-    pub(super) fn number(&self, number: u32) -> Option<Value> {
+    /// What was assigned; `None` if nothing was.
+    pub(super) fn number(&self, number: u32) -> Option<Held> {
         match self.locals.get(number as usize) {
             Some(value) if number < self.own => Some(*value),
             _ => self.numbered.get(&number).copied(),
@@ -128,11 +128,11 @@ impl Parameters {
 
     /// Keeps a value; false when there are too many.
     #[must_use]
-    pub(super) fn set(&mut self, name: &Name<'_>, value: Value) -> bool {
+    pub(super) fn set(&mut self, name: &Name<'_>, held: Held) -> bool {
         match name {
             Name::Number(number) => match self.locals.get_mut(*number as usize) {
-                Some(local) if *number < self.own => *local = value,
-                _ => drop(self.numbered.insert(*number, value)),
+                Some(local) if *number < self.own => *local = held,
+                _ => drop(self.numbered.insert(*number, held)),
             },
             Name::Text(name) => {
                 let names = if name.starts_with('_') {
@@ -140,11 +140,10 @@ impl Parameters {
                 } else {
                     &mut self.local_names
                 };
-                let value = value.unwrap_or(0.0);
                 if let Some(known) = names.get_mut(name.as_ref()) {
-                    *known = value;
+                    *known = held;
                 } else {
-                    names.insert(name.clone().into_owned(), value);
+                    names.insert(name.clone().into_owned(), held);
                 }
             }
         }
@@ -155,7 +154,7 @@ impl Parameters {
             <= COUNT_MAX
     }
 
-    fn named(&self, name: &str) -> Option<f64> {
+    fn named(&self, name: &str) -> Option<Held> {
         let names = if name.starts_with('_') {
             &self.named
         } else {
@@ -167,8 +166,8 @@ impl Parameters {
 
 impl Variables for Control<'_> {
     fn numbered(&self, number: u32) -> Read {
-        if let Some(value) = self.parameters.local(number) {
-            return Read::Value(value);
+        if let Some(held) = self.parameters.local(number) {
+            return held.into();
         }
         if self.fanuc() {
             return self.fanuc_variable(number);
@@ -186,7 +185,7 @@ impl Variables for Control<'_> {
             5420..=5428 => Read::Unknown("the start position"),
             0 | 5602.. => Read::Missing,
             _ => match self.parameters.number(number) {
-                Some(value) => Read::Value(Some(value.unwrap_or(0.0))),
+                Some(held) => held.map(|value| value.or(Some(0.0))).into(),
                 None if self.is_kept(number) => Read::Unknown(KEPT),
                 None => Read::Value(Some(0.0)),
             },
@@ -194,8 +193,8 @@ impl Variables for Control<'_> {
     }
 
     fn named(&self, name: &str) -> Read {
-        if let Some(value) = self.parameters.named(name) {
-            return Read::Value(Some(value));
+        if let Some(held) = self.parameters.named(name) {
+            return held.map(|value| value.or(Some(0.0))).into();
         }
         let place = matches!(name.as_bytes(), [b'_', b'a'..=b'c' | b'u'..=b'z']);
         if place && self.is_compensating() {
@@ -227,8 +226,8 @@ impl Control<'_> {
         if matches!(number, 3001 | 3002 | 3011 | 3012) {
             return Read::Unknown("the time");
         }
-        if let Some(value) = self.parameters.number(number) {
-            return Read::Value(value);
+        if let Some(held) = self.parameters.number(number) {
+            return held.into();
         }
         let shifted = self.compensation.as_ref().is_some_and(|it| it.shifts());
         if shifted && matches!(number, 5001..=5009 | 5021..=5029 | 5041..=5049) {
@@ -263,7 +262,7 @@ impl Control<'_> {
     }
 
     /// Whether it keeps a variable from one program to the next.
-    fn is_common(&self, number: u32) -> bool {
+    pub(super) fn is_common(&self, number: u32) -> bool {
         let kept = &self.machine.controller.language.kept_variables;
         kept.iter()
             .any(|[first, last]| (*first..=*last).contains(&number))
@@ -299,15 +298,18 @@ impl Control<'_> {
         })
     }
 
-    /// Gives a parameter a value; the reason where it cannot have one.
-    pub(super) fn assign(&mut self, name: &Name<'_>, value: Value) -> Result<(), &'static str> {
+    /// Gives a parameter a value, or takes note that what it holds is not known; the
+    /// reason where it cannot have one.
+    pub(super) fn assign(&mut self, name: &Name<'_>, held: Held) -> Result<(), &'static str> {
         match name {
             Name::Number(0) => return Err("#0 is always null"),
             Name::Number(number) if !self.fanuc() => {
                 if *number > 5601 {
                     return Err("there are parameters up to #5601");
                 }
-                if self.set_system_parameter(*number, value.unwrap_or(0.0)) {
+                if let Ok(value) = held
+                    && self.set_system_parameter(*number, value.unwrap_or(0.0))
+                {
                     return Ok(());
                 }
                 if self.is_system_parameter(*number) {
@@ -324,7 +326,7 @@ impl Control<'_> {
             }
             _ => {}
         }
-        if self.parameters.set(name, value) {
+        if self.parameters.set(name, held) {
             Ok(())
         } else {
             Err("there are more than 100000 of them")

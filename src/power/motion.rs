@@ -13,6 +13,9 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Instants at which the axes of one arc may turn back that are looked at.
 const QUADRANTS: f64 = 4096.0;
+/// A quadrant nearer than this to the end of a phase is that end but for rounding, rad:
+/// the piece between them would last no time.
+const APART: f64 = 1e-9;
 /// Halvings that locate an instant.
 const HALVINGS: u32 = 60;
 
@@ -227,6 +230,7 @@ fn along(mv: &Move, profile: &Profile) -> Vec<Phase> {
     // Where the path meets the first quadrant of the circle.
     let angle = arc.start_angle_rad * arc.sweep_rad.signum();
     let first_rad = (libm::ceil(angle / FRAC_PI_2) * FRAC_PI_2 - angle).max(0.0);
+    let apart_mm = APART * mm_per_rad;
     let mut cut = Vec::new();
     for phase in &profile.phases {
         let steps = phase.length_mm() / (FRAC_PI_2 * mm_per_rad);
@@ -241,12 +245,14 @@ fn along(mv: &Move, profile: &Profile) -> Vec<Phase> {
         let mut step = skipped.max(0.0);
         loop {
             let at_mm = (first_rad + step * FRAC_PI_2) * mm_per_rad;
-            let inside = at_mm - phase.position_mm < phase.length_mm();
-            if !inside {
+            let inside_mm = at_mm - phase.position_mm;
+            if inside_mm >= phase.length_mm() - apart_mm {
                 break;
             }
             let pieces = pieces(&rest, &[at_mm]);
-            if let [before, after] = pieces.as_slice() {
+            if inside_mm > apart_mm
+                && let [before, after] = pieces.as_slice()
+            {
                 cut.push(*before);
                 rest = *after;
             }

@@ -171,6 +171,18 @@ fn series_of_the_examples_are_right() {
     assert!(checked >= 8, "{checked}");
 }
 
+/// Arcs whose ends lie on a quadrant but for rounding have no piece there at which the
+/// axes stand.
+#[test]
+fn series_of_arcs_that_end_on_quadrants_are_right() {
+    let program = "G21 G90 G17\nG0 X-5 Y-22.5\nG2 X-10.303 Y-20.303 I0 J7.5 F500\n\
+                   G2 X-12.5 Y-15 I5.303 J5.303\nG3 X-13.232 Y-13.232 I-2.5 J0\n\
+                   G3 X-15 Y-12.5 I-1.768 J-1.768\nG1 X-20\nG2 X-22.5 Y-10 I0 J2.5\nM2\n";
+    let (own, wrong) = controllers("router-48v", program, "quadrants");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(own, CONTROLLERS.len());
+}
+
 /// Checks a program on a built-in machine under each controller that reads it;
 /// gives how many do, and what differs.
 fn controllers(machine: &str, program: &str, name: &str) -> (usize, Vec<String>) {

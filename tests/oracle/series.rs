@@ -155,38 +155,49 @@ impl<'p> Watch<'p> {
             } else {
                 0.0
             };
-            let (mut drawn_w, mut fed_w) = (converter.base_w, 0.0);
-            for power_w in powers.chain([beside_w]) {
-                drawn_w += power_w.max(0.0);
-                fed_w += (-power_w).max(0.0);
-            }
+            let powers: Vec<f64> = powers.collect();
+            // Of a drive that is switched off nothing is certain: what it draws without
+            // motion may stand apart from what it feeds back.
+            let base_w = plant.spindle.as_ref().filter(|_| spindle == Some(which));
+            let base_w = base_w.map_or(0.0, |spindle| spindle.base_w);
+            let flows = |apart_w: f64| {
+                let (mut drawn_w, mut fed_w) = (converter.base_w + apart_w, 0.0);
+                for power_w in powers.iter().chain([&(beside_w - apart_w)]) {
+                    drawn_w += power_w.max(0.0);
+                    fed_w += (-power_w).max(0.0);
+                }
+                (drawn_w, fed_w)
+            };
             let shown_w = now.bus_w[which];
             let load_w = |mask: u32| {
                 let loads = plant.loads.iter().enumerate();
                 let on = loads.filter(|(bit, load)| mask & (1 << bit) != 0 && load.1 == which);
                 on.map(|(_, load)| load.0).sum::<f64>()
             };
-            let sum = |mask: u32| {
+            let sum = |(drawn_w, fed_w): (f64, f64), mask: u32| {
                 let credit = if converter.credit { fed_w } else { 0.0 };
                 drawn_w + load_w(mask) - credit
             };
+            let together = flows(0.0);
+            let scale = together.0 + together.1 + 1e-3;
             let masks = 0..1_u32 << plant.loads.len();
-            let scale = drawn_w + fed_w + 1e-3;
-            let Some(mask) = masks
-                .into_iter()
-                .find(|mask| near(shown_w, sum(*mask), scale))
+            let ways = masks.flat_map(|mask| [(together, mask), (flows(base_w), mask)]);
+            let Some((flow, mask)) =
+                { ways }.find(|(flow, mask)| near(shown_w, sum(*flow, *mask), scale))
             else {
-                self.differs("bus power", time_s, line, &[shown_w, drawn_w, fed_w]);
+                self.differs(
+                    "bus power",
+                    time_s,
+                    line,
+                    &[shown_w, together.0, together.1],
+                );
                 continue;
             };
-            // Of a drive that is switched off nothing is certain.
-            let base_w = plant.spindle.as_ref().filter(|_| spindle == Some(which));
-            let base_w = base_w.map_or(0.0, |spindle| spindle.base_w);
             let (expected_w, uncertain_w) = if converter.credit {
-                let uncredited_w = (base_w - sum(mask)).max(0.0);
-                ((-sum(mask)).max(0.0), uncredited_w)
+                let drawn_w = sum(flow, mask);
+                ((-drawn_w).max(0.0), (base_w - drawn_w).max(0.0))
             } else {
-                (fed_w, fed_w)
+                (flow.1, flow.1)
             };
             let shown_w = now.regen_w[which];
             if !(near(shown_w, expected_w, scale) || near(shown_w, uncertain_w, scale)) {

@@ -5,13 +5,18 @@ use std::borrow::Cow;
 use super::function::Function;
 use super::operator;
 use super::tape::{Op, Tape, parameter_number};
-use super::value::{Fault, KEPT, PROBED, Read, Value, Variables};
+use super::value::{
+    FROM_KEPT, Fault, Held, KEPT, PROBED, Read, Value, Variables, passed_on, remedy,
+};
 use crate::diagnostic::excerpt;
 use crate::interpret::operator::Operator;
 use crate::source::Span;
 
 /// Brackets and signs inside one another.
 const DEPTH_MAX: u32 = 64;
+
+/// Stands for a value that is not known, in an expression whose value is not used.
+const STAND_IN: Value = Some(1.0);
 
 /// Letters of the longest keyword.
 const AHEAD: usize = 9;
@@ -27,6 +32,10 @@ pub(in crate::interpret) struct Reader<'t> {
     /// What is worked out on the way, where that is wanted.
     pub(in crate::interpret) tape: Tape,
     depth: u32,
+    /// Whether an unknown value is passed on instead of being an error.
+    passes_on: bool,
+    /// The first one that was, and the error that it would have been.
+    unknown: Option<(&'static str, Fault)>,
 }
 
 /// The next few bytes without blanks, and where each ends.
@@ -61,6 +70,8 @@ impl<'t> Reader<'t> {
             at,
             tape: Tape::default(),
             depth: 0,
+            passes_on: false,
+            unknown: None,
         }
     }
 
@@ -289,30 +300,43 @@ impl<'t> Reader<'t> {
         self.tape.load(from, &name);
         match read {
             Read::Value(value) => Ok(value),
-            Read::Unknown(KEPT) => Err(self.fault(
-                "unknown-value",
-                format!("{name} holds {KEPT}, which is not known"),
-                "give it by --set '#NUMBER=VALUE', give all by --parameters, or assign it before",
-                start,
-            )),
-            Read::Unknown(PROBED) => Err(self.fault(
-                "unknown-value",
-                format!("{name} depends on {PROBED}, which is not known"),
-                "--probe hit and --probe miss each follow one way; where a probe touches stays unknown",
-                start,
-            )),
-            Read::Unknown(reason) => Err(self.fault(
-                "unknown-value",
-                format!("{name} depends on {reason}, which only the machine knows"),
-                "give it a value in the program, or take what depends on it out",
-                start,
-            )),
+            Read::Unknown(reason) => {
+                let fault = self.unknown_value(&name, reason, start);
+                if !self.passes_on {
+                    return Err(fault);
+                }
+                self.unknown.get_or_insert((reason, fault));
+                Ok(STAND_IN)
+            }
             Read::Missing => Err(self.fault(
                 "no-such-parameter",
                 format!("{name} has no value"),
                 "assign it before it is used",
                 start,
             )),
+        }
+    }
+
+    fn unknown_value(&self, name: &Name<'_>, reason: &'static str, start: usize) -> Fault {
+        let message = match reason {
+            KEPT => format!("{name} holds {KEPT}, which is not known"),
+            PROBED | FROM_KEPT => format!("{name} depends on {reason}, which is not known"),
+            _ => format!("{name} depends on {reason}, which only the machine knows"),
+        };
+        self.fault("unknown-value", message, remedy(reason), start)
+    }
+
+    /// An expression that is assigned: what is unknown in it makes the whole unknown,
+    /// which is no error before something depends on it.
+    pub(in crate::interpret) fn assigned(&mut self, variables: &impl Variables) -> Outcome<Held> {
+        self.passes_on = true;
+        let value = self.expression(variables);
+        self.passes_on = false;
+        match self.unknown.take() {
+            None => value.map(Ok),
+            Some((reason, _)) if value.is_ok() => Ok(Err(passed_on(reason))),
+            // What came of the value that stands in for it says nothing.
+            Some((_, fault)) => Err(fault),
         }
     }
 

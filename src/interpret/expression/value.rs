@@ -11,6 +11,29 @@ pub(in crate::interpret) const KEPT: &str = "what the control has kept from befo
 /// Why a variable that a probe sets is unknown.
 pub(in crate::interpret) const PROBED: &str = "the result of probing";
 
+/// Why a variable is unknown to which such a value was given.
+pub(super) const FROM_KEPT: &str = "a variable that the control keeps";
+
+/// What is assigned: a value, or why it is not known.
+pub(in crate::interpret) type Held = Result<Value, &'static str>;
+
+/// Why what is worked out from something unknown is itself unknown.
+pub(in crate::interpret) fn passed_on(reason: &'static str) -> &'static str {
+    if reason == KEPT { FROM_KEPT } else { reason }
+}
+
+/// What can be done about a value that is unknown for this reason.
+pub(in crate::interpret) fn remedy(reason: &'static str) -> &'static str {
+    match reason {
+        KEPT => "give it by --set '#NUMBER=VALUE', give all by --parameters, or assign it before",
+        FROM_KEPT => "give that variable by --set '#NUMBER=VALUE', or all by --parameters",
+        PROBED => {
+            "--probe hit and --probe miss each follow one way; where a probe touches stays unknown"
+        }
+        _ => "give it a value in the program, or take what depends on it out",
+    }
+}
+
 /// What is known of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::interpret) enum Read {
@@ -19,6 +42,15 @@ pub(in crate::interpret) enum Read {
     Unknown(&'static str),
     /// There is no such parameter.
     Missing,
+}
+
+impl From<Held> for Read {
+    fn from(held: Held) -> Self {
+        match held {
+            Ok(value) => Self::Value(value),
+            Err(reason) => Self::Unknown(reason),
+        }
+    }
 }
 
 /// The parameters that expressions may use.

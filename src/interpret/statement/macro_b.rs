@@ -89,10 +89,10 @@ impl Control<'_> {
                 .into());
         }
         if holds {
-            let value = reader.expression(self)?;
+            let held = reader.assigned(self)?;
             let span = Span::new(start, reader.at);
             statement.recorder.assign(target, span, reader);
-            statement.assignments.push((name, value, span));
+            statement.assignments.push((name, held, span));
         } else {
             // What is not assigned need not have a value.
             reader.at = reader.text.len();

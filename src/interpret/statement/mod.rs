@@ -11,7 +11,7 @@ pub(super) use trace::{Trace, Traces};
 use self::trace::{For, Recorder, Target};
 
 use super::execute::Control;
-use super::expression::{Fault, Name, Reader, Value, Variables};
+use super::expression::{Fault, Held, Name, Reader, Variables};
 use super::transfer::Transfer;
 use crate::machine::Family;
 use crate::source::Span;
@@ -24,7 +24,7 @@ const ASSIGNMENTS_MAX: usize = 64;
 #[derive(Debug, Default)]
 pub(super) struct Statement<'t> {
     /// They take effect when the whole block has been read.
-    pub(super) assignments: Vec<(Name<'t>, Value, Span)>,
+    pub(super) assignments: Vec<(Name<'t>, Held, Span)>,
     pub(super) transfer: Option<Transfer>,
     /// The program that a call names: `M98 <NAME>`.
     pub(super) callee: Option<String>,
@@ -145,7 +145,7 @@ impl Control<'_> {
                     if !reader.take(b'=') {
                         return Err(Unread::Foreign);
                     }
-                    let value = reader.expression(self)?;
+                    let held = reader.assigned(self)?;
                     let span = Span::new(start, reader.at);
                     statement.recorder.assign(target, span, &reader);
                     if statement.assignments.len() == ASSIGNMENTS_MAX {
@@ -154,7 +154,7 @@ impl Control<'_> {
                             .fault("expression", message, "write two blocks", start)
                             .into());
                     }
-                    statement.assignments.push((name, value, span));
+                    statement.assignments.push((name, held, span));
                 }
                 b'<' if family == Family::Iso => {
                     let name = reader.angle_name()?.into_owned();

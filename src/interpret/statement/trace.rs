@@ -373,10 +373,10 @@ impl Control<'_> {
         });
         for ((name, span), (value, number)) in assigned.zip(outcome.assignments) {
             let goes_on = match (name, number) {
-                (Target::Known(name), _) => self.take_assignment(name, value, span, report),
+                (Target::Known(name), _) => self.take_assignment(name, Ok(value), span, report),
                 (Target::Number(_), number) => {
                     let name = Name::Number(number.unwrap_or_default());
-                    self.take_assignment(&name, value, span, report)
+                    self.take_assignment(&name, Ok(value), span, report)
                 }
             };
             if !goes_on {
