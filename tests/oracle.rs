@@ -36,6 +36,7 @@ fn compare(seed: u64, blocks: usize) {
         if !all.wrong.is_empty() {
             differing += all.wrong.len();
             let wrong = std::mem::take(&mut all.wrong);
+            println!("{}: {}", seed + all.blocks as u64, wrong.join("; "));
             if shown.len() < 4 {
                 shown.push(format!("{}\n{program}\n{}", machine.toml, wrong.join("\n")));
             }

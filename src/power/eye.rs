@@ -97,6 +97,14 @@ impl Eye {
         }
     }
 
+    /// The same of a blend, the second half of which belongs to the move `next`.
+    #[inline]
+    pub fn show_blend(&mut self, mv: &Move, next: &Move, planned: &Planned<u64>) {
+        if let Some(motions) = &mut self.motions {
+            motions.extend(Motion::of_piece(mv, planned).halves(next));
+        }
+    }
+
     #[cold]
     fn watch_alone(
         &mut self,

@@ -130,7 +130,7 @@ impl Motion {
                 if !self.mv.moving.contains(axis) {
                     return None;
                 }
-                let states = states(phases, [t, inside])?;
+                let states = states_along(phases, [t, inside])?;
                 Some(states.map(|state| on_path(&self.mv, axis, &state)))
             }
             Course::Blend(blend, phases) => {
@@ -138,7 +138,7 @@ impl Motion {
                 if (*tangent, *normal) == (0.0, 0.0) {
                     return None;
                 }
-                let states = states(phases, [t, inside])?;
+                let states = states_along(phases, [t, inside])?;
                 let leads = states[1].position_mm < blend.lead_mm;
                 Some(states.map(|state| {
                     let (v, a) = (state.velocity_mm_s, state.accel_mm_s2);
@@ -171,7 +171,7 @@ impl Motion {
         match &self.course {
             Course::Rest(_) | Course::Axes(_) => 0.0,
             Course::Path(phases) | Course::Line(phases) | Course::Blend(_, phases) => {
-                states(phases, own).map_or(0.0, |[state, _]| state.velocity_mm_s)
+                states_along(phases, own).map_or(0.0, |[state, _]| state.velocity_mm_s)
             }
             Course::Both(both) => {
                 let speeds = [0, 1, 2].map(|axis| self.axis(axis, instants));
@@ -243,25 +243,36 @@ impl Motion {
     }
 }
 
-/// The states at two instants, by the phase of the second; `None` behind the last
+/// The states at two instants, by the phase of the second; `None` after the last
 /// phase.
 fn states(phases: &[Phase], [t, inside]: [f64; 2]) -> Option<[State; 2]> {
     let mut start = 0.0;
     for phase in phases {
         if inside < start + phase.duration_s {
-            let state = |t: f64| {
-                let own = (t - start).clamp(0.0, phase.duration_s);
-                let mut state = phase.state_at(own);
-                if phase.duration_s - own <= ROUNDING * phase.duration_s {
-                    state.velocity_mm_s = phase.end_velocity_mm_s;
-                }
-                state
-            };
-            return Some([t, inside].map(state));
+            return Some([t, inside].map(|t| state_in(phase, t - start)));
         }
         start += phase.duration_s;
     }
     None
+}
+
+/// The same along a path, which ends with its last phase: an instant after it is that
+/// end but for rounding.
+fn states_along(phases: &[Phase], instants: [f64; 2]) -> Option<[State; 2]> {
+    states(phases, instants).or_else(|| {
+        let (last, before) = phases.split_last()?;
+        let start: f64 = before.iter().map(|phase| phase.duration_s).sum();
+        Some(instants.map(|t| state_in(last, t - start)))
+    })
+}
+
+fn state_in(phase: &Phase, t: f64) -> State {
+    let own = t.clamp(0.0, phase.duration_s);
+    let mut state = phase.state_at(own);
+    if phase.duration_s - own <= ROUNDING * phase.duration_s {
+        state.velocity_mm_s = phase.end_velocity_mm_s;
+    }
+    state
 }
 
 /// Speed and acceleration of an axis along the path of a move.

@@ -16,6 +16,8 @@ const QUADRANTS: f64 = 4096.0;
 /// A quadrant nearer than this to the end of a phase is that end but for rounding, rad:
 /// the piece between them would last no time.
 const APART: f64 = 1e-9;
+/// Rounding of a difference of instants, as a share.
+const ROUNDING: f64 = 1e-12;
 /// Halvings that locate an instant.
 const HALVINGS: u32 = 60;
 
@@ -131,7 +133,9 @@ impl Motion {
             next.part(both_s, next.duration_s()),
         ];
         let parts = [first, together].into_iter().chain(rest);
-        parts.filter(|part| part.duration_s() > 0.0).collect()
+        // What rounding leaves of a part is none.
+        let least_s = ROUNDING * lasts_s.max(1.0);
+        parts.filter(|part| part.duration_s() > least_s).collect()
     }
 
     /// The part between two of its instants.
@@ -142,6 +146,20 @@ impl Motion {
             to_s: self.to_s.min(self.from_s + to_s),
             ..self.clone()
         }
+    }
+
+    /// Its two halves, the second of which belongs to `next`.
+    pub(super) fn halves(self, next: &Move) -> [Self; 2] {
+        let half_s = 0.5 * self.duration_s();
+        let mut second = self.part(half_s, 2.0 * half_s);
+        second.mv.line = next.line;
+        second.mv.text = next.text;
+        second.mv.loads = next.loads;
+        let first = Self {
+            to_s: self.from_s + half_s,
+            ..self
+        };
+        [first, second]
     }
 
     /// How long it lasts, s.

@@ -127,6 +127,7 @@ fn random(seed: u64, count: u64) {
             let (own, wrong) = check(&machine.toml, controller, &program, 1e-3);
             rows += own;
             if !wrong.is_empty() {
+                println!("{controller} {}: {}", seed + number, wrong.join("; "));
                 shown.push(format!("{}\n{program}\n{}", machine.toml, wrong.join("\n")));
             }
         }

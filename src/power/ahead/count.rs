@@ -120,15 +120,18 @@ impl Ahead {
     ) {
         let (from, own) = (planned.first, planned.tag);
         let to = planned.next.unwrap_or(own);
+        if times && let Some(open) = self.open.get(own) {
+            match self.open.get(to).filter(|_| to > own) {
+                Some(next) => eye.show_blend(&open.mv, &next.mv, planned),
+                None => eye.show_piece(&open.mv, planned),
+            }
+        }
         let Some(open) = self.open.get_mut(own) else {
             return;
         };
         if peaks {
             open.rests |= planned.rests;
             eye.keep(model, &open.mv, planned, None, &mut open.kept);
-        }
-        if times {
-            eye.show_piece(&open.mv, planned);
         }
         let mut demand = if !open.want.energy && is_quiet(model, &open.mv, planned, open.want) {
             Demand::NONE
