@@ -151,6 +151,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         strategy,
         law: Law::Exact,
         allow_feed: true,
+        allow_expand: false,
     };
     let solver = Solver::new(&machine, how);
     if let Err(obstacle) = solver.solve(&mv, &assessment, &permit, Ends::Rest) {

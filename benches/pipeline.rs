@@ -30,6 +30,7 @@ const LIMIT: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
     allow_feed: true,
+    allow_expand: false,
 };
 
 fn main() {

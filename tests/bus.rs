@@ -252,6 +252,7 @@ fn surface_speed_where_the_axis_stands_or_is_not_known() {
         strategy: Strategy::Optimal,
         law: Law::Exact,
         allow_feed: true,
+        allow_expand: false,
     };
     let (program, mut out) = (format!("G21 G90\n{facing}M2\n"), Vec::new());
     let summary = limit(Cursor::new(&program), &lathe, &options, how, &mut out, None).unwrap();
@@ -332,6 +333,7 @@ fn limited(machine: &Machine, program: &str, allow_feed: bool) -> (String, Limit
         strategy: Strategy::Optimal,
         law: Law::Exact,
         allow_feed,
+        allow_expand: false,
     };
     let program = format!("G21 G90\n{program}M2\n");
     let (mut out, mut rows) = (Vec::new(), Rows::default());

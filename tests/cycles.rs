@@ -82,6 +82,7 @@ const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
     allow_feed: true,
+    allow_expand: false,
 };
 
 const SPINDLE: &str = "G21 G90 F100 S500 M3\n";

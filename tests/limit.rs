@@ -2,6 +2,7 @@
 
 mod ahead;
 mod blends;
+mod cycles;
 mod figures;
 mod flow_through;
 mod knobs;
@@ -127,6 +128,7 @@ pub(crate) fn run(
         strategy: run.strategy,
         law: run.law,
         allow_feed: run.allow_feed,
+        allow_expand: false,
     };
     let mut text = Vec::new();
     let summary = limit(

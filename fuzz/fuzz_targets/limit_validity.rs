@@ -62,6 +62,7 @@ fuzz_target!(|bytes: &[u8]| {
             Law::Patent
         },
         allow_feed: strategy & 8 == 0,
+        allow_expand: false,
     };
     let options = Options {
         once: false,

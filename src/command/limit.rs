@@ -70,7 +70,8 @@ fn options(args: &LimitArgs) -> LimitOptions {
     LimitOptions {
         strategy: args.strategy.into(),
         law: args.law.into(),
-        allow_feed: args.allow == Some(Allow::Feed),
+        allow_feed: args.allow.contains(&Allow::Feed),
+        allow_expand: args.allow.contains(&Allow::Expand),
     }
 }
 

@@ -51,6 +51,7 @@ pub fn write(
             strategy: Strategy::Optimal,
             law: Law::Exact,
             allow_feed: args.allow == Some(Allow::Feed),
+            allow_expand: false,
         };
         let mut written = BufWriter::new(Target::Stdout.spool()?);
         let summary = program

@@ -23,6 +23,8 @@ pub struct Facts {
     pub dwell_takes_feed: bool,
     /// Why none of its words may be changed, as in "it cuts a thread".
     pub fixed: Option<&'static str>,
+    /// Its moves are those of a canned cycle, and may stand as single blocks.
+    pub cycle: bool,
     /// Compensation is on, or lets go of moves: such blocks follow each other
     /// without anything between them.
     pub compensated: bool,

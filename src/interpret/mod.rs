@@ -64,10 +64,12 @@ mod turned_arc;
 mod turning;
 mod vector;
 mod words;
+mod written_out;
 
 pub(crate) use transfer::Transfer;
 
 pub use code::Motion;
+pub(crate) use cycle::FIXED as CYCLE;
 pub use execute::Interpreter;
 pub use facts::Facts;
 pub(crate) use flow::Flow;

@@ -86,6 +86,11 @@ impl Special {
         }
     }
 
+    /// The motion word before the cycle.
+    pub(super) fn before(&self) -> Motion {
+        self.before
+    }
+
     /// M3, M4 and M5 (number × 10).
     pub(super) fn turn_spindle(&mut self, number: u16) {
         self.spindle = match number {

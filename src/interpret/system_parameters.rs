@@ -110,7 +110,7 @@ impl Control<'_> {
     }
 
     /// Millimetres in units of the program; degrees stay degrees.
-    fn in_unit(&self, axis: usize, value: f64) -> f64 {
+    pub(super) fn in_unit(&self, axis: usize, value: f64) -> f64 {
         if self.position.offsets().is_linear(axis) {
             value / self.modal.mm_per_unit
         } else {

@@ -28,6 +28,17 @@ pub struct Permit {
     pub feed_accel_mm_s2: AxisValues,
 }
 
+impl Permit {
+    /// What can be done about its reason, or else what `usual` says.
+    pub(super) fn help_or(&self, usual: &'static str) -> &'static str {
+        if self.reason_help.is_empty() {
+            usual
+        } else {
+            self.reason_help
+        }
+    }
+}
+
 /// The values that the words of a block get.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Change {

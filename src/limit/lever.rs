@@ -5,6 +5,9 @@ use super::options::LimitOptions;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
 
+/// The rule of a refusal for a block that may not be changed.
+pub const UNTOUCHABLE: &str = "untouchable";
+
 /// The word that lowers the speed of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum SpeedLever {

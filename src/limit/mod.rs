@@ -20,7 +20,7 @@ mod window;
 
 pub use change::{Change, Permit};
 pub use depth::{Depths, Place};
-pub use lever::Obstacle;
+pub use lever::{Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Law, LimitOptions, Strategy};
 pub use solver::{Ends, Solver};

@@ -31,4 +31,6 @@ pub struct LimitOptions {
     pub law: Law,
     /// Whether cutting feeds may be lowered.
     pub allow_feed: bool,
+    /// Whether canned cycles may be written out as single blocks.
+    pub allow_expand: bool,
 }

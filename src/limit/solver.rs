@@ -2,7 +2,7 @@
 
 use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
 use super::law;
-use super::lever::{Levers, Obstacle, SpeedLever, levers};
+use super::lever::{Levers, Obstacle, SpeedLever, UNTOUCHABLE, levers};
 use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
 use super::root::largest;
@@ -15,6 +15,8 @@ use crate::units::SECONDS_PER_MINUTE;
 
 /// How often a rounded value is lowered by one more step before giving up.
 const RETRIES: u32 = 3;
+/// What can always be done about a block that may not be changed.
+const BY_HAND: &str = "change it by hand";
 
 /// Solves moves one by one.
 #[derive(Debug)]
@@ -409,15 +411,16 @@ impl<'m> Solver<'m> {
         let Case { mv, permit, .. } = case;
         if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word {
             return Obstacle::new(
-                "untouchable",
+                UNTOUCHABLE,
                 format!("the block may not be changed: {}", permit.reason),
-                "change it by hand",
+                permit.help_or(BY_HAND),
             );
         }
         if mv.kind != MoveKind::Rapid {
             let allowed = Self {
                 how: LimitOptions {
                     allow_feed: true,
+                    allow_expand: false,
                     ..self.how
                 },
                 model: self.model.clone(),
@@ -451,18 +454,15 @@ impl<'m> Solver<'m> {
         } else {
             format!("the rapid may not be written as a feed: {}", permit.reason)
         };
-        let help = if permit.reason_help.is_empty() {
-            "write the move as a feed by hand, or lower the rapid speed of the machine"
-        } else {
-            permit.reason_help
-        };
+        let help = permit
+            .help_or("write the move as a feed by hand, or lower the rapid speed of the machine");
         Obstacle::new("no-knob", message, help)
     }
 
     fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
         if !case.permit.edit {
             let message = format!("the block may not be changed: {}", case.permit.reason);
-            return Obstacle::new("untouchable", message, "change it by hand");
+            return Obstacle::new(UNTOUCHABLE, message, case.permit.help_or(BY_HAND));
         }
         let message = format!(
             "the controller `{}` has no word for this acceleration",

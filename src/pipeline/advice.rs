@@ -46,6 +46,7 @@ impl<'m> Adviser<'m> {
             strategy: Strategy::Optimal,
             law: Law::Exact,
             allow_feed: true,
+            allow_expand: false,
         };
         Self {
             machine,

@@ -390,8 +390,13 @@ impl<'m, 'r> Verdict<'m, 'r> {
                 self.tally.write(row);
             }
         }
+        // What is found counts for the line of the program that was read.
+        let line = match self.originals.get(self.judged) {
+            Some(Expected::Move(original)) => original.line,
+            _ => mv.line,
+        };
         self.judged += 1;
-        self.tally.add(mv, after, text);
+        self.tally.add_of(line, mv, after, text);
     }
 }
 

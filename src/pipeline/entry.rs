@@ -2,7 +2,7 @@
 
 use super::front::Line;
 use super::table::LineKey;
-use crate::interpret::{Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
+use crate::interpret::{CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint};
 use crate::power::Assessment;
@@ -202,6 +202,10 @@ impl Entry {
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
         let language = &machine.controller.language;
         let reason_help = match reason_text {
+            CYCLE => {
+                "--allow expand writes canned cycles out as single blocks; where it taps, more \
+                 power or slower axes are needed"
+            }
             PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
                 "program G98 (feed per minute) and F in it before the rapid"
             }

@@ -1,13 +1,15 @@
 //! A program that fits: analysed, changed, written, and handed to the
 //! certifier piece by piece, so that nothing of it is held for long.
 
-use std::io::{Read, Seek, Write};
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 use super::batch::Batch;
 use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
+use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
 use super::lower::lower_further;
 use super::over_time::OverTime;
 use super::relay::no_thread;
@@ -17,7 +19,7 @@ use super::{
     Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
 };
 use crate::diagnostic::Diagnostic;
-use crate::limit::{Depths, Law, Limiter};
+use crate::limit::{Depths, Law, Limiter, UNTOUCHABLE};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
 use crate::power::{PowerModel, rungs};
 
@@ -41,10 +43,89 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
+    let mut first = limit_text(&mut input, machine, options, how, &mut output, &mut rows)?;
+    if first.certified || !in_fixed_blocks(&first) {
+        return Ok(first);
+    }
+    // Canned cycles: first the ways to their holes stand by themselves, then, where that is
+    // not enough and permitted, all their moves.
+    let program = read_whole(&mut input)?;
+    let mut ways = BTreeMap::new();
+    let mut last: Option<LimitSummary> = None;
+    for way in [Way::Placed, Way::WrittenOut] {
+        let refused = last.as_ref().unwrap_or(&first);
+        if refused.certified || way == Way::WrittenOut && !how.allow_expand {
+            break;
+        }
+        let all = refused.reasons.len() >= Summary::KEPT;
+        ways.extend(refused.reasons.iter().map(|reason| (reason.line, way)));
+        let wanted = |line| {
+            if all {
+                Some(way)
+            } else {
+                ways.get(&line).copied()
+            }
+        };
+        let (expanded, notes) = expand(&program, machine, options, wanted)?;
+        if last.is_none() || way == Way::WrittenOut {
+            first
+                .before
+                .notes
+                .retain(|note| note.rule != NOT_WRITTEN_OUT);
+            first.before.notes.extend(notes);
+        }
+        let Some(expanded) = expanded else { continue };
+        restart(&mut output, &mut rows)?;
+        let text = Cursor::new(&expanded.text);
+        let mut next = match &mut rows {
+            Some(rows) => {
+                let mut rows = Traced::new(&mut **rows, &expanded);
+                let mut rows: Option<&mut dyn RestartRows> = Some(&mut rows);
+                limit_text(text, machine, options, how, &mut output, &mut rows)?
+            }
+            None => limit_text(text, machine, options, how, &mut output, &mut None)?,
+        };
+        expanded.trace(&mut next);
+        last = Some(next);
+    }
+    Ok(match last {
+        Some(last) => LimitSummary {
+            before: first.before,
+            ..last
+        },
+        None => first,
+    })
+}
+
+/// Whether blocks that may not be changed, as those of canned cycles, are among the reasons.
+fn in_fixed_blocks(summary: &LimitSummary) -> bool {
+    let mut reasons = summary.reasons.iter();
+    summary.reasons.len() >= Summary::KEPT || reasons.any(|it| it.rule == UNTOUCHABLE)
+}
+
+/// The program as bytes, to be written out.
+fn read_whole(mut input: impl Read + Seek) -> Result<Vec<u8>, Failure> {
+    let mut program = Vec::new();
+    input
+        .rewind()
+        .and_then(|()| input.read_to_end(&mut program))
+        .map_err(Failure::Input)?;
+    Ok(program)
+}
+
+/// Limits a program as it stands.
+fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+    mut output: W,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<LimitSummary, Failure> {
     let mut attempt = |target: &Machine, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, &mut rows)?;
+            restart(&mut output, rows)?;
         }
         let mut depths = Depths::default();
         loop {
@@ -55,7 +136,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
                 how,
                 depths: depths.clone(),
             };
-            let (written, certified) = job.run(&mut input, &mut output, &mut rows)?;
+            let (written, certified) = job.run(&mut input, &mut output, rows)?;
             if certified.deeper.is_empty() {
                 return Ok(conclude(machine, target, options, written, certified));
             }
@@ -66,7 +147,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
             }
             // The changes made neighbours exceed the limit: planned anew with more.
             input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, &mut rows)?;
+            restart(&mut output, rows)?;
         }
     };
     let first = attempt(machine, false)?;

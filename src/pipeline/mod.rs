@@ -9,6 +9,7 @@ mod certify;
 mod conditions;
 mod describe;
 mod entry;
+mod expand;
 mod expected;
 mod front;
 mod judge;

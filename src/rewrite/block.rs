@@ -126,7 +126,7 @@ impl<'m> Rewriter<'m> {
             self.edited_lines += 1;
             apply(view.text, &mut self.edits, out)
         };
-        self.stopped = view.stops;
+        self.stopped = view.stops || view.text.trim_ascii() == self.stop.as_bytes();
         if view.stops {
             if !self.complete {
                 out.extend_from_slice(&self.line_end);

@@ -14,7 +14,9 @@
 mod block;
 mod knob_line;
 mod number;
+mod single;
 mod state;
 
 pub use block::{BlockView, Rewriter};
+pub use single::{CycleBlock, Singles};
 pub use state::Mark;

@@ -167,6 +167,7 @@ proptest! {
             strategy: if by_speed { How::Speed } else { How::Optimal },
             law: gwatt::pipeline::Law::Exact,
             allow_feed: true,
+            allow_expand: false,
         };
         let mut text = Vec::new();
         let summary = limit(Cursor::new(&program), &machine, &options, how, &mut text, None).expect("a program");

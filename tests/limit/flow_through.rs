@@ -10,6 +10,7 @@ const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
     allow_feed: true,
+    allow_expand: false,
 };
 
 /// Bytes that a run has read and written, and the most that lay between.

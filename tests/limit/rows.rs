@@ -25,6 +25,7 @@ fn peaks_are_exact_in_every_row() {
         strategy: Strategy::Optimal,
         law: Law::Exact,
         allow_feed: true,
+        allow_expand: false,
     };
     limit(
         std::io::Cursor::new(program),

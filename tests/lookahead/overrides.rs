@@ -246,6 +246,7 @@ fn sweep(seed: u64, programs: usize) -> [usize; 2] {
             strategy: Strategy::Optimal,
             law: Law::Exact,
             allow_feed: true,
+            allow_expand: false,
         };
         let mut out = Vec::new();
         let input = Cursor::new(text.as_bytes());

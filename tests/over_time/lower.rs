@@ -36,6 +36,7 @@ fn limited(machine: &Machine, program: &str) -> Result<(LimitSummary, String), F
         strategy: Strategy::Optimal,
         law: Law::Exact,
         allow_feed: true,
+        allow_expand: false,
     };
     let (mut out, input) = (Vec::new(), Cursor::new(program.as_bytes()));
     let summary = limit(input, machine, &Options::default(), how, &mut out, None)?;

@@ -30,6 +30,7 @@ impl Control<'_> {
     /// A block of a canned cycle.
     pub(in crate::interpret) fn iso_cycle(&mut self, number: u16, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
+        run.facts.cycle = true;
         if !self.cycle_axes_fit(run) {
             return;
         }

@@ -31,4 +31,4 @@ pub(super) struct Initial {
 }
 
 /// Why no word of such a block is changed.
-const FIXED: &str = "it is part of a canned cycle";
+pub(crate) const FIXED: &str = "it is part of a canned cycle";

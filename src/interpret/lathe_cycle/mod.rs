@@ -113,6 +113,7 @@ pub(super) fn lathe_cycle_code(number: u16, family: Family) -> Option<GCode> {
 impl Control<'_> {
     pub(super) fn lathe_cycle(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
+        run.facts.cycle = true;
         run.facts.boundary = true;
         run.facts.uses_motion = true;
         let Some(contour) = run.words.take(b'Q') else {

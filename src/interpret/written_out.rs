@@ -1,0 +1,42 @@
+//! What is asked of the interpreter to write the moves of a cycle out as single blocks.
+
+use super::code::Motion;
+use super::execute::Interpreter;
+use crate::machine::AxisValues;
+
+impl Interpreter<'_> {
+    /// Whether the values of a canned cycle are in force.
+    #[must_use]
+    pub(crate) fn in_cycle(&self) -> bool {
+        self.cycle() != 0
+    }
+
+    /// The number of the canned cycle that is in force, times ten; 0 without one.
+    #[must_use]
+    pub(crate) fn cycle(&self) -> u16 {
+        self.control.special.active
+    }
+
+    /// The motion word that was in force before the canned cycle.
+    #[must_use]
+    pub(crate) fn motion_before_cycle(&self) -> Motion {
+        self.control.special.before()
+    }
+
+    /// Whether canned cycles return to the level R, not to where they began.
+    #[must_use]
+    pub(crate) fn returns_to_r(&self) -> bool {
+        !self.control.special.to_initial
+    }
+
+    /// A place of the machine, mm and degrees, in coordinates and units of the program.
+    #[must_use]
+    pub(crate) fn place_in_program(&self, place: &AxisValues) -> AxisValues {
+        let control = &self.control;
+        let mut place = control.position.frame.program(place);
+        for (axis, value) in place.iter_mut().enumerate() {
+            *value = control.in_unit(axis, *value);
+        }
+        place
+    }
+}

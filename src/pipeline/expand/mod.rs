@@ -1,0 +1,346 @@
+//! Canned cycles written out as single blocks, which can then be limited like all others.
+//!
+//! Input: a program, and the lines whose moves have to be lowered. Output: the program with
+//! the cycles of these lines written out, from the block that begins each of them to the one
+//! that ends it, and for each of its lines the one that it comes from. It is read again and
+//! held against the original step by step, so it makes the same moves or is not handed on.
+
+mod compare;
+mod trace;
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use super::front::Front;
+use super::{Failure, Options};
+pub(super) use trace::Traced;
+
+use crate::diagnostic::Diagnostic;
+use crate::machine::{Family, Machine};
+use crate::rewrite::{CycleBlock, Singles};
+use crate::source::{Span, lines, split_line_end};
+use crate::syntax::{Block, Word};
+
+/// The rule of the note that says why a cycle stays as it is.
+pub(super) const NOT_WRITTEN_OUT: &str = "not-written-out";
+
+/// A program with cycles written out.
+pub(super) struct Expanded {
+    pub(super) text: Vec<u8>,
+    /// For each of its lines the line of the original that it comes from, from 1.
+    origins: Vec<u64>,
+    /// N words of the blocks that were written in another way, by line of the original.
+    n_words: BTreeMap<u64, f64>,
+    /// How many blocks were written out.
+    pub(super) blocks: usize,
+}
+
+impl Expanded {
+    /// The line of the original that a line comes from; 0 stays 0.
+    pub(super) fn origin(&self, line: u64) -> u64 {
+        let index = line.checked_sub(1);
+        let origin = index.and_then(|index| self.origins.get(index as usize));
+        origin.copied().unwrap_or(line)
+    }
+}
+
+/// How the moves of canned cycles are made known to the limiter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// The way to each hole stands on a line of its own.
+    Placed,
+    /// All moves do.
+    WrittenOut,
+}
+
+/// What the lines of one series of cycle blocks become, or why they stay, with the line.
+type Lines = Result<BTreeMap<u64, Vec<u8>>, (u64, &'static str)>;
+
+/// One series of cycle blocks, from the one that begins the cycle to the one that ends it.
+struct Series {
+    /// Its lines, with their N words.
+    numbers: BTreeMap<u64, Option<f64>>,
+    written_out: Lines,
+    placed: Lines,
+    /// Its first block with the level to return to, which an earlier block may have set.
+    level: Option<(u64, Vec<u8>)>,
+    /// The words that hold until the cycle ends, by letter.
+    held: BTreeMap<u8, Vec<u8>>,
+}
+
+impl Default for Series {
+    fn default() -> Self {
+        Self {
+            numbers: BTreeMap::new(),
+            written_out: Ok(BTreeMap::new()),
+            placed: Ok(BTreeMap::new()),
+            level: None,
+            held: BTreeMap::new(),
+        }
+    }
+}
+
+/// Writes cycles in another way where `way` asks for that of one of their lines. The
+/// second result says why others stay as they are.
+pub(super) fn expand(
+    program: &[u8],
+    machine: &Machine,
+    options: &Options,
+    way: impl Fn(u64) -> Option<Way>,
+) -> Result<(Option<Expanded>, Vec<Diagnostic>), Failure> {
+    let mut notes = Notes::default();
+    // By their first lines.
+    let (mut written, mut levels) = (BTreeMap::new(), BTreeMap::new());
+    let (mut kept, mut n_words) = (BTreeMap::new(), BTreeMap::new());
+    for series in survey(program, machine, options)? {
+        let mut ways = series.numbers.keys().filter_map(|line| way(*line));
+        let first = ways.next();
+        let asked = if ways.any(|way| way == Way::WrittenOut) {
+            Some(Way::WrittenOut)
+        } else {
+            first
+        };
+        let numbers = series.numbers;
+        let lines = match asked {
+            None => {
+                kept.extend(series.level);
+                continue;
+            }
+            Some(Way::WrittenOut) => series.written_out.or_else(|(line, why)| {
+                notes.stays(line, why, program);
+                series.placed
+            }),
+            Some(Way::Placed) => series.placed,
+        };
+        match lines {
+            Ok(lines) => {
+                let Some(first) = lines.keys().next().copied() else {
+                    continue;
+                };
+                written.insert(first, lines);
+                levels.extend(series.level.map(|level| (first, level)));
+                let named = numbers.into_iter();
+                n_words.extend(named.filter_map(|(line, word)| Some((line, word?))));
+            }
+            Err((line, why)) => {
+                notes.stays(line, why, program);
+                kept.extend(series.level);
+            }
+        }
+    }
+    loop {
+        if written.is_empty() {
+            return Ok((None, notes.list));
+        }
+        let mut lines: BTreeMap<u64, Vec<u8>> = kept.clone();
+        lines.extend(
+            written
+                .values()
+                .flatten()
+                .map(|(line, bytes)| (*line, bytes.clone())),
+        );
+        let expanded = put_together(program, &lines, &n_words);
+        let different = compare::first_difference(program, &expanded.text, machine, options)?;
+        let Some(line) = different else {
+            return Ok((Some(expanded), notes.list));
+        };
+        // The last series before the place stays as it is.
+        let line = expanded.origin(line);
+        let place = written.range(..=line).next_back().map(|(first, _)| *first);
+        let Some(lines) = place.and_then(|first| written.remove(&first)) else {
+            return Ok((None, notes.list));
+        };
+        kept.extend(levels.remove(lines.keys().next().unwrap_or(&0)));
+        notes.stays(
+            line,
+            "written in another way it would not move as it does",
+            program,
+        );
+    }
+}
+
+/// Notes why cycles stay as they are, each once.
+#[derive(Default)]
+struct Notes {
+    list: Vec<Diagnostic>,
+}
+
+impl Notes {
+    fn stays(&mut self, line: u64, why: &str, program: &[u8]) {
+        let message = format!("the canned cycle is not written out: {why}");
+        let said = |note: &Diagnostic| note.line == line && note.message == message;
+        if self.list.iter().any(said) {
+            return;
+        }
+        let text = line
+            .checked_sub(1)
+            .and_then(|index| lines(program).nth(index as usize));
+        let text = text.unwrap_or_default();
+        let span = Span::new(0, split_line_end(text).0.len());
+        self.list
+            .push(Diagnostic::note(NOT_WRITTEN_OUT, message).at(line, span, text));
+    }
+}
+
+/// All series of cycle blocks. Those that share lines, since they run several times, are
+/// one.
+fn survey(program: &[u8], machine: &Machine, options: &Options) -> Result<Vec<Series>, Failure> {
+    let language = &machine.controller.language;
+    if !matches!(language.family, Family::Rs274 | Family::Iso) {
+        return Ok(Vec::new());
+    }
+    let singles = Singles::new(machine);
+    let mut front = Front::new(Cursor::new(program), machine, options);
+    let mut all: Vec<Series> = Vec::new();
+    let mut open: Option<Series> = None;
+    while let Some(line) = front.next_line()? {
+        let (facts, interpreter) = (&*line.facts, line.interpreter);
+        if !facts.cycle {
+            if !interpreter.in_cycle() {
+                close(&mut open, &mut all);
+            }
+            continue;
+        }
+        // A block that says all of a cycle depends on none before it.
+        let has = |letter| line.block.words.iter().any(|word| word.letter == letter);
+        if facts.motion_word.is_some() && has(b'R') && has(b'Z') {
+            close(&mut open, &mut all);
+        }
+        let series = open.get_or_insert_default();
+        let (text, number) = line.key;
+        let turning = turning_word(line.block).filter(|_| !interpreter.in_cycle());
+        let cycle = CycleBlock {
+            text: line.text,
+            block: line.block,
+            cycle_word: turning.or(facts.motion_word).map(|word| word.span),
+            number: turning.map_or(interpreter.cycle(), |word| {
+                (word.value * 10.0).round() as u16
+            }),
+            steps: line.steps,
+            modal: interpreter.modal(),
+            motion_before: interpreter.motion_before_cycle(),
+        };
+        let fixed = if text != 0 {
+            Some("it stands in the file of a subprogram")
+        } else if line.block.delete_level > 0 || facts.checksum || facts.computed_feed {
+            Some("its block may be skipped, or is worked out by the program")
+        } else {
+            None
+        };
+        if let Some(why) = fixed {
+            series.refuse(number, why);
+            continue;
+        }
+        let to_r = interpreter.returns_to_r();
+        if series.numbers.is_empty() {
+            let level = singles.with_level(&cycle, to_r);
+            series.level = level.map(|bytes| (number, bytes));
+        }
+        for word in &cycle.block.words {
+            if HELD.contains(&word.letter) {
+                let text = word.span.of(cycle.text).to_vec();
+                series.held.insert(word.letter, text);
+            }
+        }
+        let place = |place: &_| interpreter.place_in_program(place);
+        let placed = singles.place_before(&cycle, &series.held, to_r, place);
+        add(&mut series.placed, number, placed);
+        add(
+            &mut series.written_out,
+            number,
+            singles.write_out(&cycle, place),
+        );
+        let n_word = line.block.number.map(|word| word.value);
+        series.numbers.insert(number, n_word);
+    }
+    close(&mut open, &mut all);
+    Ok(all)
+}
+
+/// The word of a turning cycle along a contour, which is not modal.
+fn turning_word(block: &Block) -> Option<Word> {
+    let turning = |word: &&Word| word.letter == b'G' && (70.0..73.0).contains(&word.value);
+    block.words.iter().find(turning).copied()
+}
+
+/// Words that hold until a cycle ends.
+const HELD: &[u8] = b"ZRQPIJ";
+/// Why a line that runs several times stays as it is.
+const EACH_TIME: &str = "it does something else each time it runs";
+
+impl Series {
+    fn refuse(&mut self, line: u64, why: &'static str) {
+        self.numbers.entry(line).or_default();
+        self.written_out = Err((line, why));
+        self.placed = Err((line, why));
+    }
+
+    /// Takes over another one that shares lines with it.
+    fn join(&mut self, other: Self) {
+        self.numbers.extend(other.numbers);
+        for (own, other) in [
+            (&mut self.written_out, other.written_out),
+            (&mut self.placed, other.placed),
+        ] {
+            match other {
+                Ok(lines) => {
+                    for (number, bytes) in lines {
+                        add(own, number, Ok(bytes));
+                    }
+                }
+                Err(why) => *own = Err(why),
+            }
+        }
+    }
+}
+
+/// Takes what a line becomes, which is the same in all its runs.
+fn add(lines: &mut Lines, number: u64, bytes: Result<Vec<u8>, &'static str>) {
+    let Ok(known) = lines else { return };
+    match bytes {
+        Ok(bytes) => {
+            if known.get(&number).is_some_and(|before| *before != bytes) {
+                *lines = Err((number, EACH_TIME));
+            } else {
+                known.insert(number, bytes);
+            }
+        }
+        Err(why) => *lines = Err((number, why)),
+    }
+}
+
+/// The series that is open has ended.
+fn close(open: &mut Option<Series>, all: &mut Vec<Series>) {
+    let Some(series) = open.take() else { return };
+    let own = &series.numbers;
+    let shares = |other: &Series| other.numbers.keys().any(|line| own.contains_key(line));
+    // Only lines that run several times are shared: there are few of those.
+    let first = all.iter().position(shares);
+    let Some(first) = first else {
+        return all.push(series);
+    };
+    let mut joined = all.swap_remove(first);
+    joined.join(series);
+    let mut rest = Some(joined);
+    close(&mut rest, all);
+}
+
+/// The program with lines in the place of others.
+fn put_together(
+    program: &[u8],
+    written: &BTreeMap<u64, Vec<u8>>,
+    n_words: &BTreeMap<u64, f64>,
+) -> Expanded {
+    let mut expanded = Expanded {
+        text: Vec::with_capacity(program.len() + program.len() / 4),
+        origins: Vec::new(),
+        n_words: n_words.clone(),
+        blocks: written.len(),
+    };
+    for (number, text) in (1..).zip(lines(program)) {
+        let bytes = written.get(&number).map_or(text, Vec::as_slice);
+        expanded.text.extend_from_slice(bytes);
+        expanded.origins.extend(lines(bytes).map(|_| number));
+    }
+    expanded
+}

@@ -1,0 +1,409 @@
+//! A canned cycle written out: its moves as single blocks, in the words of the language.
+//!
+//! Input: the cycle's block and what it does, with places in the coordinates and units of
+//! the program. Output: lines that do the same without the cycle. What cannot be said in
+//! single blocks is refused with the reason; whether the lines do the same is checked by
+//! whoever reads them again.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::number::decimal;
+use crate::edit::{Edit, apply};
+use crate::interpret::{Action, ActionKind, Corner, Modal, Motion, Move, MoveKind, Step};
+use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Machine};
+use crate::source::{Span, split_line_end};
+use crate::syntax::{Block, Word};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// Decimals of a coordinate: finer than any control takes.
+const DECIMALS: f64 = 1e6;
+/// Cycles of plain moves, times ten: drilling, pecking, counterboring and boring.
+const PLAIN: [u16; 7] = [730, 810, 820, 830, 850, 860, 890];
+/// Turning cycles along a contour of `LinuxCNC`, times ten.
+const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
+/// Words that belong to a cycle alone.
+const CYCLE_LETTERS: &[u8] = b"XYZABCUVWIJKRQPLDE";
+
+/// A block of a canned cycle.
+#[derive(Debug, Clone, Copy)]
+pub struct CycleBlock<'a> {
+    /// The line, line end included.
+    pub text: &'a [u8],
+    /// Its words.
+    pub block: &'a Block,
+    /// The word of the cycle, if it stands in this block.
+    pub cycle_word: Option<Span>,
+    /// Number of the cycle, times ten.
+    pub number: u16,
+    /// What it does.
+    pub steps: &'a [Step],
+    /// The state after it.
+    pub modal: &'a Modal,
+    /// The motion word before the cycle, which its end puts in force again.
+    pub motion_before: Motion,
+}
+
+/// Writes blocks of cycles out.
+#[derive(Debug, Clone)]
+pub struct Singles<'m> {
+    language: &'m Language,
+    /// The block at which the axes stop, where there is one.
+    stop: Option<String>,
+}
+
+/// What has been written of a block so far.
+struct Lines<'a> {
+    out: Vec<u8>,
+    line_end: &'a [u8],
+    at: AxisValues,
+    /// The last motion word that was written.
+    motion: Option<Motion>,
+    /// The last line is a dwell.
+    stopped: bool,
+    /// The feed in force, mm/s, as soon as one is known.
+    feed_mm_s: Option<f64>,
+}
+
+impl<'m> Singles<'m> {
+    /// For programs that run on this machine.
+    #[must_use]
+    pub fn new(machine: &'m Machine) -> Self {
+        let controller = &machine.controller;
+        let stop = || controller.language.shortest_dwell().0;
+        Self {
+            language: &controller.language,
+            stop: controller.planner.dwell_stops.then(stop),
+        }
+    }
+
+    /// The lines that do what a block of a canned cycle does; `place` gives a place of the
+    /// machine in coordinates and units of the program.
+    ///
+    /// # Errors
+    /// Why it cannot be said in single blocks.
+    pub fn write_out(
+        &self,
+        of: &CycleBlock<'_>,
+        place: impl Fn(&AxisValues) -> AxisValues,
+    ) -> Result<Vec<u8>, &'static str> {
+        if !PLAIN.contains(&of.number) && !TURNING.contains(&of.number) {
+            return Err("it taps, or stops for the operator");
+        }
+        let mut lines = Lines::new(of, &place);
+        let feed_mm_s = lines.feed_mm_s;
+        self.first_line(of, &mut lines)?;
+        let mut moved = false;
+        for step in of.steps {
+            match step {
+                Step::Move(mv) => {
+                    moved = true;
+                    self.one_move(mv, of, &place, &mut lines)?;
+                }
+                // What stands before the moves is said by the words of the first line.
+                Step::Action(_) if !moved => {}
+                Step::Action(action) => one_action(action, &mut lines)?,
+            }
+        }
+        if let (Some(feed), true) = (&of.modal.feed, lines.feed_mm_s != feed_mm_s) {
+            lines.push(&format!("F{}", decimal(feed.value, true)));
+        }
+        self.restore_motion(of, &mut lines)?;
+        Ok(lines.finish(of.text))
+    }
+
+    /// Puts the motion word in force that holds after the cycle.
+    fn restore_motion(
+        &self,
+        of: &CycleBlock<'_>,
+        lines: &mut Lines<'_>,
+    ) -> Result<(), &'static str> {
+        let after = match of.modal.motion {
+            // On a Fanuc the end of the cycle puts no motion word of another group back.
+            Motion::Special(_) if self.language.family == Family::Iso => of.motion_before,
+            Motion::Special(_) => return Ok(()),
+            other => other,
+        };
+        if lines.motion.is_none() || lines.motion == Some(after) {
+            return Ok(());
+        }
+        match after {
+            Motion::Rapid => lines.push("G0"),
+            Motion::Linear => lines.push("G1"),
+            Motion::None if self.language.family == Family::Rs274 => lines.push("G80"),
+            Motion::None => {}
+            _ => return Err("an arc's motion word is in force again after it"),
+        }
+        Ok(())
+    }
+
+    /// The block with its way to the hole on a line before it, and with the words of the
+    /// cycle that such a line ends: `held` gives the last of each in this series of blocks.
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    pub fn place_before(
+        &self,
+        of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        returns_to_r: bool,
+        place: impl Fn(&AxisValues) -> AxisValues,
+    ) -> Result<Vec<u8>, &'static str> {
+        if TURNING.contains(&of.number) {
+            return Err("all its moves follow from each other");
+        }
+        let repeats = |word: &Word| matches!(word.letter, b'K' | b'L') && word.value != 1.0;
+        if !of.modal.absolute || of.block.words.iter().any(repeats) {
+            return Err("its places are increments, or it repeats");
+        }
+        let mut lines = Lines::new(of, &place);
+        let mut across = AxisSet::default();
+        of.modal.plane[..2]
+            .iter()
+            .for_each(|axis| across.insert(*axis));
+        let way = of.steps.iter().find_map(as_move);
+        let way = way.filter(|mv| mv.kind == MoveKind::Rapid && mv.moving.0 & !across.0 == 0);
+        let way = way.ok_or("its first move is not the way to the hole")?;
+        self.one_move(way, of, &place, &mut lines)?;
+        let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
+        let mut edits = Vec::new();
+        let first = of.block.words.first().map_or(0, |word| word.span.start);
+        if of.cycle_word.is_none() {
+            edits.push(Edit::insert(
+                first,
+                format!("G{} ", f64::from(of.number) / 10.0),
+            ));
+        }
+        if self.lacks_level(of, returns_to_r) {
+            edits.push(Edit::insert(first, "G99 "));
+        }
+        for (_, word) in held.iter().filter(|(letter, _)| !has(**letter)) {
+            let mut text = vec![b' '];
+            text.extend_from_slice(word);
+            edits.push(Edit::insert(of.block.words_end, text));
+        }
+        let (text, _) = split_line_end(of.text);
+        if !apply(text, &mut edits, &mut lines.out) {
+            return Err("its words overlap");
+        }
+        lines.out.extend_from_slice(lines.line_end);
+        Ok(lines.finish(of.text))
+    }
+
+    /// Whether a block returns to R only because an earlier block says so.
+    fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
+        let says = |word: &Word| word.letter == b'G' && [98.0, 99.0].contains(&word.value);
+        let iso = self.language.family == Family::Iso;
+        iso && returns_to_r && !of.block.words.iter().any(says)
+    }
+
+    /// The block with the word for the level to which it returns, where that is R and only
+    /// an earlier block of a cycle says so.
+    #[must_use]
+    pub fn with_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> Option<Vec<u8>> {
+        if !self.lacks_level(of, returns_to_r) {
+            return None;
+        }
+        let at = of.cycle_word?.start;
+        let mut out = Vec::with_capacity(of.text.len() + 4);
+        apply(of.text, &mut [Edit::insert(at, "G99 ")], &mut out).then_some(out)
+    }
+
+    /// The block without the words of the cycle, and a comment that names it.
+    fn first_line(&self, of: &CycleBlock<'_>, lines: &mut Lines<'_>) -> Result<(), &'static str> {
+        let (text, _) = split_line_end(of.text);
+        let mut edits: Vec<Edit> = Vec::new();
+        let iso = self.language.family == Family::Iso;
+        for word in &of.block.words {
+            // G99 stands in the block of a cycle alone.
+            let returns = iso && word.letter == b'G' && word.value == 99.0;
+            let own = CYCLE_LETTERS.contains(&word.letter)
+                || returns
+                || of.cycle_word.is_some_and(|cycle| cycle == word.span);
+            if own {
+                edits.push(Edit::replace(with_blanks(text, word.span), ""));
+            }
+        }
+        let mut rest = Vec::with_capacity(text.len());
+        if !apply(text, &mut edits, &mut rest) {
+            return Err("its words overlap");
+        }
+        lines.out.extend_from_slice(rest.trim_ascii());
+        if lines
+            .out
+            .last()
+            .is_some_and(|byte| !byte.is_ascii_whitespace())
+        {
+            lines.out.push(b' ');
+        }
+        let name = f64::from(of.number) / 10.0;
+        lines.push(&format!("(G{name} written out)"));
+        Ok(())
+    }
+
+    fn one_move(
+        &self,
+        mv: &Move,
+        of: &CycleBlock<'_>,
+        place: &impl Fn(&AxisValues) -> AxisValues,
+        lines: &mut Lines<'_>,
+    ) -> Result<(), &'static str> {
+        if !mv.unknown_start.is_empty() {
+            return Err("it starts from a place that is not known");
+        }
+        // A cycle may follow its path exactly where the program does not: the move stands
+        // between two stops then.
+        let stop = match &self.stop {
+            _ if (mv.path_mode, mv.corner) == (of.modal.path_mode, of.modal.corner) => None,
+            Some(stop) if mv.corner == Corner::Exact => Some(stop.as_str()),
+            _ => return Err("it runs in a path mode of its own"),
+        };
+        let (word, motion) = match mv.kind {
+            MoveKind::Dwell => {
+                let dwell = self
+                    .dwell(mv.dwell_s)
+                    .ok_or("no dwell is as long as its own")?;
+                lines.push(&dwell);
+                lines.stopped = true;
+                return Ok(());
+            }
+            MoveKind::Rapid => ("G0", Motion::Rapid),
+            MoveKind::Feed => ("G1", Motion::Linear),
+            MoveKind::Arc => match &mv.arc {
+                Some(arc) if arc.sweep_rad < 0.0 => ("G2", Motion::ArcCw),
+                _ => ("G3", Motion::ArcCcw),
+            },
+            _ => return Err("not all of its moves are straight"),
+        };
+        let end = place(&mv.end).map(rounded);
+        let mut words = word.to_owned();
+        for axis in ALL_AXES {
+            let index = axis as usize;
+            let (from, to) = (lines.at[index], end[index]);
+            if from == to {
+                continue;
+            }
+            let value = if of.modal.absolute {
+                to
+            } else {
+                rounded(to - from)
+            };
+            let letter = char::from(axis.letter());
+            let _ = write!(words, " {letter}{}", decimal(value, true));
+        }
+        lines.at = end;
+        if let Some(arc) = &mv.arc {
+            if of.modal.arc_absolute || arc.sweep_rad.abs() >= std::f64::consts::TAU {
+                return Err("its arcs are full circles, or have absolute centres");
+            }
+            for (axis, center) in arc.plane.into_iter().zip(arc.center) {
+                let letter = b"IJK".get(axis).ok_or("its arcs lie in no plane")?;
+                let offset = rounded((center - mv.start[axis]) / of.modal.mm_per_unit);
+                let _ = write!(words, " {}{}", char::from(*letter), decimal(offset, true));
+            }
+        }
+        if words.len() == word.len() {
+            return Ok(());
+        }
+        if mv.kind != MoveKind::Rapid && lines.feed_mm_s != Some(mv.feed_mm_s) {
+            let feed = mv.feed_mm_s * SECONDS_PER_MINUTE / of.modal.mm_per_unit;
+            let _ = write!(words, " F{}", decimal(rounded(feed), true));
+            lines.feed_mm_s = Some(mv.feed_mm_s);
+        }
+        lines.motion = Some(motion);
+        if let Some(stop) = stop.filter(|_| !lines.stopped) {
+            lines.push(stop);
+        }
+        lines.push(&words);
+        if let Some(stop) = stop {
+            lines.push(stop);
+        }
+        lines.stopped = stop.is_some();
+        Ok(())
+    }
+
+    /// A dwell as a block; `None` where no letter says exactly this time.
+    fn dwell(&self, dwell_s: f64) -> Option<String> {
+        let near = |value: f64, unit_s: f64| (value * unit_s - dwell_s).abs() <= 1e-9;
+        for (letter, unit_s) in &self.language.dialect.dwell_whole {
+            let count = (dwell_s / unit_s).round();
+            if near(count, *unit_s) {
+                return Some(format!("G4 {}{count}", char::from(*letter)));
+            }
+        }
+        let (letter, unit_s) = self.language.dwell.first()?;
+        let value = rounded(dwell_s / unit_s);
+        let point = self.language.family == Family::Iso;
+        near(value, *unit_s).then(|| format!("G4 {}{}", char::from(*letter), decimal(value, point)))
+    }
+}
+
+impl<'a> Lines<'a> {
+    fn new(of: &CycleBlock<'a>, place: impl Fn(&AxisValues) -> AxisValues) -> Self {
+        let (_, line_end) = split_line_end(of.text);
+        let mut moves = of.steps.iter().filter_map(as_move);
+        let start = moves.next().map(|mv| place(&mv.start));
+        let moves = of.steps.iter().filter_map(as_move);
+        let mut feeds = moves.filter(|mv| matches!(mv.kind, MoveKind::Feed | MoveKind::Arc));
+        Self {
+            out: Vec::new(),
+            line_end: if line_end.is_empty() { b"\n" } else { line_end },
+            at: start.unwrap_or([0.0; AXES]).map(rounded),
+            motion: None,
+            stopped: false,
+            feed_mm_s: feeds.next().map(|mv| mv.feed_mm_s),
+        }
+    }
+
+    /// The lines; the last one has a line end if the block `text` has one.
+    fn finish(mut self, text: &[u8]) -> Vec<u8> {
+        if split_line_end(text).1.is_empty() {
+            self.out.truncate(self.out.len() - self.line_end.len());
+        }
+        self.out
+    }
+
+    fn push(&mut self, words: &str) {
+        self.out.extend_from_slice(words.as_bytes());
+        self.out.extend_from_slice(self.line_end);
+    }
+}
+
+fn as_move(step: &Step) -> Option<&Move> {
+    match step {
+        Step::Move(mv) => Some(mv),
+        Step::Action(_) => None,
+    }
+}
+
+/// What a cycle does besides moving.
+fn one_action(action: &Action, lines: &mut Lines<'_>) -> Result<(), &'static str> {
+    match action.kind {
+        ActionKind::Spindle => {
+            lines.push(&format!("M{}", action.value));
+            Ok(())
+        }
+        // Said again wherever the path mode or the feed is.
+        ActionKind::PathMode | ActionKind::Feed => Ok(()),
+        _ => Err("it does more than move and turn the spindle"),
+    }
+}
+
+fn rounded(value: f64) -> f64 {
+    let rounded = (value * DECIMALS).round() / DECIMALS;
+    // No -0.
+    if rounded == 0.0 { 0.0 } else { rounded }
+}
+
+/// A word with the blanks before it.
+fn with_blanks(text: &[u8], word: Span) -> Span {
+    let before = text.get(..word.start as usize).unwrap_or_default();
+    let blanks = before
+        .iter()
+        .rev()
+        .take_while(|byte| matches!(byte, b' ' | b'\t'));
+    Span {
+        start: word.start - blanks.count() as u32,
+        end: word.end,
+    }
+}
