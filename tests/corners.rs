@@ -332,7 +332,7 @@ fn what_cannot_be_compensated() {
         "G41 D1 X10.\nY10.\nG81 Z-3. R1.\nG40 X0.",
         "G41 D1 X10.\nY10.\nX6.\nY0.\nG40 X0.",
         "G41 D1 X10.\nY10.\nG3 X4. Y10. I-3.\nG1 G40 X0.",
-        "G41 D1 X10.\nY10.\n#1=#5021\nG40 X0.",
+        "G41 D1 X10.\nY10.\nZ#5021\nG40 X0.",
         "G41 D1 X10.\nY10.\nG40\nG42 D1 X0.\nY0.",
     ] {
         all.push_str(&moves_on(&fanuc, table, &format!("G1 F600\n{rest}\nM30\n")));

@@ -45,8 +45,11 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
 }
 
 fn check_program(program: &Program, setup: &Setup) -> Checked {
-    let outcome = program.open().and_then(|input| {
-        pipeline::analyze(input, &setup.machine, &setup.options_for(program), None)
+    let (machine, options) = (&setup.machine, setup.options_for(program));
+    let outcome = program.open().and_then(|mut input| {
+        let mut summary = pipeline::analyze(&mut input, machine, &options, None)?;
+        pipeline::take_hints(input, machine, &options, &mut summary)?;
+        Ok(summary)
     });
     Checked {
         program: program.name.clone(),
