@@ -6,6 +6,8 @@ use crate::machine::{Converter, Machine};
 /// Significant digits of the values that are tried: as many as one copies from a report
 /// into a machine file.
 const DIGITS: i32 = 4;
+/// Significant digits of the powers that go with them, as reports print them.
+const SCALED_DIGITS: i32 = 10;
 /// A value that is no limit, by the machine's own.
 const NO_LIMIT: f64 = 1e6;
 /// The smallest value that is tried, by the machine's own or by one that is enough.
@@ -37,12 +39,13 @@ pub fn rated(
     let mut machine = machine.clone();
     if let Some(converter) = machine.converters.get_mut(converter) {
         let share = peak_power_w / converter.peak_power_w;
+        let scaled = |power_w: f64| at_digits(power_w * share, SCALED_DIGITS, f64::round);
         converter.peak_power_w = peak_power_w;
         if let Some(continuous) = &mut converter.ratings.continuous {
-            continuous.power_w *= share;
+            continuous.power_w = scaled(continuous.power_w);
         }
         for overload in &mut converter.ratings.overload {
-            overload.power_w *= share;
+            overload.power_w = scaled(overload.power_w);
         }
         if let Some(ratio) = regen_ratio {
             converter.regen_power_w = Some(ratio * peak_power_w);
@@ -145,19 +148,21 @@ impl<'m> Scale<'m> {
 
 /// The next value with four digits, not below.
 pub(super) fn round_up(value: f64) -> f64 {
-    at_digits(value, |digits| (digits * (1.0 - ROUNDING)).ceil())
+    at_digits(value, DIGITS, |digits| (digits * (1.0 - ROUNDING)).ceil())
 }
 
 /// The next lower value with four digits.
 pub(super) fn step_down(value: f64) -> f64 {
-    at_digits(value, |digits| (digits * (1.0 - ROUNDING)).ceil() - 1.0)
+    at_digits(value, DIGITS, |digits| {
+        (digits * (1.0 - ROUNDING)).ceil() - 1.0
+    })
 }
 
-fn at_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+fn at_digits(value: f64, digits: i32, round: impl Fn(f64) -> f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return 0.0;
     }
-    let scale = DIGITS - 1 - libm::floor(libm::log10(value)) as i32;
+    let scale = digits - 1 - libm::floor(libm::log10(value)) as i32;
     // A power of ten and its quotient are exact, or nearest to it.
     if scale >= 0 {
         let power = 10f64.powi(scale);

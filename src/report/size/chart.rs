@@ -6,14 +6,14 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::{Step, rungs, title, value};
+use super::{Step, is_no_matter, rungs, title, value};
 use crate::pipeline::size::{Curve, Quantity, Rung, Size, Sizing};
 use crate::report::quantity::{duration, power};
 
 const WIDTH: f64 = 900.0;
 const LEFT: f64 = 80.0;
 const RIGHT: f64 = 120.0;
-const TOP: f64 = 50.0;
+const TOP: f64 = 80.0;
 const LOSSES: f64 = 300.0;
 const REGEN: f64 = 120.0;
 const GAP: f64 = 60.0;
@@ -38,6 +38,7 @@ pub fn size_chart(size: &Size, mut out: impl Write) -> io::Result<()> {
         .into_iter()
         .flatten()
         .filter_map(|sizing| Some((sizing, sizing.curve.as_ref()?)))
+        .filter(|(sizing, curve)| !is_no_matter(sizing.quantity, curve))
         .collect();
     let each = TOP + LOSSES + GAP + REGEN + GAP;
     let height = each * drawn.len().max(1) as f64;
@@ -129,20 +130,19 @@ impl<'a> Panel<'a> {
     fn draw(&self) -> String {
         let mut text = String::new();
         let regen_top = self.top + LOSSES + GAP;
-        let bottom = regen_top + REGEN;
-        self.closed(&mut text, bottom);
-        self.loss_grid(&mut text);
         for (top, height) in [(self.top, LOSSES), (regen_top, REGEN)] {
+            self.closed(&mut text, top, height);
             self.value_grid(&mut text, top, top + height);
         }
+        self.loss_grid(&mut text);
         let _ = writeln!(
             text,
             "<text x=\"{LEFT}\" y=\"{}\" font-weight=\"bold\">loss of time over {}</text>\
              <text x=\"{}\" y=\"{}\" fill=\"#555555\">cycle time</text>",
-            self.top - 26.0,
+            self.top - 50.0,
             title(self.quantity),
             WIDTH - RIGHT + 8.0,
-            self.top - 26.0
+            self.top - 14.0
         );
         self.line(&mut text, CURVE, |rung| self.loss.at(100.0 * rung.loss));
         self.regen(&mut text, regen_top);
@@ -151,14 +151,12 @@ impl<'a> Panel<'a> {
     }
 
     /// Where nothing is certified.
-    fn closed(&self, text: &mut String, bottom: f64) {
-        let right = self.x.at(self.curve.lowest);
-        let width = right - LEFT;
+    fn closed(&self, text: &mut String, top: f64, height: f64) {
+        let width = self.x.at(self.curve.lowest) - LEFT;
         let _ = writeln!(
             text,
-            "<rect x=\"{LEFT}\" y=\"{}\" width=\"{width:.2}\" height=\"{}\" fill=\"{CLOSED}\"/>",
-            self.top,
-            bottom - self.top
+            "<rect x=\"{LEFT}\" y=\"{top}\" width=\"{width:.2}\" height=\"{height}\" \
+             fill=\"{CLOSED}\"/>"
         );
     }
 
@@ -283,13 +281,13 @@ impl<'a> Panel<'a> {
                 self.top
             );
             let half = 3.4 * label.chars().count() as f64;
-            let middle = x.clamp(LEFT + half, WIDTH - half - 4.0);
+            let middle = x.clamp(LEFT + half, WIDTH - RIGHT - half);
             let row = taken.iter().position(|end| middle - half > *end + 8.0);
             if let Some(row) = row
                 && let Some(end) = taken.get_mut(row)
             {
                 *end = middle + half;
-                let y = self.top - 10.0 + 16.0 * row as f64 * 1.4;
+                let y = self.top - 10.0 - 16.0 * row as f64;
                 let _ = write!(
                     text,
                     "<text x=\"{middle:.2}\" y=\"{y:.2}\" text-anchor=\"middle\" \

@@ -65,7 +65,7 @@ impl Step {
             Self::Ladder => String::new(),
             Self::NothingSlowed => "nothing is slowed".to_owned(),
             Self::Machine => "as in the machine file".to_owned(),
-            Self::Loss(loss) => format!("loss of {} %", digits(100.0 * loss)),
+            Self::Loss(loss) => format!("for a loss of {} %", digits(100.0 * loss)),
         }
     }
 }
@@ -88,6 +88,11 @@ fn rungs(curve: &Curve) -> Vec<(Step, &Rung)> {
     rungs.extend(losses.map(|(loss, rung)| (Step::Loss(*loss), rung)));
     rungs.sort_by(|(_, a), (_, b)| b.value.total_cmp(&a.value));
     rungs
+}
+
+/// Whether nothing depends on a capacitance: the smallest that makes sense is enough.
+fn is_no_matter(quantity: Quantity, curve: &Curve) -> bool {
+    quantity == Quantity::Capacitance && curve.ladder.len() == 1
 }
 
 /// The programs that were sized.
@@ -127,6 +132,13 @@ fn value(quantity: Quantity, value: f64) -> String {
 
 fn digits(value: f64) -> f64 {
     round_to_digits(value, 6)
+}
+
+/// A loss of time such as `0.84 %` or `152 %`.
+fn loss(share: f64) -> String {
+    let percent = 100.0 * share;
+    let decimals = if percent < 99.995 { 2 } else { 0 };
+    format!("{percent:.decimals$} %")
 }
 
 /// What a sizing is over.
@@ -208,7 +220,8 @@ fn conditions(machine: &Machine, converter: usize) -> Vec<String> {
 fn sizing_text(sizing: &Sizing) -> String {
     let quantity = sizing.quantity;
     let mut text = programs_text(sizing);
-    let Some(curve) = &sizing.curve else {
+    let curve = sizing.curve.as_ref();
+    let Some(curve) = curve.filter(|curve| !is_no_matter(quantity, curve)) else {
         return text;
     };
     let mut rows = vec![
@@ -326,7 +339,7 @@ fn row(quantity: Quantity, step: Step, rung: &Rung) -> [String; 8] {
     [
         value,
         duration(total.duration_s),
-        format!("{:.2} %", 100.0 * rung.loss),
+        loss(rung.loss),
         total.edited_lines.to_string(),
         power(total.peak_w),
         power(total.regen_w),
