@@ -34,6 +34,7 @@ fn wish() -> Wish {
         how: HOW,
         converter: 0,
         steps: 6,
+        until: 1e6,
         losses: Vec::new(),
         regen_ratio: None,
         threads: 2,
@@ -135,6 +136,23 @@ fn the_rating_for_a_loss_is_that_worked_by_hand() {
     // Nothing lost is everything needed.
     assert!((1293.0..=1300.0).contains(&losses[1].1.value), "{losses:?}");
     assert!(losses[1].1.loss <= 1e-9);
+}
+
+/// Twice the time, 0.6 s, is that of v = 2.5 · (0.6 − √0.28) = 0.1771 m/s: 460.5 W.
+#[test]
+fn what_takes_too_long_is_not_tried() {
+    let wish = Wish {
+        until: 1.0,
+        ..wish()
+    };
+    let machine = FRICTION.machine();
+    let found = sized(&machine, &[("a", RAPID)], &wish);
+    let size = program(&found.rating, 0);
+    assert!((460.5..=465.2).contains(&size.lowest), "{size:?}");
+    let (below, reasons) = size.below.as_ref().expect("a lower value");
+    assert!(*below < 460.6 && reasons.is_empty());
+    let text = size_text(&found, &machine, "rig", 0);
+    assert!(text.contains("(less takes longer than --until)"), "{text}");
 }
 
 /// 600 W fed back at most: 600/2400 = 0.25 m/s, 0.45 s, and 650 W are drawn.
@@ -329,7 +347,8 @@ fn threads_do_not_change_the_result() {
 /// Programs that cannot be sized are named, and the others are.
 #[test]
 fn what_cannot_be_sized_is_named() {
-    // 0.2 m/s feed 0.2 · 2400 = 480 W back, and may not be lowered.
+    // Half of the acceleration under G64: 0.2 · (1250 − 100) = 230 W fed back by a feed
+    // that may not be lowered.
     let rig = Rig {
         converter: "regen_power_w = 100",
         controller: "linuxcnc",
@@ -351,7 +370,7 @@ fn what_cannot_be_sized_is_named() {
         outcomes[1].1,
         Outcome::Refused(Failure::Refused { .. })
     ));
-    assert!(matches!(&outcomes[2].1, Outcome::Never(reasons)
+    assert!(matches!(&outcomes[2].1, Outcome::Never { reasons, .. }
         if reasons[0].rule == "feed-not-allowed"));
     assert!(matches!(outcomes[3].1, Outcome::Sized(_)), "{outcomes:?}");
     assert_eq!(curve(&found.rating).own.trials.len(), 1);
@@ -360,7 +379,7 @@ fn what_cannot_be_sized_is_named() {
     for line in [
         "idle: draws nothing, and is not counted",
         "unread: refused, and not counted",
-        "never: fits at no peak power, and is not counted",
+        "never: fits at no peak power, and is not counted; it draws 270 W and feeds back 230 W",
     ] {
         assert!(text.contains(line), "{text}");
     }

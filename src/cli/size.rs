@@ -39,6 +39,10 @@ pub struct SizeArgs {
     /// 1%, or 1%,5%
     #[arg(long = "loss", value_name = "PERCENT", value_delimiter = ',')]
     pub losses: Vec<LossArg>,
+    /// Try nothing smaller where a program takes so much longer: with little power left
+    /// under look-ahead the search takes long
+    #[arg(long, value_name = "PERCENT", default_value = "100%")]
+    pub until: LossArg,
     /// Steps between the smallest converter that is enough and the smallest that slows
     /// nothing
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = steps)]

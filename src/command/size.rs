@@ -72,6 +72,7 @@ fn wish(args: &SizeArgs, setup: &Setup) -> Result<Wish> {
         },
         converter: converter(args.converter.as_deref(), &setup.machine)?,
         steps: args.steps,
+        until: args.until.0,
         losses: args.losses.iter().map(|loss| loss.0).collect(),
         regen_ratio: args.regen_ratio,
         threads: setup.options.threads,

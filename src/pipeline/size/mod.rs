@@ -20,7 +20,7 @@ use crate::diagnostic::Diagnostic;
 use crate::machine::Machine;
 use ladder::curve;
 use scale::Scale;
-use search::{Found, find};
+use search::find;
 use trial::{Bench, each};
 
 /// What is wanted of a sizing.
@@ -33,6 +33,9 @@ pub struct Wish {
     /// Steps between the lowest value at which the programs can be made to fit and the
     /// value from which on nothing is slowed, both included; at least 2.
     pub steps: usize,
+    /// Largest loss of time of a program, as a share, that is of interest: below, nothing
+    /// is tried.
+    pub until: f64,
     /// Losses of time, as shares, for which the smallest value is wanted.
     pub losses: Vec<f64>,
     /// Power that may be fed back by rating; `None`: as the machine says.
@@ -69,8 +72,15 @@ pub enum Outcome {
     Refused(Failure),
     /// It draws nothing at all.
     Idle,
-    /// It fits at no value, for these reasons.
-    Never(Vec<Diagnostic>),
+    /// It fits at no value.
+    Never {
+        /// What it draws at most as it came, W.
+        peak_w: f64,
+        /// What it feeds back at most as it came, W.
+        regen_w: f64,
+        /// Why.
+        reasons: Vec<Diagnostic>,
+    },
     /// It fits from some value on.
     Sized(Box<ProgramSize>),
 }
@@ -88,10 +98,11 @@ pub struct ProgramSize {
     pub unlimited: Trial,
     /// The smallest value from which on nothing is slowed (W or F).
     pub enough: f64,
-    /// The smallest value at which it is certified, to a hundredth.
+    /// The smallest value at which it is certified, to a hundredth, with no larger loss
+    /// of time than is of interest.
     pub lowest: f64,
-    /// The next lower value that was tried and why it is not certified; `None` where
-    /// `lowest` is the smallest that makes sense.
+    /// The next lower value that was tried and why it is not certified there: without a
+    /// reason it takes too long. `None` where `lowest` is the smallest that makes sense.
     pub below: Option<(f64, Vec<Diagnostic>)>,
 }
 
@@ -176,7 +187,7 @@ fn sizing<R: Read + Seek + Send>(
     let threads = (wish.threads / at_once).max(1);
     let found = each(at_once, jobs, |job| {
         let mut bench = Bench::new(job, scale, wish.how, threads);
-        let found = find(&mut bench);
+        let found = find(&mut bench, wish.until);
         (found, bench)
     })?;
     let mut programs = Vec::new();
@@ -187,11 +198,11 @@ fn sizing<R: Read + Seek + Send>(
             // A strategy that does not suit the machine suits no program.
             Err(failure @ Failure::Unsuitable(_)) => return Err(failure),
             Err(failure) => Outcome::Refused(failure),
-            Ok(Found::Idle) => Outcome::Idle,
-            Ok(Found::Never(reasons)) => Outcome::Never(reasons),
-            Ok(Found::Sized(size)) => {
-                benches.push((*size.clone(), bench));
-                Outcome::Sized(size)
+            Ok(outcome) => {
+                if let Outcome::Sized(size) = &outcome {
+                    benches.push(((**size).clone(), bench));
+                }
+                outcome
             }
         };
         programs.push((name, outcome));

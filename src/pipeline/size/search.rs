@@ -4,50 +4,55 @@ use std::io::{Read, Seek};
 
 use super::scale::{Quantity, round_up, step_down};
 use super::trial::{Bench, Trial};
-use super::{Failure, ProgramSize};
-use crate::diagnostic::Diagnostic;
+use super::{Failure, Outcome, ProgramSize};
 
 /// How near the smallest value is found from which on nothing is slowed, as a share.
 const ENOUGH: f64 = 1e-3;
 /// How near the smallest value is found at which a program is certified.
 const LOWEST: f64 = 0.01;
+/// Steps on the way down: the limiter takes long where little is left.
+const STEP_DOWN: f64 = 0.7;
 /// Two times are the same.
 const SAME_TIME: f64 = 1e-9;
 /// Doublings until a value that is no limit must be reached.
 const DOUBLINGS: u32 = 20;
 
-/// What became of a program.
-pub(super) enum Found {
-    Idle,
-    Never(Vec<Diagnostic>),
-    Sized(Box<ProgramSize>),
-}
-
 /// Whether something holds at a value.
 type Holds<'f> = dyn FnMut(f64) -> Result<bool, Failure> + 'f;
 
-/// Sizes one program.
-pub(super) fn find<R: Read + Seek + Send>(bench: &mut Bench<'_, R>) -> Result<Found, Failure> {
+/// Sizes one program, as long as it loses no more time than `until` (a share).
+pub(super) fn find<R: Read + Seek + Send>(
+    bench: &mut Bench<'_, R>,
+    until: f64,
+) -> Result<Outcome, Failure> {
     let no_limit = bench.scale.unlimited();
     let mut summary = bench.limit_at(no_limit)?;
     let before = std::mem::take(&mut summary.before);
     let unlimited = bench.know(no_limit, summary);
     if before.peak_w <= 0.0 && before.regen_w <= 0.0 || before.duration_s <= 0.0 {
-        return Ok(Found::Idle);
+        return Ok(Outcome::Idle);
     }
     if !unlimited.certified {
-        return Ok(Found::Never(unlimited.reasons));
+        return Ok(Outcome::Never {
+            peak_w: before.peak_w,
+            regen_w: before.regen_w,
+            reasons: unlimited.reasons,
+        });
     }
     let expected = bench.scale.expected(unlimited.peak_w);
     let enough = enough(bench, &unlimited, expected, no_limit)?;
     let least = bench.scale.least(enough);
-    let mut certified = |value| Ok(bench.at(value)?.certified);
+    let longest_s = unlimited.duration_s * (1.0 + until);
+    let mut certified = |value| {
+        let trial = bench.at(value)?;
+        Ok(trial.certified && trial.duration_s <= longest_s)
+    };
     let (lowest, below) = descend(enough, least, LOWEST, &mut certified)?;
     let below = match below {
         Some(value) => Some((value, bench.at(value)?.reasons.clone())),
         None => None,
     };
-    Ok(Found::Sized(Box::new(ProgramSize {
+    Ok(Outcome::Sized(Box::new(ProgramSize {
         duration_s: before.duration_s,
         peak_w: before.peak_w,
         regen_w: before.regen_w,
@@ -96,7 +101,7 @@ fn enough<R: Read + Seek + Send>(
     Ok(no_limit)
 }
 
-/// From a value at which something holds downwards by halves, not below `least`: the
+/// From a value at which something holds downwards step by step, not below `least`: the
 /// smallest at which it holds, and a value by at most a share of it lower at which it
 /// does not, if there is any.
 fn descend(
@@ -107,7 +112,7 @@ fn descend(
 ) -> Result<(f64, Option<f64>), Failure> {
     let mut good = from;
     loop {
-        let next = round_up(0.5 * good).max(least);
+        let next = round_up(STEP_DOWN * good).max(least);
         if next >= good {
             return Ok((good, None));
         }
@@ -160,7 +165,7 @@ mod tests {
             let bad = bad.unwrap();
             assert!(bad < threshold && threshold <= good, "{bad} {good}");
             assert!(good <= 1.0101 * bad, "{bad} {good}");
-            assert!(tried.len() < 14, "{tried:?}");
+            assert!(tried.len() < 18, "{tried:?}");
         }
         let found = descend(1000.0, 300.0, 0.01, &mut |_| Ok(true)).unwrap();
         assert_eq!(found, (300.0, None));

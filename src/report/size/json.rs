@@ -138,7 +138,7 @@ fn program<'a>(program: &'a str, outcome: &'a Outcome) -> ProgramRecord<'a> {
     match outcome {
         Outcome::Refused(_) => found("refused", None, &[]),
         Outcome::Idle => found("idle", None, &[]),
-        Outcome::Never(reasons) => found("never", None, reasons),
+        Outcome::Never { reasons, .. } => found("never", None, reasons),
         Outcome::Sized(size) => {
             let reasons = size.below.as_ref().map(|(_, reasons)| reasons.as_slice());
             found("sized", Some(record(size)), reasons.unwrap_or_default())

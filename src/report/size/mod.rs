@@ -109,14 +109,10 @@ fn sized(sizing: &Sizing) -> impl Iterator<Item = (&str, &ProgramSize)> {
 /// The worst of all programs: refused, or fits with no converter.
 #[must_use]
 pub fn size_verdict(size: &Size) -> Verdict {
-    let sizings = [Some(&size.rating), size.capacitance.as_ref()];
-    let outcomes = sizings
-        .into_iter()
-        .flatten()
-        .flat_map(|sizing| &sizing.programs);
+    let outcomes = size.rating.programs.iter();
     let verdicts = outcomes.map(|(_, outcome)| match outcome {
         Outcome::Refused(_) => Verdict::Refused,
-        Outcome::Never(_) => Verdict::DoesNotFit,
+        Outcome::Never { .. } => Verdict::DoesNotFit,
         Outcome::Idle | Outcome::Sized(_) => Verdict::Fits,
     });
     verdicts.max().unwrap_or(Verdict::Fits)
@@ -212,7 +208,10 @@ fn conditions(machine: &Machine, converter: usize) -> Vec<String> {
         }
     }
     if machine.converters.len() > 1 {
-        list.push("the other converters are those of the machine file".to_owned());
+        list.push(
+            "the other converters are those of the machine file; the largest power of any is shown"
+                .to_owned(),
+        );
     }
     list
 }
@@ -243,16 +242,38 @@ fn sizing_text(sizing: &Sizing) -> String {
             .map(|(step, rung)| row(quantity, step, rung)),
     );
     text.push_str(&aligned(&rows, "  "));
-    for (name, size) in sized(sizing) {
-        let Some((below, reasons)) = &size.below else {
-            continue;
-        };
-        if size.lowest < curve.lowest {
+    text.push_str(&refused_text(sizing, curve));
+    text
+}
+
+/// Why there is no certificate, each reason once: at steps from above, and next to the
+/// lowest.
+fn refused_text(sizing: &Sizing, curve: &Curve) -> String {
+    let mut refused: Vec<(f64, &str, &[Diagnostic])> = Vec::new();
+    for (_, rung) in rungs(curve) {
+        let programs = sized(sizing).zip(&rung.trials);
+        refused.extend(programs.map(|((name, _), trial)| {
+            let reasons = trial.reasons.as_slice();
+            (rung.value, name, reasons)
+        }));
+    }
+    for (name, size) in sized(sizing).filter(|(_, size)| size.lowest >= curve.lowest) {
+        let below = size.below.iter();
+        refused.extend(below.map(|(value, reasons)| (*value, name, reasons.as_slice())));
+    }
+    let mut text = String::new();
+    let mut said = Vec::new();
+    for (at, name, reasons) in refused {
+        let mut kinds: Vec<&str> = reasons.iter().map(|reason| reason.rule).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        if kinds.is_empty() || said.contains(&(name, kinds.clone())) {
             continue;
         }
+        said.push((name, kinds));
+        let at = value(sizing.quantity, at);
         for reason in reasons_text(reasons) {
-            let below = value(quantity, *below);
-            let _ = writeln!(text, "  not with {below}: {name}: {reason}");
+            let _ = writeln!(text, "  not with {at}: {name}: {reason}");
         }
     }
     text
@@ -270,11 +291,18 @@ fn programs_text(sizing: &Sizing) -> String {
             Outcome::Idle => {
                 let _ = writeln!(text, "{name}: draws nothing, and is not counted");
             }
-            Outcome::Never(reasons) => {
+            Outcome::Never {
+                peak_w,
+                regen_w,
+                reasons,
+            } => {
                 let _ = writeln!(
                     text,
-                    "{name}: fits at no {}, and is not counted",
-                    title(quantity)
+                    "{name}: fits at no {}, and is not counted; it draws {} and feeds back {} \
+                     at most",
+                    title(quantity),
+                    power(*peak_w),
+                    power(*regen_w)
                 );
                 for reason in reasons_text(reasons) {
                     let _ = writeln!(text, "  {reason}");
@@ -304,8 +332,12 @@ fn program_text(quantity: Quantity, size: &ProgramSize) -> String {
     if size.lowest < size.enough {
         let _ = write!(text, ", certified down to {lowest}");
     }
-    if size.below.is_none() {
-        text.push_str(" (less was not tried)");
+    match &size.below {
+        None => text.push_str(" (less was not tried)"),
+        Some((_, reasons)) if reasons.is_empty() => {
+            text.push_str(" (less takes longer than --until)");
+        }
+        Some(_) => {}
     }
     if size.unlimited.edited_lines > 0 {
         let _ = write!(
