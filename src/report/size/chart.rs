@@ -207,9 +207,21 @@ impl<'a> Panel<'a> {
         }
     }
 
-    /// A line through the certified steps of the ladder; others interrupt it.
+    /// What is drawn, from the smallest value on.
+    fn drawn(&self) -> Vec<&'a Rung> {
+        let mut drawn: Vec<&Rung> = rungs(self.curve)
+            .into_iter()
+            .map(|(_, rung)| rung)
+            .collect();
+        drawn.retain(|rung| (self.x.least..=self.x.most).contains(&rung.value));
+        drawn.reverse();
+        drawn.dedup_by_key(|rung| rung.value.to_bits());
+        drawn
+    }
+
+    /// A line through what is certified; the rest interrupts it.
     fn line(&self, text: &mut String, colour: &str, y: impl Fn(&Rung) -> f64) {
-        for run in self.curve.ladder.split(|rung| !rung.total.certified) {
+        for run in self.drawn().split(|rung| !rung.total.certified) {
             let points: Vec<String> = run
                 .iter()
                 .map(|rung| format!("{:.2},{:.2}", self.x.at(rung.value), y(rung)))
@@ -220,7 +232,7 @@ impl<'a> Panel<'a> {
                 points.join(" ")
             );
         }
-        for rung in self.curve.ladder.iter().filter(|it| it.total.certified) {
+        for rung in self.drawn().into_iter().filter(|it| it.total.certified) {
             let _ = writeln!(
                 text,
                 "<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"2.5\" fill=\"{colour}\"/>",
@@ -232,7 +244,8 @@ impl<'a> Panel<'a> {
 
     /// The largest power that is fed back, from 0 up.
     fn regen(&self, text: &mut String, top: f64) {
-        let powers = self.curve.ladder.iter().map(|rung| rung.total.regen_w);
+        let certified = self.drawn().into_iter().filter(|it| it.total.certified);
+        let powers = certified.map(|rung| rung.total.regen_w);
         let most = powers.fold(1.0, f64::max);
         let y = |power_w: f64| top + REGEN * (1.0 - power_w / (1.1 * most));
         let _ = writeln!(
