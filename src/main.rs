@@ -59,6 +59,7 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Check(args) => command::check::run(args, terminal),
         Command::Report(args) => command::report::run(args, terminal),
         Command::Diff(args) => command::diff::run(args, terminal),
+        Command::Size(args) => command::size::run(args, terminal),
         Command::Moves(args) => command::moves::run(args, terminal),
         Command::Spindle(args) => command::spindle::run(args, terminal),
         Command::Machine { command } => command::machine::run(command, terminal),

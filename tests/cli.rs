@@ -4,6 +4,7 @@ mod identify;
 #[cfg(unix)]
 mod interrupts;
 mod machines;
+mod sizes;
 
 use std::fs::{self, File};
 use std::io::Write;

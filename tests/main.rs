@@ -30,6 +30,7 @@ mod trace;
 mod rig;
 mod rows;
 mod shop;
+mod size;
 mod side_by_side;
 mod identify;
 mod tune;

@@ -12,6 +12,7 @@ mod override_arg;
 mod power_fit;
 mod program;
 mod report;
+mod size;
 mod spindle;
 mod tune;
 
@@ -23,13 +24,14 @@ pub use contour::ContourArgs;
 pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
-pub use limit::{Allow, LimitArgs};
+pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy};
 pub use machine::MachineCommand;
 pub use moves::MovesArgs;
 pub use override_arg::OverrideArg;
 pub use power_fit::PowerFitArgs;
 pub use program::{MachineArgs, ProgramArgs, StartArg};
 pub use report::ReportArgs;
+pub use size::SizeArgs;
 pub use spindle::SpindleArgs;
 pub use tune::{DiscretizeArg, TuneArgs};
 
@@ -72,6 +74,8 @@ pub enum Command {
     Report(ReportArgs),
     /// Compare two machines over programs
     Diff(DiffArgs),
+    /// Say how large the converter must be
+    Size(SizeArgs),
     /// Print every move of a program as JSON, one a line
     Moves(MovesArgs),
     /// Plan a spindle's speed period by period, and what it draws

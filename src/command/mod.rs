@@ -10,6 +10,7 @@ pub mod machine;
 pub mod moves;
 pub mod power_fit;
 pub mod report;
+pub mod size;
 pub mod spindle;
 pub mod tune;
 

@@ -24,6 +24,7 @@ mod restart;
 mod row;
 mod schedule;
 mod series;
+pub mod size;
 mod spindle;
 mod spindle_rows;
 mod summary;
