@@ -69,9 +69,9 @@ pub struct SizeArgs {
     /// How far to lower it
     #[arg(long, value_enum, default_value_t = Law::Exact)]
     pub law: Law,
-    /// Allow cutting feeds to be lowered
-    #[arg(long, value_enum, value_name = "WHAT")]
-    pub allow: Option<Allow>,
+    /// What may be changed besides rapids and their accelerations; several with commas
+    #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
+    pub allow: Vec<Allow>,
     /// Which certificate is asked for [default: the best the controller allows]
     #[arg(long, value_enum)]
     pub certificate: Option<Certificate>,

@@ -68,7 +68,8 @@ fn wish(args: &SizeArgs, setup: &Setup) -> Result<Wish> {
         how: LimitOptions {
             strategy: args.strategy.into(),
             law: args.law.into(),
-            allow_feed: args.allow == Some(Allow::Feed),
+            allow_feed: args.allow.contains(&Allow::Feed),
+            allow_expand: args.allow.contains(&Allow::Expand),
         },
         converter: converter(args.converter.as_deref(), &setup.machine)?,
         steps: args.steps,
