@@ -30,3 +30,165 @@ fn subprograms_are_found_in_any_spelling_of_their_number() {
     let read = check();
     assert!(read.code < 2, "{}", read.stderr);
 }
+
+const SIEMENS: &str = "DEF REAL DEPTH = 2\nMSG(\"pocket\")\nG0 X=DEPTH\nM30\n";
+const O_WORDS: &str = "o100 sub\nG0 X1\no100 endsub\no100 call\nM2\n";
+const FANUCS: &str = "%\nO1000\nG0 X1. Y2.\nM30\n%\n";
+const RELATIVES: &str = "fanuc or one of its relatives (haas, mitsubishi, mazak, syntec)";
+
+#[test]
+fn dialect_says_what_it_saw() {
+    let shop = Shop::new();
+    shop.put("a.nc", SIEMENS);
+    shop.put("b.nc", FANUCS);
+    shop.put("c.h", "0 BEGIN PGM PART MM\n");
+    shop.put("d.gcode", "G0 X1\nM30\n");
+    let siemens = "a.nc: siemens (DEF with a type in line 1, MSG( in line 2, an address with = \
+                   in line 3)";
+    let fanucs = "(% in line 1, a program number in line 2, Y words in line 3)";
+    let found = shop.run(&["dialect", "a.nc"]);
+    assert_eq!(found.stdout, format!("{siemens}\n"));
+    assert_eq!(found.code, 0, "{}", found.stderr);
+    let found = shop.run(&["dialect", "a.nc", "b.nc", "c.h", "d.gcode", "-m", "vmc"]);
+    assert_eq!(
+        found.stdout,
+        format!(
+            "{siemens}; read without errors as siemens\n\
+             b.nc: {RELATIVES} {fanucs}; read without errors as {RELATIVES}\n\
+             c.h: none: this is a Heidenhain conversational program (Klartext); only programs of \
+             G-code words are read: have it posted as DIN/ISO\n\
+             d.gcode: not clear: there are no marks of a particular controller\n"
+        )
+    );
+    assert_eq!(found.code, 2);
+}
+
+#[test]
+fn auto_says_what_it_chose() {
+    let shop = Shop::new();
+    shop.put("a.nc", SIEMENS);
+    shop.put("o.nc", O_WORDS);
+    let siemens = "gwatt: note: a.nc: read as siemens: DEF with a type in line 1, MSG( in line 2";
+    for command in ["check", "limit", "report", "moves"] {
+        let read = shop.run(&[command, "a.nc", "-m", "vmc", "--dialect", "auto"]);
+        assert!(
+            read.stderr.starts_with(siemens),
+            "{command}: {}",
+            read.stderr
+        );
+        assert!(read.code < 2, "{}", read.stderr);
+    }
+    // `check` reads each program as its own controller does.
+    let read = shop.run(&["check", "a.nc", "o.nc", "-m", "vmc", "--dialect", "auto"]);
+    assert!(read.stderr.starts_with(siemens), "{}", read.stderr);
+    let linuxcnc = "gwatt: note: o.nc: read as linuxcnc: O-words in line 1\n";
+    assert!(read.stderr.contains(linuxcnc), "{}", read.stderr);
+    assert!(read.code < 2, "{}", read.stderr);
+    let arguments = ["check", "-", "-m", "vmc", "--dialect", "auto"];
+    let read = shop.run_with_input(&arguments, SIEMENS);
+    assert!(read.code < 2, "{}", read.stderr);
+}
+
+#[test]
+fn auto_takes_the_machine_s_own_where_marks_do_not_decide() {
+    let shop = Shop::new();
+    shop.put("b.nc", FANUCS);
+    shop.put("d.nc", "G0 X1.\nM30\n");
+    let run = |machine: &str, program: &str| {
+        shop.run(&["check", program, "-m", machine, "--dialect", "auto"])
+    };
+    let read = run("vmc", "d.nc");
+    let note = "the machine's own, as there are no marks of a particular controller";
+    assert!(read.stderr.contains(note), "{}", read.stderr);
+    // A tie among profiles that are not the machine's is no choice.
+    let tie = format!(
+        "gwatt: b.nc: --dialect auto: it may be for {RELATIVES}: % in line 1, a program number \
+         in line 2, Y words in line 3; name one of them\n"
+    );
+    let read = run("three-axis", "b.nc");
+    assert_eq!((read.code, read.stderr), (2, tie));
+    shop.put("mill.toml", shop.run(&["machine", "show", "vmc"]).stdout);
+    let mill = shop.get("mill.toml");
+    let from = mill
+        .lines()
+        .find(|line| line.starts_with("controller"))
+        .unwrap();
+    shop.put("mill.toml", mill.replace(from, "controller = \"haas\""));
+    let read = run("mill.toml", "b.nc");
+    let note = "b.nc: read as haas: the machine's own; % in line 1, a program number in line 2, \
+                Y words in line 3 may be fanuc or one of its relatives (mitsubishi, mazak, \
+                syntec) too\n";
+    assert!(read.stderr.contains(note), "{}", read.stderr);
+    assert!(read.code < 2);
+}
+
+#[test]
+fn auto_refuses_what_it_cannot_choose() {
+    let shop = Shop::new();
+    shop.put("a.nc", SIEMENS);
+    shop.put("o.nc", O_WORDS);
+    shop.put("c.h", "0 BEGIN PGM PART MM\n");
+    let diff = [
+        "diff",
+        "--from",
+        "vmc",
+        "--to",
+        "three-axis",
+        "a.nc",
+        "o.nc",
+    ];
+    let message = "gwatt: --dialect auto: a.nc is for siemens, o.nc for linuxcnc; give programs \
+                   of one controller at a time\n";
+    refused(
+        &shop.run(&[&diff[..], &["--dialect", "auto"]].concat()),
+        message,
+    );
+    let auto = |program, more: &[&'static str]| {
+        let all = ["check", program, "-m", "vmc", "--dialect", "auto"];
+        shop.run(&[&all[..], more].concat())
+    };
+    refused(
+        &auto("c.h", &[]),
+        "c.h: --dialect auto: this is a Heidenhain",
+    );
+    let message = "--set #<_depth>=2: `siemens` has no such variable";
+    refused(&auto("a.nc", &["--set", "#<_depth>=2"]), message);
+}
+
+#[test]
+fn a_refusal_begins_with_the_profile_that_reads_the_program() {
+    let shop = Shop::new();
+    shop.put("o.nc", O_WORDS);
+    for command in ["check", "limit", "report", "moves"] {
+        let read = shop.run(&[command, "o.nc", "-m", "vmc", "--dialect", "fanuc"]);
+        let note = "gwatt: note: o.nc: it is read as fanuc; without errors it is read as linuxcnc \
+                    (O-words in line 1): use --dialect linuxcnc\n";
+        assert!(read.stderr.starts_with(note), "{command}: {}", read.stderr);
+        assert_eq!(read.code, 2);
+    }
+    let diff = [
+        "diff",
+        "--from",
+        "vmc",
+        "--to",
+        "three-axis",
+        "o.nc",
+        "--dialect",
+        "fanuc",
+    ];
+    refused(&shop.run(&diff), "use --dialect linuxcnc");
+}
+
+#[test]
+fn a_refusal_names_a_profile_that_does_not_read_the_program_either() {
+    let shop = Shop::new();
+    shop.put("o.nc", O_WORDS.replace("G0 X1", "G0 X1 W5"));
+    let check = |dialect| shop.run(&["check", "o.nc", "-m", "vmc", "--dialect", dialect]);
+    let note = "it is read as fanuc, but looks as if it is for linuxcnc (O-words in line 1), \
+                which on this machine does not read it without errors either";
+    refused(&check("fanuc"), note);
+    // Where the profile is the one that it looks like, there is no hint.
+    let read = check("linuxcnc");
+    assert_eq!(read.code, 2);
+    assert!(!read.stderr.contains("it is read as"), "{}", read.stderr);
+}
