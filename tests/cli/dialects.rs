@@ -192,3 +192,52 @@ fn a_refusal_names_a_profile_that_does_not_read_the_program_either() {
     assert_eq!(read.code, 2);
     assert!(!read.stderr.contains("it is read as"), "{}", read.stderr);
 }
+
+#[test]
+fn grbl_s_dollar_lines_are_read() {
+    let shop = Shop::new();
+    let check = |lines: &str| {
+        shop.put("a.nc", format!("$X\n{lines}G21 G90\nG1 F100 X10\nM30\n"));
+        shop.run(&["check", "a.nc", "-m", "router-48v", "--dialect", "grbl"])
+    };
+    let plain = check("$10=1 ; report\n$G\n");
+    assert!(plain.code < 2, "{}", plain.stderr);
+    // Homing draws what all axes at once can.
+    let home = check("$H (home)\n");
+    assert!(home.code < 2, "{}", home.stderr);
+    assert!(
+        home.stderr.contains("$H homes at speeds"),
+        "{}",
+        home.stderr
+    );
+    let peak = |ran: &Ran| ran.stdout.lines().next().unwrap_or_default().to_owned();
+    assert_ne!(peak(&plain), peak(&home));
+    refused(
+        &check("$120=10\n"),
+        "$120 is a setting that may change how the machine moves",
+    );
+    refused(
+        &check("$J=G91 X1 F100\n"),
+        "$J=G91 X1 F100 is a command of grbl",
+    );
+    let other = shop.run(&["check", "a.nc", "-m", "router-48v", "--dialect", "fanuc"]);
+    refused(&other, "is not understood");
+}
+
+#[test]
+fn predefined_names_of_the_control_have_values() {
+    let shop = Shop::new();
+    shop.put(
+        "a.ngc",
+        "G21 G17 G40\nG0 X#<_task> Y#<_remap_level> Z#<_ccomp>\nG42.1 D0\nG1 X50 F100\n\
+         #1=#<_ccomp>\nX60 Y1\nG40\nG0 X#1 Z[#<_ccomp>/10]\nM2\n",
+    );
+    let read = shop.run(&["moves", "a.ngc", "-m", "linuxcnc-mill"]);
+    assert_eq!(read.code, 0, "{}", read.stderr);
+    assert!(
+        read.stdout.contains("\"end\":{\"X\":1,\"Y\":0,\"Z\":400}"),
+        "{}",
+        read.stdout
+    );
+    assert!(read.stdout.contains("\"X\":420"), "{}", read.stdout);
+}
