@@ -56,20 +56,43 @@ impl Control<'_> {
         }
     }
 
-    /// `$H`: from anywhere to the limit switches, at a speed of the settings.
+    /// `$H`: from anywhere to the limit switches, at a speed of the settings. All axes
+    /// count as moving at once.
     fn home_all(&mut self, run: &mut Run<'_, '_>) {
-        let message = "$H homes at speeds and over ways that only the control knows: every axis \
-                       counts at its full speed and acceleration";
         let whole = run.whole();
-        run.report.note_once("unknown-moves", message, whole);
+        let axes = || {
+            self.machine
+                .axis_set
+                .iter()
+                .map(|axis| self.machine.axes[axis].as_ref())
+        };
+        let square = |speed_mm_s: f64| speed_mm_s * speed_mm_s;
+        let squares = axes().map(|data| data.map_or(0.0, |it| square(it.home_mm_s)));
+        let speed_mm_s = squares.sum::<f64>().sqrt();
+        if speed_mm_s.is_infinite() {
+            let message = "without `home_mm_min` of its axes in the machine file, how fast $H homes \
+                           is not known: every axis counts at its full speed and acceleration";
+            run.report.note_once("unknown-moves", message, whole);
+        }
         run.facts.reference = true;
         run.facts.boundary = true;
         run.facts.fixed = Some("it homes the axes");
         let all = self.machine.axis_set;
         let end = self.position.at;
-        let any = Some(f64::INFINITY);
-        self.go_at(run, MoveKind::Feed, &end, all, None, any);
-        self.position.unknown.0 |= all.0;
+        self.go_at(run, MoveKind::Feed, &end, all, None, Some(speed_mm_s));
+        for axis in all.iter() {
+            let home_mm = self.machine.axes[axis]
+                .as_ref()
+                .and_then(|data| data.home_mm);
+            if let Some(home_mm) = home_mm {
+                self.position.home(axis, home_mm);
+            } else {
+                self.position.unknown.insert(axis);
+                let message = "without `home_mm` of its axis in the machine file, where $H ends is \
+                               not known: the power of the next moves counts from anywhere";
+                run.report.note_once("home", message, whole);
+            }
+        }
         run.act(ActionKind::Other, 0.0);
     }
 }

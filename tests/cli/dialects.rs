@@ -202,16 +202,19 @@ fn grbl_s_dollar_lines_are_read() {
     };
     let plain = check("$10=1 ; report\n$G\n");
     assert!(plain.code < 2, "{}", plain.stderr);
+    let note = |lines: &str, said: &str| {
+        let home = check(lines);
+        assert!(
+            home.code < 2 && home.stderr.contains(said),
+            "{}",
+            home.stderr
+        );
+        home.stdout.lines().next().unwrap_or_default().to_owned()
+    };
     // Homing draws what all axes at once can.
-    let home = check("$H (home)\n");
-    assert!(home.code < 2, "{}", home.stderr);
-    assert!(
-        home.stderr.contains("$H homes at speeds"),
-        "{}",
-        home.stderr
-    );
-    let peak = |ran: &Ran| ran.stdout.lines().next().unwrap_or_default().to_owned();
-    assert_ne!(peak(&plain), peak(&home));
+    let peak = note("$H (home)\n", "how fast $H homes is not known");
+    assert_ne!(plain.stdout.lines().next(), Some(peak.as_str()));
+    note("$H\n", "where $H ends is not known");
     refused(
         &check("$120=10\n"),
         "$120 is a setting that may change how the machine moves",
@@ -240,4 +243,36 @@ fn predefined_names_of_the_control_have_values() {
         read.stdout
     );
     assert!(read.stdout.contains("\"X\":420"), "{}", read.stdout);
+}
+
+#[test]
+fn homing_of_grbl_has_the_speed_and_the_end_of_the_machine_file() {
+    let shop = Shop::new();
+    let machine = shop.run(&["machine", "show", "router-48v"]).stdout;
+    let axes = "kind = \"linear\"";
+    let home = format!("{axes}\nhome_mm_min = 300\nhome_mm = 0");
+    shop.put("router.toml", machine.replace(axes, &home));
+    shop.put("a.nc", "$H\nG21 G90\nG0 X10\nM30\n");
+    let read = shop.run(&["moves", "a.nc", "-m", "router.toml", "--dialect", "grbl"]);
+    assert_eq!(read.code, 0, "{}", read.stderr);
+    assert!(!read.stderr.contains("$H"), "{}", read.stderr);
+    let rapid = read.stdout.lines().last().unwrap_or_default();
+    assert!(
+        rapid.contains("\"start\":{\"X\":0,\"Y\":0,\"Z\":0}"),
+        "{rapid}"
+    );
+}
+
+#[test]
+fn a_file_of_subprograms_is_said_to_be_one() {
+    let shop = Shop::new();
+    shop.put("subs.ngc", "o<a> sub\nG0 X1\no<a> endsub\n");
+    let read = shop.run(&["check", "subs.ngc", "gentle.ngc", "-m", "linuxcnc-mill"]);
+    assert_eq!(read.code, 0, "{}", read.stderr);
+    let note =
+        "note[only-subprograms]: this file holds only subprograms: by itself it moves nothing";
+    assert!(read.stderr.contains(note), "{}", read.stderr);
+    shop.put("none.ngc", "(nothing)\n");
+    let read = shop.run(&["check", "none.ngc", "-m", "linuxcnc-mill"]);
+    refused(&read, "there is no program in this file");
 }
