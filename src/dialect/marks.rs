@@ -17,7 +17,7 @@ pub(super) struct Mark {
 /// The ending of a file's name.
 #[derive(Debug)]
 pub(super) struct Ending {
-    pub(super) ending: &'static str,
+    pub(super) letters: &'static str,
     pub(super) profiles: &'static [&'static str],
     pub(super) points: u32,
 }
@@ -36,9 +36,9 @@ const fn mark(
     }
 }
 
-const fn ending(ending: &'static str, profiles: &'static [&'static str], points: u32) -> Ending {
+const fn ending(letters: &'static str, profiles: &'static [&'static str], points: u32) -> Ending {
     Ending {
-        ending,
+        letters,
         profiles,
         points,
     }

@@ -87,7 +87,7 @@ impl Found {
             lines: [None; MARKS.len()],
             ending: ENDINGS
                 .iter()
-                .find(|known| known.ending.eq_ignore_ascii_case(ending)),
+                .find(|known| known.letters.eq_ignore_ascii_case(ending)),
         }
     }
 
@@ -134,7 +134,7 @@ impl Found {
             .map(|(mark, line)| (line, mark.what))
             .collect();
         of_marks.sort_by_key(|(line, _)| *line);
-        let of_name = of_name.map(|known| format!("the file's ending .{}", known.ending));
+        let of_name = of_name.map(|known| format!("the file's ending .{}", known.letters));
         let of_marks = of_marks
             .into_iter()
             .map(|(line, what)| format!("{what} in line {line}"));

@@ -55,6 +55,7 @@ pub(super) struct Ends {
 
 /// How far the radii at start and end may differ.
 #[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "the unit belongs to each name")]
 pub(super) struct Slack {
     /// What every controller bears, mm.
     small_mm: f64,
