@@ -21,5 +21,6 @@ pub mod power;
 pub mod limit;
 pub mod rewrite;
 pub mod pipeline;
+pub mod dialect;
 pub mod identify;
 pub mod report;

@@ -58,6 +58,7 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Limit(args) => command::limit::run(args, terminal),
         Command::Check(args) => command::check::run(args, terminal),
         Command::Report(args) => command::report::run(args, terminal),
+        Command::Dialect(args) => command::dialect::run(args, terminal),
         Command::Diff(args) => command::diff::run(args, terminal),
         Command::Size(args) => command::size::run(args, terminal),
         Command::Moves(args) => command::moves::run(args, terminal),

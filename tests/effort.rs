@@ -60,6 +60,7 @@ const LINES: &str = "\
 
 const CONTROLLERS: &[&str] = &[
     "fanuc-lathe-b",
+    "haas-lathe",
     "fanuc-lathe",
     "fanuc",
     "grbl",

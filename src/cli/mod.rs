@@ -2,6 +2,7 @@
 
 mod check;
 mod contour;
+mod dialect;
 mod diff;
 mod excite;
 mod identify;
@@ -21,6 +22,7 @@ use clap_complete::Shell;
 
 pub use check::{CheckArgs, Format};
 pub use contour::ContourArgs;
+pub use dialect::DialectArgs;
 pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
@@ -72,6 +74,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Say what each move of a program draws
     Report(ReportArgs),
+    /// Say which controllers programs are for
+    Dialect(DialectArgs),
     /// Compare two machines over programs
     Diff(DiffArgs),
     /// Say how large the converter must be

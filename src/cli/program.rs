@@ -27,7 +27,8 @@ impl From<ProbeArg> for ProbeResult {
 /// How programs are read.
 #[derive(Debug, Args)]
 pub struct ProgramArgs {
-    /// Read programs as this controller does, instead of the machine's own
+    /// Read programs as this controller does, instead of the machine's own; `auto`: as
+    /// the one that marks in the text speak for (see `gwatt dialect`)
     #[arg(long, value_name = "CONTROLLER", help_heading = "Program")]
     pub dialect: Option<String>,
     /// Tools of the machine, as LinuxCNC writes them (T P D Z X I J Q in a line

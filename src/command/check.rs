@@ -7,10 +7,12 @@ use std::sync::mpsc;
 use std::thread;
 
 use anyhow::{Context, Result};
+use gwatt::machine::Machine;
 use gwatt::pipeline;
 use gwatt::report::{self, Checked, Verdict};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 
+use super::dialect;
 use super::input::Program;
 use super::output::print;
 use super::setup::{Setup, share_threads};
@@ -19,19 +21,28 @@ use crate::cli::{CheckArgs, Format};
 
 /// Says whether programs fit.
 pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
-    let programs = Program::list(&args.programs)?;
+    let mut programs = Program::list(&args.programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     if let Some(overrides) = args.overrides {
         overrides.apply(&mut setup.machine.limits);
     }
     let (at_once, each) = share_threads(setup.options.threads, programs.len());
     setup.options.threads = each;
+    for program in &mut programs {
+        if let Err(failure) = program.keep() {
+            terminal.failure(&program.name, &failure);
+            return Ok(Verdict::Refused);
+        }
+    }
     let check = |program: &Program| check_program(program, &setup);
 
     let mut worst = Verdict::Fits;
     let mut kept = Vec::new();
-    in_order(&programs, at_once, check, |checked| {
+    in_order(&programs, at_once, check, |(checked, note)| {
         worst = worst.max(checked.verdict());
+        if let Some(note) = note {
+            terminal.note(format_args!("{}: {note}", checked.program));
+        }
         tell(&checked, terminal);
         if args.format == Format::Text {
             let text = report::check_text(&checked, &setup.machine);
@@ -44,17 +55,33 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     Ok(worst)
 }
 
-fn check_program(program: &Program, setup: &Setup) -> Checked {
-    let (machine, options) = (&setup.machine, setup.options_for(program));
-    let outcome = program.open().and_then(|mut input| {
+/// What came of a program, and what is to be said before it: as which dialect it was
+/// read, or which would read it.
+fn check_program(program: &Program, setup: &Setup) -> (Checked, Option<String>) {
+    let checked = |outcome| Checked {
+        program: program.name.clone(),
+        outcome,
+    };
+    let analyze = |machine: &Machine| {
+        let options = setup.options_for(program);
+        let mut input = program.open()?;
         let mut summary = pipeline::analyze(&mut input, machine, &options, None)?;
         pipeline::take_hints(input, machine, &options, &mut summary)?;
         Ok(summary)
-    });
-    Checked {
-        program: program.name.clone(),
-        outcome,
+    };
+    if setup.auto {
+        let (language, note) = match dialect::choose(setup, program) {
+            Ok(chosen) => chosen,
+            Err(failure) => return (checked(Err(failure)), None),
+        };
+        let mut machine = setup.machine.clone();
+        machine.controller.language = language;
+        return (checked(analyze(&machine)), Some(note));
     }
+    let outcome = analyze(&setup.machine);
+    let hint = outcome.as_ref().err();
+    let hint = hint.and_then(|failure| dialect::hint(setup, program, failure));
+    (checked(outcome), hint)
 }
 
 /// Warnings and refusals, with the lines under them.

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::slice;
 
 use anyhow::{Context, Result, ensure};
 use gwatt::identify::contour::{
@@ -14,6 +15,7 @@ use gwatt::report::{
 };
 
 use super::clash::refuse_clashes;
+use super::dialect;
 use super::input::{Program, is_dash};
 use super::output::{Spool, Target, print};
 use super::setup::{Setup, machine_file};
@@ -26,7 +28,7 @@ const STEP_MAX_MS: f64 = 20.0;
 
 /// Says how far the load is from the programmed path.
 pub fn run(args: &ContourArgs, terminal: Terminal) -> Result<Verdict> {
-    let program = Program::new(&args.program);
+    let mut program = Program::new(&args.program);
     let machine = machine_file(args.machine.machine.as_deref());
     let inputs: Vec<&Path> = program.path().into_iter().chain(machine).collect();
     let files = [&args.csv, &args.json, &args.svg, &args.circles];
@@ -37,7 +39,8 @@ pub fn run(args: &ContourArgs, terminal: Terminal) -> Result<Verdict> {
         "--step-ms {} is not between {STEP_MIN_MS} and {STEP_MAX_MS}",
         args.step_ms
     );
-    let setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     let mut collected = Collected::new(args, !setup.machine.responses.corrections.is_empty())?;
     let settings = Settings {
         period_s: args.step_ms * 1e-3,
@@ -55,7 +58,7 @@ pub fn run(args: &ContourArgs, terminal: Terminal) -> Result<Verdict> {
     let (mut summary, notes) = match traced {
         Ok(found) => found,
         Err(failure) => {
-            terminal.failure(&program.name, &failure);
+            dialect::failure(&setup, &program, &failure, terminal);
             return Ok(Verdict::Refused);
         }
     };

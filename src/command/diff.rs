@@ -17,6 +17,7 @@ use gwatt::report::{Change, Comparison, Verdict, comparison_csv, comparison_text
 
 use super::check::in_order;
 use super::clash::refuse_clashes;
+use super::dialect;
 use super::input::Program;
 use super::output::{Target, print};
 use super::setup::{Setup, machine_file, share_threads};
@@ -44,20 +45,24 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
     refuse_clashes(&inputs, &outputs)?;
     let mut from = Setup::of(&args.from, &args.reading, terminal)?;
     let mut to = Setup::of(&args.to, &args.reading, terminal)?;
-    for program in &mut programs {
-        program.keep()?;
+    dialect::settle(&mut from, &mut programs, terminal)?;
+    if to.auto {
+        to.machine.controller.language = from.machine.controller.language.clone();
     }
     let (at_once, each) = share_threads(from.options.threads.div_ceil(2), programs.len());
     from.options.threads = each;
     to.options.threads = each;
 
     let mut comparisons = Vec::new();
+    let mut in_turn = programs.iter();
     in_order(
         &programs,
         at_once,
         |program| compare(program, &from, &to),
         |comparison| {
-            tell(&comparison, terminal);
+            if let Some(program) = in_turn.next() {
+                tell(program, &comparison, [&from, &to], terminal);
+            }
             comparisons.push(comparison);
             Ok(())
         },
@@ -74,11 +79,12 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
     Ok(worst.unwrap_or(Verdict::Fits))
 }
 
-fn tell(comparison: &Comparison, terminal: Terminal) {
-    let program = &comparison.program;
+fn tell(program: &Program, comparison: &Comparison, setups: [&Setup; 2], terminal: Terminal) {
+    let [from, to] = setups;
     match (&comparison.from, &comparison.to) {
-        (Err(failure), _) | (_, Err(failure)) => terminal.failure(program, failure),
-        (Ok(summary), Ok(_)) => terminal.diagnostics(program, &summary.notes),
+        (Err(failure), _) => dialect::failure(from, program, failure, terminal),
+        (_, Err(failure)) => dialect::failure(to, program, failure, terminal),
+        (Ok(summary), Ok(_)) => terminal.diagnostics(&program.name, &summary.notes),
     }
 }
 

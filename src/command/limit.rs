@@ -3,12 +3,14 @@
 use std::fs;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::slice;
 
 use anyhow::{Context, Result, ensure};
 use gwatt::pipeline::{self, LimitOptions, LimitSummary};
 use gwatt::report::{Verdict, limit_json, limit_text, unified_diff};
 
 use super::clash::refuse_clashes;
+use super::dialect;
 use super::input::Program;
 use super::output::{Spool, Target, back_up, print};
 use super::rows::Rows;
@@ -33,6 +35,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     );
     refuse_all_clashes(args, &program)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
@@ -51,7 +54,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     let summary = match done {
         Ok(summary) => summary,
         Err(failure) => {
-            terminal.failure(&program.name, &failure);
+            dialect::failure(&setup, &program, &failure, terminal);
             return Ok(Verdict::Refused);
         }
     };

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod contour;
+pub mod dialect;
 pub mod diff;
 pub mod excite;
 pub mod identify;

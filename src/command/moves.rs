@@ -1,11 +1,13 @@
 //! `gwatt moves`.
 
 use std::io::{self, BufWriter};
+use std::slice;
 
 use anyhow::Result;
 use gwatt::pipeline;
 use gwatt::report::{Verdict, write_move};
 
+use super::dialect;
 use super::input::Program;
 use super::output::Target;
 use super::setup::Setup;
@@ -14,8 +16,9 @@ use crate::cli::MovesArgs;
 
 /// Prints every move of a program.
 pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
-    let program = Program::new(&args.program);
-    let setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    let mut program = Program::new(&args.program);
+    let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     // A program may be refused at its last line: until then nothing is printed.
     let mut out = BufWriter::new(Target::Stdout.spool()?);
     let axes = setup.machine.axis_set;
@@ -33,7 +36,7 @@ pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
             Ok(Verdict::Fits)
         }
         Err(failure) => {
-            terminal.failure(&program.name, &failure);
+            dialect::failure(&setup, &program, &failure, terminal);
             Ok(Verdict::Refused)
         }
     }

@@ -1,12 +1,14 @@
 //! `gwatt report`.
 
 use std::path::Path;
+use std::slice;
 
 use anyhow::Result;
 use gwatt::pipeline::{self, RowSink};
 use gwatt::report::{Checked, Verdict, check_text, report_json};
 
 use super::clash::refuse_clashes;
+use super::dialect;
 use super::input::Program;
 use super::output::Target;
 use super::rows::Rows;
@@ -34,6 +36,7 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
         .collect();
     refuse_clashes(&inputs, &outputs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     if let Some(overrides) = args.overrides {
         overrides.apply(&mut setup.machine.limits);
     }
@@ -47,7 +50,7 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     if args.series.is_some() {
         // It is read more than once.
         if let Err(failure) = program.keep() {
-            terminal.failure(&program.name, &failure);
+            dialect::failure(&setup, &program, &failure, terminal);
             return Ok(Verdict::Refused);
         }
     }
@@ -58,7 +61,7 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     let summary = match outcome {
         Ok(summary) => summary,
         Err(failure) => {
-            terminal.failure(&program.name, &failure);
+            dialect::failure(&setup, &program, &failure, terminal);
             return Ok(Verdict::Refused);
         }
     };

@@ -20,6 +20,9 @@ use crate::cli::{MachineArgs, ProgramArgs, StartArg};
 /// Largest tool table or parameter file that is read.
 const DATA_BYTES_MAX: u64 = 16 << 20;
 
+/// The dialect that is chosen by the program.
+const AUTO: &str = "auto";
+
 /// What a program is judged with.
 #[derive(Debug)]
 pub struct Setup {
@@ -27,6 +30,8 @@ pub struct Setup {
     pub machine: Machine,
     /// How programs are read.
     pub options: Options,
+    /// `--dialect auto`: the language is still to be chosen.
+    pub auto: bool,
 }
 
 impl Setup {
@@ -48,7 +53,8 @@ impl Setup {
     /// The machine of that name.
     pub fn of(name: &str, reading: &ProgramArgs, terminal: Terminal) -> Result<Self> {
         let mut machine = load_machine(name, terminal)?;
-        if let Some(dialect) = &reading.dialect {
+        let auto = reading.dialect.as_deref() == Some(AUTO);
+        if let Some(dialect) = reading.dialect.as_ref().filter(|_| !auto) {
             machine.controller.language = language(dialect)?;
         }
         for folder in &reading.sub_path {
@@ -62,7 +68,7 @@ impl Setup {
         for given in &reading.given {
             let controller = &language_of.name;
             ensure!(
-                given.suits(language_of),
+                auto || given.suits(language_of),
                 "--set {given}: `{controller}` has no such variable"
             );
         }
@@ -91,7 +97,11 @@ impl Setup {
             once: reading.once,
             threads: threads(reading),
         };
-        Ok(Self { machine, options })
+        Ok(Self {
+            machine,
+            options,
+            auto,
+        })
     }
 
     /// The options for a program: its own folder is the first where subprograms
@@ -146,7 +156,7 @@ fn language(dialect: &str) -> Result<machine::Language> {
             .map(|controller| controller.name)
             .collect();
         format!(
-            "there is no dialect {dialect}; there are {}",
+            "there is no dialect {dialect}; there are {AUTO}, {}",
             names.join(", ")
         )
     })?;

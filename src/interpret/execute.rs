@@ -260,6 +260,18 @@ impl<'m> Interpreter<'m> {
         if printer::is_command(self.control.machine, block) {
             return self.command_line(block, steps, facts, report);
         }
+        if self.control.is_dollar(text) {
+            let words = &mut self.words;
+            let mut run = Run {
+                line,
+                block,
+                words,
+                facts,
+                steps,
+                report,
+            };
+            return self.control.dollar(&mut run);
+        }
         let mut beyond = !block.issues.is_empty();
         let mut acts = false;
         if let Some(siemens) = &mut self.control.siemens {

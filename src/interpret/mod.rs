@@ -20,6 +20,7 @@ mod facts;
 mod flow;
 mod formula;
 mod given;
+mod grbl;
 mod frame;
 mod isg;
 mod knob;

@@ -49,6 +49,14 @@ impl Control<'_> {
                     584.0 + system
                 })
             }
+            // On the machine, not in a preview.
+            "task" => Some(1.0),
+            // No word is remapped.
+            "remap_level" => Some(0.0),
+            "ccomp" => self
+                .compensation
+                .as_ref()
+                .map_or(Some(400.0), |it| Some(it.code())),
             "tool_offset" => flag(self.has_tool_length()),
             "spindle_css_mode" => flag(self.spindle.surface_mm_min.is_some()),
             "spindle_rpm_mode" => flag(self.spindle.surface_mm_min.is_none()),

@@ -112,9 +112,9 @@ pub struct Axis {
     pub kind: AxisKind,
     /// Rapid speed in mm/s or degrees/s; caps feeds too.
     pub rapid_mm_s: f64,
-    /// Homing speed of a printer's axis in mm/s; infinite where it is not given.
+    /// Homing speed of a printer's axis, or grbl's, in mm/s; infinite where it is not given.
     pub home_mm_s: f64,
-    /// Where a printer's axis stands after G28, mm; `None` where it is not given.
+    /// Where a printer's axis stands after G28, or grbl's after `$H`, mm; `None` where it is not given.
     pub home_mm: Option<f64>,
     /// Acceleration limit in mm/s² or degrees/s².
     pub accel_mm_s2: f64,

@@ -54,6 +54,7 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "haas",
     "fanuc-lathe",
     "fanuc-lathe-b",
+    "haas-lathe",
     "mitsubishi",
     "mazak",
     "syntec",

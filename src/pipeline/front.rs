@@ -272,9 +272,9 @@ impl<'m, R: Read + Seek> Front<'m, R> {
     /// The warnings and notes of a run without errors.
     pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Failure> {
         if self.executed == 0 && self.diagnostics.errors == 0 {
-            let message = "there is no program in this file: no block does anything";
+            let flow = self.flow.as_deref();
             self.diagnostics
-                .push(Diagnostic::error("no-program", message).help("give a part program"));
+                .push(nothing_done(flow.is_some_and(Flow::holds_subprograms)));
         }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
             let (rule, message, help) = if self.interpreter.holds_corner() {
@@ -342,4 +342,16 @@ fn source_failure(error: SourceError) -> Failure {
             more: 0,
         },
     }
+}
+
+/// That no block of a program did anything.
+fn nothing_done(holds_subprograms: bool) -> Diagnostic {
+    if holds_subprograms {
+        let message = "this file holds only subprograms: by itself it moves nothing, and what they \
+                       draw is not looked at";
+        return Diagnostic::note("only-subprograms", message)
+            .help("give the programs that call them");
+    }
+    let message = "there is no program in this file: no block does anything";
+    Diagnostic::error("no-program", message).help("give a part program")
 }

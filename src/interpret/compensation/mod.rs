@@ -92,6 +92,16 @@ impl Compensation {
         matches!(self.state, State::Entry | State::On)
     }
 
+    /// Ten times the G word in force: 400 for G40, 410 for G41 and G41.1, 420 for G42
+    /// and G42.1.
+    pub(super) fn code(&self) -> f64 {
+        match self.state {
+            State::Entry | State::On if self.side > 0.0 => 410.0,
+            State::Entry | State::On => 420.0,
+            _ => 400.0,
+        }
+    }
+
     /// The line of a move that was held back.
     pub(super) fn text_of(&self, mv: &Move) -> Option<&[u8]> {
         let key = (mv.text, mv.line);

@@ -36,9 +36,18 @@ impl Library {
     /// That there is no such subprogram.
     pub(super) fn nothing(label: &Label) -> Trouble {
         let message = format!("there is no subprogram {label}");
+        let file = match label {
+            Label::Name(_) => names(label)
+                .first()
+                .map_or_else(|| "its file".to_owned(), Clone::clone),
+            Label::Number(number) => format!(
+                "its file (O{number:04}.nc, {number}.ngc or another spelling of the number: with \
+                 or without O and zeros before it, and with the ending {} or none)",
+                ENDINGS.join(", ")
+            ),
+        };
         let help = format!(
-            "define it in the program, or put {} into its folder or one given by --sub-path",
-            names(label).first().map_or("its file", String::as_str)
+            "define it in the program, or put {file} into its folder or one given by --sub-path"
         );
         Trouble::new("no-such-subprogram", message, help)
     }
@@ -92,10 +101,11 @@ impl Library {
     pub(super) fn load(&mut self, label: &Label) -> Result<Option<Vec<u8>>, Trouble> {
         let names = names(label);
         let found = self.folders.iter().find_map(|folder| {
-            names
-                .iter()
-                .map(|name| folder.join(name))
-                .find(|path| path.is_file())
+            let mut usual = names.iter().map(|name| folder.join(name));
+            usual.find(|path| path.is_file()).or_else(|| match label {
+                Label::Number(number) => spelt_otherwise(folder, *number),
+                Label::Name(_) => None,
+            })
         });
         let Some(path) = found else { return Ok(None) };
         self.read(&path).map(Some)
@@ -122,7 +132,10 @@ impl Library {
     }
 }
 
-/// File names that a subprogram may have.
+/// Endings of files that hold a subprogram with a number.
+const ENDINGS: [&str; 8] = ["ngc", "nc", "cnc", "txt", "tap", "eia", "min", "prg"];
+
+/// File names that a subprogram may have, those that are looked for first.
 fn names(label: &Label) -> Vec<String> {
     match label {
         // A name is no path.
@@ -141,6 +154,64 @@ fn names(label: &Label) -> Vec<String> {
                 .iter()
                 .flat_map(|stem| endings.map(|ending| format!("{stem}{ending}")))
                 .collect()
+        }
+    }
+}
+
+/// The file in a folder whose name is the number in any other spelling; of several the
+/// first by name.
+fn spelt_otherwise(folder: &Path, number: u32) -> Option<PathBuf> {
+    let entries = fs::read_dir(folder).ok()?.flatten();
+    let mut found: Vec<PathBuf> = entries
+        .filter(|entry| number_of(&entry.file_name().to_string_lossy()) == Some(number))
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file())
+        .collect();
+    found.sort();
+    found.into_iter().next()
+}
+
+/// The number of the subprogram that a file of this name holds: `O09001.nc` is 9001.
+fn number_of(file: &str) -> Option<u32> {
+    let (stem, ending) = file.split_once('.').unwrap_or((file, ""));
+    let usual = ENDINGS
+        .iter()
+        .any(|known| known.eq_ignore_ascii_case(ending));
+    if !(ending.is_empty() || usual) {
+        return None;
+    }
+    let digits = stem.strip_prefix(['O', 'o']).unwrap_or(stem);
+    let plain = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+    plain.then(|| digits.parse().ok())?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number_of;
+
+    #[test]
+    fn a_file_name_is_a_number_in_any_usual_spelling() {
+        for name in [
+            "O09001.nc",
+            "9001",
+            "O9001.NC",
+            "o9001",
+            "09001.EIA",
+            "O9001.Min",
+        ] {
+            assert_eq!(number_of(name), Some(9001), "{name}");
+        }
+        for name in [
+            "O9001.nc.bak",
+            "O9001.pdf",
+            "OO9001",
+            "",
+            "O",
+            "O-1.nc",
+            "99999999999",
+            "9001~",
+        ] {
+            assert_eq!(number_of(name), None, "{name}");
         }
     }
 }

@@ -12,6 +12,13 @@ use crate::source::Span;
 const REPEATS_MAX: f64 = 1e12;
 
 impl Flow {
+    /// Whether the program defines subprograms (`o… sub`).
+    pub(crate) fn holds_subprograms(&self) -> bool {
+        self.texts.first().is_some_and(|text| {
+            (0..text.len()).any(|line| text.keyword(line) == Some(Keyword::Sub))
+        })
+    }
+
     pub(super) fn structure(
         &mut self,
         label: Label,

@@ -164,9 +164,9 @@ pub(crate) struct AxisTable {
     pub(crate) kind: Option<At<KindName>>,
     /// Linear: rapid speed in mm/min; caps feeds too.
     pub(crate) rapid_mm_min: Option<Positive>,
-    /// Linear: homing speed of a printer (G28) in mm/min; default: the rapid speed.
+    /// Linear: homing speed of a printer (G28) and of grbl ($H) in mm/min; default: the rapid speed.
     pub(crate) home_mm_min: Option<Positive>,
-    /// Linear: where a printer's axis stands after G28, in mm; default: not
+    /// Linear: where the axis stands after a printer's G28 or grbl's $H, in mm; default: not
     /// known, so that its next move counts at full speed and acceleration.
     pub(crate) home_mm: Option<Number>,
     /// Rotary: rapid speed in degrees/min.

@@ -1,0 +1,30 @@
+//! Arguments of `dialect`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::ProgramArgs;
+
+const EXAMPLES: &str = "\
+Examples:
+  gwatt dialect part.nc
+  gwatt dialect programs/* -m vmc
+  gwatt check part.nc -m vmc --dialect auto
+
+Exit status: 2 where a file is no program that any profile reads, else 0.";
+
+/// Arguments of `dialect`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct DialectArgs {
+    /// The programs; - for standard input
+    #[arg(required = true, value_name = "PROGRAM")]
+    pub programs: Vec<PathBuf>,
+    /// Try to read each program on this machine too, as the profiles that are found
+    #[arg(short, long, value_name = "MACHINE")]
+    pub machine: Option<String>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: ProgramArgs,
+}
