@@ -108,7 +108,6 @@ fn controller() -> Controller {
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,
-            arc_tolerance_mm: None,
             kept_variables: Vec::new(),
             dialect: gwatt::machine::Dialect::default(),
         },

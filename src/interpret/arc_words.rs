@@ -1,6 +1,6 @@
 //! G2 and G3: the words of an arc.
 
-use super::arc::{self, ArcFault, Ends, Slack};
+use super::arc::{self, ArcFault, Ends};
 use super::code::Motion;
 use super::execute::{Control, Run};
 use super::moves::{Arc, MoveKind};
@@ -81,10 +81,7 @@ impl Control<'_> {
             end: [end_at[first], end_at[second]],
             clockwise: self.modal.motion == Motion::ArcCw,
             turns,
-            slack: Slack::of(
-                &self.machine.controller.language,
-                self.modal.mm_per_unit == MM_PER_INCH,
-            ),
+            inch: self.modal.mm_per_unit == MM_PER_INCH,
         };
         match self.arc_geometry(run, &ends) {
             Some(Ok(arc)) if turned => {

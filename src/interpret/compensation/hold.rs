@@ -2,7 +2,7 @@
 
 use super::Fault;
 use super::corner::Track;
-use crate::interpret::arc::{self, Ends, Slack};
+use crate::interpret::arc::{self, Ends};
 use crate::interpret::motion::{STANDSTILL_MM, path_length};
 use crate::interpret::moves::{Arc, Move, MoveKind, Step};
 use crate::interpret::vector::{Vector, add, distance, dot, sub};
@@ -170,7 +170,7 @@ impl Hold {
             end,
             clockwise: programmed < 0.0,
             turns: turns(programmed),
-            slack: Slack::of_part(self.inch),
+            inch: self.inch,
         };
         let arc = arc::from_center(&ends, add(center, self.nose)).map_err(|_| Fault::NoArc)?;
         let tolerance_rad = SWEEP_TOLERANCE_RAD[usize::from(self.inch)];
@@ -220,7 +220,7 @@ impl Hold {
                 end: to,
                 clockwise: side > 0.0,
                 turns: 1.0,
-                slack: Slack::of_part(self.inch),
+                inch: self.inch,
             };
             let center = add(pivot, self.nose);
             Some(arc::from_center(&ends, center).map_err(|_| Fault::NoArc)?)

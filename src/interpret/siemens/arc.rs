@@ -3,7 +3,7 @@
 
 use super::target::Target;
 use super::{Measure, Siemens};
-use crate::interpret::arc::{self, ArcFault, Ends, Slack};
+use crate::interpret::arc::{self, ArcFault, Ends};
 use crate::interpret::arc_words::report_fault;
 use crate::interpret::code::Motion;
 use crate::interpret::execute::{Control, Run};
@@ -64,7 +64,7 @@ impl Control<'_> {
             end: [target.program[first], target.program[second]],
             clockwise: self.modal.motion == Motion::ArcCw,
             turns: run.words.take(b'P').unwrap_or(1.0),
-            slack: Slack::usual(self.in_inches()),
+            inch: self.in_inches(),
         };
         if !(ends.turns >= 1.0 && ends.turns <= 1e6 && ends.turns.fract() == 0.0) {
             run.report

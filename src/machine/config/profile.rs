@@ -82,10 +82,6 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
-        arc_tolerance_mm: table
-            .arc_tolerance_mm
-            .as_ref()
-            .map(|[metric, inch]| [metric.value, inch.value]),
         kept_variables: table
             .kept_variables
             .clone()
