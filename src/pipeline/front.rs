@@ -344,12 +344,15 @@ fn source_failure(error: SourceError) -> Failure {
     }
 }
 
+/// The rule of the note on a file that holds only subprograms.
+pub(super) const ONLY_SUBPROGRAMS: &str = "only-subprograms";
+
 /// That no block of a program did anything.
 fn nothing_done(holds_subprograms: bool) -> Diagnostic {
     if holds_subprograms {
         let message = "this file holds only subprograms: by itself it moves nothing, and what they \
                        draw is not looked at";
-        return Diagnostic::note("only-subprograms", message)
+        return Diagnostic::note(ONLY_SUBPROGRAMS, message)
             .help("give the programs that call them");
     }
     let message = "there is no program in this file: no block does anything";

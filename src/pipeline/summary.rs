@@ -6,6 +6,7 @@ use crate::machine::{AxisSet, Machine};
 use crate::power::Measure;
 
 use super::by_line::LineSummary;
+use super::front::ONLY_SUBPROGRAMS;
 use super::over_time::OverTime;
 use super::row::Certificate;
 
@@ -82,6 +83,12 @@ pub struct Summary {
 impl Summary {
     /// How many moves that do not fit are kept.
     pub const KEPT: usize = 1000;
+
+    /// Whether the file holds only subprograms, so that nothing was looked at.
+    #[must_use]
+    pub fn only_subprograms(&self) -> bool {
+        self.notes.iter().any(|note| note.rule == ONLY_SUBPROGRAMS)
+    }
 
     /// True when every move fits, and all limits over time are kept.
     #[must_use]

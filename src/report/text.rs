@@ -17,6 +17,9 @@ use crate::units::SECONDS_PER_MINUTE;
 pub fn check_text(checked: &Checked, machine: &Machine) -> String {
     let program = &checked.program;
     match &checked.outcome {
+        Ok(summary) if summary.only_subprograms() => {
+            format!("{program}: only subprograms: nothing of it was looked at\n")
+        }
         Ok(summary) if summary.fits() => {
             let text = format!("{program}: fits: {}\n", figures(summary, machine));
             text + &over_time_text(summary)

@@ -272,6 +272,21 @@ fn a_file_of_subprograms_is_said_to_be_one() {
     let note =
         "note[only-subprograms]: this file holds only subprograms: by itself it moves nothing";
     assert!(read.stderr.contains(note), "{}", read.stderr);
+    assert!(
+        read.stdout
+            .contains("subs.ngc: only subprograms: nothing of it was looked at\n"),
+        "{}",
+        read.stdout
+    );
+    let read = shop.run(&[
+        "check",
+        "subs.ngc",
+        "-m",
+        "linuxcnc-mill",
+        "--format",
+        "junit",
+    ]);
+    assert!(read.stdout.contains("<skipped message="), "{}", read.stdout);
     shop.put("none.ngc", "(nothing)\n");
     let read = shop.run(&["check", "none.ngc", "-m", "linuxcnc-mill"]);
     refused(&read, "there is no program in this file");
