@@ -7,6 +7,7 @@ mod figures;
 mod flow_through;
 mod knobs;
 mod obstacles;
+mod partial;
 mod random;
 mod reader;
 mod rewriting;

@@ -51,6 +51,9 @@ pub struct LimitArgs {
     /// What may be changed besides rapids and their accelerations; several with commas
     #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
     pub allow: Vec<Allow>,
+    /// Write what can be lowered even if not all moves fit then; the exit status stays 1
+    #[arg(long)]
+    pub partial: bool,
     /// Which certificate is asked for [default: the best the controller allows]
     #[arg(long, value_enum)]
     pub certificate: Option<Certificate>,

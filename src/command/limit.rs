@@ -7,7 +7,7 @@ use std::slice;
 
 use anyhow::{Context, Result, ensure};
 use gwatt::pipeline::{self, LimitOptions, LimitSummary};
-use gwatt::report::{Verdict, limit_json, limit_text, unified_diff};
+use gwatt::report::{Verdict, limit_json, limit_text, partial_text, unified_diff};
 
 use super::clash::refuse_clashes;
 use super::dialect;
@@ -59,11 +59,12 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
         }
     };
     let spool = spool.into_inner().map_err(io::IntoInnerError::into_error)?;
-    tell(&program.name, &summary, &setup, terminal);
+    let partly = args.partial && !summary.certified && summary.slower;
+    tell(&program.name, &summary, partly, &setup, terminal);
     rows.deliver(|blocks, out| {
         limit_json(&program.name, &setup.machine.name, &summary, blocks, out)
     })?;
-    if summary.certified {
+    if summary.certified || partly {
         deliver(args, &program, &summary, spool, terminal)?;
     }
     Ok(Verdict::of(summary.certified))
@@ -104,10 +105,14 @@ fn target(args: &LimitArgs) -> Result<Target> {
     }
 }
 
-fn tell(program: &str, summary: &LimitSummary, setup: &Setup, terminal: Terminal) {
+fn tell(program: &str, summary: &LimitSummary, partly: bool, setup: &Setup, terminal: Terminal) {
     terminal.diagnostics(program, &summary.before.notes);
     terminal.diagnostics(program, &summary.reasons);
-    terminal.text(&limit_text(program, summary, &setup.machine));
+    terminal.text(&if partly {
+        partial_text(program, summary, &setup.machine)
+    } else {
+        limit_text(program, summary, &setup.machine)
+    });
 }
 
 fn deliver(

@@ -68,6 +68,16 @@ pub(super) struct Verdict<'m, 'r> {
     spindle: VecDeque<Assessment>,
 }
 
+/// Rules of what must not be: a written program of which one of these is said is not the
+/// original made slower.
+const FAULTS: [&str; 5] = [
+    "changed-sequence",
+    "unreadable-output",
+    "went-up",
+    "changed-feed",
+    "edit",
+];
+
 /// Why the certificate does not hold: the first reasons in full.
 #[derive(Debug, Default)]
 pub(super) struct Reasons {
@@ -76,6 +86,12 @@ pub(super) struct Reasons {
 }
 
 impl Reasons {
+    /// Whether nothing is said but that moves still draw too much.
+    pub(super) fn only_power(&self) -> bool {
+        let fault = |reason: &Diagnostic| FAULTS.contains(&reason.rule);
+        self.count == self.list.len() as u64 && !self.list.iter().any(fault)
+    }
+
     /// A move that does not fit and cannot be helped.
     pub(super) fn refuse(&mut self, mv: &Move, obstacle: &Obstacle, text: &[u8]) {
         let Obstacle {

@@ -328,6 +328,7 @@ fn conclude(
         reasons.count += 1;
         reasons.list.push(reason);
     }
+    let slower = reasons.only_power();
     reasons.list.sort_by_key(|reason| reason.line);
     reasons.list.truncate(Summary::KEPT);
     before.conditions = conditions(machine, options, &before);
@@ -338,6 +339,7 @@ fn conclude(
         after,
         edited_lines,
         certified,
+        slower,
         reasons: reasons.list,
     }
 }

@@ -129,6 +129,9 @@ pub struct LimitSummary {
     pub edited_lines: u64,
     /// True when the certificate holds: only then may the output be delivered.
     pub certified: bool,
+    /// True where all of it holds but that some moves may still draw too much: the written
+    /// program is the original made slower.
+    pub slower: bool,
     /// Why it does not, each with its line; `Summary::KEPT` at most.
     pub reasons: Vec<Diagnostic>,
 }

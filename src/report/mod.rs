@@ -48,6 +48,6 @@ pub use sarif::sarif;
 pub use series::SeriesRows;
 pub use size::{size_chart, size_csv, size_json, size_text, size_verdict};
 pub use spindle::{SpindleRows, spindle_text};
-pub use text::{axis_table, check_text, limit_text};
+pub use text::{axis_table, check_text, limit_text, partial_text};
 pub use tune_page::tune_page;
 pub use tuned::{sections_csv, tuned_json, tuned_text};

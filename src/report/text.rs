@@ -176,6 +176,22 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
     text
 }
 
+/// What came of a program that is written though not all of its moves fit.
+#[must_use]
+pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) -> String {
+    let (before, after) = (&summary.before, &summary.after);
+    format!(
+        "{program}: not certified: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}",
+        moves(after.unfit_count),
+        figures(after, machine),
+        power(before.peak_w),
+        duration(before.duration_s),
+        lines(summary.edited_lines),
+        worst(after),
+        over_time_text(after)
+    )
+}
+
 fn lines(count: u64) -> String {
     let noun = if count == 1 { "line" } else { "lines" };
     format!("{count} {noun}")

@@ -31,8 +31,7 @@ pub(super) fn first_difference(
     // Whether the axes stand, and whether they have to before they go on.
     let (mut stands, mut must_stand) = (false, false);
     let mut first = own.next()?;
-    loop {
-        let Some(step) = other.next()? else { break };
+    while let Some(step) = other.next()? {
         if is_stop(&step) && !first.as_ref().is_some_and(is_stop) {
             (stands, must_stand) = (true, false);
             continue;
