@@ -6,6 +6,7 @@ mod cycles;
 mod figures;
 mod flow_through;
 mod knobs;
+mod no_word;
 mod obstacles;
 mod partial;
 mod random;

@@ -23,6 +23,8 @@ pub struct Facts {
     pub dwell_takes_feed: bool,
     /// Why none of its words may be changed, as in "it cuts a thread".
     pub fixed: Option<&'static str>,
+    /// It moves before any motion word was in force: there is none to put back.
+    pub no_motion_word: bool,
     /// Its moves are those of a canned cycle, and may stand as single blocks.
     pub cycle: bool,
     /// Compensation is on, or lets go of moves: such blocks follow each other

@@ -61,6 +61,17 @@ impl Change {
         accel: None,
     };
 
+    /// A rapid as a feed at a path speed, mm/s.
+    #[must_use]
+    pub fn as_feed_at(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_s: f64) -> Self {
+        let feed = speed_mm_s * SECONDS_PER_MINUTE / feed_unit(machine, mv, permit);
+        Self {
+            feed: Some(round_feed_down(feed)),
+            as_feed: true,
+            ..Self::NONE
+        }
+    }
+
     /// The lower value of each word, for a block with several moves.
     #[must_use]
     pub fn lower(&self, other: &Self) -> Self {

@@ -333,6 +333,14 @@ fn conclude(
     reasons.list.truncate(Summary::KEPT);
     before.conditions = conditions(machine, options, &before);
     after.conditions = conditions(machine, options, &after);
+    if before
+        .notes
+        .iter()
+        .any(|note| note.rule == "no-motion-word")
+    {
+        let taken = "blocks before the first motion word are taken for rapids (G0)";
+        after.conditions.push(taken.to_owned());
+    }
     let certified = reasons.count == 0 && after.fits();
     LimitSummary {
         before,

@@ -2,6 +2,7 @@
 //! decided, are written with their changes, and go to the certifier in pieces.
 
 mod expect;
+mod forced;
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
@@ -22,6 +23,9 @@ use crate::limit::{Change, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
+
+/// Why a block before any motion word is not changed where lines run several times.
+const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.
@@ -243,7 +247,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if let Some(table) = &self.table
             && entry.facts.fixed.is_none()
         {
-            entry.facts.fixed = table.fixed(entry.key);
+            // A line that runs again would meet another motion word.
+            let without = entry.facts.no_motion_word.then_some(NO_MOTION_WORD);
+            entry.facts.fixed = without.or_else(|| table.fixed(entry.key));
         }
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
@@ -435,7 +441,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
 
     /// Writes a block whose moves are decided, and keeps its buffers.
     fn write(&mut self, mut entry: Box<Entry>) {
-        let change = entry.change();
+        let change = self.forced(&entry, entry.change());
         if self.table.is_some() {
             self.note(&entry, change);
             return self.spare.push(entry);

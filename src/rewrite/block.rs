@@ -54,6 +54,9 @@ pub struct Rewriter<'m> {
     stop: String,
     /// The last line that was written is that block.
     stopped: bool,
+    /// G1 was written where no motion word was in force: it holds for all blocks up to the
+    /// first motion word of the program.
+    feeds_from_here: bool,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
 }
@@ -76,8 +79,16 @@ impl<'m> Rewriter<'m> {
             edits: Vec::new(),
             stop: machine.controller.language.shortest_dwell().0,
             stopped: false,
+            feeds_from_here: false,
             edited_lines: 0,
         }
+    }
+
+    /// Whether blocks that came before any motion word of the program run as feeds, since
+    /// an earlier one was written as a feed.
+    #[must_use]
+    pub fn feeds_from_here(&self) -> bool {
+        self.feeds_from_here
     }
 
     /// Writes a block to the end of `out`. False when its edits contradict
@@ -230,7 +241,9 @@ impl<'m> Rewriter<'m> {
     /// The motion word: G1 for a rapid that becomes a feed, and back.
     fn motion_word(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
+        self.feeds_from_here |= facts.no_motion_word && view.change.as_feed;
         if let Some(word) = facts.motion_word {
+            self.feeds_from_here = false;
             self.written.motion = view.after.motion;
             if view.change.as_feed {
                 self.edits.push(Edit::replace(
@@ -252,11 +265,17 @@ impl<'m> Rewriter<'m> {
         if wanted == self.written.motion {
             return;
         }
-        if let (Some(digit), Some(first)) = (wanted.digit(), view.block.words.first()) {
+        if let Some(digit) = wanted.digit() {
             let style = Style::of(view.text, view.block);
             let mut text = vec![style.letter(b'G'), digit];
-            text.extend(style.spaced.then_some(b' '));
-            self.edits.push(Edit::insert(first.span.start, text));
+            if let Some(first) = view.block.words.first() {
+                text.extend(style.spaced.then_some(b' '));
+                self.edits.push(Edit::insert(first.span.start, text));
+            } else {
+                // A block of assignments to axes.
+                text.insert(0, b' ');
+                self.edits.push(Edit::insert(view.block.words_end, text));
+            }
         }
         self.written.motion = wanted;
     }

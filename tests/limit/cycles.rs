@@ -244,7 +244,7 @@ fn any_program(random: &mut Random, controller: &str) -> String {
     let linuxcnc = controller == "linuxcnc";
     let mut text = "G21 G90 G17\nG0 X0. Y0. Z30.\n".to_owned();
     let place = |random: &mut Random| random.below(800) as f64 / 2.0 - 200.0;
-    for _ in 0..1 + random.below(3) {
+    for _ in 0..=random.below(3) {
         let number = [73, 81, 82, 83, 85, 86, 89][random.below(7)];
         let level = if random.below(2) == 0 { "G98" } else { "G99" };
         let (x, y) = (place(random), place(random));

@@ -72,9 +72,9 @@ impl Control<'_> {
             Motion::None => {
                 let span = run.whole();
                 let message = "no motion word yet: what G word is in force then, the control's \
-                               data say; counted as rapid, which is the fastest";
+                               data say; taken for G0, which is the fastest";
                 run.report.note_once("no-motion-word", message, span);
-                run.facts.fixed = Some("no motion word is in force that could be put back");
+                run.facts.no_motion_word = true;
                 MoveKind::Rapid
             }
             _ => MoveKind::Rapid,

@@ -1,0 +1,55 @@
+//! Blocks before any motion word: once one is written as a feed, all are, each at its own
+//! speed.
+
+use crate::shop::Shop;
+
+fn shop() -> Shop {
+    Shop::mill(
+        "siemens",
+        "peak_power_w = 700",
+        "[path]\nrapid = \"linear\"\nmode = \"exact-stop\"",
+        "",
+    )
+}
+
+#[test]
+fn blocks_before_the_first_motion_word_get_theirs() {
+    let shop = shop();
+    // X by itself fits as it is, but would run by the F of the block before. An F of the
+    // program's own is kept to.
+    let program = "R1=400\nX=R1 Y300\nLAB: X=R1-350\nX300 F20000\nY0\nG1 X0 F500\nX10\nM30\n";
+    shop.put("a.mpf", program);
+    let (code, _, errors) = shop.run("limit a.mpf --allow feed -o out.mpf");
+    assert_eq!(code, 0, "{errors}");
+    let condition = "  blocks before the first motion word are taken for rapids (G0)\n";
+    assert!(errors.contains(condition), "{errors}");
+    insta::assert_snapshot!(shop.get("out.mpf"), @r"
+    R1=400
+    G1 X=R1 Y300 F32359
+    LAB: X=R1-350 F30000
+    X300 F20000
+    Y0
+    G1 X0 F500
+    X10
+    M30
+    ");
+    // Nothing is written where all fits.
+    shop.put("b.mpf", "X1\nY1\nM30\n");
+    let (code, _, errors) = shop.run("limit b.mpf -o same.mpf");
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(shop.get("same.mpf"), "X1\nY1\nM30\n");
+}
+
+/// A line of a loop would meet another word the second time.
+#[test]
+fn not_in_a_loop() {
+    let shop = shop();
+    shop.put(
+        "a.mpf",
+        "R1=0\nAGAIN: X=400*R1 Y=300*R1\nR1=R1+1\nIF R1<3 GOTOB AGAIN\nM30\n",
+    );
+    let (code, _, errors) = shop.run("limit a.mpf -o out.mpf");
+    assert_eq!(code, 1, "{errors}");
+    let reason = "no motion word is in force that could be put back";
+    assert!(errors.contains(reason), "{errors}");
+}
