@@ -61,6 +61,12 @@ impl Change {
         accel: None,
     };
 
+    /// A rapid of no length as a feed.
+    pub const STANDING: Self = Self {
+        as_feed: true,
+        ..Self::NONE
+    };
+
     /// A rapid as a feed at a path speed, mm/s.
     #[must_use]
     pub fn as_feed_at(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_s: f64) -> Self {

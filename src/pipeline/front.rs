@@ -15,7 +15,7 @@ use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
 
 /// Bytes that a program may have which must be held whole.
-const WHOLE_BYTES_MAX: u64 = 1 << 30;
+pub(super) const WHOLE_BYTES_MAX: u64 = 1 << 30;
 
 /// A line that has just been executed.
 pub(super) struct Line<'f, 'm> {

@@ -10,6 +10,7 @@ use super::batch::Batch;
 use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
+use super::front::WHOLE_BYTES_MAX;
 use super::lower::lower_further;
 use super::over_time::OverTime;
 use super::relay::no_thread;
@@ -49,7 +50,9 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     }
     // Canned cycles: first the ways to their holes stand by themselves, then, where that is
     // not enough and permitted, all their moves.
-    let program = read_whole(&mut input)?;
+    let Some(program) = read_whole(&mut input)? else {
+        return Ok(first);
+    };
     let mut ways = BTreeMap::new();
     let mut last: Option<LimitSummary> = None;
     for way in [Way::Placed, Way::WrittenOut] {
@@ -103,14 +106,17 @@ fn in_fixed_blocks(summary: &LimitSummary) -> bool {
     summary.reasons.len() >= Summary::KEPT || reasons.any(|it| it.rule == UNTOUCHABLE)
 }
 
-/// The program as bytes, to be written out.
-fn read_whole(mut input: impl Read + Seek) -> Result<Vec<u8>, Failure> {
+/// The program as bytes; `None` where it is too large to be held.
+fn read_whole(mut input: impl Read + Seek) -> Result<Option<Vec<u8>>, Failure> {
     let mut program = Vec::new();
     input
         .rewind()
-        .and_then(|()| input.read_to_end(&mut program))
+        .and_then(|()| {
+            let limited = input.by_ref().take(WHOLE_BYTES_MAX + 1);
+            { limited }.read_to_end(&mut program)
+        })
         .map_err(Failure::Input)?;
-    Ok(program)
+    Ok((program.len() as u64 <= WHOLE_BYTES_MAX).then_some(program))
 }
 
 /// Limits a program as it stands.

@@ -17,7 +17,7 @@ fn blocks_before_the_first_motion_word_get_theirs() {
     let shop = shop();
     // X by itself fits as it is, but would run by the F of the block before. An F of the
     // program's own is kept to.
-    let program = "R1=400\nX=R1 Y300\nLAB: X=R1-350\nX300 F20000\nY0\nG1 X0 F500\nX10\nM30\n";
+    let program = "R1=400\nX=R1 Y300\nLAB: X=R1-350\nX50\nX300 F20000\nY0\nG1 X0 F500\nX10\nM30\n";
     shop.put("a.mpf", program);
     let (code, _, errors) = shop.run("limit a.mpf --allow feed -o out.mpf");
     assert_eq!(code, 0, "{errors}");
@@ -27,6 +27,7 @@ fn blocks_before_the_first_motion_word_get_theirs() {
     R1=400
     G1 X=R1 Y300 F32359
     LAB: X=R1-350 F30000
+    X50
     X300 F20000
     Y0
     G1 X0 F500

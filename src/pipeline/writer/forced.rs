@@ -17,10 +17,14 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             return change;
         }
         let rapids = entry.its_moves().enumerate().zip(&entry.decided);
-        let own = rapids.filter(|((_, mv), _)| mv.kind == MoveKind::Rapid && mv.moves_axes());
+        let own = rapids.filter(|((_, mv), _)| mv.kind == MoveKind::Rapid);
         let mut forced = own.fold(change, |change, ((step, mv), (assessment, _))| {
             let permit = entry.waiting(self.machine, mv, step).permit;
-            let feed = Change::as_feed_at(self.machine, mv, &permit, assessment.speed_mm_s);
+            let feed = if mv.moves_axes() {
+                Change::as_feed_at(self.machine, mv, &permit, assessment.speed_mm_s)
+            } else {
+                Change::STANDING
+            };
             Some(change.map_or(feed, |change| change.lower(&feed)))
         })?;
         if let (Some(feed), Some(in_force)) = (&mut forced.feed, entry.feed_before()) {
