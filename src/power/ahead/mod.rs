@@ -178,12 +178,15 @@ impl Ahead {
         {
             return false;
         }
+        // At lower overrides what is in doubt may brake for this one.
+        let surges = self.surges.as_mut();
+        let pace = surges.map(|surges| surges.push(number, &self.largest.element));
         if self.in_doubt {
             self.brake_in_doubt(model, eye);
         }
         let open = self.open.push(mv, text, want);
-        if let Some(surges) = &mut self.surges {
-            open.pace = surges.push(number, &self.largest.element);
+        if let Some(pace) = pace {
+            open.pace = pace;
         }
         let own = &self.nominal.as_ref().unwrap_or(&self.largest).element;
         open.assessment.speed_mm_s = own.top_mm_s();

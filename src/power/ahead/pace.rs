@@ -149,7 +149,7 @@ impl Past {
     /// sped up where it need not at the largest overrides.
     #[inline]
     pub fn pass(&mut self, pace: &Pace, course: &Course) -> Option<f64> {
-        let reach2 = self.now2 - course.start2;
+        let reach2 = (1.0 - SUM_ROUNDING) * self.now2 - course.start2;
         for slower in &mut self.slower {
             // What the motion cannot have braked for.
             let far = slower.iter().take_while(|slow| slow.at2 <= reach2);

@@ -27,6 +27,8 @@ mod windows;
 pub(super) use energy::{StepEnergy, velocity};
 pub(super) use spans::{Heading, spans};
 
+use surged::Surged;
+
 use super::axis::Side;
 use super::demand::{Want, larger};
 use super::model::{ConverterPower, PowerModel};
@@ -68,8 +70,6 @@ struct Most {
     accel_mm_s2: AxisValues,
     /// Sum of all steps.
     step_mm_s: AxisValues,
-    /// What lower overrides may add to the acceleration, up and down.
-    surge_mm_s2: [AxisValues; 2],
 }
 
 /// The last of the motion, as far as steps in it still count.
@@ -87,8 +87,8 @@ pub(super) struct Steps {
     last_step_s: f64,
     /// Until when means reach back to where the motion was in doubt.
     doubtful_to_s: f64,
-    /// Until when the last piece lasts that lower overrides may speed up or brake.
-    last_surge_s: f64,
+    /// Pieces that lower overrides may speed up or brake.
+    surges: VecDeque<Surged>,
     /// Since `since_s`, and in at least 2·τ before.
     most: [Most; 2],
     since_s: f64,
@@ -109,7 +109,7 @@ impl Steps {
             end_mm_s: [0.0; AXES],
             last_step_s: f64::NEG_INFINITY,
             doubtful_to_s: f64::NEG_INFINITY,
-            last_surge_s: f64::NEG_INFINITY,
+            surges: VecDeque::new(),
             most: [Most::default(); 2],
             since_s: 0.0,
         }
@@ -143,6 +143,9 @@ impl Steps {
             && first.start_s + first.span.duration_s < reach_s
         {
             self.spans.pop_front();
+        }
+        while self.surges.front().is_some_and(|it| it.end_s < reach_s) {
+            self.surges.pop_front();
         }
         if start_s - self.since_s > 2.0 * self.response_s {
             self.most = [Most::default(), self.most[0]];

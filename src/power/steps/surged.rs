@@ -11,12 +11,20 @@
 //! with the largest a and |u| of the pieces around, in the direction in which they may
 //! be sped up or braked.
 
-use super::windows::{Mean, raise};
+use super::windows::{Mean, NO_TIME, raise};
 use super::{Placed, Steps};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::power::demand::{Demand, Totals};
 use crate::power::model::PowerModel;
+
+/// A piece that lower overrides may speed up or brake.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surged {
+    pub end_s: f64,
+    /// What they may add to the acceleration of each axis, up and down.
+    accel_mm_s2: [AxisValues; 2],
+}
 
 impl Steps {
     /// The last piece may be sped up or braked, or both, with an acceleration along the
@@ -27,13 +35,17 @@ impl Steps {
         [rises, falls]: [bool; 2],
         accel_mm_s2: f64,
     ) {
-        let most = &mut self.most[0];
+        let mut surged = Surged {
+            end_s: self.end_s,
+            accel_mm_s2: [[0.0; AXES]; 2],
+        };
+        let most = &mut self.most[0].accel_mm_s2;
         for &axis in &self.axes {
             let ahead = largest[axis].max(0.0) * accel_mm_s2;
             let back = (-least[axis]).max(0.0) * accel_mm_s2;
             let mut raise = |side: usize, accel: f64| {
-                most.surge_mm_s2[side][axis] = most.surge_mm_s2[side][axis].max(accel);
-                most.accel_mm_s2[axis] = most.accel_mm_s2[axis].max(accel);
+                surged.accel_mm_s2[side][axis] = surged.accel_mm_s2[side][axis].max(accel);
+                most[axis] = most[axis].max(accel);
             };
             if rises {
                 raise(0, ahead);
@@ -44,14 +56,15 @@ impl Steps {
                 raise(1, ahead);
             }
         }
-        self.last_surge_s = self.end_s;
+        self.surges.push_back(surged);
     }
 
     /// Whether such a piece and a step lie so near that they count together.
     pub fn is_surged(&self) -> bool {
         let reach_s = self.end_s - 2.0 * self.response_s;
         let last = self.spans.back().map_or(0.0, |last| last.span.duration_s);
-        self.last_surge_s >= reach_s - last && self.last_step_s >= reach_s - last
+        let from_s = reach_s - last;
+        self.last_step_s >= from_s && self.surges.back().is_some_and(|it| it.end_s >= from_s)
     }
 
     /// What the last span and the response time before it ask for at most, together
@@ -62,12 +75,19 @@ impl Steps {
             accel: [0.0; AXES],
         }; 2];
         let [least, most] = &mut means;
-        let [now, earlier] = [0, 1].map(|index| self.most[index].surge_mm_s2);
-        let [mut up, mut down]: [AxisValues; 2] =
-            [0, 1].map(|side| std::array::from_fn(|axis| now[side][axis].max(earlier[side][axis])));
         let mut before: Option<&Placed> = None;
         let from_s = self.spans.back().map_or(0.0, |last| last.start_s) - self.response_s;
+        // What is a response time away but for rounding counts.
+        let from_s = from_s - NO_TIME * self.response_s;
         let until_s = self.last_step_s.max(from_s) + self.response_s;
+        let (mut up, mut down) = ([0.0_f64; AXES], [0.0_f64; AXES]);
+        for surged in self.surges.iter().filter(|it| it.end_s >= from_s) {
+            let [rises, falls] = &surged.accel_mm_s2;
+            for &axis in &self.axes {
+                up[axis] = up[axis].max(rises[axis]);
+                down[axis] = down[axis].max(falls[axis]);
+            }
+        }
         for placed in &self.spans {
             let [first, last] = placed.span.speeds_mm_s;
             for &axis in &self.axes {

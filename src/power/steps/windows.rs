@@ -10,7 +10,7 @@ use crate::power::model::{ConverterPower, PowerModel};
 /// Parts of a response time over which a mean is bounded in one go.
 const PARTS: f64 = 4.0;
 /// Share of a response time that is rounding.
-const NO_TIME: f64 = 1e-9;
+pub(super) const NO_TIME: f64 = 1e-9;
 /// Speeds below are rounding of a mean over places, in m/s or rad/s.
 const AT_REST: f64 = 1e-9;
 /// Means longer than the response time that are looked at for one step.
@@ -119,8 +119,8 @@ impl Steps {
         let earlier = (0..self.spans.len()).rev();
         let earlier = earlier.filter_map(|index| Some((index, self.spans.get(index)?)));
         let far = earlier
-            .skip_while(|(_, placed)| away_s(placed) <= tau)
-            .take_while(|(_, placed)| away_s(placed) < 2.0 * tau)
+            .skip_while(|(_, placed)| away_s(placed) <= (1.0 - NO_TIME) * tau)
+            .take_while(|(_, placed)| away_s(placed) < (2.0 + NO_TIME) * tau)
             .filter(|(_, placed)| placed.steps);
         for (index, placed) in far.take(LONGER) {
             let before = index.checked_sub(1).and_then(|index| self.spans.get(index));
