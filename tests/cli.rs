@@ -6,6 +6,7 @@ mod identify;
 mod interrupts;
 mod machines;
 mod sizes;
+mod ways;
 
 use std::fs::{self, File};
 use std::io::Write;

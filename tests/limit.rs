@@ -14,6 +14,7 @@ mod reader;
 mod rewriting;
 mod rows;
 mod stops;
+mod ways;
 mod whole;
 
 use gwatt::diagnostic::Diagnostic;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use gwatt::interpret::{BlockDelete, GivenVariable, ProbeResult};
+use gwatt::interpret::{BlockDelete, GivenVariable, ProbeResult, ProbeWay};
 use gwatt::machine::AxisId;
 
 /// What probes find.
@@ -13,6 +13,7 @@ use gwatt::machine::AxisId;
 pub enum ProbeArg {
     Hit,
     Miss,
+    Both,
 }
 
 impl From<ProbeArg> for ProbeResult {
@@ -20,6 +21,7 @@ impl From<ProbeArg> for ProbeResult {
         match given {
             ProbeArg::Hit => Self::Hit,
             ProbeArg::Miss => Self::Miss,
+            ProbeArg::Both => Self::Either(ProbeWay::default()),
         }
     }
 }
@@ -43,8 +45,9 @@ pub struct ProgramArgs {
     /// '#<_depth>=2', R1=3 or VC1=4; may be given many times
     #[arg(long = "set", value_name = "NAME=VALUE", help_heading = "Program")]
     pub given: Vec<GivenVariable>,
-    /// What probes find: `hit`, they touch somewhere on their way, or `miss`, they reach
-    /// their targets; without it, what depends on a probe is refused
+    /// What probes find: `hit`, they touch somewhere on their way, `miss`, they reach
+    /// their targets, or `both`: each way is followed and the worst counts; without it, what
+    /// depends on a probe is refused
     #[arg(long, value_name = "RESULT", help_heading = "Program")]
     pub probe: Option<ProbeArg>,
     /// Pass over blocks that begin with `/`; with levels only those, as in

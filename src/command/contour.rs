@@ -40,6 +40,7 @@ pub fn run(args: &ContourArgs, terminal: Terminal) -> Result<Verdict> {
         args.step_ms
     );
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    setup.one_way("`contour` shows")?;
     dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     let mut collected = Collected::new(args, !setup.machine.responses.corrections.is_empty())?;
     let settings = Settings {

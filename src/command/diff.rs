@@ -45,6 +45,7 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
     refuse_clashes(&inputs, &outputs)?;
     let mut from = Setup::of(&args.from, &args.reading, terminal)?;
     let mut to = Setup::of(&args.to, &args.reading, terminal)?;
+    to.one_way("`diff` compares")?;
     dialect::settle(&mut from, &mut programs, terminal)?;
     if to.auto {
         to.machine.controller.language = from.machine.controller.language.clone();

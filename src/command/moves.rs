@@ -18,6 +18,7 @@ use crate::cli::MovesArgs;
 pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
     let mut program = Program::new(&args.program);
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    setup.one_way("`moves` shows")?;
     dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     // A program may be refused at its last line: until then nothing is printed.
     let mut out = BufWriter::new(Target::Stdout.spool()?);

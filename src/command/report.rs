@@ -36,6 +36,9 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
         .collect();
     refuse_clashes(&inputs, &outputs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
+    if args.series.is_some() {
+        setup.one_way("--series shows")?;
+    }
     dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     if let Some(overrides) = args.overrides {
         overrides.apply(&mut setup.machine.limits);

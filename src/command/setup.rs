@@ -9,7 +9,7 @@ use std::thread;
 
 use anyhow::{Context, Result, bail, ensure};
 use gwatt::diagnostic::Diagnostic;
-use gwatt::interpret::{BlockDelete, ParameterFile, ToolTable};
+use gwatt::interpret::{BlockDelete, ParameterFile, ProbeResult, ToolTable};
 use gwatt::machine::{self, AXES, Machine, builtin};
 use gwatt::pipeline::{Limits, Options, Reading, Start};
 
@@ -102,6 +102,16 @@ impl Setup {
             options,
             auto,
         })
+    }
+
+    /// Refuses what follows several ways through a program where `what` shows one.
+    pub fn one_way(&self, what: &str) -> Result<()> {
+        let both = matches!(self.options.reading.probe, Some(ProbeResult::Either(_)));
+        ensure!(
+            !both,
+            "{what} one way through a program: use --probe hit or --probe miss"
+        );
+        Ok(())
     }
 
     /// The options for a program: its own folder is the first where subprograms

@@ -13,8 +13,9 @@ use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
 use super::osp::Osp;
 use super::parameters::Parameters;
-use super::position::{BlockDelete, Position, ProbeResult, Reading};
+use super::position::{BlockDelete, Position, Reading};
 use super::printer;
+use super::probe::Probe;
 use super::programmed::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
 use super::siemens::{Siemens, is_beyond_words};
@@ -57,10 +58,8 @@ pub(super) struct Control<'m> {
     pub(super) switches: Switches,
     /// What M70 has saved, for each subprogram that is running.
     pub(super) saved: Vec<Option<Box<Saved>>>,
-    /// Parameters 5061 to 5070, as far as they are known; M66 has asked.
-    pub(super) probe: [Option<f64>; 10],
-    /// What probes are taken to find; `None`: not known.
-    pub(super) probing: Option<ProbeResult>,
+    /// What is known of the last probe; M66 has asked.
+    pub(super) probe: Probe,
     pub(super) input_unknown: bool,
     /// What a restored state still has to do and to say.
     pub(super) debts: Vec<(ActionKind, f64)>,
@@ -151,8 +150,7 @@ impl<'m> Interpreter<'m> {
             told: Told::default(),
             switches: Switches::default(),
             saved: vec![None],
-            probe: [Some(0.0); 10],
-            probing: reading.probe,
+            probe: Probe::new(reading.probe),
             input_unknown: false,
             debts: Vec::new(),
             lost: None,
@@ -285,6 +283,9 @@ impl<'m> Interpreter<'m> {
         }
         let transfers = beyond && self.control.beyond_words(block, &mut report);
         let reads_state = beyond && self.control.reads_state.take();
+        if beyond {
+            self.control.learn_from_probe();
+        }
         if let Some(siemens) = &self.control.siemens {
             acts = siemens.is_active();
         }

@@ -81,7 +81,7 @@ pub use modal::{Feed, Modal, NumberText};
 pub(crate) use motion::path_length;
 pub use moves::*;
 pub use parameter_file::ParameterFile;
-pub use position::{BlockDelete, ProbeResult, Reading, Start};
+pub use position::{BlockDelete, ProbeResult, ProbeWay, Reading, Start};
 pub use report::Diagnostics;
 pub use stance::Stance;
 pub use tool_table::{Tool, ToolTable};

@@ -42,6 +42,12 @@ impl BlockDelete {
         Self(self.0 | 1 << level.min(15))
     }
 
+    /// The same with the switch of that level, 1 to 9, turned.
+    #[must_use]
+    pub fn turned(self, level: u8) -> Self {
+        Self(self.0 ^ 1 << level.min(15))
+    }
+
     /// Whether blocks of that level are passed over; level 0 is a block without
     /// `/`.
     #[must_use]
@@ -57,6 +63,30 @@ pub enum ProbeResult {
     Hit,
     /// They reach their targets.
     Miss,
+    /// Now this, now that: one of the ways in which a program can go on.
+    Either(ProbeWay),
+}
+
+/// What is answered each time that a program asks whether a probe has touched, in order:
+/// bit `n` is set where the answer number `n`, from 0, is no.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ProbeWay(u64);
+
+impl ProbeWay {
+    /// Whether that answer, from 0, is no.
+    #[must_use]
+    pub fn misses(self, answer: u32) -> bool {
+        self.0.checked_shr(answer).is_some_and(|bits| bits & 1 == 1)
+    }
+
+    /// The next way, after this one on which the program has asked so often, 64 times at
+    /// most; `None` where all have been followed. From the default on, each comes once.
+    #[must_use]
+    pub fn next(self, asked: u32) -> Option<Self> {
+        let last_hit = (0..asked).rev().find(|answer| !self.misses(*answer))?;
+        let before = 1_u64.checked_shl(last_hit)?;
+        Some(Self(self.0 & (before - 1) | before))
+    }
 }
 
 /// How a program is to be read.

@@ -41,7 +41,7 @@ impl Control<'_> {
         }
         let after = |first: u32| (number - first) as usize;
         match number {
-            PROBE_FIRST..=PROBE_LAST => self.probe.get(after(PROBE_FIRST)).copied()?,
+            PROBE_FIRST..=PROBE_LAST => self.probe.value(after(PROBE_FIRST)),
             FIRST..=LAST => self.position.offsets().stored(number),
             INPUT => (!self.input_unknown).then_some(0.0),
             TOOL_FIRST..=TOOL_LAST => self.tool_parameter(after(TOOL_FIRST)),
@@ -59,9 +59,7 @@ impl Control<'_> {
         }
         match number {
             PROBE_FIRST..=PROBE_LAST => {
-                if let Some(slot) = self.probe.get_mut((number - PROBE_FIRST) as usize) {
-                    *slot = Some(value);
-                }
+                self.probe.set((number - PROBE_FIRST) as usize, value);
                 true
             }
             FIRST..=LAST => self
@@ -69,26 +67,6 @@ impl Control<'_> {
                 .change(|offsets| offsets.set_stored(number, value)),
             _ => false,
         }
-    }
-
-    /// A probe has moved: nobody knows where it has touched, nor, unless that is taken
-    /// for granted, whether it has.
-    pub(super) fn forget_probe(&mut self, touches: Option<bool>) {
-        self.probe = [None; 10];
-        let [.., success] = &mut self.probe;
-        *success = touches.map(f64::from);
-    }
-
-    /// A probe has moved to its target without touching anything.
-    pub(super) fn probe_missed(&mut self) {
-        for axis in 0..self.probe.len() - 1 {
-            let place = self.place(axis);
-            if let Some(slot) = self.probe.get_mut(axis) {
-                *slot = place;
-            }
-        }
-        let [.., success] = &mut self.probe;
-        *success = Some(0.0);
     }
 
     /// Place of an axis in machine coordinates, in units of the program.

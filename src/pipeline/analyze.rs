@@ -1,6 +1,7 @@
 //! A program's figures, and its moves.
 
 use std::io::{Read, Seek};
+use std::slice;
 
 use super::advice::{Adviser, Circumstances};
 use super::conditions::conditions;
@@ -8,17 +9,49 @@ use super::front::Front;
 use super::relay::relay;
 use super::tally::Tally;
 use super::watching::watching;
+use super::ways::{has_ways, ways};
+use super::worst::{worst, worst_of};
 use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Move, Step};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Want, rungs};
 
-/// Reads a program and gives its figures; with `rows`, every move too.
+/// Reads a program and gives its figures; with `rows`, every move too. Where it can go on
+/// in several ways, by what probes find, each figure is the worst of all, and the rows are
+/// those of the way that draws the most.
 ///
 /// # Errors
 /// See [`Failure`].
 pub fn analyze<R: Read + Seek + Send>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    rows: Option<&mut dyn RowSink>,
+) -> Result<Summary, Failure> {
+    if !has_ways(options) {
+        return analyze_way(input, machine, options, rows);
+    }
+    let ways = ways(&mut input, machine, options, false)?;
+    let mut summaries = Vec::with_capacity(ways.len());
+    for way in &ways {
+        input.rewind().map_err(Failure::Input)?;
+        summaries.push(analyze_way(&mut input, machine, way, None)?);
+    }
+    let place = worst(&summaries);
+    if let (Some(way), Some(summary)) = (ways.get(place), summaries.get_mut(place))
+        && rows.is_some()
+    {
+        input.rewind().map_err(Failure::Input)?;
+        *summary = analyze_way(input, machine, way, rows)?;
+    }
+    let mut summary = worst_of(summaries).unwrap_or_default();
+    summary.conditions = conditions(machine, &ways, &summary);
+    Ok(summary)
+}
+
+/// The figures of one way through a program.
+fn analyze_way<R: Read + Seek + Send>(
     mut input: R,
     machine: &Machine,
     options: &Options,
@@ -152,7 +185,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
         let mut summary = tally.finish(energy);
         summary.lines = lines;
         summary.notes = notes;
-        summary.conditions = conditions(machine, options, &summary);
+        summary.conditions = conditions(machine, slice::from_ref(options), &summary);
         Ok(summary)
     }
 }

@@ -92,6 +92,19 @@ impl Reasons {
         self.count == self.list.len() as u64 && !self.list.iter().any(fault)
     }
 
+    /// With those found on another way through the program, each line once.
+    pub(super) fn join(&mut self, other: Self) {
+        self.count += other.count - other.list.len() as u64;
+        for reason in other.list {
+            let mut known = self.list.iter();
+            if !known.any(|it| (it.line, it.rule) == (reason.line, reason.rule)) {
+                self.count += 1;
+                self.list.push(reason);
+            }
+        }
+        self.list.truncate(Summary::KEPT);
+    }
+
     /// A move that does not fit and cannot be helped.
     pub(super) fn refuse(&mut self, mv: &Move, obstacle: &Obstacle, text: &[u8]) {
         let Obstacle {
@@ -128,6 +141,16 @@ pub(super) struct Certified {
     pub(super) reasons: Reasons,
     /// Lines that would have to be lowered deeper, in the order of the program.
     pub(super) deeper: Vec<Place>,
+}
+
+impl Certified {
+    /// With what was found on another way through the program.
+    pub(super) fn join(mut self, other: Self) -> Self {
+        self.summary.worsen(&other.summary);
+        self.reasons.join(other.reasons);
+        self.deeper.extend(other.deeper);
+        self
+    }
 }
 
 impl<'m, 'r> Certifier<'m, 'r> {

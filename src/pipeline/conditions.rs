@@ -60,8 +60,31 @@ fn overrides_condition(machine: &Machine) -> String {
     format!("{what}: feed {feed} %, rapid {rapid} %, spindle {spindle} %")
 }
 
-/// What the figures rest on, in plain sentences.
-pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
+/// How the blocks count that may be skipped, and how many ways through the program.
+fn ways_conditions(paths: &[Options]) -> impl Iterator<Item = String> {
+    let switches = |path: &Options| path.reading.block_delete;
+    let first = paths.first().map_or(BlockDelete::NONE, switches);
+    let skips = paths.iter().any(|path| switches(path) != first);
+    let blocks = match first {
+        _ if skips => {
+            "blocks with / may be executed or skipped: what is said here holds with and without them"
+        }
+        BlockDelete::ALL => "blocks with / are skipped",
+        BlockDelete::NONE => "blocks with / are executed",
+        _ => "blocks with / are skipped where their switches are on",
+    };
+    let found = paths.iter().filter(|path| switches(path) == first).count();
+    let probes = (found > 1).then(|| {
+        format!("probes touch or do not, in {found} ways through the program: the worst counts")
+    });
+    [Some(blocks.to_owned()), probes].into_iter().flatten()
+}
+
+/// What the figures rest on, in plain sentences; `paths` are the ways through the program.
+pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary) -> Vec<String> {
+    let Some(options) = paths.first() else {
+        return Vec::new();
+    };
     let percent = |factor: f64| factor * 100.0;
     let limits = &machine.limits;
     let mut conditions = vec![match summary.certificate {
@@ -108,14 +131,7 @@ pub(super) fn conditions(machine: &Machine, options: &Options, summary: &Summary
         }
         Start::At(_) => "start position as given".to_owned(),
     });
-    conditions.push(
-        match options.reading.block_delete {
-            BlockDelete::ALL => "blocks with / are skipped",
-            BlockDelete::NONE => "blocks with / are executed",
-            _ => "blocks with / are skipped where their switches are on",
-        }
-        .to_owned(),
-    );
+    conditions.extend(ways_conditions(paths));
     if let Some(spindle) = &machine.spindle {
         conditions.push(spindle_condition(spindle).to_owned());
     }

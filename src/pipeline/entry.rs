@@ -22,6 +22,8 @@ pub(super) struct Entry {
     pub(super) block: Block,
     pub(super) facts: Facts,
     pub(super) steps: Vec<Step>,
+    /// The certificate holds with it and without it, where it may be skipped.
+    pub(super) skips: bool,
     /// The state behind it.
     pub(super) mark: Mark,
     /// The same, as far as plain blocks go by it; `None` behind a plain one.
@@ -46,6 +48,7 @@ impl Entry {
             block: Block::default(),
             facts: Facts::default(),
             steps: Vec::new(),
+            skips: false,
             mark: Mark::of(modal),
             stance: None,
             knobs: None,
@@ -154,12 +157,14 @@ impl Entry {
         let stops = mv.path_mode == PathMode::ExactStop && mode_before == PathMode::ExactStop;
         let planner = &machine.controller.planner;
         let stays = stops || planner.rapid_joint == RapidJoint::All || self.between_stops(machine);
+        let may_be_skipped =
+            self.block.delete_level > 0 && machine.controller.language.block_delete;
         // What forbids any edit, what forbids an F, what forbids G1 for G0.
         let edit = [
             (facts.fixed.is_some(), facts.fixed.unwrap_or_default()),
             (facts.checksum, "it carries a checksum"),
             (
-                self.block.delete_level > 0,
+                may_be_skipped && !self.skips,
                 "it may be skipped (block delete)",
             ),
             (

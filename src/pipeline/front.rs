@@ -15,7 +15,7 @@ use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
 
 /// Bytes that a program may have which must be held whole.
-pub(super) const WHOLE_BYTES_MAX: u64 = 1 << 30;
+const WHOLE_BYTES_MAX: u64 = 1 << 30;
 
 /// A line that has just been executed.
 pub(super) struct Line<'f, 'm> {
@@ -155,12 +155,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             .and_then(|_| input.take(WHOLE_BYTES_MAX + 1).read_to_end(&mut program))
             .map_err(Failure::Input)?;
         if program.len() as u64 > WHOLE_BYTES_MAX {
-            let message = "a program with calls or loops of more than 1 GiB";
-            let help = "call the large part from a program of its own, or write the calls out";
-            return Err(Failure::Refused {
-                diagnostics: vec![Diagnostic::error("program-size", message).help(help)],
-                more: 0,
-            });
+            return Err(too_large());
         }
         let line = self.lines as usize - 1;
         let flow = self
@@ -316,6 +311,29 @@ impl<'m, R: Read + Seek> Front<'m, R> {
     }
 }
 
+/// The program as bytes; `None` where it is too large to be held.
+pub(super) fn read_whole(mut input: impl Read + Seek) -> Result<Option<Vec<u8>>, Failure> {
+    let mut program = Vec::new();
+    input
+        .rewind()
+        .and_then(|()| {
+            let limited = input.by_ref().take(WHOLE_BYTES_MAX + 1);
+            { limited }.read_to_end(&mut program)
+        })
+        .map_err(Failure::Input)?;
+    Ok((program.len() as u64 <= WHOLE_BYTES_MAX).then_some(program))
+}
+
+/// A program that would have to be held whole.
+pub(super) fn too_large() -> Failure {
+    let message = "a program with calls, loops or several ways of more than 1 GiB";
+    let help = "call the large part from a program of its own, or write the calls out";
+    Failure::Refused {
+        diagnostics: vec![Diagnostic::error("program-size", message).help(help)],
+        more: 0,
+    }
+}
+
 /// The warnings and notes, or a refusal when there are errors.
 fn refuse_on_errors(diagnostics: Diagnostics) -> Result<Vec<Diagnostic>, Failure> {
     let more = diagnostics.more();
@@ -344,6 +362,9 @@ fn source_failure(error: SourceError) -> Failure {
     }
 }
 
+/// The rule of the error on a program that does nothing.
+pub(super) const NO_PROGRAM: &str = "no-program";
+
 /// The rule of the note on a file that holds only subprograms.
 pub(super) const ONLY_SUBPROGRAMS: &str = "only-subprograms";
 
@@ -356,5 +377,5 @@ fn nothing_done(holds_subprograms: bool) -> Diagnostic {
             .help("give the programs that call them");
     }
     let message = "there is no program in this file: no block does anything";
-    Diagnostic::error("no-program", message).help("give a part program")
+    Diagnostic::error(NO_PROGRAM, message).help("give a part program")
 }

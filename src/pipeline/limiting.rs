@@ -10,16 +10,17 @@ use super::batch::Batch;
 use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
-use super::front::WHOLE_BYTES_MAX;
+use super::front::read_whole;
 use super::lower::lower_further;
 use super::over_time::OverTime;
 use super::relay::no_thread;
-use super::whole::limit_whole;
+use super::ways::{has_ways, ways};
+use super::whole::Whole;
 use super::writer::{Writer, Written};
 use super::{
     Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
 };
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::limit::{Depths, Law, Limiter, UNTOUCHABLE};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
 use crate::power::{PowerModel, rungs};
@@ -44,12 +45,84 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     check_strategy(machine, how)?;
-    let mut first = limit_text(&mut input, machine, options, how, &mut output, &mut rows)?;
+    let paths = if has_ways(options) {
+        let paths = ways(&mut input, machine, options, false)?;
+        input.rewind().map_err(Failure::Input)?;
+        paths
+    } else {
+        vec![options.clone()]
+    };
+    let mut as_asked = limit_paths(&mut input, machine, &paths, how, &mut output, &mut rows)?;
+    if !as_asked.may_skip {
+        return Ok(as_asked);
+    }
+    // Blocks that may be skipped: what is right with them and without is written, if
+    // anything is.
+    let otherwise = match ways(&mut input, machine, options, true) {
+        Ok(all) if all.len() <= paths.len() => return Ok(as_asked),
+        Ok(all) => {
+            input.rewind().map_err(Failure::Input)?;
+            restart(&mut output, &mut rows)?;
+            let summary = limit_paths(&mut input, machine, &all, how, &mut output, &mut rows)?;
+            if summary.certified || !as_asked.certified {
+                return Ok(summary);
+            }
+            input.rewind().map_err(Failure::Input)?;
+            restart(&mut output, &mut rows)?;
+            as_asked = limit_paths(input, machine, &paths, how, output, &mut rows)?;
+            summary.reasons
+        }
+        Err(Failure::Refused { diagnostics, .. }) => diagnostics,
+        Err(failure) => return Err(failure),
+    };
+    let errors = |found: &&Diagnostic| found.severity == Severity::Error;
+    if let Some(found) = otherwise.iter().find(errors).filter(|_| as_asked.certified) {
+        let message = format!(
+            "this holds only for the blocks with / that are skipped or executed as --block-delete \
+             says; otherwise {}",
+            found.message
+        );
+        let warning = Diagnostic {
+            severity: Severity::Warning,
+            rule: "holds-one-way",
+            message,
+            help: None,
+            ..found.clone()
+        };
+        as_asked.before.notes.push(warning);
+    }
+    Ok(as_asked)
+}
+
+/// Limits a program for all `paths` through it: as it stands, or else with its canned
+/// cycles written in another way.
+fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
+    mut input: R,
+    machine: &Machine,
+    paths: &[Options],
+    how: LimitOptions,
+    mut output: W,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<LimitSummary, Failure> {
+    let first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
     if first.certified || !in_fixed_blocks(&first) {
         return Ok(first);
     }
-    // Canned cycles: first the ways to their holes stand by themselves, then, where that is
-    // not enough and permitted, all their moves.
+    limit_expanded(input, machine, paths, how, output, rows, first)
+}
+
+/// Writes canned cycles in another way: first the ways to their holes stand by
+/// themselves, then, where that is not enough and permitted, all their moves do. What
+/// came of the program as it stands is `first`.
+fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
+    mut input: R,
+    machine: &Machine,
+    paths: &[Options],
+    how: LimitOptions,
+    mut output: W,
+    rows: &mut Option<&mut dyn RestartRows>,
+    mut first: LimitSummary,
+) -> Result<LimitSummary, Failure> {
     let Some(program) = read_whole(&mut input)? else {
         return Ok(first);
     };
@@ -69,7 +142,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
                 ways.get(&line).copied()
             }
         };
-        let (expanded, notes) = expand(&program, machine, options, wanted)?;
+        let (expanded, notes) = expand(&program, machine, paths, wanted)?;
         if last.is_none() || way == Way::WrittenOut {
             first
                 .before
@@ -78,15 +151,15 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
             first.before.notes.extend(notes);
         }
         let Some(expanded) = expanded else { continue };
-        restart(&mut output, &mut rows)?;
+        restart(&mut output, rows)?;
         let text = Cursor::new(&expanded.text);
-        let mut next = match &mut rows {
+        let mut next = match rows {
             Some(rows) => {
                 let mut rows = Traced::new(&mut **rows, &expanded);
                 let mut rows: Option<&mut dyn RestartRows> = Some(&mut rows);
-                limit_text(text, machine, options, how, &mut output, &mut rows)?
+                limit_text(text, machine, paths, how, &mut output, &mut rows)?
             }
-            None => limit_text(text, machine, options, how, &mut output, &mut None)?,
+            None => limit_text(text, machine, paths, how, &mut output, &mut None)?,
         };
         expanded.trace(&mut next);
         last = Some(next);
@@ -106,24 +179,11 @@ fn in_fixed_blocks(summary: &LimitSummary) -> bool {
     summary.reasons.len() >= Summary::KEPT || reasons.any(|it| it.rule == UNTOUCHABLE)
 }
 
-/// The program as bytes; `None` where it is too large to be held.
-fn read_whole(mut input: impl Read + Seek) -> Result<Option<Vec<u8>>, Failure> {
-    let mut program = Vec::new();
-    input
-        .rewind()
-        .and_then(|()| {
-            let limited = input.by_ref().take(WHOLE_BYTES_MAX + 1);
-            { limited }.read_to_end(&mut program)
-        })
-        .map_err(Failure::Input)?;
-    Ok((program.len() as u64 <= WHOLE_BYTES_MAX).then_some(program))
-}
-
-/// Limits a program as it stands.
+/// Limits a program as it stands, for all `paths` through it.
 fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
     machine: &Machine,
-    options: &Options,
+    paths: &[Options],
     how: LimitOptions,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
@@ -138,16 +198,16 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             let job = Job {
                 machine,
                 target,
-                options,
+                paths,
                 how,
                 depths: depths.clone(),
             };
             let (written, certified) = job.run(&mut input, &mut output, rows)?;
             if certified.deeper.is_empty() {
-                return Ok(conclude(machine, target, options, written, certified));
+                return Ok(conclude(machine, target, paths, written, certified));
             }
             if !depths.deepen(&certified.deeper) {
-                let mut stopped = conclude(machine, target, options, written, certified);
+                let mut stopped = conclude(machine, target, paths, written, certified);
                 stopped.reasons.push(last_round(&depths));
                 return Ok(stopped);
             }
@@ -179,7 +239,8 @@ struct Job<'a> {
     machine: &'a Machine,
     /// The same with the limits that are aimed at.
     target: &'a Machine,
-    options: &'a Options,
+    /// How the program is read, on each path through it.
+    paths: &'a [Options],
     how: LimitOptions,
     depths: Depths,
 }
@@ -195,10 +256,24 @@ impl Job<'_> {
         let Self {
             machine,
             target,
-            options,
+            paths,
             how,
             depths,
         } = self;
+        let whole = Whole {
+            machine,
+            target,
+            paths,
+            how,
+            depths: &depths,
+        };
+        let [options] = paths else {
+            return whole.limit(
+                input,
+                output,
+                rows.as_mut().map(|rows| as_sink(&mut **rows)),
+            );
+        };
         let exact = rows.is_some();
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
         let [own, aimed] = [machine, target].map(rungs);
@@ -228,9 +303,11 @@ impl Job<'_> {
             return Ok(done);
         }
         restart(&mut output, rows)?;
-        let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
-        let limiter = Limiter::new(target, how, depths);
-        limit_whole(input, [machine, target], options, limiter, output, sink)
+        whole.limit(
+            input,
+            output,
+            rows.as_mut().map(|rows| as_sink(&mut **rows)),
+        )
     }
 }
 
@@ -308,7 +385,7 @@ fn send(
 fn conclude(
     machine: &Machine,
     target: &Machine,
-    options: &Options,
+    paths: &[Options],
     written: Written,
     certified: Certified,
 ) -> LimitSummary {
@@ -316,6 +393,7 @@ fn conclude(
         mut before,
         edited_lines,
         mut reasons,
+        may_skip,
     } = written;
     let Certified {
         summary: mut after,
@@ -337,8 +415,9 @@ fn conclude(
     let slower = reasons.only_power();
     reasons.list.sort_by_key(|reason| reason.line);
     reasons.list.truncate(Summary::KEPT);
-    before.conditions = conditions(machine, options, &before);
-    after.conditions = conditions(machine, options, &after);
+    for summary in [&mut before, &mut after] {
+        summary.conditions = conditions(machine, paths, summary);
+    }
     if before
         .notes
         .iter()
@@ -352,6 +431,7 @@ fn conclude(
         before,
         after,
         edited_lines,
+        may_skip,
         certified,
         slower,
         reasons: reasons.list,

@@ -31,7 +31,9 @@ mod summary;
 mod table;
 mod tally;
 mod watching;
+mod ways;
 mod whole;
+mod worst;
 mod writer;
 
 pub use analyze::{analyze, moves};

@@ -127,6 +127,8 @@ pub struct LimitSummary {
     pub after: Summary,
     /// Number of lines that were changed or inserted.
     pub edited_lines: u64,
+    /// Some of its blocks may be skipped: they begin with `/`.
+    pub may_skip: bool,
     /// True when the certificate holds: only then may the output be delivered.
     pub certified: bool,
     /// True where all of it holds but that some moves may still draw too much: the written

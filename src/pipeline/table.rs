@@ -18,6 +18,8 @@ pub(super) type LineKey = (u16, u64);
 #[derive(Debug, Default)]
 pub(super) struct Table {
     lines: HashMap<LineKey, Entered>,
+    /// See [`Table::new`].
+    pub(super) skips: bool,
 }
 
 #[derive(Debug)]
@@ -55,10 +57,22 @@ pub(super) struct Decision {
 }
 
 impl Table {
+    /// Nothing is known; `skips`: the program is looked at with the blocks that may be
+    /// skipped and without them.
+    pub(super) fn new(skips: bool) -> Self {
+        Self {
+            lines: HashMap::new(),
+            skips,
+        }
+    }
+
     /// Takes note of a run of a line.
     pub(super) fn see(&mut self, line: LineKey, entry: &Entry) {
-        // A line whose moves are held back counts too: they obey its words.
-        if entry.moves == 0 && !entry.facts.compensated {
+        // A line whose moves are held back counts too: they obey its words; and so does one
+        // that stands where it would move to.
+        let facts = &entry.facts;
+        let moves = entry.moves > 0 || facts.uses_motion || facts.motion_word.is_some();
+        if !moves && !facts.compensated {
             return;
         }
         let sight = Sight {
@@ -91,7 +105,11 @@ impl Table {
             .lines
             .get(&line)
             .is_none_or(|entered| entered.unanimous);
-        (!unanimous).then_some("it runs several times, under feeds or modes that differ")
+        (!unanimous).then_some(if self.skips {
+            "with and without blocks that may be skipped, it runs under feeds or modes that differ"
+        } else {
+            "it runs several times, under feeds or modes that differ"
+        })
     }
 
     /// Takes what was decided for a run: the lowest of all runs counts. True

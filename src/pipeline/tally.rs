@@ -12,7 +12,7 @@ use crate::power::{Assessment, PowerModel, Rating, Want};
 use crate::source::split_line_end;
 
 /// The worst moves that a summary keeps.
-const WORST: usize = 10;
+pub(super) const WORST: usize = 10;
 /// Longest text of a line that is kept.
 const TEXT_MAX: usize = 200;
 

@@ -5,18 +5,19 @@
 use std::collections::VecDeque;
 use std::io::{Cursor, Read, Seek, Write};
 
-use super::certify::{Certified, Verdict};
+use super::certify::{Certified, Reasons, Verdict};
 use super::describe::{describe, row};
 use super::entry::Entry;
 use super::expected::{Expected, ExpectedMove};
-use super::front::Front;
+use super::front::{Front, read_whole, too_large};
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
 use super::watching::watching;
+use super::worst::{worst, worst_of};
 use super::writer::{Writer, Written};
-use super::{Failure, Options, RowSink};
+use super::{Failure, LimitOptions, Options, RowSink, Summary};
 use crate::interpret::{Move, MoveKind, Step};
-use crate::limit::Limiter;
+use crate::limit::{Depths, Limiter};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, PowerModel, Want, rungs};
 use crate::rewrite::{BlockView, Rewriter};
@@ -25,49 +26,128 @@ use crate::source::lines;
 /// Steps of the original that are held at a time while they are compared.
 const STEPS: usize = 4096;
 
-/// Limits a program that is held whole, and certifies what was written; `target`
-/// is the machine with the limits that are aimed at.
-pub(super) fn limit_whole<R: Read + Seek>(
-    mut input: R,
-    [machine, target]: [&Machine; 2],
-    options: &Options,
-    limiter: Limiter<'_>,
-    mut output: impl Write,
-    rows: Option<&mut dyn RowSink>,
-) -> Result<(Written, Certified), Failure> {
-    let mut program = Vec::new();
-    input
-        .rewind()
-        .and_then(|()| input.read_to_end(&mut program))
-        .map_err(Failure::Input)?;
-    let exact = rows.is_some();
-    let table = survey(&program, machine, options)?;
-    let source = Cursor::new(&program);
-    let aimed = rungs(target);
-    let writer = Writer::new(
-        source,
-        target,
-        &aimed,
-        options,
-        limiter,
-        exact,
-        std::io::sink(),
-        Some(table),
-        PowerModel::new(machine),
-    );
-    let (mut written, table) = writer.decide_all()?;
-    let (text, edited_lines) = write(&program, machine, &table);
-    written.edited_lines = edited_lines;
-    let original = Original::new(&program, machine, options, &table, exact);
-    let certified = certify(original, &text, machine, options, rows)?;
-    output.write_all(&text).map_err(Failure::Output)?;
-    output.flush().map_err(Failure::Output)?;
-    Ok((written, certified))
+/// What a program that is held whole is limited by.
+pub(super) struct Whole<'a> {
+    pub(super) machine: &'a Machine,
+    /// The same with the limits that are aimed at.
+    pub(super) target: &'a Machine,
+    /// How the program is read, on each path through it.
+    pub(super) paths: &'a [Options],
+    pub(super) how: LimitOptions,
+    pub(super) depths: &'a Depths,
+}
+
+impl Whole<'_> {
+    /// Limits the program, and certifies what was written on each path; `rows` are those
+    /// of the path that draws the most.
+    pub(super) fn limit<R: Read + Seek>(
+        &self,
+        mut input: R,
+        mut output: impl Write,
+        mut rows: Option<&mut dyn RowSink>,
+    ) -> Result<(Written, Certified), Failure> {
+        let Self { machine, paths, .. } = *self;
+        let program = read_whole(&mut input)?.ok_or_else(too_large)?;
+        let exact = rows.is_some();
+        let Decided {
+            befores,
+            reasons,
+            may_skip,
+            table,
+        } = self.decide(&program, exact)?;
+        let (text, edited_lines) = write(&program, machine, &table);
+        let worst = worst(&befores);
+        let mut certified: Option<Certified> = None;
+        for (place, options) in paths.iter().enumerate() {
+            let rows = if place == worst { rows.take() } else { None };
+            let original = Original::new(&program, machine, options, &table, rows.is_some());
+            let path = certify(original, &text, machine, options, rows)?;
+            certified = Some(match certified {
+                Some(certified) => certified.join(path),
+                None => path,
+            });
+        }
+        let (Some(certified), Some(before)) = (certified, worst_of(befores)) else {
+            return Err(Failure::Unsuitable(
+                "no way to read the program is given".to_owned(),
+            ));
+        };
+        output.write_all(&text).map_err(Failure::Output)?;
+        output.flush().map_err(Failure::Output)?;
+        let written = Written {
+            before,
+            edited_lines,
+            reasons,
+            may_skip,
+        };
+        Ok((written, certified))
+    }
+
+    fn decide(&self, program: &[u8], exact: bool) -> Result<Decided, Failure> {
+        let Self {
+            machine,
+            target,
+            paths,
+            how,
+            depths,
+        } = *self;
+        let switches = |options: &Options| options.reading.block_delete;
+        let mut pairs = paths.windows(2);
+        let skips = pairs.any(|pair| matches!(pair, [a, b] if switches(a) != switches(b)));
+        let mut table = Table::new(skips);
+        for options in paths {
+            survey(program, machine, options, &mut table)?;
+        }
+        let aimed = rungs(target);
+        let mut befores = Vec::with_capacity(paths.len());
+        let mut reasons = Reasons::default();
+        let mut may_skip = false;
+        for options in paths {
+            let writer = Writer::new(
+                Cursor::new(program),
+                target,
+                &aimed,
+                options,
+                Limiter::new(target, how, depths.clone()),
+                exact,
+                std::io::sink(),
+                Some(table),
+                PowerModel::new(machine),
+            );
+            let written;
+            (written, table) = writer.decide_all()?;
+            befores.push(written.before);
+            reasons.join(written.reasons);
+            may_skip |= written.may_skip;
+        }
+        Ok(Decided {
+            befores,
+            reasons,
+            may_skip,
+            table,
+        })
+    }
+}
+
+/// What was decided about a program.
+struct Decided {
+    /// The figures of the original on each path.
+    befores: Vec<Summary>,
+    /// What cannot be helped.
+    reasons: Reasons,
+    /// Some of its blocks may be skipped.
+    may_skip: bool,
+    /// What each line gets.
+    table: Table,
 }
 
 /// What each line meets in its runs.
-fn survey(program: &[u8], machine: &Machine, options: &Options) -> Result<Table, Failure> {
-    let mut table = Table::default();
+fn survey(
+    program: &[u8],
+    machine: &Machine,
+    options: &Options,
+    table: &mut Table,
+) -> Result<(), Failure> {
     let mut front = Front::new(Cursor::new(program), machine, options);
     let modal = front.interpreter().modal();
     let (mut mode, mut mm_per_unit) = (modal.path_mode, modal.mm_per_unit);
@@ -84,7 +164,7 @@ fn survey(program: &[u8], machine: &Machine, options: &Options) -> Result<Table,
         table.see(entry.key, entry);
     }
     front.finish()?;
-    Ok(table)
+    Ok(())
 }
 
 /// The program with its changes, and how many lines were edited.

@@ -36,6 +36,8 @@ pub(super) struct Written {
     pub(super) before: Summary,
     pub(super) edited_lines: u64,
     pub(super) reasons: Reasons,
+    /// Some of its blocks may be skipped.
+    pub(super) may_skip: bool,
 }
 
 /// Analyses, changes and writes.
@@ -75,6 +77,7 @@ pub(super) struct Writer<'m, R, W> {
     /// Time of the original so far, s.
     start_s: f64,
     spindle: SpindleRows,
+    may_skip: bool,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -121,6 +124,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             model,
             start_s: 0.0,
             spindle: SpindleRows::default(),
+            may_skip: false,
             table,
         }
     }
@@ -187,6 +191,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             before,
             edited_lines: self.rewriter.edited_lines,
             reasons: self.reasons,
+            may_skip: self.may_skip,
         };
         Ok((written, self.table.unwrap_or_default()))
     }
@@ -244,12 +249,14 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         self.mm_per_unit = entry.mark.mm_per_unit;
-        if let Some(table) = &self.table
-            && entry.facts.fixed.is_none()
-        {
+        self.may_skip |=
+            entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
+        if let Some(table) = &self.table {
+            entry.skips = table.skips;
             // A line that runs again would meet another motion word.
             let without = entry.facts.no_motion_word.then_some(NO_MOTION_WORD);
-            entry.facts.fixed = without.or_else(|| table.fixed(entry.key));
+            let fixed = entry.facts.fixed.or(without);
+            entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
         }
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));

@@ -47,6 +47,8 @@ pub struct Rewriter<'m> {
     /// Knobs that differ from the original, with their values.
     turned: Vec<(usize, AxisValues)>,
     line_end: Vec<u8>,
+    /// What lines that are inserted begin with, so that they are skipped with their block.
+    skip: String,
     /// The last line that was written has an end.
     complete: bool,
     edits: Vec<Edit>,
@@ -75,6 +77,7 @@ impl<'m> Rewriter<'m> {
             written: Written { motion, feed: None },
             turned: Vec::new(),
             line_end: b"\n".to_vec(),
+            skip: String::new(),
             complete: true,
             edits: Vec::new(),
             stop: machine.controller.language.shortest_dwell().0,
@@ -208,8 +211,8 @@ impl<'m> Rewriter<'m> {
     }
 
     /// Writes a block by itself: what it changes is put back right behind it, so
-    /// that it does not matter where the program comes from or goes on. False
-    /// when its edits contradict each other.
+    /// that it does not matter where the program comes from or goes on, nor whether the
+    /// block is skipped. False when its edits contradict each other.
     #[must_use]
     pub fn write_alone(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         self.written = Written {
@@ -218,8 +221,14 @@ impl<'m> Rewriter<'m> {
         };
         // Whatever the line above ends with, another may come before this one.
         self.stopped = false;
+        match view.block.delete_level {
+            0 => {}
+            1 => self.skip.push('/'),
+            level => self.skip = format!("/{level}"),
+        }
         let written = self.write(view, out);
         self.finish(view.after, view.knobs, out);
+        self.skip.clear();
         written
     }
 
@@ -446,12 +455,14 @@ impl<'m> Rewriter<'m> {
     }
 
     fn insert_stop(&mut self, out: &mut Vec<u8>) {
+        out.extend_from_slice(self.skip.as_bytes());
         out.extend_from_slice(self.stop.as_bytes());
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;
     }
 
     fn insert_line(&mut self, words: &str, out: &mut Vec<u8>) {
+        out.extend_from_slice(self.skip.as_bytes());
         out.extend_from_slice(words.as_bytes());
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;

@@ -17,7 +17,7 @@ fn signal(child: &Child, name: &str) {
 }
 
 /// Whenever it is interrupted, the output is the old one or the whole new one, and
-/// nothing lies beside it: where files need no name until they are whole, after a kill
+/// nothing lies next to it: where files need no name until they are whole, after a kill
 /// too.
 #[test]
 fn an_interrupted_run_leaves_nothing() {
@@ -55,9 +55,6 @@ fn an_interrupted_run_leaves_nothing() {
             assert_eq!(shop.files(), files, "{name} in round {round}");
             let out = shop.get("out.ngc");
             assert!(out == "M30\n" || out == whole, "{name} in round {round}");
-            if status.code().is_none() {
-                assert_eq!(out, "M30\n");
-            }
             shop.put("out.ngc", "M30\n");
         }
     }

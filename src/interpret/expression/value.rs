@@ -28,7 +28,8 @@ pub(in crate::interpret) fn remedy(reason: &'static str) -> &'static str {
         KEPT => "give it by --set '#NUMBER=VALUE', give all by --parameters, or assign it before",
         FROM_KEPT => "give that variable by --set '#NUMBER=VALUE', or all by --parameters",
         PROBED => {
-            "--probe hit and --probe miss each follow one way; where a probe touches stays unknown"
+            "--probe hit and --probe miss each follow one way, --probe both all of them; where a \
+             probe touches stays unknown"
         }
         _ => "give it a value in the program, or take what depends on it out",
     }

@@ -80,19 +80,19 @@ impl Default for Series {
     }
 }
 
-/// Writes cycles in another way where `way` asks for that of one of their lines. The
-/// second result says why others stay as they are.
+/// Writes cycles in another way where `way` asks for that of one of their lines; it holds
+/// on all `paths` through the program. The second result says why others stay as they are.
 pub(super) fn expand(
     program: &[u8],
     machine: &Machine,
-    options: &Options,
+    paths: &[Options],
     way: impl Fn(u64) -> Option<Way>,
 ) -> Result<(Option<Expanded>, Vec<Diagnostic>), Failure> {
     let mut notes = Notes::default();
     // By their first lines.
     let (mut written, mut levels) = (BTreeMap::new(), BTreeMap::new());
     let (mut kept, mut n_words) = (BTreeMap::new(), BTreeMap::new());
-    for series in survey(program, machine, options)? {
+    for series in survey(program, machine, paths)? {
         let mut ways = series.numbers.keys().filter_map(|line| way(*line));
         let first = ways.next();
         let asked = if ways.any(|way| way == Way::WrittenOut) {
@@ -140,7 +140,12 @@ pub(super) fn expand(
                 .map(|(line, bytes)| (*line, bytes.clone())),
         );
         let expanded = put_together(program, &lines, &n_words);
-        let different = compare::first_difference(program, &expanded.text, machine, options)?;
+        let mut different = None;
+        for options in paths {
+            if different.is_none() {
+                different = compare::first_difference(program, &expanded.text, machine, options)?;
+            }
+        }
         let Some(line) = different else {
             return Ok((Some(expanded), notes.list));
         };
@@ -184,27 +189,39 @@ impl Notes {
 
 /// All series of cycle blocks. Those that share lines, since they run several times, are
 /// one.
-fn survey(program: &[u8], machine: &Machine, options: &Options) -> Result<Vec<Series>, Failure> {
+fn survey(program: &[u8], machine: &Machine, paths: &[Options]) -> Result<Vec<Series>, Failure> {
     let language = &machine.controller.language;
-    if !matches!(language.family, Family::Rs274 | Family::Iso) {
-        return Ok(Vec::new());
+    let mut all: Vec<Series> = Vec::new();
+    if matches!(language.family, Family::Rs274 | Family::Iso) {
+        for options in paths {
+            survey_path(program, machine, options, &mut all)?;
+        }
     }
+    Ok(all)
+}
+
+/// The series on one path through the program.
+fn survey_path(
+    program: &[u8],
+    machine: &Machine,
+    options: &Options,
+    all: &mut Vec<Series>,
+) -> Result<(), Failure> {
     let singles = Singles::new(machine);
     let mut front = Front::new(Cursor::new(program), machine, options);
-    let mut all: Vec<Series> = Vec::new();
     let mut open: Option<Series> = None;
     while let Some(line) = front.next_line()? {
         let (facts, interpreter) = (&*line.facts, line.interpreter);
         if !facts.cycle {
             if !interpreter.in_cycle() {
-                close(&mut open, &mut all);
+                close(&mut open, all);
             }
             continue;
         }
         // A block that says all of a cycle depends on none before it.
         let has = |letter| line.block.words.iter().any(|word| word.letter == letter);
         if facts.motion_word.is_some() && has(b'R') && has(b'Z') {
-            close(&mut open, &mut all);
+            close(&mut open, all);
         }
         let series = open.get_or_insert_default();
         let (text, number) = line.key;
@@ -253,8 +270,8 @@ fn survey(program: &[u8], machine: &Machine, options: &Options) -> Result<Vec<Se
         let n_word = line.block.number.map(|word| word.value);
         series.numbers.insert(number, n_word);
     }
-    close(&mut open, &mut all);
-    Ok(all)
+    close(&mut open, all);
+    Ok(())
 }
 
 /// The word of a turning cycle along a contour, which is not modal.
