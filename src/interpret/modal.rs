@@ -83,6 +83,9 @@ pub struct Modal {
     pub path_mode: PathMode,
     /// How corners may be taken.
     pub corner: Corner,
+    /// A word of the program has said so: before that it is a matter of the controller's
+    /// settings.
+    pub corner_known: bool,
     /// S in force, 1/min; 0 without one.
     pub spindle_rpm: f64,
     /// G7: words of X are diameters.
@@ -120,6 +123,7 @@ impl Modal {
                 tolerance_mm: language.power_on_tolerance_mm,
                 join_mm: 0.0,
             },
+            corner_known: false,
             spindle_rpm: 0.0,
             diameter: language.dialect.diameter,
         }

@@ -162,6 +162,7 @@ impl Control<'_> {
         } else {
             Corner::Exact
         };
+        self.modal.corner_known = true;
         run.act(ActionKind::PathMode, f64::from(number) / 10.0);
     }
 

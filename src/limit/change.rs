@@ -1,7 +1,7 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisKind, AxisValues, Machine};
+use crate::machine::{AxisKind, AxisValues, Machine, PathMode};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.
@@ -13,6 +13,8 @@ pub struct Permit {
     pub feed_word: bool,
     /// A rapid may be written as a feed.
     pub as_feed: bool,
+    /// Such a feed may run in exact stop, in place of dwells before and after it.
+    pub exact_stop: bool,
     /// Why not, for a person; empty when all is permitted.
     pub reason: &'static str,
     /// What the programmer can do about it; empty when nothing in particular.
@@ -46,6 +48,9 @@ pub struct Change {
     pub feed: Option<f64>,
     /// The rapid is written as a feed.
     pub as_feed: bool,
+    /// It ends at rest since it runs in exact stop; otherwise a dwell follows where one is
+    /// needed.
+    pub exact_stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
     /// The knob for acceleration, and its value for each axis, in its unit.
@@ -57,6 +62,7 @@ impl Change {
     pub const NONE: Self = Self {
         feed: None,
         as_feed: false,
+        exact_stop: false,
         rapid_percent: None,
         accel: None,
     };
@@ -85,6 +91,7 @@ impl Change {
         Self {
             feed: either(self.feed, other.feed, lower),
             as_feed: self.as_feed || other.as_feed,
+            exact_stop: self.exact_stop && other.exact_stop,
             rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
                 (a.0, a.1.min(b.1))
             }),
@@ -108,6 +115,9 @@ impl Change {
         if self.as_feed {
             changed.kind = MoveKind::Feed;
             changed.accel_mm_s2 = permit.feed_accel_mm_s2;
+            if self.exact_stop {
+                changed.path_mode = PathMode::ExactStop;
+            }
         }
         if let Some(feed) = self.feed {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);

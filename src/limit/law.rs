@@ -120,6 +120,7 @@ fn scale_speed(
     }
     let unit = feed_unit(solver.machine, case.mv, case.permit);
     change.as_feed = lever == SpeedLever::AsFeed;
+    change.exact_stop = change.as_feed && case.exact_stop;
     let speed_mm_s = case.assessment.speed_mm_s * share;
     change.feed = Some(round_feed_down(speed_mm_s * SECONDS_PER_MINUTE / unit));
     Ok(())

@@ -35,6 +35,8 @@ pub(super) struct Case<'a> {
     pub(super) permit: &'a Permit,
     /// For how much of what may happen at its ends it has to fit.
     pub(super) ends: Ends,
+    /// A rapid that is written as a feed runs in exact stop.
+    pub(super) exact_stop: bool,
 }
 
 /// How a move begins and ends.
@@ -76,6 +78,7 @@ impl<'m> Solver<'m> {
             assessment,
             permit,
             ends,
+            exact_stop: false,
         };
         let levers = levers(self.machine, self.how, mv, permit);
         if mv.kind == MoveKind::Dwell
@@ -94,6 +97,11 @@ impl<'m> Solver<'m> {
                 "no feed and no acceleration changes that: a larger converter is needed",
             ));
         }
+        self.sooner_stopped(case, |case| self.by_strategy(case, levers))
+    }
+
+    /// The change that the strategy says.
+    fn by_strategy(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         let change = match (self.how.strategy, self.how.law) {
             (Strategy::Preset, _) => law::preset(self, case, levers)?,
             (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
@@ -101,7 +109,7 @@ impl<'m> Solver<'m> {
             (Strategy::Accel, _) => self.by_accel(case, levers)?,
             // Under the robust bound a neighbour's speed meets this move's
             // acceleration: where a pair was not enough, speeds alone go down.
-            (Strategy::Optimal, _) if ends > Ends::Any(2) && levers.speed.is_some() => {
+            (Strategy::Optimal, _) if case.ends > Ends::Any(2) && levers.speed.is_some() => {
                 self.by_speed(case, levers)?
             }
             (Strategy::Optimal, _) => self.optimal(case, levers)?,
@@ -122,6 +130,7 @@ impl<'m> Solver<'m> {
             assessment,
             permit,
             ends,
+            exact_stop: false,
         };
         self.load(case, mv) <= 1.0 + 1e-9
     }
@@ -211,6 +220,7 @@ impl<'m> Solver<'m> {
         let Case { mv, permit, .. } = case;
         let mut trial = Change {
             as_feed: lever == SpeedLever::AsFeed,
+            exact_stop: lever == SpeedLever::AsFeed && case.exact_stop,
             ..*with
         };
         let base = trial.apply(self.machine, mv, permit);

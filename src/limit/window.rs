@@ -41,6 +41,7 @@ impl Member<'_> {
             assessment: &slots[self.index].assessment,
             permit: &self.permit,
             ends: Ends::Rest,
+            exact_stop: false,
         }
     }
 }

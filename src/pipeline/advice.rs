@@ -72,6 +72,7 @@ impl<'m> Adviser<'m> {
             edit: true,
             feed_word: per_minute,
             as_feed: per_minute || apart,
+            exact_stop: false,
             reason: "",
             reason_help: "",
             mm_per_unit: at.mm_per_unit,

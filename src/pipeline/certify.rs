@@ -12,7 +12,7 @@ mod spindle;
 use std::collections::VecDeque;
 
 use super::batch::Batch;
-use super::expected::{Expected, ExpectedMove, Originals, added_stop, different};
+use super::expected::{Expected, ExpectedMove, Originals, added_mode, added_stop, different};
 use super::tally::Tally;
 use super::watching::watching;
 use super::{Failure, Options, RowSink, Summary};
@@ -374,6 +374,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         let original = self.originals.get(self.done).map(|original| &*original);
         if matches!(step, Step::Move(mv) if added_stop(mv, original, self.stop_s)) {
+            return;
+        }
+        if matches!(step, Step::Action(action) if added_mode(action, original)) {
             return;
         }
         self.done += 1;

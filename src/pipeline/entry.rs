@@ -24,6 +24,8 @@ pub(super) struct Entry {
     pub(super) steps: Vec<Step>,
     /// The certificate holds with it and without it, where it may be skipped.
     pub(super) skips: bool,
+    /// Corners are taken in one way each time that it runs.
+    pub(super) one_corner: bool,
     /// The state behind it.
     pub(super) mark: Mark,
     /// The same, as far as plain blocks go by it; `None` behind a plain one.
@@ -49,6 +51,7 @@ impl Entry {
             facts: Facts::default(),
             steps: Vec::new(),
             skips: false,
+            one_corner: true,
             mark: Mark::of(modal),
             stance: None,
             knobs: None,
@@ -229,6 +232,7 @@ impl Entry {
             edit: reasons[0].is_none(),
             feed_word: reasons[..2] == [None, None],
             as_feed: reasons == [None; 3],
+            exact_stop: self.between_stops(machine) && self.may_stop_exactly(machine),
             reason: reason_text,
             reason_help,
             mm_per_unit: facts.feed_mm_per_unit,
@@ -242,6 +246,22 @@ impl Entry {
     /// where the feed alone would be blended.
     pub(super) fn between_stops(&self, machine: &Machine) -> bool {
         machine.controller.planner.dwell_stops && self.moves == 1
+    }
+
+    /// Whether it may run in exact stop, with words before it and after it.
+    fn may_stop_exactly(&self, machine: &Machine) -> bool {
+        let mut words = self.block.words.iter();
+        machine.controller.language.g61_1 == PathMode::ExactStop
+            && self.one_corner
+            && !self.facts.compensated
+            && !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
+            && self.mark.blend_words().is_some()
+    }
+
+    /// Whether it ends at rest as it is, though corners are rounded.
+    pub(super) fn rests(&self, machine: &Machine, change: Option<&Change>) -> bool {
+        let last = self.its_moves().last();
+        change.is_none() && last.is_some_and(|mv| rests(machine, mv))
     }
 
     /// Whether a rapid of it that is written as a feed needs these dwells.
@@ -263,6 +283,13 @@ impl Entry {
     pub(super) fn feed_before(&self) -> Option<f64> {
         self.mark.feed.as_ref().map(|feed| feed.value)
     }
+}
+
+/// Whether a move ends at rest before a feed: a rapid that is not blended with feeds.
+pub(super) fn rests(machine: &Machine, mv: &Move) -> bool {
+    machine.controller.planner.rapid_joint != RapidJoint::All
+        && mv.kind == MoveKind::Rapid
+        && mv.length_mm > 0.0
 }
 
 /// Whether the mode of the feed is a matter of its own: with others it also switches

@@ -1,7 +1,7 @@
 //! What the written program must do: what the original does.
 
 use super::Row;
-use crate::interpret::{Action, Arc, Move, MoveKind};
+use crate::interpret::{Action, ActionKind, Arc, Corner, Move, MoveKind};
 use crate::machine::{AxisSet, AxisValues, PathMode};
 use crate::power::Assessment;
 
@@ -30,6 +30,7 @@ pub(super) struct ExpectedMove {
     pub(super) arc: Option<Arc>,
     pub(super) unknown_start: AxisSet,
     pub(super) path_mode: PathMode,
+    pub(super) corner: Corner,
     pub(super) loads: u32,
     pub(super) dwell_s: f64,
     pub(super) axis_accel_mm_s2: AxisValues,
@@ -56,6 +57,7 @@ impl ExpectedMove {
             arc: mv.arc,
             unknown_start: mv.unknown_start,
             path_mode: mv.path_mode,
+            corner: mv.corner,
             loads: mv.loads,
             dwell_s: mv.dwell_s,
             axis_accel_mm_s2: mv.accel_mm_s2,
@@ -105,6 +107,14 @@ pub(super) fn added_stop(mv: &Move, original: Option<&Expected>, stop_s: f64) ->
         && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
 }
 
+/// Whether an action sets a path mode that the original does not set here: each move is
+/// held against the mode that it had.
+pub(super) fn added_mode(action: &Action, original: Option<&Expected>) -> bool {
+    let same = matches!(original, Some(Expected::Action(original))
+        if original.kind == action.kind && original.value == action.value);
+    action.kind == ActionKind::PathMode && !same
+}
+
 /// What differs in two moves, if anything.
 pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
     let same_kind = original.kind == mv.kind
@@ -119,7 +129,11 @@ pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static s
         "another arc"
     } else if original.dwell_s != mv.dwell_s {
         "another dwell"
-    } else if original.path_mode != mv.path_mode {
+    } else if !original.as_feed && original.corner != mv.corner && mv.moves_axes() {
+        "other corners"
+    } else if original.path_mode != mv.path_mode
+        && !(original.as_feed && mv.path_mode == PathMode::ExactStop)
+    {
         "another path mode"
     } else if original.loads != mv.loads {
         "other switched loads"

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::entry::Entry;
-use crate::interpret::{Facts, FeedMode, KnobState, MoveKind};
+use crate::interpret::{Corner, Facts, FeedMode, KnobState, MoveKind};
 use crate::limit::Change;
 use crate::machine::Machine;
 use crate::rewrite::Mark;
@@ -27,6 +27,8 @@ struct Entered {
     sight: Sight,
     /// All runs so far were alike.
     unanimous: bool,
+    /// Corners were taken in one way.
+    one_corner: bool,
     decision: Option<Box<Decision>>,
     hopeless: bool,
 }
@@ -35,6 +37,7 @@ struct Entered {
 #[derive(Debug, Clone, PartialEq)]
 struct Sight {
     after: Mark,
+    corner: Option<Corner>,
     knobs: Option<KnobState>,
     feed_mode: FeedMode,
     mm_per_unit: f64,
@@ -75,8 +78,13 @@ impl Table {
         if !moves && !facts.compensated {
             return;
         }
+        let corner = entry.mark.corner;
         let sight = Sight {
-            after: entry.mark,
+            after: Mark {
+                corner: None,
+                ..entry.mark
+            },
+            corner,
             knobs: entry.knobs.clone(),
             feed_mode: entry.feed_mode,
             mm_per_unit: entry.facts.feed_mm_per_unit,
@@ -84,12 +92,17 @@ impl Table {
             fixed: entry.facts.fixed,
         };
         if let Some(entered) = self.lines.get_mut(&line) {
-            entered.unanimous &= entered.sight == sight;
+            entered.one_corner &= entered.sight.corner == sight.corner;
+            entered.unanimous &= Sight {
+                corner,
+                ..entered.sight.clone()
+            } == sight;
             return;
         }
         let entered = Entered {
             sight,
             unanimous: true,
+            one_corner: true,
             decision: None,
             hopeless: false,
         };
@@ -110,6 +123,12 @@ impl Table {
         } else {
             "it runs several times, under feeds or modes that differ"
         })
+    }
+
+    /// Whether corners are taken in one way each time that a line runs.
+    pub(super) fn one_corner(&self, line: LineKey) -> bool {
+        let entered = self.lines.get(&line);
+        entered.is_none_or(|entered| entered.one_corner)
     }
 
     /// Takes what was decided for a run: the lowest of all runs counts. True

@@ -187,6 +187,7 @@ fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
             feeds: decision.feeds,
             change: &decision.change,
             stops: decision.stops,
+            rests: false,
         };
         // Contradicting edits leave the line as it was, which the certificate
         // then finds.

@@ -10,7 +10,7 @@ use std::io::{Read, Seek, Write};
 use super::analyze::refuse_planned;
 use super::batch::Batch;
 use super::certify::Reasons;
-use super::entry::{Entry, knobs};
+use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::spindle_rows::SpindleRows;
@@ -232,9 +232,12 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             // Nearly every block of a long program: nothing is to be done.
             if let Some(assessment) = &judged
                 && self.limiter.passes(assessment)
-                && self
-                    .rewriter
-                    .pass(line.text, &self.mark, &mut self.batch.bytes)
+                && self.rewriter.pass(
+                    line.text,
+                    &self.mark,
+                    rests(self.machine, mv),
+                    &mut self.batch.bytes,
+                )
             {
                 // Without rows: the spindle's are not looked at.
                 self.spindle.pass();
@@ -257,6 +260,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             let without = entry.facts.no_motion_word.then_some(NO_MOTION_WORD);
             let fixed = entry.facts.fixed.or(without);
             entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
+            entry.one_corner = table.one_corner(entry.key);
         }
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
@@ -464,6 +468,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             feeds: entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
             change: change.as_ref().unwrap_or(&Change::NONE),
             stops: entry.needs_stops(self.machine, change.as_ref()),
+            rests: entry.rests(self.machine, change.as_ref()),
         };
         let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {

@@ -41,8 +41,6 @@ pub struct Assessor<'m> {
     pub(super) idle: Idle,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
-    /// The last move was a dwell.
-    dwelt: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     pub(super) ahead: Option<Box<Ahead>>,
     pub(super) eye: Eye,
@@ -79,7 +77,6 @@ impl<'m> Assessor<'m> {
             spare: None,
             idle: Idle::default(),
             needs_robust: false,
-            dwelt: false,
             ahead,
             eye: Eye::default(),
             switched: Switched::default(),
@@ -274,7 +271,6 @@ impl<'m> Assessor<'m> {
             }
         }
         self.eye.show(self.machine, mv, self.nominal);
-        let dwelt = std::mem::replace(&mut self.dwelt, mv.kind == MoveKind::Dwell);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
             .last_held()
@@ -295,10 +291,7 @@ impl<'m> Assessor<'m> {
             return;
         }
         if !(assessment.blended || joined) {
-            if self.held.is_some() {
-                let dwells = mv.kind == MoveKind::Dwell;
-                self.release(if dwells { Behind::Dwell } else { Behind::Stop }, sink);
-            }
+            self.release(Behind::Stop, sink);
             let figures = figures.as_ref();
             self.eye
                 .alone_as(self.machine, &self.model, mv, self.largest, figures);
@@ -306,7 +299,7 @@ impl<'m> Assessor<'m> {
             return;
         }
         assessment.blended = true;
-        self.hold(mv, text, assessment, figures.as_ref(), dwelt, sink);
+        self.hold(mv, text, assessment, figures.as_ref(), sink);
     }
 
     /// Hands on what was waiting, at the end of the program.

@@ -16,8 +16,6 @@ pub(super) struct Held {
     pub assessment: Assessment,
     /// Its largest speeds, its neighbours left aside.
     pub bound: SpeedBound,
-    /// A dwell stands before it.
-    pub dwelt: bool,
     /// Moves of no length behind it: controllers leave them out and blend
     /// across them.
     pub riders: Vec<Rider>,
@@ -45,8 +43,6 @@ pub(super) struct Rider {
 pub(super) enum Behind<'a> {
     /// A stop.
     Stop,
-    /// A dwell.
-    Dwell,
     /// A move that it runs into.
     Move(Part<'a>),
     /// So much that moves no axis that it may have stopped.
@@ -61,7 +57,6 @@ impl Assessor<'_> {
         text: &[u8],
         assessment: Assessment,
         figures: Option<&PathFigures>,
-        dwelt: bool,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let bound = match figures {
@@ -75,7 +70,6 @@ impl Assessor<'_> {
                 fresh.text.extend_from_slice(text);
                 fresh.assessment = assessment;
                 fresh.bound = bound;
-                fresh.dwelt = dwelt;
                 fresh
             }
             None => Box::new(Held {
@@ -83,7 +77,6 @@ impl Assessor<'_> {
                 text: text.to_vec(),
                 assessment,
                 bound,
-                dwelt,
                 riders: Vec::new(),
             }),
         };
@@ -107,16 +100,15 @@ impl Assessor<'_> {
             return;
         };
         let joined = held.assessment.joined;
-        // A rapid between two stops is planned like any other, and so is a
-        // straight feed between two dwells; other feeds in a mode that blends
-        // keep the robust bound.
-        let stops = matches!(behind, Behind::Stop | Behind::Dwell);
+        // A straight move between two stops is planned like any other: a feed between
+        // rapids of a controller that waits at both, or between dwells.
+        let stops = matches!(behind, Behind::Stop);
         let alone = !joined && stops && self.requested != Some(Certificate::Robust);
         if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
             self.eye
                 .alone(self.machine, &self.model, &held.mv, self.largest);
-        } else if alone && matches!(behind, Behind::Dwell) && held.dwelt && held.mv.arc.is_none() {
+        } else if alone && held.mv.arc.is_none() {
             let figures = path_figures(self.machine, &held.mv, self.largest);
             held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
             self.eye

@@ -12,6 +12,9 @@ use crate::machine::{AXES, AxisValues, Family, KnobTarget, Lathe, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
+/// Exact stop at the end of each move; only `LinuxCNC` is given it.
+const EXACT_STOP: &str = "G61.1";
+
 /// A block with what the rewriter must know of it.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockView<'a> {
@@ -34,9 +37,11 @@ pub struct BlockView<'a> {
     pub feeds: bool,
     /// What its moves get.
     pub change: &'a Change,
-    /// The shortest dwell stands before and after it, so that it starts and ends at
-    /// rest.
+    /// It starts and ends at rest: where the axes do not stand anyway, the shortest dwell
+    /// stands before it, and after it unless it runs in exact stop.
     pub stops: bool,
+    /// It ends at rest as it is.
+    pub rests: bool,
 }
 
 /// Writes the blocks of one program.
@@ -54,8 +59,10 @@ pub struct Rewriter<'m> {
     edits: Vec<Edit>,
     /// The block at which the axes stop.
     stop: String,
-    /// The last line that was written is that block.
+    /// The axes stand after the last line that was written.
     stopped: bool,
+    /// Exact stop is in force in place of these words.
+    exact_stop: Option<String>,
     /// G1 was written where no motion word was in force: it holds for all blocks up to the
     /// first motion word of the program.
     feeds_from_here: bool,
@@ -82,6 +89,7 @@ impl<'m> Rewriter<'m> {
             edits: Vec::new(),
             stop: machine.controller.language.shortest_dwell().0,
             stopped: false,
+            exact_stop: None,
             feeds_from_here: false,
             edited_lines: 0,
         }
@@ -100,6 +108,9 @@ impl<'m> Rewriter<'m> {
     pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         self.note_end(view.text);
         let facts = view.facts;
+        if !view.change.exact_stop {
+            self.blend_again(out);
+        }
         // Nothing can be put back inside a block that takes no further word.
         let sealed = facts.checksum || facts.dwell_takes_feed;
         let looked_at = facts.boundary
@@ -130,6 +141,10 @@ impl<'m> Rewriter<'m> {
         if view.stops && !self.stopped {
             self.insert_stop(out);
         }
+        if view.change.exact_stop && self.exact_stop.is_none() {
+            self.insert_line(EXACT_STOP, out);
+            self.exact_stop = view.after.blend_words();
+        }
         self.edits.clear();
         self.motion_word(view);
         self.feed_word(view);
@@ -140,8 +155,8 @@ impl<'m> Rewriter<'m> {
             self.edited_lines += 1;
             apply(view.text, &mut self.edits, out)
         };
-        self.stopped = view.stops || view.text.trim_ascii() == self.stop.as_bytes();
-        if view.stops {
+        self.stopped = view.stops || view.rests || view.text.trim_ascii() == self.stop.as_bytes();
+        if view.stops && !view.change.exact_stop {
             if !self.complete {
                 out.extend_from_slice(&self.line_end);
                 self.complete = true;
@@ -188,13 +203,14 @@ impl<'m> Rewriter<'m> {
 
     /// Copies a block that moves and changes nothing else of the state `mark`;
     /// false, and nothing is written, where the written program is in another
-    /// state.
+    /// state. `rests`: see [`BlockView`].
     #[must_use]
-    pub fn pass(&mut self, text: &[u8], mark: &Mark, out: &mut Vec<u8>) -> bool {
+    pub fn pass(&mut self, text: &[u8], mark: &Mark, rests: bool, out: &mut Vec<u8>) -> bool {
         let same = self.written.motion == mark.motion && self.written.feed == mark.feed_value();
-        if !same || !self.turned.is_empty() || self.stopped {
+        if !same || !self.turned.is_empty() || self.exact_stop.is_some() {
             return false;
         }
+        self.stopped = rests;
         self.note_end(text);
         out.extend_from_slice(text);
         true
@@ -235,6 +251,7 @@ impl<'m> Rewriter<'m> {
     /// Puts the state right at the end of a program that has no end word.
     pub fn finish(&mut self, last: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
         let mut lines = Vec::new();
+        self.blend_again(&mut lines);
         self.restore(last, knobs, &mut lines);
         if lines.is_empty() {
             return;
@@ -451,6 +468,13 @@ impl<'m> Rewriter<'m> {
         }
         if !words.is_empty() {
             self.insert_line(&words.join(" "), out);
+        }
+    }
+
+    /// Lets corners be rounded again.
+    fn blend_again(&mut self, out: &mut Vec<u8>) {
+        if let Some(words) = self.exact_stop.take() {
+            self.insert_line(&words, out);
         }
     }
 

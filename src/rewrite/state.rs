@@ -1,8 +1,8 @@
 //! The modal state that edits touch: motion word and feed.
 
-use crate::interpret::{Feed, FeedMode, Modal, Motion};
+use crate::interpret::{Corner, Feed, FeedMode, Modal, Motion};
 
-/// Motion word, feed and units at one place of the original program.
+/// Motion word, feed, units and path mode at one place of the original program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
     /// The motion word in force.
@@ -13,6 +13,8 @@ pub struct Mark {
     pub per_minute: bool,
     /// Millimetres in a program unit.
     pub mm_per_unit: f64,
+    /// How corners may be taken, where a word of the program has said so.
+    pub corner: Option<Corner>,
 }
 
 impl Mark {
@@ -24,7 +26,37 @@ impl Mark {
             feed: modal.feed,
             per_minute: modal.feed_mode == FeedMode::PerMinute,
             mm_per_unit: modal.mm_per_unit,
+            corner: modal.corner_known.then_some(modal.corner),
         }
+    }
+
+    /// The words that let corners be rounded again as they were; none where they are not
+    /// known, where no corner is rounded, or where a number cannot be written exactly.
+    #[must_use]
+    pub fn blend_words(&self) -> Option<String> {
+        let Corner::Round {
+            tolerance_mm,
+            join_mm,
+        } = self.corner?
+        else {
+            return None;
+        };
+        let mut words = String::from("G64");
+        if tolerance_mm > 0.0 || join_mm > 0.0 {
+            words.push_str(&self.length_word('P', tolerance_mm)?);
+        }
+        // Without Q it is P.
+        if join_mm != tolerance_mm {
+            words.push_str(&self.length_word('Q', join_mm)?);
+        }
+        Some(words)
+    }
+
+    /// A word of a length, where it can be written exactly.
+    fn length_word(&self, letter: char, length_mm: f64) -> Option<String> {
+        let text = format!("{}", length_mm / self.mm_per_unit);
+        let read: f64 = text.parse().ok()?;
+        (read * self.mm_per_unit == length_mm).then(|| format!(" {letter}{text}"))
     }
 
     /// The feed as value and unit.

@@ -91,7 +91,7 @@ fn program(lines: &[(u8, bool, i16, u8, u16)]) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn random_programs_hold_with_blocks_and_without(
@@ -103,9 +103,9 @@ proptest! {
         let (text, summary) = RIG.limit(program.as_bytes()).expect("a program");
         let text = String::from_utf8(text).expect("text");
         if summary.certified {
-            // Of programs without changes in such lines only the way that was asked for.
-            let asked = text.lines().zip(program.lines()).all(|(a, b)| a == b || !b.starts_with('/'));
-            if !asked {
+            // Else the warning says that it holds only as the switches were asked for.
+            let notes = &summary.before.notes;
+            if !notes.iter().any(|note| note.rule == "holds-one-way") {
                 holds_either_way(&RIG, &program, &text)?;
             }
         }

@@ -258,6 +258,12 @@ impl<T: Copy> PathPlanner<T> {
         matches!(self.rule, Rule::LinuxCnc(_))
     }
 
+    /// Whether arcs are run as chords, each a piece for itself.
+    #[must_use]
+    pub fn runs_chords(&self) -> bool {
+        self.look_ahead.chords.is_some()
+    }
+
     /// Whether an element can be followed: false for an arc of more chords than
     /// that, of which no more is known than the limits of its axes.
     #[must_use]

@@ -10,14 +10,18 @@ use crate::power::model::PowerModel;
 use crate::power::steps::{Heading, Span, StepEnergy, Steps, spans, velocity};
 use crate::power::surge::Surge;
 
+/// Chords that last for less than this share of the response time at the largest
+/// overrides: at lower ones, where they last for all of it, what two steps ask for in that
+/// time, 2·m·v³/r, is less than what the curve asks for at the largest, since 2·x³ < 1.
+const SHORT: f64 = 0.79;
+
 /// The means over the drives' response time, where the rules know steps of speed.
 pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps>> {
     // LinuxCNC takes the acceleration for a kink from that along the path.
     let stepped = !matches!(rules.corner, CornerRule::LinuxCnc { .. });
     let response_s = machine.path.response_time_s;
-    let alone = machine.limits.override_at.is_some();
-    let gentlest = if alone { 1.0 } else { 0.0 };
-    stepped.then(|| Box::new(Steps::new(machine.axis_set, response_s, gentlest)))
+    let lower = machine.limits.override_at.is_none();
+    stepped.then(|| Box::new(Steps::new(machine.axis_set, response_s, lower)))
 }
 
 impl Ahead {
@@ -41,7 +45,7 @@ impl Ahead {
         let Some(steps) = self.steps.as_deref_mut() else {
             return;
         };
-        let Piece::Along { from_mm, .. } = planned.piece else {
+        let Piece::Along { from_mm, to_mm } = planned.piece else {
             return steps.begin();
         };
         let Some(own) = self.open.get(number) else {
@@ -59,12 +63,16 @@ impl Ahead {
                 [duration_s, speed_mm_s],
             );
         }
-        let (heading, is_arc) = (Heading::of(&own.mv), own.mv.arc.is_some());
+        let (mut heading, is_arc) = (Heading::of(&own.mv), own.mv.arc.is_some());
+        if is_arc && self.largest.planner.runs_chords() {
+            heading = heading.of_chord([from_mm, to_mm]);
+        }
         let profile = planned.profile();
         // The power of an arc is that of the mean over its chords, where these are
-        // shorter than the drives' response.
+        // shorter than the drives' response, at lower overrides too if those count.
         let chord = is_arc && from_mm > 0.0;
-        let mut joint = !chord || planned.duration_s() > steps.response_s();
+        let least = if self.surges.is_some() { SHORT } else { 1.0 };
+        let mut joint = !chord || planned.duration_s() > least * steps.response_s();
         for phase in &profile.phases {
             let mut phase = *phase;
             phase.position_mm += from_mm;
@@ -166,7 +174,8 @@ fn include(open: &mut Queue, number: u64, demand: &Demand) {
 }
 
 /// The step of speed before a piece on the path of a move, where the last one ended
-/// with the speeds `before`; and the speeds with which it ends.
+/// with the speeds `before`; and the speeds with which it ends. Within an arc there is none:
+/// what its chords take is in the power of the arc.
 pub(super) fn step_before(
     mv: &Move,
     planned: &Planned<u64>,

@@ -46,6 +46,8 @@ pub(super) struct Pace {
     pub asked2: f64,
     /// The same as far as axes and curvature permit it.
     pub cap2: f64,
+    /// What is surely not exceeded: the chords of an arc know nothing of its curvature.
+    pub most2: f64,
     /// Σ 2·a·L of the elements before it, and its own, at least.
     pub before2: f64,
     /// See `before2`.
@@ -115,10 +117,10 @@ impl Pace {
             }
             // Of an endless F any other is a share of nothing.
             let share = 1.0 - slower.asked2 / self.asked2;
-            if distance2 >= self.cap2 * share {
+            if distance2 >= self.most2 * share {
                 return None;
             }
-        } else if distance2 >= self.cap2 {
+        } else if distance2 >= self.most2 {
             return None;
         }
         Some(slower.asked2 + distance2)

@@ -25,6 +25,7 @@ pub(super) struct Surges {
     /// Of the acceleration that is certain: kinks may take of it.
     ramp_share: f64,
     path_accel_mm_s2: f64,
+    runs_chords: bool,
 }
 
 impl Surges {
@@ -40,6 +41,7 @@ impl Surges {
             lossless: None,
             ramp_share,
             path_accel_mm_s2: rules.path_accel_mm_s2,
+            runs_chords: rules.chords.is_some(),
         }
     }
 
@@ -54,10 +56,16 @@ impl Surges {
         };
         let accel = element.accel_mm_s2.min(element.drive_accel_mm_s2);
         let accel = accel.min(self.path_accel_mm_s2);
+        let (asked2, cap2) = (asked_mm_s * asked_mm_s, top_mm_s * top_mm_s);
         let mut pace = Pace {
             rapid: element.rapid,
-            asked2: asked_mm_s * asked_mm_s,
-            cap2: top_mm_s * top_mm_s,
+            asked2,
+            cap2,
+            most2: if self.runs_chords && element.curve.is_some() {
+                asked2
+            } else {
+                cap2
+            },
             before2: 0.0,
             own2: 2.0 * self.ramp_share * accel * element.length_mm,
         };

@@ -61,6 +61,8 @@ struct Placed {
     place_mm: AxisValues,
     /// Some axis makes a step at its start.
     steps: bool,
+    /// By what the speed of each axis changes at its start, mm/s.
+    step_mm_s: AxisValues,
 }
 
 /// What the axes do at most in some time.
@@ -76,8 +78,8 @@ struct Most {
 #[derive(Debug)]
 pub(super) struct Steps {
     response_s: f64,
-    /// The least share of a step that there may be at lower overrides; 1 at one alone.
-    gentlest: f64,
+    /// Lower overrides count too.
+    lower: bool,
     axes: ArrayVec<usize, AXES>,
     spans: VecDeque<Placed>,
     end_s: f64,
@@ -96,12 +98,11 @@ pub(super) struct Steps {
 
 impl Steps {
     /// Nothing moves yet. `response_s`: over how long the drives spread a step;
-    /// `gentlest`: the least share of it that lower overrides leave, 1 where they do not
-    /// count.
-    pub fn new(axes: AxisSet, response_s: f64, gentlest: f64) -> Self {
+    /// `lower`: lower overrides count too.
+    pub fn new(axes: AxisSet, response_s: f64, lower: bool) -> Self {
         Self {
             response_s,
-            gentlest,
+            lower,
             axes: axes.iter().collect(),
             spans: VecDeque::with_capacity(64),
             end_s: 0.0,
@@ -125,7 +126,7 @@ impl Steps {
         if !self.spans.is_empty() {
             let mut axes = AxisSet::default();
             self.axes.iter().for_each(|axis| axes.insert(*axis));
-            *self = Self::new(axes, self.response_s, self.gentlest);
+            *self = Self::new(axes, self.response_s, self.lower);
         }
     }
 
@@ -157,9 +158,11 @@ impl Steps {
         let most = &mut self.most[0];
         let place_mm = self.end_mm;
         let (mut steps, length_mm) = (false, 0.5 * (from + to) * span.duration_s);
+        let mut step_mm_s = [0.0; AXES];
         for &axis in &self.axes {
             let u = span.direction[axis];
-            let step = (u * from - self.end_mm_s[axis]).abs();
+            step_mm_s[axis] = u * from - self.end_mm_s[axis];
+            let step = step_mm_s[axis].abs();
             steps |= step > ROUNDING * top;
             most.step_mm_s[axis] += step;
             most.speed_mm_s[axis] = most.speed_mm_s[axis].max(u.abs() * top);
@@ -176,6 +179,7 @@ impl Steps {
             start_s,
             place_mm,
             steps,
+            step_mm_s,
         });
         self.end_s = start_s + span.duration_s;
         self.last_step_s > reach_s

@@ -49,6 +49,15 @@ impl Heading {
         Self { along, arc }
     }
 
+    /// That of the chord which a controller runs for a piece of an arc, mm.
+    #[inline]
+    pub fn of_chord(&self, [from_mm, to_mm]: [f64; 2]) -> Self {
+        Self {
+            along: self.at(0.5 * (from_mm + to_mm)),
+            arc: None,
+        }
+    }
+
     /// Change of each axis per unit of path at a place on it, mm.
     #[inline]
     pub fn at(&self, at_mm: f64) -> AxisValues {

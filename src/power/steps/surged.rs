@@ -11,8 +11,8 @@
 //! with the largest a and |u| of the pieces around, in the direction in which they may
 //! be sped up or braked.
 
+use super::Steps;
 use super::windows::{Mean, NO_TIME, raise};
-use super::{Placed, Steps};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::power::demand::{Demand, Totals};
@@ -75,7 +75,6 @@ impl Steps {
             accel: [0.0; AXES],
         }; 2];
         let [least, most] = &mut means;
-        let mut before: Option<&Placed> = None;
         let from_s = self.spans.back().map_or(0.0, |last| last.start_s) - self.response_s;
         // What is a response time away but for rounding counts.
         let from_s = from_s - NO_TIME * self.response_s;
@@ -92,10 +91,7 @@ impl Steps {
             let [first, last] = placed.span.speeds_mm_s;
             for &axis in &self.axes {
                 let u = placed.span.direction[axis];
-                let last_mm_s = before.map_or(0.0, |before| {
-                    before.span.direction[axis] * before.span.speeds_mm_s[1]
-                });
-                let step = u * first - last_mm_s;
+                let step = placed.step_mm_s[axis];
                 if placed.start_s >= from_s {
                     most.accel[axis] += step.max(0.0) / self.response_s;
                     least.accel[axis] += step.min(0.0) / self.response_s;
@@ -111,7 +107,6 @@ impl Steps {
                     least.speed[axis] = least.speed[axis].min(top);
                 }
             }
-            before = Some(placed);
         }
         for &axis in &self.axes {
             most.accel[axis] += up[axis];
@@ -121,7 +116,7 @@ impl Steps {
         for (index, converter) in model.converters.iter().enumerate() {
             let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
             let mut totals = Totals::new(idle_w);
-            raise(model, converter, &self.axes, &means, [0.0; 2], &mut totals);
+            raise(model, converter, &self.axes, &means, 0.0, &mut totals);
             demand.add(index, converter, totals);
         }
         demand

@@ -13,6 +13,8 @@ const PARTS: f64 = 4.0;
 pub(super) const NO_TIME: f64 = 1e-9;
 /// Speeds below are rounding of a mean over places, in m/s or rad/s.
 const AT_REST: f64 = 1e-9;
+/// Shares of the largest overrides at which steps are looked at.
+const RUNGS: [f64; 8] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.45, 0.3, 0.15];
 /// Means longer than the response time that are looked at for one step.
 const LONGER: usize = 8;
 
@@ -73,12 +75,14 @@ impl Steps {
         let begun = self.spans.partition_point(|it| it.start_s <= end_s - tau);
         // Which span the mean begins in; 0: before all.
         let mut begun = begun;
+        let mut stepped = self.stepped(begun, tau);
         while end_s < until_s {
             let from_s = end_s - tau;
             let placed = begun.checked_sub(1).and_then(|index| self.spans.get(index));
             let leaves_s = placed.map_or(first.start_s, Placed::end_s);
             if leaves_s - from_s <= NO_TIME * tau && begun < self.spans.len() {
                 begun += 1;
+                stepped = self.stepped(begun, tau);
                 continue;
             }
             let step_s = (leaves_s - from_s).min(tau / PARTS).min(until_s - end_s);
@@ -93,14 +97,10 @@ impl Steps {
                     tau,
                 )
             });
-            raise(
-                model,
-                converter,
-                &self.axes,
-                &means,
-                [step_s, self.gentlest],
-                totals,
-            );
+            raise(model, converter, &self.axes, &means, step_s, totals);
+            if self.lower {
+                raise_lower(model, converter, &self.axes, &means, &stepped, totals);
+            }
             let next_s = end_s + step_s;
             if next_s <= end_s {
                 break;
@@ -135,15 +135,25 @@ impl Steps {
                 rest_mm: &last.place_mm,
             };
             let mean = self.mean([from, to], away_s(placed));
-            raise(
-                model,
-                converter,
-                &self.axes,
-                &[mean; 2],
-                [0.0, self.gentlest],
-                totals,
-            );
+            raise(model, converter, &self.axes, &[mean; 2], 0.0, totals);
+            if self.lower {
+                let stepped = self.stepped(index, away_s(placed));
+                raise_lower(model, converter, &self.axes, &[mean; 2], &stepped, totals);
+            }
         }
+    }
+
+    /// What the steps at the starts of the spans from `first` on add to a mean, mm/s².
+    fn stepped(&self, first: usize, over_s: f64) -> AxisValues {
+        let mut stepped = [0.0; AXES];
+        if self.lower {
+            for placed in self.spans.iter().skip(first) {
+                for &axis in &self.axes {
+                    stepped[axis] += placed.step_mm_s[axis] / over_s;
+                }
+            }
+        }
+        stepped
     }
 
     fn mean(&self, ends: [End<'_>; 2], over_s: f64) -> Mean {
@@ -162,14 +172,13 @@ impl Steps {
 
 /// Raises the peaks by all that lies between two means `step_s` apart: the
 /// acceleration changes evenly, and the power of an axis is largest at a corner of
-/// what speed and acceleration may be. What is fed back takes in any share of the
-/// acceleration from the `gentlest` on.
+/// what speed and acceleration may be.
 pub(super) fn raise(
     model: &PowerModel,
     converter: &ConverterPower,
     axes: &[usize],
     means: &[Mean; 2],
-    [step_s, gentlest]: [f64; 2],
+    step_s: f64,
     totals: &mut Totals,
 ) {
     let (mut drawn_w, mut fed_back_w) = (0.0, 0.0);
@@ -199,9 +208,7 @@ pub(super) fn raise(
                 f(a, b)
             });
             most = most.max(power.most(v, [low, high]));
-            // Stepped more gently an axis loses less in its copper.
-            let held = power.force(Side::Regen, v, gentlest * accels[0], sign);
-            least = least.min(power.least(v, [low.min(held), high.max(held)]));
+            least = least.min(power.least(v, [low, high]));
         }
         if converter.credit_regen {
             drawn_w += most;
@@ -218,4 +225,37 @@ pub(super) fn raise(
     };
     totals.raise_peak(totals.idle_w + drawn_w);
     totals.raise_regen(fed_back_w - credit_w);
+}
+
+/// Raises the peaks by what lower overrides make of two means, of which `stepped` comes
+/// from steps.
+///
+/// At the share o of the speed a step is o times as large, and where several lie within
+/// the response time fewer do, down to o² of their sum; and the ramps around may have
+/// ended before. So each axis is accelerated by something between `o·S`, `o²·S` and the
+/// same with the ramp.
+#[cold]
+fn raise_lower(
+    model: &PowerModel,
+    converter: &ConverterPower,
+    axes: &[usize],
+    means: &[Mean; 2],
+    stepped: &AxisValues,
+    totals: &mut Totals,
+) {
+    for share in RUNGS {
+        let mut lower = *means;
+        for &axis in axes {
+            let steps = [share, share * share].map(|share| share * stepped[axis]);
+            let ramps = means.map(|mean| mean.accel[axis] - stepped[axis]);
+            let extreme =
+                |of: fn(f64, f64) -> f64| of(steps[0], steps[1]) + of(of(ramps[0], ramps[1]), 0.0);
+            let accels = [f64::min, f64::max].map(extreme);
+            for (mean, accel) in lower.iter_mut().zip(accels) {
+                mean.speed[axis] *= share;
+                mean.accel[axis] = accel;
+            }
+        }
+        raise(model, converter, axes, &lower, 0.0, totals);
+    }
 }

@@ -98,6 +98,23 @@ fn an_arc_on_axes_that_lose_power_in_copper() {
     }
 }
 
+/// At 60 % the last line is so slow that the arc has to brake for it, though it runs faster
+/// than its curvature would permit: its chords know nothing of that.
+#[test]
+fn an_arc_of_chords_that_brakes_for_a_slower_line_after_the_next() {
+    let axes = [
+        ("X", (7590.0, 409.0, 42.18, 7.0, "efficiency = 0.789")),
+        ("Y", (41791.0, 536.0, 14.39, 1.7, "efficiency = 0.784")),
+        ("Z", (32649.0, 923.0, 23.26, 7.3, "gravity_n = 3.91")),
+    ];
+    let machine = machine("reprap", "rapid = \"linear\"", &axes);
+    let program = "G1 X-3.3313 Y-16.5564 Z-5.3047 F6122.1\nG3 X-2.3377 Y-16.6766 I0.5610 J0.4707 F11446.2\n\
+                   G0 X-1.7933 Y-16.2782\nG1 X108.9471 Y55.0388 F1207.5\n";
+    let fed_back = |share: f64| peaks(&at(&machine, share, share), program)[1][1];
+    assert!(fed_back(0.6) > 1.2 * fed_back(1.0));
+    covers(&machine, program, 2.0);
+}
+
 /// From 215 mm/s down the drive feeds back (339 − 2442·v)·v: most at 69 mm/s.
 #[test]
 fn friction_that_grows_with_speed() {
@@ -274,10 +291,11 @@ fn figures_hold_at_any_override() {
     assert_eq!(exceeded(3, 80), 0);
 }
 
-/// Where steps of speed lie next to ramps some draw a little more: two in a thousand.
+/// Arcs whose number of chords follows the feed, and steps between two of the speeds that
+/// are looked at: one in a thousand draws a trace more.
 #[test]
 #[ignore = "many programs; run it after changes of look-ahead or of the bounds"]
 fn figures_of_many_programs_hold_at_any_override() {
     let found = (100..120).map(|seed| exceeded(seed, 400)).sum::<usize>();
-    assert!(found <= 18, "{found} of 8000");
+    assert!(found <= 5, "{found} of 8000");
 }
