@@ -100,6 +100,7 @@ fn controller() -> Controller {
             g64: PathMode::LookAhead,
             power_on_tolerance_mm: 0.0,
             power_on_mode: PathMode::ExactStop,
+            exact_stop_word: None,
             rapid_uses_feed: false,
             ignored_g: Vec::new(),
             ignored_m: Vec::new(),

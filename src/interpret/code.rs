@@ -104,6 +104,8 @@ pub(super) enum GCode {
     /// A word of OSP alone.
     Osp(super::osp::OspCode),
     Ignored,
+    /// Exact stop in this block.
+    ExactOnce,
 }
 
 impl GCode {
@@ -135,7 +137,8 @@ impl GCode {
             | Self::Pocket(_)
             | Self::Turning(_)
             | Self::LocalOffset => 12,
-            Self::Ignored => 13,
+            // As in group 0 of Fanuc it may stand next to any other.
+            Self::Ignored | Self::ExactOnce => 13,
             Self::MirrorX => 14,
             Self::Diameter(_) => 15,
             Self::SurfaceSpeed => 16,
@@ -327,4 +330,9 @@ pub(super) fn path_mode(number: u16, language: &crate::machine::Language) -> Pat
         611 => language.g61_1,
         _ => language.g64,
     }
+}
+
+/// The word for exact stop in one block.
+pub(super) fn exact_once(number: u16, language: &crate::machine::Language) -> Option<GCode> {
+    (language.exact_stop_word == Some(number)).then_some(GCode::ExactOnce)
 }

@@ -2,7 +2,7 @@
 
 use arrayvec::ArrayVec;
 
-use super::code::{GCode, Motion, code_number, g_code};
+use super::code::{GCode, Motion, code_number, exact_once, g_code};
 use super::dialect::{Own, dialect_code};
 use super::lathe_cycle::lathe_cycle_code;
 use super::report::Report;
@@ -229,6 +229,7 @@ impl Words {
             g_code(number, controller.language.family)
                 .or_else(|| special_code(number, &controller.language))
                 .or_else(|| lathe_cycle_code(number, controller.language.family))
+                .or_else(|| exact_once(number, &controller.language))
                 .or_else(ignored)
                 .map(|code| (code, number))
         });
@@ -236,7 +237,7 @@ impl Words {
             report.refused_g(word, &controller.language);
             return;
         };
-        if self.groups & code.group() != 0 && code != GCode::Ignored {
+        if self.groups & code.group() != 0 && !matches!(code, GCode::Ignored | GCode::ExactOnce) {
             report
                 .error(
                     "modal-group-twice",

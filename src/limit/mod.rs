@@ -12,6 +12,7 @@ mod lever;
 mod limiter;
 mod optimum;
 mod options;
+mod refusal;
 mod root;
 mod solver;
 mod steps;

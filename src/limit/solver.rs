@@ -2,9 +2,10 @@
 
 use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
 use super::law;
-use super::lever::{Levers, Obstacle, SpeedLever, UNTOUCHABLE, levers};
+use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
 use super::options::{Law, LimitOptions, Strategy};
+use super::refusal::too_much;
 use super::root::largest;
 use super::steps;
 use crate::interpret::{Move, MoveKind};
@@ -15,8 +16,6 @@ use crate::units::SECONDS_PER_MINUTE;
 
 /// How often a rounded value is lowered by one more step before giving up.
 const RETRIES: u32 = 3;
-/// What can always be done about a block that may not be changed.
-const BY_HAND: &str = "change it by hand";
 
 /// Solves moves one by one.
 #[derive(Debug)]
@@ -416,70 +415,6 @@ impl<'m> Solver<'m> {
             "lower min_feed_mm_min or min_feed_ratio, or use a word for acceleration",
         ))
     }
-
-    fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
-        let Case { mv, permit, .. } = case;
-        if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word {
-            return Obstacle::new(
-                UNTOUCHABLE,
-                format!("the block may not be changed: {}", permit.reason),
-                permit.help_or(BY_HAND),
-            );
-        }
-        if mv.kind != MoveKind::Rapid {
-            let allowed = Self {
-                how: LimitOptions {
-                    allow_feed: true,
-                    allow_expand: false,
-                    ..self.how
-                },
-                model: self.model.clone(),
-                ..*self
-            };
-            let help = match allowed
-                .speed(case, SpeedLever::FeedWord, &Change::default())
-                .and_then(|it| it.feed)
-            {
-                Some(feed) => format!("it fits at F{feed}: --allow feed permits that"),
-                None => "--allow feed permits lower feeds".to_owned(),
-            };
-            return Obstacle::new(
-                "feed-not-allowed",
-                "cutting feeds are not changed without permission",
-                help,
-            );
-        }
-        if !mv.unknown_start.is_empty() {
-            return Obstacle::new(
-                "no-knob",
-                "the rapid may not be written as a feed: where it starts is not known",
-                "give --start X…,Y…,Z…, or write the move as a feed by hand",
-            );
-        }
-        let message = if permit.reason.is_empty() {
-            format!(
-                "the controller `{}` has no word that lowers this rapid",
-                self.machine.controller.name
-            )
-        } else {
-            format!("the rapid may not be written as a feed: {}", permit.reason)
-        };
-        let help = permit
-            .help_or("write the move as a feed by hand, or lower the rapid speed of the machine");
-        Obstacle::new("no-knob", message, help)
-    }
-
-    fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
-        if !case.permit.edit {
-            let message = format!("the block may not be changed: {}", case.permit.reason);
-            return Obstacle::new(UNTOUCHABLE, message, case.permit.help_or(BY_HAND));
-        }
-        let message = format!(
-            "the controller `{}` has no word for this acceleration",
-            self.machine.controller.name
-        );
-        Obstacle::new("no-knob", message, "use --strategy optimal or speed")
-    }
 }
 
 /// What the spindle takes of a move, changed or not: a rapid written as a feed
@@ -495,15 +430,4 @@ fn share(case: Case<'_>, mv: &Move) -> SpindleShare {
         },
         None => own,
     }
-}
-
-fn too_much(case: Case<'_>) -> Obstacle {
-    Obstacle::new(
-        "no-solution",
-        format!(
-            "no value of the permitted words brings {:.0} W down to the limit",
-            case.assessment.demand.peak_w
-        ),
-        "base load and friction leave too little: a larger converter, or another strategy",
-    )
 }

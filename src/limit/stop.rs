@@ -37,7 +37,8 @@ impl Solver<'_> {
         })
     }
 
-    /// Solves a case. Where the feed that stands for a rapid has half of its acceleration
+    /// Solves a case. Where a word in the block stops it at its end, that is taken: nothing
+    /// is lost by it. Where the feed that stands for a rapid has half of its acceleration
     /// between dwells, exact stop is tried as well: it leaves the whole, so that the feed
     /// is lower. The sooner one is taken: on short ways exact stop, on long ones dwells.
     pub(super) fn sooner_stopped(
@@ -46,9 +47,15 @@ impl Solver<'_> {
         solve: impl Fn(Case<'_>) -> Result<Change, Obstacle>,
     ) -> Result<Change, Obstacle> {
         let between_dwells = solve(case)?;
-        let halved = self.halved(case.mv, &self.changed(case, &between_dwells));
-        let Some(halved) = halved.filter(|_| case.permit.exact_stop) else {
+        let changed = self.changed(case, &between_dwells);
+        if !case.permit.exact_stop || !self.gets_stops(case.mv, &changed) {
             return Ok(between_dwells);
+        }
+        let Some(halved) = self.halved(case.mv, &changed) else {
+            return Ok(Change {
+                exact_stop: changed.path_mode == PathMode::LookAhead,
+                ..between_dwells
+            });
         };
         let exact = Case {
             exact_stop: true,

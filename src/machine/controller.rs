@@ -60,6 +60,8 @@ pub struct Language {
     pub power_on_mode: PathMode,
     /// Tolerance of rounded corners at power-on in mm; 0: none.
     pub power_on_tolerance_mm: f64,
+    /// The G word (number × 10) that lets its block end at rest in a mode that blends.
+    pub exact_stop_word: Option<u16>,
     /// Whether G0 obeys F like G1.
     pub rapid_uses_feed: bool,
     /// Further G words (number × 10, rounded) without motion that are passed over.

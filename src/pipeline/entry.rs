@@ -248,14 +248,17 @@ impl Entry {
         machine.controller.planner.dwell_stops && self.moves == 1
     }
 
-    /// Whether it may run in exact stop, with words before it and after it.
+    /// Whether it may run in exact stop, with a word in it or with words before and after it.
     fn may_stop_exactly(&self, machine: &Machine) -> bool {
+        let language = &machine.controller.language;
         let mut words = self.block.words.iter();
-        machine.controller.language.g61_1 == PathMode::ExactStop
-            && self.one_corner
-            && !self.facts.compensated
+        !self.facts.compensated
             && !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
-            && self.mark.blend_words().is_some()
+            && (language.exact_stop_word.is_some()
+                || language.family == Family::Rs274
+                    && language.g61_1 == PathMode::ExactStop
+                    && self.one_corner
+                    && self.mark.blend_words().is_some())
     }
 
     /// Whether it ends at rest as it is, though corners are rounded.

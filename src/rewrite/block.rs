@@ -2,17 +2,17 @@
 
 use std::fmt::Write as _;
 
-use super::knob_line;
 use super::number::{Style, decimal, feed_again, has_point, with_digit};
 use super::state::{FeedValue, Mark, Written};
+use super::turned::{Acted, InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, Family, KnobTarget, Lathe, Machine};
+use crate::machine::{Family, Lathe, Machine};
 use crate::source::split_line_end;
 use crate::syntax::Block;
 
-/// Exact stop at the end of each move; only `LinuxCNC` is given it.
+/// Exact stop at the end of each move, on controls without a word for one block.
 const EXACT_STOP: &str = "G61.1";
 
 /// A block with what the rewriter must know of it.
@@ -49,8 +49,8 @@ pub struct BlockView<'a> {
 pub struct Rewriter<'m> {
     machine: &'m Machine,
     written: Written,
-    /// Knobs that differ from the original, with their values.
-    turned: Vec<(usize, AxisValues)>,
+    /// Knobs that differ from the original.
+    turned: Turned<'m>,
     line_end: Vec<u8>,
     /// What lines that are inserted begin with, so that they are skipped with their block.
     skip: String,
@@ -61,8 +61,8 @@ pub struct Rewriter<'m> {
     stop: String,
     /// The axes stand after the last line that was written.
     stopped: bool,
-    /// Exact stop is in force in place of these words.
-    exact_stop: Option<String>,
+    /// The words in whose place exact stop is in force.
+    blend_words: Option<String>,
     /// G1 was written where no motion word was in force: it holds for all blocks up to the
     /// first motion word of the program.
     feeds_from_here: bool,
@@ -82,14 +82,14 @@ impl<'m> Rewriter<'m> {
         Self {
             machine,
             written: Written { motion, feed: None },
-            turned: Vec::new(),
+            turned: Turned::new(machine),
             line_end: b"\n".to_vec(),
             skip: String::new(),
             complete: true,
             edits: Vec::new(),
             stop: machine.controller.language.shortest_dwell().0,
             stopped: false,
-            exact_stop: None,
+            blend_words: None,
             feeds_from_here: false,
             edited_lines: 0,
         }
@@ -129,7 +129,17 @@ impl<'m> Rewriter<'m> {
             return true;
         }
         if view.rapids || view.feeds {
-            self.turn_knobs(view, out);
+            let acted = Acted {
+                rapids: view.rapids,
+                feeds: view.feeds,
+            };
+            let in_force = InForce {
+                knobs: view.knobs,
+                mm_per_unit: view.before.mm_per_unit,
+            };
+            for line in self.turned.turn(view.change, acted, in_force) {
+                self.insert_line(&line, out);
+            }
         }
         // Its F is by the minute where the others are by the revolution.
         let apart = view.change.as_feed && !view.after.per_minute;
@@ -141,11 +151,10 @@ impl<'m> Rewriter<'m> {
         if view.stops && !self.stopped {
             self.insert_stop(out);
         }
-        if view.change.exact_stop && self.exact_stop.is_none() {
-            self.insert_line(EXACT_STOP, out);
-            self.exact_stop = view.after.blend_words();
-        }
         self.edits.clear();
+        if view.change.exact_stop {
+            self.exact_stop(view, out);
+        }
         self.motion_word(view);
         self.feed_word(view);
         let fine = if self.edits.is_empty() {
@@ -207,7 +216,7 @@ impl<'m> Rewriter<'m> {
     #[must_use]
     pub fn pass(&mut self, text: &[u8], mark: &Mark, rests: bool, out: &mut Vec<u8>) -> bool {
         let same = self.written.motion == mark.motion && self.written.feed == mark.feed_value();
-        if !same || !self.turned.is_empty() || self.exact_stop.is_some() {
+        if !same || !self.turned.is_empty() || self.blend_words.is_some() {
             return false;
         }
         self.stopped = rests;
@@ -356,88 +365,15 @@ impl<'m> Rewriter<'m> {
         self.written.feed = wanted;
     }
 
-    /// Lines before a block that moves: knobs that it needs, and those that it
-    /// must not have.
-    fn turn_knobs(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
-        let none = view.change.accel.is_none() && view.change.rapid_percent.is_none();
-        if none && self.turned.is_empty() {
-            return;
-        }
-        let mut wanted: [Option<(usize, AxisValues)>; 2] = [view.change.accel, None];
-        if let Some((knob, percent)) = view.change.rapid_percent {
-            wanted[1] = Some((knob, [percent; AXES]));
-        }
-        for (knob, values) in wanted.into_iter().flatten() {
-            if self.turned.contains(&(knob, values)) {
-                continue;
-            }
-            if let Some(words) = knob_line::words(self.machine, knob, &values) {
-                self.insert_line(&words, out);
-                self.turned.retain(|(turned, _)| *turned != knob);
-                self.turned.push((knob, values));
-            }
-        }
-        let needed = |knob: usize| wanted.iter().flatten().any(|(wanted, _)| *wanted == knob);
-        let superfluous: Vec<usize> = self
-            .turned
-            .iter()
-            .map(|(knob, _)| *knob)
-            .filter(|knob| !needed(*knob) && self.concerns(*knob, view))
-            .collect();
-        for knob in superfluous {
-            self.restore_knob(knob, view.knobs, view.before.mm_per_unit, out);
-        }
-    }
-
-    /// Whether a knob acts on the moves of a block.
-    fn concerns(&self, knob: usize, view: &BlockView<'_>) -> bool {
-        self.machine
-            .controller
-            .knobs
-            .get(knob)
-            .is_some_and(|knob| match knob.target {
-                KnobTarget::FeedAccel => view.feeds,
-                KnobTarget::RapidAccel | KnobTarget::RapidSpeed => view.rapids,
-                KnobTarget::Accel => true,
-            })
-    }
-
-    /// Gives a knob the value that the original has in force.
-    fn restore_knob(
-        &mut self,
-        knob: usize,
-        knobs: Option<&KnobState>,
-        mm_per_unit: f64,
-        out: &mut Vec<u8>,
-    ) {
-        self.turned.retain(|(turned, _)| *turned != knob);
-        let (Some(state), Some(data)) = (knobs, self.machine.controller.knobs.get(knob)) else {
-            return;
-        };
-        let mut values = [0.0; AXES];
-        for axis in self.machine.axis_set.iter() {
-            let Some(own) = &self.machine.axes[axis] else {
-                continue;
-            };
-            let accel = match data.target {
-                KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
-                _ => state.feed_accel_mm_s2[axis],
-            };
-            values[axis] = tidy(match data.target {
-                KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
-                _ => data.unit.value(own, accel, mm_per_unit),
-            });
-        }
-        if let Some(words) = knob_line::words(self.machine, knob, &values) {
-            self.insert_line(&words, out);
-        }
-    }
-
     /// A line that gives motion word and feed their original values, and lines
     /// for the knobs; nothing where they have them.
     fn restore(&mut self, original: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
-        while let Some((knob, _)) = self.turned.last().copied() {
-            self.restore_knob(knob, knobs, original.mm_per_unit, out);
+        let in_force = InForce {
+            knobs,
+            mm_per_unit: original.mm_per_unit,
+        };
+        for line in self.turned.restore(in_force) {
+            self.insert_line(&line, out);
         }
         let mut words = Vec::new();
         if self.written.motion != original.motion {
@@ -471,9 +407,26 @@ impl<'m> Rewriter<'m> {
         }
     }
 
+    /// Lets a block end at rest: by a word in it, or by a line before it.
+    fn exact_stop(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        if let Some(number) = self.machine.controller.language.exact_stop_word {
+            let Some(first) = view.block.words.first() else {
+                return;
+            };
+            let style = Style::of(view.text, view.block);
+            let mut text = vec![style.letter(b'G')];
+            text.extend((f64::from(number) / 10.0).to_string().bytes());
+            text.extend(style.spaced.then_some(b' '));
+            self.edits.push(Edit::insert(first.span.start, text));
+        } else if self.blend_words.is_none() {
+            self.insert_line(EXACT_STOP, out);
+            self.blend_words = view.after.blend_words();
+        }
+    }
+
     /// Lets corners be rounded again.
     fn blend_again(&mut self, out: &mut Vec<u8>) {
-        if let Some(words) = self.exact_stop.take() {
+        if let Some(words) = self.blend_words.take() {
             self.insert_line(&words, out);
         }
     }
@@ -491,12 +444,4 @@ impl<'m> Rewriter<'m> {
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;
     }
-}
-
-/// Takes the rounding of a division off: twelve digits.
-fn tidy(value: f64) -> f64 {
-    let decimals = 11.0 - libm::floor(libm::log10(value));
-    let scale = libm::pow(10.0, decimals.clamp(0.0, 18.0)).round();
-    let rounded = (value * scale).round() / scale;
-    if rounded.is_finite() { rounded } else { value }
 }

@@ -16,6 +16,7 @@ mod knob_line;
 mod number;
 mod single;
 mod state;
+mod turned;
 
 pub use block::{BlockView, Rewriter};
 pub use single::{CycleBlock, Singles};

@@ -65,6 +65,9 @@ pub(crate) struct LanguageTable {
     pub(crate) g61_1: Option<PathModeName>,
     /// What G64 selects; default: as at power-on.
     pub(crate) g64: Option<PathModeName>,
+    /// The G word that lets its block end at rest in a mode that blends, such as `G9`;
+    /// default: there is none.
+    pub(crate) exact_stop_word: Option<At<String>>,
     /// Whether G0 obeys F like G1; default false.
     pub(crate) rapid_uses_feed: Option<bool>,
     /// Further G and M words that certainly move nothing and are passed over.

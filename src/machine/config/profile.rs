@@ -74,6 +74,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .power_on_tolerance_mm
             .as_ref()
             .map_or(0.0, |tolerance| tolerance.value),
+        exact_stop_word: exact_stop_word(findings, table),
         rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
         ignored_g,
         ignored_m,
@@ -88,6 +89,18 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .unwrap_or_else(|| kept_variables(family)),
         dialect: dialect(table),
     })
+}
+
+/// The word for exact stop in one block.
+fn exact_stop_word(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<u16> {
+    let text = table.exact_stop_word.as_ref()?;
+    if let Some((b'G', code)) = word::code(&text.value) {
+        return Some(code);
+    }
+    let message = format!("\"{}\" is not a G word", text.value);
+    let help = Some("such as \"G9\"".to_owned());
+    findings.error("machine-word", &text.span, message, help);
+    None
 }
 
 /// Fanuc (B-63944EN, "Variables"): #500 to #999 are kept. `LinuxCNC`: what the

@@ -1,0 +1,136 @@
+//! Knobs that the written program has turned otherwise than the original.
+
+use super::knob_line;
+use crate::interpret::KnobState;
+use crate::limit::Change;
+use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Turned<'m> {
+    machine: &'m Machine,
+    /// With their values.
+    knobs: Vec<(usize, AxisValues)>,
+}
+
+/// What knobs act on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Acted {
+    /// A block moves by a rapid.
+    pub(super) rapids: bool,
+    /// A block moves by a feed.
+    pub(super) feeds: bool,
+}
+
+/// The limits that the original has in force.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct InForce<'a> {
+    pub(super) knobs: Option<&'a KnobState>,
+    /// Millimetres in a unit of the program.
+    pub(super) mm_per_unit: f64,
+}
+
+impl<'m> Turned<'m> {
+    pub(super) fn new(machine: &'m Machine) -> Self {
+        Self {
+            machine,
+            knobs: Vec::new(),
+        }
+    }
+
+    /// Whether all knobs stand as in the original.
+    pub(super) fn is_empty(&self) -> bool {
+        self.knobs.is_empty()
+    }
+
+    /// Lines before a block that moves: knobs that its change needs, and those that it
+    /// must not have.
+    pub(super) fn turn(
+        &mut self,
+        change: &Change,
+        acted: Acted,
+        in_force: InForce<'_>,
+    ) -> Vec<String> {
+        let mut lines = Vec::new();
+        let none = change.accel.is_none() && change.rapid_percent.is_none();
+        if none && self.knobs.is_empty() {
+            return lines;
+        }
+        let mut wanted: [Option<(usize, AxisValues)>; 2] = [change.accel, None];
+        if let Some((knob, percent)) = change.rapid_percent {
+            wanted[1] = Some((knob, [percent; AXES]));
+        }
+        for (knob, values) in wanted.into_iter().flatten() {
+            if self.knobs.contains(&(knob, values)) {
+                continue;
+            }
+            if let Some(words) = knob_line::words(self.machine, knob, &values) {
+                lines.push(words);
+                self.knobs.retain(|(turned, _)| *turned != knob);
+                self.knobs.push((knob, values));
+            }
+        }
+        let needed = |knob: usize| wanted.iter().flatten().any(|(wanted, _)| *wanted == knob);
+        let superfluous: Vec<usize> = self
+            .knobs
+            .iter()
+            .map(|(knob, _)| *knob)
+            .filter(|knob| !needed(*knob) && self.concerns(*knob, acted))
+            .collect();
+        lines.extend(
+            superfluous
+                .into_iter()
+                .filter_map(|knob| self.restore_one(knob, in_force)),
+        );
+        lines
+    }
+
+    /// Lines that give all knobs the values of the original.
+    pub(super) fn restore(&mut self, in_force: InForce<'_>) -> Vec<String> {
+        let mut lines = Vec::new();
+        while let Some((knob, _)) = self.knobs.last().copied() {
+            lines.extend(self.restore_one(knob, in_force));
+        }
+        lines
+    }
+
+    /// Whether a knob acts on the moves of a block.
+    fn concerns(&self, knob: usize, acted: Acted) -> bool {
+        let knob = self.machine.controller.knobs.get(knob);
+        knob.is_some_and(|knob| match knob.target {
+            KnobTarget::FeedAccel => acted.feeds,
+            KnobTarget::RapidAccel | KnobTarget::RapidSpeed => acted.rapids,
+            KnobTarget::Accel => true,
+        })
+    }
+
+    /// A line that gives a knob the value of the original.
+    fn restore_one(&mut self, knob: usize, in_force: InForce<'_>) -> Option<String> {
+        self.knobs.retain(|(turned, _)| *turned != knob);
+        let state = in_force.knobs?;
+        let data = self.machine.controller.knobs.get(knob)?;
+        let mut values = [0.0; AXES];
+        for axis in self.machine.axis_set.iter() {
+            let Some(own) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let accel = match data.target {
+                KnobTarget::RapidAccel => state.rapid_accel_mm_s2[axis],
+                _ => state.feed_accel_mm_s2[axis],
+            };
+            values[axis] = tidy(match data.target {
+                KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
+                _ => data.unit.value(own, accel, in_force.mm_per_unit),
+            });
+        }
+        knob_line::words(self.machine, knob, &values)
+    }
+}
+
+/// Takes the rounding of a division off: twelve digits.
+fn tidy(value: f64) -> f64 {
+    let decimals = 11.0 - libm::floor(libm::log10(value));
+    let scale = libm::pow(10.0, decimals.clamp(0.0, 18.0)).round();
+    let rounded = (value * scale).round() / scale;
+    if rounded.is_finite() { rounded } else { value }
+}
