@@ -17,8 +17,8 @@ pub(crate) fn axis() -> Axis {
     Axis {
         kind: AxisKind::Linear,
         rapid_mm_s: 500.0,
-        home_mm_s: f64::INFINITY,
-        home_mm: None,
+        reference_mm_s: f64::INFINITY,
+        reference_mm: None,
         accel_mm_s2: 5000.0,
         jerk_mm_s3: 0.0,
         mass_kg: 100.0,
@@ -69,6 +69,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         spindle: None,
         tools: Vec::new(),
         loads: Vec::new(),
+        offsets: [None; 9],
         presets: Vec::new(),
         limits: Limits {
             margin: 0.0,

@@ -1,7 +1,7 @@
 //! Values by rule instead of by solution: presets, and the squared ratio.
 
 use super::change::{Change, feed_unit, round_feed_down, round_to_step};
-use super::lever::{Levers, Obstacle, SpeedLever};
+use super::lever::{Levers, NO_KNOB, Obstacle, SpeedLever};
 use super::options::Strategy;
 use super::solver::{Case, Solver};
 use crate::interpret::MoveKind;
@@ -136,7 +136,7 @@ fn axis_speeds(bound: &SpeedBound) -> AxisValues {
 
 fn no_lever(what: &str) -> Obstacle {
     Obstacle::new(
-        "no-knob",
+        NO_KNOB,
         format!("no permitted word lowers the {what} of this block"),
         "use --allow feed for feeds, or another strategy",
     )

@@ -8,6 +8,9 @@ use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPa
 /// The rule of a refusal for a block that may not be changed.
 pub const UNTOUCHABLE: &str = "untouchable";
 
+/// The rule of a refusal where no word lowers a move.
+pub const NO_KNOB: &str = "no-knob";
+
 /// The word that lowers the speed of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum SpeedLever {

@@ -21,7 +21,7 @@ mod window;
 
 pub use change::{Change, Permit};
 pub use depth::{Depths, Place};
-pub use lever::{Obstacle, UNTOUCHABLE};
+pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Law, LimitOptions, Strategy};
 pub use solver::{Ends, Solver};

@@ -1,7 +1,7 @@
 //! Why a move cannot be lowered, and what would permit it.
 
 use super::change::Change;
-use super::lever::{Obstacle, SpeedLever, UNTOUCHABLE};
+use super::lever::{NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE};
 use super::options::LimitOptions;
 use super::solver::{Case, Solver};
 use crate::interpret::MoveKind;
@@ -36,7 +36,7 @@ impl Solver<'_> {
         }
         if !mv.unknown_start.is_empty() {
             return Obstacle::new(
-                "no-knob",
+                NO_KNOB,
                 "the rapid may not be written as a feed: where it starts is not known",
                 "give --start X…,Y…,Z…, or write the move as a feed by hand",
             );
@@ -51,7 +51,7 @@ impl Solver<'_> {
         };
         let help = permit
             .help_or("write the move as a feed by hand, or lower the rapid speed of the machine");
-        Obstacle::new("no-knob", message, help)
+        Obstacle::new(NO_KNOB, message, help)
     }
 
     /// The same where cutting feeds may be lowered.
@@ -76,7 +76,7 @@ impl Solver<'_> {
             "the controller `{}` has no word for this acceleration",
             self.machine.controller.name
         );
-        Obstacle::new("no-knob", message, "use --strategy optimal or speed")
+        Obstacle::new(NO_KNOB, message, "use --strategy optimal or speed")
     }
 }
 

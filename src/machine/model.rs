@@ -29,6 +29,9 @@ pub struct Machine {
     pub tools: Vec<CuttingTool>,
     /// What program words switch on and off.
     pub loads: Vec<Load>,
+    /// Work offsets that the control keeps, by the number of the system (G54 is 1, G59.3 is
+    /// 9); `None` where none are given. Machine coordinates of its zero.
+    pub offsets: [Option<AxisValues>; 9],
     /// Limits for combinations of axes.
     pub presets: Vec<Preset>,
     /// Margin, overrides and floors.

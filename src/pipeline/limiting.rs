@@ -21,7 +21,7 @@ use super::{
     Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
 };
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Law, Limiter, UNTOUCHABLE};
+use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
 use crate::machine::{KnobArgument, KnobTarget, Machine};
 use crate::power::{PowerModel, rungs};
 
@@ -173,10 +173,12 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     })
 }
 
-/// Whether blocks that may not be changed, as those of canned cycles, are among the reasons.
+/// Whether blocks that may not be changed, as those of canned cycles and returns to the
+/// reference point, are among the reasons.
 fn in_fixed_blocks(summary: &LimitSummary) -> bool {
     let mut reasons = summary.reasons.iter();
-    summary.reasons.len() >= Summary::KEPT || reasons.any(|it| it.rule == UNTOUCHABLE)
+    summary.reasons.len() >= Summary::KEPT
+        || reasons.any(|it| [UNTOUCHABLE, NO_KNOB].contains(&it.rule))
 }
 
 /// Limits a program as it stands, for all `paths` through it.

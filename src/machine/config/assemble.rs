@@ -7,7 +7,8 @@ use super::machine_file::{
 };
 use super::value::{At, Num};
 use super::{
-    axis, converter, drive_curve, plausible, preset, profile, response, servo, spindle, tool, word,
+    axis, converter, drive_curve, offsets, plausible, preset, profile, response, servo, spindle,
+    tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
@@ -112,6 +113,9 @@ pub(crate) fn machine(
         spindle,
         tools,
         loads,
+        offsets: file.offsets.as_ref().map_or([None; 9], |table| {
+            offsets::offsets(findings, &table.value, axis_set)
+        }),
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
     };

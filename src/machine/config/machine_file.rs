@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::controller_file::{CompensationTable, DistanceName, PointName};
+use super::offsets::OffsetsTable;
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, ResponseTime, Share,
@@ -34,6 +35,8 @@ pub(crate) struct MachineFile {
     pub(crate) path: Option<At<PathTable>>,
     /// Parameters of the control that change how programs are read.
     pub(crate) language: Option<At<OwnLanguageTable>>,
+    /// Work offsets that the control keeps, by the words that select them.
+    pub(crate) offsets: Option<At<OffsetsTable>>,
     /// The axes by letter; at least one.
     #[schemars(required)]
     pub(crate) axes: Option<At<PerAxis<At<AxisTable>>>>,
@@ -164,11 +167,22 @@ pub(crate) struct AxisTable {
     pub(crate) kind: Option<At<KindName>>,
     /// Linear: rapid speed in mm/min; caps feeds too.
     pub(crate) rapid_mm_min: Option<Positive>,
-    /// Linear: homing speed of a printer (G28) and of grbl ($H) in mm/min; default: the rapid speed.
+    /// Linear: speed on the way to the reference point (G28, homing) in mm/min; default: the
+    /// rapid speed.
+    pub(crate) reference_mm_min: Option<Positive>,
+    /// Linear: machine coordinate of the reference point (G28, homing) in mm; default: not
+    /// known. Then G28 of a mill or lathe is taken to go to machine zero, with a note; after
+    /// homing (G28 of a printer, grbl's $H) the next move counts at full speed and
+    /// acceleration.
+    pub(crate) reference_mm: Option<Number>,
+    /// The same as `reference_mm_min`, by an earlier name.
     pub(crate) home_mm_min: Option<Positive>,
-    /// Linear: where the axis stands after a printer's G28 or grbl's $H, in mm; default: not
-    /// known, so that its next move counts at full speed and acceleration.
+    /// The same as `reference_mm`, by an earlier name.
     pub(crate) home_mm: Option<Number>,
+    /// Rotary: speed on the way to the reference point in degrees/min; default: the rapid speed.
+    pub(crate) reference_deg_min: Option<Positive>,
+    /// Rotary: machine coordinate of the reference point in degrees; default: not known.
+    pub(crate) reference_deg: Option<Number>,
     /// Rotary: rapid speed in degrees/min.
     pub(crate) rapid_deg_min: Option<Positive>,
     /// Largest speed of the motor (of the table without `gear_ratio`) in 1/min.
