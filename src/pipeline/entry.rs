@@ -179,6 +179,7 @@ impl Entry {
             (facts.turns_knob, "it sets limits itself"),
         ];
         let feed = [
+            (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
             (
                 self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
