@@ -11,6 +11,7 @@ mod obstacles;
 mod partial;
 mod random;
 mod reader;
+mod returns;
 mod rewriting;
 mod rows;
 mod stops;

@@ -22,7 +22,7 @@ fn machine(controller: &str) -> Machine {
         let home = if axis == "E" {
             ""
         } else {
-            "home_mm = 0\nhome_mm_min = 600"
+            "reference_mm = 0\nreference_mm_min = 600"
         };
         let _ = writeln!(
             text,

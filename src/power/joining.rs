@@ -26,6 +26,18 @@ impl Assessor<'_> {
         mv.path_mode == PathMode::ExactStop && role(self.machine, mv) == Role::Path
     }
 
+    /// Whether a move ends at rest, whatever follows; `None` where it moves no axis.
+    pub(super) fn ends_at_rest(&self, mv: &Move) -> Option<bool> {
+        if mv.kind == MoveKind::Dwell {
+            return Some(true);
+        }
+        mv.moves_axes().then(|| {
+            let rapid = mv.kind == MoveKind::Rapid;
+            mv.path_mode == PathMode::ExactStop
+                || rapid && self.machine.controller.planner.rapid_joint == RapidJoint::Stop
+        })
+    }
+
     /// Whether the controller may run from `first` into `second` without a stop.
     #[must_use]
     pub fn joins(&self, first: &Move, second: &Move) -> bool {
