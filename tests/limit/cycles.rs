@@ -76,7 +76,6 @@ fn the_way_to_a_hole_needs_no_permission() {
     N10 G98 G81 X400. Y300. Z-12. R40. F200.
     G0 X410.
     G81 X410. R40. Z-12.
-    G4 P1
     G9 G1 X0. Y0. F27173.
     G0 F200.
     N20 G81 X0. Y0. R40. Z-12. (LAST)

@@ -32,7 +32,7 @@ fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
 /// Where the moves end, in mm, as far as they take the axes anywhere.
 fn ends(shop: &Shop, program: &str, options: &str) -> Vec<[f64; 3]> {
     shop.put("moves.nc", program);
-    let (code, out, errors) = shop.run(&format!("moves moves.nc {options}"));
+    let (code, out, errors) = shop.run(format!("moves moves.nc {options}").trim_end());
     assert_eq!(code, 0, "{errors}\n{program}");
     let mut ends: Vec<[f64; 3]> = Vec::new();
     for line in out.lines() {
