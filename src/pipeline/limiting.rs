@@ -408,8 +408,7 @@ fn conclude(
         // figures show it.
         reasons = Reasons::default();
     }
-    reasons.count += found.count;
-    reasons.list.extend(found.list);
+    reasons.extend(found);
     let missed = after.over_time.iter().filter(|it| !it.rating.fits());
     for reason in missed.map(OverTime::reason) {
         reasons.count += 1;
