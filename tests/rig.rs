@@ -60,6 +60,8 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             ratings: Ratings::default(),
         }],
         path: Path {
+            max_feed_mm_s: f64::INFINITY,
+            clearance_mm: [None; AXES],
             mode: None,
             rapid: RapidPath::Linear,
             response_time_s: 0.01,

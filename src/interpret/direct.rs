@@ -76,7 +76,8 @@ impl Control<'_> {
                 feed.linear_mm_s()
             } else {
                 feed.rotary_deg_s()
-            };
+            }
+            .min(self.machine.path.max_feed_mm_s);
         }
 
         // From here on, it happens.

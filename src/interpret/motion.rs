@@ -244,6 +244,9 @@ impl Control<'_> {
                 return;
             };
             feed_mm_s = speed_mm_s;
+            if matches!(kind, MoveKind::Feed | MoveKind::Arc) {
+                feed_mm_s = feed_mm_s.min(self.machine.path.max_feed_mm_s);
+            }
         }
         let mut rapid_factor = self.knobs.rapid_factor;
         if self.printer.adjusts {

@@ -1,6 +1,6 @@
 //! One move by itself: the change that makes it fit.
 
-use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
+use super::change::{Change, Permit, feed_unit, feed_word, round_feed_down, round_to_step};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
@@ -265,8 +265,8 @@ impl<'m> Solver<'m> {
     /// The F, in program units and rounded down, for a path speed at the
     /// largest override.
     fn feed_number(&self, case: Case<'_>, trial: &Change, speed_mm_s: f64) -> Option<f64> {
-        let unit = feed_unit(self.machine, case.mv, case.permit);
-        let mut feed = round_feed_down(speed_mm_s / self.largest.feed * SECONDS_PER_MINUTE / unit);
+        let speed_mm_s = speed_mm_s / self.largest.feed;
+        let mut feed = feed_word(self.machine, case.mv, case.permit, speed_mm_s);
         for _ in 0..RETRIES {
             let rounded = Change {
                 feed: Some(feed),

@@ -118,6 +118,13 @@ pub(crate) struct PathTable {
     /// Over how long the drives spread a step of speed at a corner, in s; default
     /// 0.01, or what follows for axes that give `position_gain_1_s`.
     pub(crate) response_time_s: Option<ResponseTime>,
+    /// Largest F of a cutting move in mm/min: one in a program counts as it, and none above
+    /// it is written; default: none is known.
+    pub(crate) max_feed_mm_min: Option<Positive>,
+    /// Machine coordinates, in mm or degrees, from which on in positive direction nothing
+    /// stands in the way of the axes: there `--allow straighten` may write rapids of axes that
+    /// move each for itself as lines.
+    pub(crate) clearance: Option<PerAxis<Number>>,
 }
 
 /// Parameters of the control that change how programs are read; what is absent
