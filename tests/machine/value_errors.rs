@@ -312,9 +312,9 @@ fn two_names_of_the_reference_point() {
         "mass_kg = 900\nreference_mm = 0\nhome_mm = 5",
     );
     assert_snapshot!(findings(&both), @r"
-    line 14, error machine-twice: `home_mm` and `reference_mm` give the same quantity / keep one of the two
+    line 14, error machine-twice: `reference_mm` and `home_mm` give the same quantity of axis X / keep one of the two
       | home_mm = 5
-      | ^^^^^^^
+      |           ^
     ");
     // The earlier name alone goes on meaning the same.
     let old = edited(
