@@ -128,6 +128,35 @@ pub struct Move {
     pub path_mode: PathMode,
     /// What may happen to the corner there, if the path does not stop.
     pub corner: Corner,
+    /// How far the controller's own path may stray from this one.
+    pub stray: Stray,
+}
+
+/// How far the path that a controller takes may stray from the move that stands for it: a
+/// spiral from a circle, an arc in a tilted plane from its chords. Such a move is bounded
+/// and not planned.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stray {
+    /// The largest distance between the unit vectors of both directions; 0: it is the
+    /// path.
+    pub direction: f64,
+    /// The share by which the controller may exceed the axes' accelerations.
+    pub accel: f64,
+}
+
+impl Stray {
+    /// The path is the controller's.
+    pub const NONE: Self = Self {
+        direction: 0.0,
+        accel: 0.0,
+    };
+
+    /// Whether the path is another one.
+    #[must_use]
+    #[inline]
+    pub fn strays(self) -> bool {
+        self != Self::NONE
+    }
 }
 
 impl Move {

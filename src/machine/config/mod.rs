@@ -16,6 +16,7 @@ mod hints;
 mod load;
 mod look_ahead;
 mod machine_file;
+mod own_language;
 mod plausible;
 mod preset;
 mod printer;
