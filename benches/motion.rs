@@ -50,6 +50,7 @@ fn feed() -> Move {
         loads: 0,
         path_mode: PathMode::ExactStop,
         corner: gwatt::interpret::Corner::default(),
+        stray: gwatt::interpret::Stray::NONE,
     }
 }
 

@@ -158,7 +158,7 @@ impl<'m> Interpreter<'m> {
             compensation: None,
             choice: Choice::default(),
             corners: None,
-            printer: printer::State::new(machine),
+            printer: printer::State::new(machine, reading),
             adapts: machine.controller.language.dialect.adapts(),
             direct: is_direct(machine),
             callee: None,
@@ -247,6 +247,7 @@ impl<'m> Interpreter<'m> {
         facts: &mut Facts,
         diagnostics: &mut Diagnostics,
     ) {
+        self.control.parameters.line = line;
         let mut report = Report {
             diagnostics,
             line,

@@ -333,6 +333,7 @@ impl<'m> Assessor<'m> {
     fn alone(&self, mv: &Move, figures: Option<&PathFigures>) -> Assessment {
         let blended = self.may_blend(mv);
         if let Some(path) = figures
+            && !mv.stray.strays()
             && let Some(demand) = self.quick_demand(mv, path, blended)
         {
             let mut assessment = Assessment {
@@ -392,6 +393,9 @@ impl<'m> Assessor<'m> {
             if self.want.energy {
                 demand.energy_j = self.model.demand(mv, &nominal, self.want).energy_j;
             }
+        }
+        if mv.stray.strays() {
+            demand = self.model.with_stray(demand, mv, peak_plan.top_speed_mm_s);
         }
         let unknown = !mv.unknown_start.is_empty();
         Assessment {

@@ -65,7 +65,9 @@ impl Assessor<'_> {
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let bound = match figures {
-            Some(path) if mv.arc.is_none() => path_bound(self.machine, mv, path.speed_limit_mm_s),
+            Some(path) if mv.arc.is_none() && !mv.stray.is_far() => {
+                path_bound(self.machine, mv, path.speed_limit_mm_s)
+            }
             _ => blended_bound(self.machine, mv, self.largest),
         };
         let fresh = match self.spare.take() {
@@ -115,7 +117,12 @@ impl Assessor<'_> {
             held.assessment.blended = false;
             self.eye
                 .alone(self.machine, &self.model, &held.mv, self.largest);
-        } else if alone && held.rested && !matches!(behind, Behind::End) && held.mv.arc.is_none() {
+        } else if alone
+            && held.rested
+            && !matches!(behind, Behind::End)
+            && held.mv.arc.is_none()
+            && !held.mv.stray.is_far()
+        {
             let figures = path_figures(self.machine, &held.mv, self.largest);
             held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
             self.eye

@@ -16,6 +16,7 @@ impl Assessor<'_> {
         let (planner, ahead) = (&self.machine.controller.planner, self.ahead.as_ref());
         let rapid = mv.kind == MoveKind::Rapid;
         self.requested == Some(Certificate::Robust)
+            || mv.stray.is_far()
             || mv.path_mode == PathMode::LookAhead
                 && (!rapid || planner.rapid_joint != RapidJoint::Stop)
             || mv.arc.is_some() && ahead.is_some_and(|ahead| ahead.slows_last_arcs())

@@ -1,14 +1,13 @@
 //! The file's structs to the validated machine.
 
-use super::controller_file::DistanceName;
 use super::findings::Findings;
 use super::machine_file::{
     LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName,
 };
 use super::value::{At, Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, offsets, plausible, preset, profile, response, servo, spindle,
-    tool, word,
+    axis, converter, drive_curve, offsets, own_language, plausible, preset, response, servo,
+    spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidPath};
@@ -28,21 +27,7 @@ pub(crate) fn machine(
 ) -> Option<Machine> {
     let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
     if let Some(table) = &file.language {
-        let dialect = &mut controller.language.dialect;
-        dialect.point = table
-            .value
-            .decimal_point
-            .map(profile::point)
-            .or(dialect.point);
-        dialect.diameter = table.value.diameter.unwrap_or(dialect.diameter);
-        dialect.active = true;
-        let language = &mut controller.language;
-        if let Some(centre) = table.value.arc_centre {
-            language.arc_absolute = centre == DistanceName::Absolute;
-        }
-        if let Some(own) = &table.value.cutter_compensation {
-            language.compensation = profile::compensation(own);
-        }
+        own_language::take(findings, table, &mut controller.language);
     }
     let errors = file
         .limits
