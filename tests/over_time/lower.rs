@@ -130,7 +130,7 @@ fn what_the_bound_settles_is_not_looked_at() {
         let machine = lift(&ratings(brake_j), rest);
         check(&machine, program, &once()).over_time
     };
-    for rating in found(300.0, "").iter().map(|found| found.rating) {
+    for rating in found(900.0, "").iter().map(|found| found.rating) {
         assert!(rating.fits() && !rating.looked_at, "{rating:?}");
     }
     let found = found(110.0, "viscous_n_s_m = 700");
