@@ -1,6 +1,7 @@
 //! Limits over time and series from outside: what the commands say and write.
 
 mod lower;
+mod overrides;
 
 use std::process::Command;
 

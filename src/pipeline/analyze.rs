@@ -8,14 +8,14 @@ use super::conditions::conditions;
 use super::front::Front;
 use super::relay::relay;
 use super::tally::Tally;
-use super::watching::watching;
+use super::watching::watching_at;
 use super::ways::{has_ways, ways};
 use super::worst::{worst, worst_of};
 use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Move, Step};
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, Want, rungs};
+use crate::power::{Assessment, Assessor, Want};
 
 /// Reads a program and gives its figures; with `rows`, every move too. Where it can go on
 /// in several ways, by what probes find, each figure is the worst of all, and the rows are
@@ -58,11 +58,17 @@ fn analyze_way<R: Read + Seek + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut summary = judge(&mut input, machine, &[], options, rows)?;
-    let rungs = rungs(machine);
-    if !rungs.is_empty() && summary.may_exceed_over_time(machine) {
+    let mut ladder = summary.ladder(machine);
+    loop {
+        let rungs = ladder.ask();
+        if rungs.is_empty() {
+            break;
+        }
         input.rewind().map_err(Failure::Input)?;
-        summary.over_time = judge(input, machine, &rungs, options, None)?.over_time;
+        ladder.take(&judge(&mut input, machine, &rungs, options, None)?.lower);
     }
+    summary.settle(&ladder);
+    summary.conditions = conditions(machine, slice::from_ref(options), &summary);
     Ok(summary)
 }
 
@@ -91,7 +97,7 @@ fn judge<R: Read + Seek + Send>(
             analysis.take(line.steps, text_of, circumstances)?;
         }
     }
-    analysis.finish(front, options)
+    analysis.finish(front)
 }
 
 /// What judges a program, and what it has found.
@@ -113,7 +119,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
         let energy = rows.is_some();
         Self {
             machine,
-            assessor: watching(machine, rungs, options),
+            assessor: watching_at(machine, rungs, options),
             tally: Tally::new(machine, options, rows),
             adviser: Adviser::new(machine),
             energy,
@@ -160,11 +166,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
     }
 
     /// The figures, behind the last line.
-    fn finish<R: Read + Seek>(
-        self,
-        front: Front<'_, R>,
-        options: &Options,
-    ) -> Result<Summary, Failure> {
+    fn finish<R: Read + Seek>(self, front: Front<'_, R>) -> Result<Summary, Failure> {
         let Self {
             machine,
             mut assessor,
@@ -181,11 +183,10 @@ impl<'m, 'r> Analysis<'m, 'r> {
         let lines = front.lines;
         let notes = front.finish()?;
         refuse_planned(&assessor, machine)?;
-        tally.rate(assessor.ratings());
+        tally.rate(assessor.ratings(), assessor.lower_ratings());
         let mut summary = tally.finish(energy);
         summary.lines = lines;
         summary.notes = notes;
-        summary.conditions = conditions(machine, slice::from_ref(options), &summary);
         Ok(summary)
     }
 }

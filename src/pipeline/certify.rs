@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use super::batch::Batch;
 use super::expected::{Expected, ExpectedMove, Originals, added_mode, added_stop, different};
 use super::tally::Tally;
-use super::watching::watching;
+use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
@@ -177,7 +177,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             behind: false,
             interpreter,
             diagnostics: Diagnostics::default(),
-            assessor: watching(machine, rungs, options),
+            assessor: watching_at(machine, rungs, options),
             block: Block::default(),
             steps: Vec::new(),
             facts: Facts::default(),
@@ -287,7 +287,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor, verdict, ..
         } = &mut self;
         assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
-        verdict.rate(assessor.ratings());
+        verdict.rate(assessor.ratings(), assessor.lower_ratings());
         self.verdict.finish(&self.diagnostics.list, self.line)
     }
 }
@@ -338,8 +338,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 
     /// Takes what was found about limits over time.
-    pub(super) fn rate(&mut self, ratings: Vec<Rating>) {
-        self.tally.rate(ratings);
+    pub(super) fn rate(&mut self, ratings: Vec<Rating>, lower: Vec<Vec<Rating>>) {
+        self.tally.rate(ratings, lower);
     }
 
     /// The figures of the written program, and why the certificate does not

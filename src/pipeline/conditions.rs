@@ -4,7 +4,7 @@ use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
 use crate::machine::{CornerRule, Machine, PathMode, Spindle, SpindleWait};
-use crate::power::rungs_in_words;
+use crate::power::lowest_share;
 
 /// How the spindle counts.
 fn spindle_condition(spindle: &Spindle) -> &'static str {
@@ -58,6 +58,25 @@ fn overrides_condition(machine: &Machine) -> String {
     };
     let [feed, rapid, spindle] = [feed, rapid, spindle].map(percent);
     format!("{what}: feed {feed} %, rapid {rapid} %, spindle {spindle} %")
+}
+
+/// For which overrides limits over time hold.
+fn over_time_condition(machine: &Machine, summary: &Summary) -> String {
+    let looked_at = summary.over_time.iter().any(|it| it.rating.looked_at);
+    let mut said = if looked_at {
+        let lowest = lowest_share() * 100.0;
+        format!(
+            "limits over time at lower overrides: where a bound over all of them leaves one open, feed \
+             and rapid together and each alone are looked at down to {lowest:.0} % of the largest, so \
+             closely that nothing in between exceeds it if it lasts longer in proportion"
+        )
+    } else {
+        "limits over time hold at every lower override too, by a bound over all of them".to_owned()
+    };
+    if machine.spindle.is_some() {
+        said.push_str("; the spindle's runs overlap the moves that they overlap at the largest");
+    }
+    said
 }
 
 /// How the blocks count that may be skipped, and how many ways through the program.
@@ -156,12 +175,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         };
         conditions.push(format!("limits over time are less the margin, {runs}"));
         if limits.override_at.is_none() {
-            conditions.push(format!(
-                "limits over time are looked at with {}, the spindle at its largest, and times of \
-                 overload with cruises at any lower one; between these overrides they are not \
-                 checked",
-                rungs_in_words()
-            ));
+            conditions.push(over_time_condition(machine, summary));
         }
         if summary.certificate == Some(Certificate::Robust) {
             conditions.push(

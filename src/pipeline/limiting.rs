@@ -23,7 +23,7 @@ use super::{
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
 use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
-use crate::power::{PowerModel, rungs};
+use crate::power::PowerModel;
 
 /// Pieces that may wait for the certifier.
 const BATCHES: usize = 2;
@@ -196,19 +196,30 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             restart(&mut output, rows)?;
         }
         let mut depths = Depths::default();
+        let mut rungs = Vec::new();
+        let mut ladder = None;
         loop {
             let job = Job {
                 machine,
                 target,
+                rungs: &rungs,
                 paths,
                 how,
                 depths: depths.clone(),
             };
-            let (written, certified) = job.run(&mut input, &mut output, rows)?;
+            let (written, mut certified) = job.run(&mut input, &mut output, rows)?;
             if certified.deeper.is_empty() {
-                return Ok(conclude(machine, target, paths, how, written, certified));
-            }
-            if !depths.deepen(&certified.deeper) {
+                // What the bound over all overrides leaves open is looked at in further
+                // runs, which write the same.
+                let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(machine));
+                ladder.take(&certified.summary.lower);
+                let worth = certified.reasons.count == 0 && certified.summary.fits_at_largest();
+                rungs = if worth { ladder.ask() } else { Vec::new() };
+                if rungs.is_empty() {
+                    certified.summary.settle(ladder);
+                    return Ok(conclude(machine, target, paths, how, written, certified));
+                }
+            } else if !depths.deepen(&certified.deeper) {
                 let mut stopped = conclude(machine, target, paths, how, written, certified);
                 stopped.reasons.push(last_round(&depths));
                 return Ok(stopped);
@@ -241,6 +252,8 @@ struct Job<'a> {
     machine: &'a Machine,
     /// The same with the limits that are aimed at.
     target: &'a Machine,
+    /// The machine with its knobs where they are looked at as well.
+    rungs: &'a [Machine],
     /// How the program is read, on each path through it.
     paths: &'a [Options],
     how: LimitOptions,
@@ -258,6 +271,7 @@ impl Job<'_> {
         let Self {
             machine,
             target,
+            rungs,
             paths,
             how,
             depths,
@@ -265,6 +279,7 @@ impl Job<'_> {
         let whole = Whole {
             machine,
             target,
+            rungs,
             paths,
             how,
             depths: &depths,
@@ -278,13 +293,11 @@ impl Job<'_> {
         };
         let exact = rows.is_some();
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
-        let [own, aimed] = [machine, target].map(rungs);
-        let mut certifier = Certifier::new(machine, &own, options, sink);
+        let mut certifier = Certifier::new(machine, rungs, options, sink);
         let limiter = Limiter::new(target, how, depths.clone());
         let writer = Writer::new(
             &mut input,
             target,
-            &aimed,
             options,
             limiter,
             exact,

@@ -1,8 +1,10 @@
 //! Limits over time, with the names of converters and files.
 
+use super::Summary;
 use crate::diagnostic::Diagnostic;
 use crate::machine::{Machine, OverrideAt};
-use crate::power::{Measure, Rating};
+use crate::power::{Ladder, Measure, Rating};
+
 use crate::units::SECONDS_PER_MINUTE;
 
 /// A limit over time and how near the program comes to it.
@@ -14,6 +16,19 @@ pub struct OverTime {
     pub converter: String,
     /// The file that the line stands in; empty for the program itself.
     pub file: String,
+}
+
+impl Summary {
+    /// What settles limits over time at lower overrides.
+    pub(super) fn ladder(&self, machine: &Machine) -> Ladder {
+        let ratings: Vec<Rating> = self.over_time.iter().map(|found| found.rating).collect();
+        Ladder::new(machine, &ratings)
+    }
+
+    /// Takes what it found.
+    pub(super) fn settle(&mut self, ladder: &Ladder) {
+        ladder.conclude(self.over_time.iter_mut().map(|found| &mut found.rating));
+    }
 }
 
 impl OverTime {
@@ -60,6 +75,9 @@ impl OverTime {
         }
         if let Some(at) = &self.rating.overrides {
             title.push_str(&at_overrides(at));
+        }
+        if self.rating.any {
+            title.push_str(", bound for all overrides");
         }
         title
     }

@@ -2,8 +2,8 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::MoveKind;
-use crate::machine::{AxisSet, Machine};
-use crate::power::Measure;
+use crate::machine::AxisSet;
+use crate::power::Rating;
 
 use super::by_line::LineSummary;
 use super::front::ONLY_SUBPROGRAMS;
@@ -70,6 +70,8 @@ pub struct Summary {
     pub worst: Vec<Unfit>,
     /// What the converters bear over time, where the machine limits it.
     pub over_time: Vec<OverTime>,
+    /// The same at lower overrides, where these are looked at: by setting.
+    pub lower: Vec<Vec<Rating>>,
     /// Which certificate the figures belong to: robust when any move needs it.
     pub certificate: Option<Certificate>,
     /// Some moves are planned together, with the controller's look-ahead.
@@ -90,31 +92,16 @@ impl Summary {
         self.notes.iter().any(|note| note.rule == ONLY_SUBPROGRAMS)
     }
 
+    /// The same as far as the largest overrides go.
+    pub(super) fn fits_at_largest(&self) -> bool {
+        let kept = |rating: &Rating| rating.bound.is_some() || rating.fits();
+        self.unfit_count == 0 && self.over_time.iter().all(|found| kept(&found.rating))
+    }
+
     /// True when every move fits, and all limits over time are kept.
     #[must_use]
     pub fn fits(&self) -> bool {
         self.unfit_count == 0 && self.over_time.iter().all(|found| found.rating.fits())
-    }
-
-    /// Whether the largest powers leave it open that a limit over time is exceeded at some
-    /// override: a power that lies nowhere above what a limit counts fills nothing.
-    pub(super) fn may_exceed_over_time(&self, machine: &Machine) -> bool {
-        let [converter] = machine.converters.as_slice() else {
-            return true;
-        };
-        let share = 1.0 - machine.limits.margin;
-        let fed_back_w = converter
-            .regen_power_w
-            .map_or(0.0, |power_w| share * power_w);
-        self.over_time
-            .iter()
-            .any(|found| match found.rating.measure {
-                Measure::Overload { above_w, .. } => self.peak_w > above_w,
-                Measure::Continuous { .. } => self.peak_w > found.rating.limit,
-                Measure::LowestVoltage => self.peak_w > share * converter.peak_power_w,
-                Measure::HighestVoltage => self.regen_w > fed_back_w,
-                Measure::Brake { power_w } => self.regen_w > power_w,
-            })
     }
 }
 

@@ -245,7 +245,8 @@ impl<'m, 'r> Tally<'m, 'r> {
     }
 
     /// Takes what was found about limits over time.
-    pub(super) fn rate(&mut self, ratings: Vec<Rating>) {
+    pub(super) fn rate(&mut self, ratings: Vec<Rating>, lower: Vec<Vec<Rating>>) {
+        self.summary.lower = lower;
         self.summary.over_time = OverTime::list(ratings, self.machine, |text| self.file(text));
     }
 

@@ -4,18 +4,20 @@ use super::Options;
 use crate::machine::Machine;
 use crate::power::{Assessor, Want};
 
-/// An assessor that watches limits over time as the options ask for; at `rungs`, the
-/// machine with its knobs at lower overrides, too.
-pub(super) fn watching<'m>(
+/// An assessor that watches limits over time as the options ask for.
+pub(super) fn watching<'m>(machine: &'m Machine, options: &Options) -> Assessor<'m> {
+    Assessor::new(machine, options.certificate, Want::ALL)
+        .starting(options.reading.start)
+        .watching()
+        .repeating(!options.once)
+}
+
+/// The same that watches the machine with its knobs as in `rungs` as well.
+pub(super) fn watching_at<'m>(
     machine: &'m Machine,
     rungs: &'m [Machine],
     options: &Options,
 ) -> Assessor<'m> {
-    let one = |machine| {
-        Assessor::new(machine, options.certificate, Want::ALL)
-            .starting(options.reading.start)
-            .watching()
-            .repeating(!options.once)
-    };
-    one(machine).with_lower(rungs.iter().map(one).collect())
+    let lower = rungs.iter().map(|rung| watching(rung, options));
+    watching(machine, options).with_lower(lower.collect())
 }

@@ -12,14 +12,14 @@ use super::expected::{Expected, ExpectedMove};
 use super::front::{Front, read_whole, too_large};
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
-use super::watching::watching;
+use super::watching::watching_at;
 use super::worst::{worst, worst_of};
 use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, Options, RowSink, Summary};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::{Depths, Limiter};
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, PowerModel, Want, rungs};
+use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Rewriter};
 use crate::source::lines;
 
@@ -31,6 +31,8 @@ pub(super) struct Whole<'a> {
     pub(super) machine: &'a Machine,
     /// The same with the limits that are aimed at.
     pub(super) target: &'a Machine,
+    /// The machine with its knobs where they are looked at as well.
+    pub(super) rungs: &'a [Machine],
     /// How the program is read, on each path through it.
     pub(super) paths: &'a [Options],
     pub(super) how: LimitOptions,
@@ -61,7 +63,7 @@ impl Whole<'_> {
         for (place, options) in paths.iter().enumerate() {
             let rows = if place == worst { rows.take() } else { None };
             let original = Original::new(&program, machine, options, &table, rows.is_some());
-            let path = certify(original, &text, machine, options, rows)?;
+            let path = certify(original, &text, (machine, self.rungs), options, rows)?;
             certified = Some(match certified {
                 Some(certified) => certified.join(path),
                 None => path,
@@ -90,6 +92,7 @@ impl Whole<'_> {
             paths,
             how,
             depths,
+            ..
         } = *self;
         let switches = |options: &Options| options.reading.block_delete;
         let mut pairs = paths.windows(2);
@@ -98,7 +101,6 @@ impl Whole<'_> {
         for options in paths {
             survey(program, machine, options, &mut table)?;
         }
-        let aimed = rungs(target);
         let mut befores = Vec::with_capacity(paths.len());
         let mut reasons = Reasons::default();
         let mut may_skip = false;
@@ -106,7 +108,6 @@ impl Whole<'_> {
             let writer = Writer::new(
                 Cursor::new(program),
                 target,
-                &aimed,
                 options,
                 Limiter::new(target, how, depths.clone()),
                 exact,
@@ -402,14 +403,13 @@ impl<'m, 'p> Original<'m, 'p> {
 fn certify(
     mut original: Original<'_, '_>,
     text: &[u8],
-    machine: &Machine,
+    (machine, rungs): (&Machine, &[Machine]),
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Certified, Failure> {
     let mut verdict = Verdict::new(machine, options, rows);
-    let rungs = rungs(machine);
     let mut written = Front::new(Cursor::new(text), machine, options);
-    let mut assessor = watching(machine, &rungs, options);
+    let mut assessor = watching_at(machine, rungs, options);
     let mut expected = Vec::new();
     let mut more = true;
     while more {
@@ -436,7 +436,7 @@ fn certify(
         verdict.check()?;
     }
     assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
-    verdict.rate(assessor.ratings());
+    verdict.rate(assessor.ratings(), assessor.lower_ratings());
     verdict.expect_nothing();
     let lines = written.lines;
     verdict.finish(&written.diagnostics.list, lines)

@@ -64,6 +64,13 @@ impl Summary {
         for found in &other.over_time {
             self.rate_worse(found);
         }
+        for (own, other) in self.lower.iter_mut().zip(&other.lower) {
+            for (own, other) in own.iter_mut().zip(other) {
+                if other.load_ratio() > own.load_ratio() {
+                    *own = *other;
+                }
+            }
+        }
         if other.certificate == Some(Certificate::Robust) {
             self.certificate = other.certificate;
         }
@@ -92,9 +99,16 @@ impl Summary {
                 over
             }
         };
-        if (found.rating.fits(), -beyond(found)) < (own.rating.fits(), -beyond(own)) {
+        let bounds = [own.rating.bound, found.rating.bound].into_iter().flatten();
+        let bound = bounds.reduce(if found.rating.measure == Measure::LowestVoltage {
+            f64::min
+        } else {
+            f64::max
+        });
+        if -beyond(found) < -beyond(own) {
             *own = found.clone();
         }
+        own.rating.bound = bound;
     }
 }
 

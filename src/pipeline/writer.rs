@@ -89,7 +89,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     pub(super) fn new(
         input: R,
         machine: &'m Machine,
-        rungs: &'m [Machine],
         options: &Options,
         limiter: Limiter<'m>,
         exact: bool,
@@ -106,7 +105,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
-            assessor: watching(machine, rungs, options),
+            assessor: watching(machine, options),
             limiter,
             tally: Tally::new(machine, options, None),
             rewriter: Rewriter::new(machine),
@@ -183,7 +182,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let lines = self.front.lines;
         let notes = self.front.finish()?;
         refuse_planned(&self.assessor, self.machine)?;
-        self.tally.rate(self.assessor.ratings());
+        self.tally.rate(self.assessor.ratings(), Vec::new());
         let mut before = self.tally.finish(self.exact);
         before.lines = lines;
         before.notes = notes;

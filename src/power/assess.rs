@@ -128,7 +128,7 @@ impl<'m> Assessor<'m> {
     #[must_use]
     pub fn ratings(&self) -> Vec<Rating> {
         let watch = self.eye.watch.as_ref();
-        self.worst_ratings(watch.map_or_else(Vec::new, |watch| watch.ratings()))
+        watch.map_or_else(Vec::new, |watch| watch.ratings())
     }
 
     /// The certificate that was asked for.

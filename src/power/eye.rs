@@ -8,6 +8,7 @@ use super::model::PowerModel;
 use super::motion::Motion;
 use super::robust::Part;
 use super::steps::StepEnergy;
+use super::surge::Surge;
 use super::watch::{Beside, Kept, Span, Watch};
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -140,11 +141,27 @@ impl Eye {
         }
     }
 
+    /// A piece that may be sped up or braked at lower overrides where it is not at the
+    /// largest.
+    #[cold]
+    pub fn surge(
+        &self,
+        model: &PowerModel,
+        mv: &Move,
+        planned: &Planned<u64>,
+        surge: &Surge,
+        kept: &mut Kept,
+    ) {
+        if let Some(watch) = &self.watch {
+            watch.surge(model, mv, planned, surge, kept);
+        }
+    }
+
     /// A move that runs as planned: its pieces.
     #[inline]
-    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept, top_speed_mm_s: f64) {
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
         if let Some(watch) = &mut self.watch {
-            watch.kept(model, mv, kept, top_speed_mm_s);
+            watch.kept(model, mv, kept);
         }
     }
 

@@ -199,6 +199,20 @@ impl PowerModel {
         lossless
     }
 
+    /// The same without friction that grows with speed, without losses in the copper,
+    /// and without what is drawn meanwhile taken off: what is fed back is then in
+    /// proportion to the speed, and nowhere less.
+    pub(super) fn unbraked(&self) -> Self {
+        let mut unbraked = self.lossless();
+        unbraked.axes.iter_mut().for_each(|axis| axis.viscous = 0.0);
+        for converter in &mut unbraked.converters {
+            converter.curved = AxisSet::default();
+            converter.holding = AxisSet::default();
+            converter.credit_regen = false;
+        }
+        unbraked
+    }
+
     /// The largest powers of all axes at once, whenever each of them has its own: with
     /// other speeds they meet otherwise. An axis that is given less speed has no more
     /// acceleration at any, so that its largest power is that at its largest speed; what

@@ -66,7 +66,7 @@ pub use bus::{SpindleShare, Turning};
 pub use demand::{Demand, Want};
 pub(crate) use effect::{Effect, Switched};
 pub use instant::{AxisInstant, Instant, SpindleInstant};
-pub(crate) use ladder::{rungs, rungs_in_words};
+pub(crate) use ladder::{Ladder, lowest_share};
 pub use model::PowerModel;
 pub use motion::Motion;
 pub use spindle::{RunPhase, SpindlePower, SpindleRun, spindle_run};

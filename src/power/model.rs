@@ -110,14 +110,6 @@ impl PowerModel {
         demand
     }
 
-    /// The largest power that one converter gives for a planned move, W.
-    pub(super) fn peak_w(&self, converter: usize, mv: &Move, plan: &Plan, want: Want) -> f64 {
-        let converter = self.converters.get(converter);
-        converter.map_or(f64::INFINITY, |converter| {
-            self.totals(converter, mv, plan, want).peak_w
-        })
-    }
-
     /// The share of one converter.
     #[inline]
     fn totals(&self, converter: &ConverterPower, mv: &Move, plan: &Plan, want: Want) -> Totals {

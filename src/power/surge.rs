@@ -8,6 +8,7 @@
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
 use super::piece::straight_line;
+use super::robust::Part;
 use crate::interpret::Move;
 use crate::machine::AxisValues;
 use crate::plan::lookahead::{Piece, Planned};
@@ -55,7 +56,62 @@ pub(super) fn surge_demand(
     }
 }
 
+/// The largest powers of one converter in that, drawn and fed back, W.
+pub(super) fn surge_powers(
+    model: &PowerModel,
+    converter: usize,
+    mv: &Move,
+    planned: &Planned<u64>,
+    surge: Surge,
+) -> [f64; 2] {
+    let shares = match &planned.piece {
+        Piece::Along { from_mm, to_mm } => PathShares::of(mv, [*from_mm, *to_mm]),
+        Piece::Joined { direction } => {
+            let line = straight_line(mv, direction, planned.length_mm);
+            PathShares::of(&line, [0.0, planned.length_mm])
+        }
+        Piece::Blend(blend) => {
+            let mut shares = PathShares::default();
+            for (axis, (tangent, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate()
+            {
+                let swing = (tangent * tangent + normal * normal).sqrt();
+                shares.along.positive[axis] = swing;
+                shares.along.negative[axis] = swing;
+                shares.across[axis] = swing / blend.radius_mm;
+            }
+            shares
+        }
+    };
+    let speed_mm_s = surge.speed_mm_s();
+    let (mut bound, mut accels) = (shares.along, AxisValues::default());
+    for (axis, accel) in accels.iter_mut().enumerate() {
+        let share = bound.positive[axis].max(bound.negative[axis]);
+        *accel = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
+        bound.positive[axis] *= speed_mm_s;
+        bound.negative[axis] *= speed_mm_s;
+    }
+    let part = Part {
+        bound: &bound,
+        accel_mm_s2: &accels,
+    };
+    model.robust_powers(converter, mv, &[part])
+}
+
 impl Surge {
+    /// How long its ramps last at most, s.
+    pub fn lasts_s(&self) -> f64 {
+        let ramps = [(self.rises_mm_s, false), (self.falls_mm_s, true)];
+        let lasts = ramps.into_iter().filter_map(|(speed_mm_s, last)| {
+            let speed_mm_s = speed_mm_s.filter(|speed| *speed > 0.0)?;
+            Some(match &self.section {
+                // As part of another curve it may be gentler.
+                Some(section) => 2.0 * section.ramp(speed_mm_s, last).duration_s(),
+                None => speed_mm_s / self.accel_mm_s2,
+            })
+        });
+        lasts.sum()
+    }
+
     /// The largest speed of both, mm/s.
     pub fn speed_mm_s(&self) -> f64 {
         let speeds = [self.rises_mm_s, self.falls_mm_s];

@@ -72,7 +72,7 @@ impl Ahead {
             }
         }
         if peaks {
-            let surge = self.surge(model, planned);
+            let surge = self.surge(model, eye, planned);
             let Some(open) = self.open.get_mut(number) else {
                 return;
             };
@@ -140,7 +140,7 @@ impl Ahead {
         };
         if peaks {
             self.ride(model, planned);
-            if let Some(surge) = self.surge(model, planned) {
+            if let Some(surge) = self.surge(model, eye, planned) {
                 demand.include(&surge);
             }
             if self.surges.is_some()

@@ -83,8 +83,7 @@ impl Ahead {
             if planned && own.certain && certain(before) && certain(next) {
                 own.assessment.blended = !own.alone;
                 if own.assessment.ahead {
-                    let top_speed_mm_s = own.assessment.top_speed_mm_s;
-                    eye.kept(model, &own.mv, &mut own.kept, top_speed_mm_s);
+                    eye.kept(model, &own.mv, &mut own.kept);
                 } else {
                     eye.alone(machine, model, &own.mv, self.largest.overrides);
                 }

@@ -88,7 +88,7 @@ impl Course {
 
 impl Pace {
     /// Whether the asked speed is its cap.
-    fn is_asked(&self) -> bool {
+    pub fn is_asked(&self) -> bool {
         self.asked2 <= self.cap2 * (1.0 + ROUNDING)
     }
 

@@ -8,6 +8,7 @@ use crate::machine::{CornerRule, LookAhead};
 use crate::plan::Section;
 use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
+use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 use crate::power::piece::{piece_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
@@ -118,7 +119,12 @@ impl Ahead {
     /// What a final piece may ask for at lower overrides, if it may do so and that is
     /// of interest.
     #[inline]
-    pub(super) fn surge(&mut self, model: &PowerModel, planned: &Planned<u64>) -> Option<Demand> {
+    pub(super) fn surge(
+        &mut self,
+        model: &PowerModel,
+        eye: &Eye,
+        planned: &Planned<u64>,
+    ) -> Option<Demand> {
         let surges = self.surges.as_mut()?;
         let open = self.open.get(planned.tag)?;
         let straight = match planned.piece {
@@ -148,6 +154,8 @@ impl Ahead {
             piece_demand(lossless, &open.mv, planned, want)
         });
         let slower = slower_demand(model, &open.mv, planned, open.want);
+        // From a lower speed a ramp lasts longer, unless all speeds fall together.
+        let longer = !open.pace.is_asked() || !surges.are_one(open.pace.rapid, course.top2);
         surges.runs.forget(planned.first);
         let mut surge = if let Some(section) = &planned.section {
             surges.free(section, planned)
@@ -166,6 +174,26 @@ impl Ahead {
             && matches!(planned.piece, Piece::Along { .. })
         {
             self.follow_surge(model, planned.tag, &surge);
+        }
+        if eye.watch.is_some()
+            && let Some(open) = self.open.get_mut(planned.tag)
+        {
+            if let Some(surge) = &surge {
+                eye.surge(model, &open.mv, planned, surge, &mut open.kept);
+            }
+            let longer = longer && planned.section.is_none();
+            let ends2 = [course.start2, course.end2];
+            let [rises_mm_s, falls_mm_s] =
+                ends2.map(|end2| (longer && course.top2 > end2 && end2 > 0.0).then(|| end2.sqrt()));
+            if rises_mm_s.is_some() || falls_mm_s.is_some() {
+                let ramps = Surge {
+                    rises_mm_s,
+                    falls_mm_s,
+                    accel_mm_s2: planned.accel_mm_s2,
+                    section: None,
+                };
+                eye.surge(model, &open.mv, planned, &ramps, &mut open.kept);
+            }
         }
         let open = self.open.get(planned.tag)?;
         // Slower, friction takes less of what is fed back.

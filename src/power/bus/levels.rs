@@ -25,27 +25,37 @@ impl SpindleBus<'_> {
         (duration_s, ahead): (f64, bool),
         cutting_w: f64,
     ) -> Steps {
+        // What lasts after a run.
+        let target = self.states[0].target();
+        let held_w = self.motor.holding_w(target);
         let level = |duration_s: f64, largest_w: f64, least_w: f64| {
             let base_w = self.spindle.base_load_w;
             let more_w = base_w + cutting_w;
+            let lasting_w = held_w + more_w;
             if self.credits() {
                 Level {
                     duration_s,
                     drawn_w: largest_w + more_w,
                     fed_back_w: -least_w - self.credited_w(),
+                    lasting_w,
                 }
             } else {
                 Level {
                     duration_s,
                     drawn_w: largest_w.max(0.0) + more_w,
                     fed_back_w: (-least_w).max(0.0),
+                    lasting_w,
                 }
             }
         };
         match window {
             Window::Steady(power_w) => Steps::Steady(level(duration_s, *power_w, *power_w)),
             Window::Between([largest_w, least_w]) => {
-                Steps::Steady(level(duration_s, *largest_w, *least_w))
+                let level = level(duration_s, *largest_w, *least_w);
+                Steps::Steady(Level {
+                    lasting_w: level.drawn_w,
+                    ..level
+                })
             }
             Window::Run(trace, from_s) => {
                 let to_s = from_s + duration_s;

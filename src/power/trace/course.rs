@@ -28,7 +28,11 @@ impl Tracer<'_> {
             return self.even(&directions, &profile.phases, idle_w, out);
         }
         for phase in &profile.phases {
-            self.straight_phase(&directions, phase, idle_w, out);
+            if self.raised {
+                self.raised_phase(&directions, phase, idle_w, out);
+            } else {
+                self.straight_phase(&directions, phase, idle_w, out);
+            }
         }
     }
 

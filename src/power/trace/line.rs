@@ -103,18 +103,16 @@ impl Tracer<'_> {
         let credit = self.converter.credit_regen;
         let mut powers: ArrayVec<[f64; 2], 7> = ArrayVec::new();
         powers.extend(phases.iter().take(7).map(|_| [0.0; 2]));
+        let mut cruises = powers.clone();
         for &(axis, u) in directions {
             let axis = &self.model.axes[axis];
             let growing = axis.mass * axis.accel_factor(side, true) * u;
             let braking = axis.mass * axis.accel_factor(side, false) * u;
             let direction = if u == 0.0 { 0.0 } else { u.signum() };
             let constant = axis.coulomb * axis.friction_factor(side) * direction + axis.gravity;
-            for (phase, power) in phases.iter().zip(&mut powers) {
-                let a = phase.accel_mm_s2;
-                let mass = if a > 0.0 { growing } else { braking };
-                let force = mass * a + constant;
+            let add = |phase: &Phase, force: f64, power: &mut [f64; 2]| {
                 let start = u * phase.velocity_mm_s * force;
-                let change = u * (a * phase.duration_s) * force;
+                let change = u * (phase.accel_mm_s2 * phase.duration_s) * force;
                 let middle = change * 0.5 + start;
                 if credit || sign * middle > 0.0 {
                     let conversion = if middle > 0.0 {
@@ -124,6 +122,25 @@ impl Tracer<'_> {
                     };
                     power[0] += sign * (conversion * start);
                     power[1] += sign * (conversion * change);
+                }
+            };
+            for (phase, power) in phases.iter().zip(&mut powers) {
+                let a = phase.accel_mm_s2;
+                let mass = if a > 0.0 { growing } else { braking };
+                add(phase, mass * a + constant, power);
+            }
+            if self.raised {
+                for (phase, cruise) in phases.iter().zip(&mut cruises) {
+                    add(phase, constant, cruise);
+                }
+            }
+        }
+        if self.raised {
+            // Both are in proportion to the speed.
+            let middle = |power: &[f64; 2]| power[0] + 0.5 * power[1];
+            for (power, cruise) in powers.iter_mut().zip(cruises) {
+                if middle(&cruise) > middle(power) {
+                    *power = cruise;
                 }
             }
         }

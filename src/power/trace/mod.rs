@@ -12,10 +12,12 @@
 
 mod course;
 mod line;
+mod raised;
 mod slice;
 mod turn;
 
 pub(super) use line::Line;
+pub(super) use raised::Apart;
 pub use slice::Slice;
 
 use super::axis::Side;
@@ -66,6 +68,8 @@ pub(super) struct Tracer<'a> {
     flow: Flow,
     /// Power by which a slice may be too high.
     tolerance_w: f64,
+    /// Ramps count no less than a cruise at the same place and speed: see `raised`.
+    raised: bool,
 }
 
 impl PowerModel {
@@ -103,6 +107,7 @@ impl PowerModel {
             converter,
             flow,
             tolerance_w: TOLERANCE * converter.limit_w(),
+            raised: false,
         }
     }
 }

@@ -33,8 +33,13 @@ impl Tracer<'_> {
                 if part.duration_s <= 0.0 {
                     continue;
                 }
-                if part.velocity_mm_s + part.end_velocity_mm_s < 0.0 {
+                let back = part.velocity_mm_s + part.end_velocity_mm_s < 0.0;
+                if self.raised && back {
+                    self.raised_back(mv, &part, out);
+                } else if back {
                     self.turning(&reversed, &part.mirrored(), out);
+                } else if self.raised {
+                    self.raised_turn(mv, &circle, &part, out);
                 } else {
                     self.turning(&circle, &part, out);
                 }
@@ -58,9 +63,15 @@ impl Tracer<'_> {
         let cuts = blend::cuts(blend);
         for phase in &profile.phases {
             for piece in blend::pieces(phase, &cuts) {
-                if piece.position_mm + 0.5 * piece.length_mm() < blend.lead_mm {
+                let on_line = piece.position_mm + 0.5 * piece.length_mm() < blend.lead_mm;
+                if on_line && self.raised {
+                    let idle_w = self.idle_w(lead, on_lead);
+                    self.raised_phase(&leading, &piece, idle_w, out);
+                } else if on_line {
                     let idle_w = self.idle_w(lead, on_lead);
                     self.straight_phase(&leading, &piece, idle_w, out);
+                } else if self.raised {
+                    self.raised_blend(lead, blend, &piece, out);
                 } else if piece.duration_s > 0.0 {
                     self.chords(&circle, &piece, (0.0, piece.duration_s), out);
                 }
@@ -69,7 +80,7 @@ impl Tracer<'_> {
     }
 
     /// A phase on a circle, quadrant by quadrant in the order of time.
-    fn turning(&self, circle: &Circle<'_>, phase: &Phase, out: &mut impl FnMut(Slice)) {
+    pub(super) fn turning(&self, circle: &Circle<'_>, phase: &Phase, out: &mut impl FnMut(Slice)) {
         let mut pieces: Vec<(f64, f64, bool)> = Pieces::new(circle, phase).collect();
         pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
         let turn_s = circle.turn_s(phase);

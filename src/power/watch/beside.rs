@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 
 use super::rating::Place;
 use super::span::Span;
+use super::terms::Models;
 use super::{Kept, Track};
 use crate::interpret::Move;
 use crate::power::model::PowerModel;
@@ -22,6 +23,8 @@ pub(in crate::power) struct Level {
     pub drawn_w: f64,
     /// In W; below 0 only where what is fed back is credited.
     pub fed_back_w: f64,
+    /// What of `drawn_w` lasts as long as the move, W.
+    pub lasting_w: f64,
 }
 
 /// Levels in the order of time.
@@ -66,7 +69,7 @@ pub(super) struct Waits {
     pub place: Place,
     pub slices: Kept,
     /// Powers by track, for a time that is not known.
-    pub lasting: Option<(Vec<[f64; 2]>, Span)>,
+    pub lasting: Option<(Vec<[f64; 3]>, Span)>,
 }
 
 impl Waiting {
@@ -75,19 +78,28 @@ impl Waiting {
     }
 
     /// Hands the next move to the tracks, with the spindle in it.
-    pub fn hand_on(&mut self, model: &PowerModel, levels: &[Level], tracks: &mut [Track]) {
+    pub fn hand_on(
+        &mut self,
+        model: &PowerModel,
+        models: &Models,
+        levels: &[Level],
+        tracks: &mut [Track],
+    ) {
         let Some(mut waits) = self.moves.pop_front() else {
             return;
         };
         let converter = self.converter;
         for (index, track) in tracks.iter_mut().enumerate() {
             let mut beside = Levels::new(levels, track, converter);
-            track.take_kept(index, model, &mut waits.slices, &mut beside, waits.place);
+            let own = track.model(model, models);
+            track.take_kept(index, own, &mut waits.slices, &mut beside, waits.place);
             if let Some((powers, span)) = &waits.lasting
                 && let Some(powers) = powers.get(index)
             {
-                let more_w = beside.largest_w();
-                track.span(powers.map(|power| power + more_w), *span, waits.place);
+                let [more_w, lasting_w] = [beside.largest_w(), beside.lasting_w()];
+                let [drawn_w, fed_back_w, rest_w] = *powers;
+                let powers = [drawn_w + more_w, fed_back_w + more_w, rest_w + lasting_w];
+                track.span(powers, *span, waits.place);
             }
         }
         waits.slices.clear();
@@ -144,8 +156,17 @@ impl<'a> Levels<'a> {
         }
     }
 
+    /// What lasts however long the move does, W.
+    pub fn lasting_w(&self) -> f64 {
+        if self.flow == Flow::FedBack {
+            return 0.0;
+        }
+        let powers = self.left.iter().map(|level| level.lasting_w);
+        powers.reduce(f64::min).unwrap_or_default()
+    }
+
     /// The largest of all, W.
-    fn largest_w(&self) -> f64 {
+    pub fn largest_w(&self) -> f64 {
         let powers = self.left.iter().map(|level| self.power_w(level));
         powers
             .reduce(super::super::demand::larger)

@@ -3,6 +3,7 @@
 use super::Track;
 use super::beside::Levels;
 use super::rating::Place;
+use super::terms::Terms;
 use crate::power::model::PowerModel;
 use crate::power::trace::{Line, Slice};
 
@@ -16,6 +17,8 @@ struct Own {
     slices: Vec<Slice>,
     /// Instead of slices: no more power than this, and what the slices come from.
     line: Option<(f64, Line)>,
+    /// Of a bound over all lower overrides what else it has to know.
+    terms: Terms,
 }
 
 impl Kept {
@@ -23,6 +26,7 @@ impl Kept {
         for own in &mut self.0 {
             own.slices.clear();
             own.line = None;
+            own.terms = Terms::default();
         }
     }
 
@@ -47,6 +51,19 @@ impl Kept {
         }
     }
 
+    /// What else a bound has to know.
+    pub(super) fn terms(&mut self, track: usize) -> Option<&mut Terms> {
+        self.own(track).map(|own| &mut own.terms)
+    }
+
+    /// The largest power of the slices of a track from one on.
+    pub fn peak_w(&self, track: usize, from: usize) -> f64 {
+        let slices = self.slices(track).iter().skip(from);
+        slices.fold(0.0, |most, slice| {
+            crate::power::demand::larger(most, slice.peak_w())
+        })
+    }
+
     /// The slices of one track.
     pub fn slices(&self, track: usize) -> &[Slice] {
         self.0.get(track).map_or(&[], |own| &own.slices)
@@ -65,7 +82,32 @@ impl Track {
         beside: &mut Levels<'_>,
         place: Place,
     ) {
-        let Some(Own { slices, line }) = kept.0.get_mut(index) else {
+        let terms = kept.0.get(index).map(|own| own.terms);
+        let terms = terms.filter(|_| self.bounds);
+        let terms = terms.map(|terms| terms.raised(beside.lasting_w()));
+        if let Some(terms) = &terms {
+            self.limits.begin(terms, self.time_s, place);
+            if let Some(apart) = &terms.apart {
+                let rest_w = terms.rest_w - beside.lasting_w() + beside.largest_w();
+                self.limits.apart(apart, rest_w, self.time_s, place);
+                self.time_s += apart.duration_s;
+            }
+        }
+        self.take_slices(index, model, kept, beside, place);
+        if let Some(terms) = &terms {
+            self.limits.end(terms, self.time_s, place);
+        }
+    }
+
+    fn take_slices(
+        &mut self,
+        index: usize,
+        model: &PowerModel,
+        kept: &mut Kept,
+        beside: &mut Levels<'_>,
+        place: Place,
+    ) {
+        let Some(Own { slices, line, .. }) = kept.0.get_mut(index) else {
             return;
         };
         let steady = beside
@@ -81,7 +123,7 @@ impl Track {
                 self.limits.pass((*most_w + more_w) * lasts_s, lasts_s);
                 return;
             }
-            if let Some(tracer) = model.tracer(self.converter, self.flow) {
+            if let Some(tracer) = self.tracer(model) {
                 tracer.line_slices(line, &mut |slice| slices.push(slice));
             }
         }
@@ -125,6 +167,7 @@ mod tests {
             flow: Flow::Drawn,
             limits: Limits::drawn(&machine.converters[0], 0.0, 3000.0),
             time_s: 0.0,
+            bounds: false,
         };
         let (mut quick, mut general) = (track(), track());
         let mut seed = 1_u32;
@@ -144,6 +187,7 @@ mod tests {
                 duration_s: 1.0,
                 drawn_w: 300.0 * next(),
                 fed_back_w: 0.0,
+                lasting_w: 0.0,
             };
             let levels = [level];
             let place = Place { line, text: 0 };

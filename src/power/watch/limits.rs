@@ -12,18 +12,18 @@ use crate::machine::{Capacitor, Converter};
 #[derive(Debug, Default)]
 pub(super) struct Limits {
     /// What the capacitor lacks, or holds in excess.
-    bus: Option<Bus>,
+    pub(super) bus: Option<Bus>,
     /// Whether the capacitor takes peaks off the converter.
     buffered: bool,
-    overload: Vec<(Overload, Measure, f64)>,
-    continuous: Option<(Continuous, Measure, f64)>,
-    brake: Option<(Store, Measure, f64)>,
+    pub(super) overload: Vec<(Overload, Measure, f64)>,
+    pub(super) continuous: Option<(Continuous, Measure, f64)>,
+    pub(super) brake: Option<(Store, Measure, f64)>,
 }
 
 /// The capacitor as a store.
 #[derive(Debug)]
-struct Bus {
-    store: Store,
+pub(super) struct Bus {
+    pub(super) store: Store,
     capacitor: Capacitor,
     /// Share of its energy that is counted on.
     share: f64,
@@ -159,14 +159,6 @@ impl Limits {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// A move ends that runs on a path: see [`Overload::linger`].
-    #[inline]
-    pub fn linger(&mut self, time_s: f64, place: Place, cruise: &mut impl FnMut(f64) -> f64) {
-        for (overload, ..) in &mut self.overload {
-            overload.linger(time_s, place, cruise);
-        }
-    }
-
     /// Time passes with so much energy, at a power of no account but to stores.
     #[inline]
     pub fn pass(&mut self, energy_j: f64, duration_s: f64) {
@@ -223,11 +215,12 @@ impl Limits {
         let mut list = Vec::new();
         let lead_s = if repeated { self.lead_s() } else { 0.0 };
         for (overload, measure, limit) in &self.overload {
-            let worst = if repeated {
+            let mut worst = if repeated {
                 overload.repeated(lead_s)
             } else {
                 overload.worst
             };
+            worst.value += overload.edge_s;
             list.push(worst.rating(*measure, converter, *limit));
         }
         if let Some((rms, measure, limit)) = &self.continuous {
@@ -240,11 +233,13 @@ impl Limits {
             list.push(worst.rating(*measure, converter, *limit));
         }
         let worst = |store: &Store| {
-            if repeated {
+            let mut worst = if repeated {
                 store.repeated()
             } else {
                 store.worst
-            }
+            };
+            worst.value += store.edge_j;
+            worst
         };
         if let Some(bus) = &self.bus {
             let mut worst = worst(&bus.store);

@@ -31,12 +31,12 @@
 mod beside;
 mod kept;
 mod limits;
-mod linger;
 mod overload;
 mod rating;
 mod rms;
 mod span;
 mod store;
+mod terms;
 
 pub(super) use beside::{Beside, Level, Steps};
 pub(super) use kept::Kept;
@@ -44,16 +44,19 @@ pub use rating::{Measure, Rating};
 pub(super) use span::Span;
 
 use super::model::PowerModel;
+use super::piece::straight_line;
 use super::robust::Part;
 use super::steps::StepEnergy;
-use super::trace::{Flow, Slice};
+use super::surge::{Surge, surge_powers};
+use super::trace::{Flow, Slice, Tracer};
 use crate::interpret::Move;
 use crate::machine::Machine;
-use crate::plan::lookahead::Planned;
+use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{Plan, Trajectory};
 use beside::{Levels, Waiting, Waits};
 use limits::Limits;
 use rating::Place;
+use terms::{Models, Terms};
 
 /// Watches the converters that have limits over time.
 #[derive(Debug)]
@@ -63,11 +66,11 @@ pub(super) struct Watch {
     waiting: Option<Waiting>,
     /// Room for the slices of a move, and for powers by track.
     kept: Kept,
-    powers: Vec<[f64; 2]>,
+    powers: Vec<[f64; 3]>,
     /// The program runs again and again.
     pub repeated: bool,
-    /// Overrides below the largest count.
-    lower: bool,
+    /// What bounds are reckoned with.
+    models: Models,
 }
 
 /// One converter and one direction of its power.
@@ -78,16 +81,19 @@ struct Track {
     limits: Limits,
     /// Time so far in s.
     time_s: f64,
+    /// What is found is no less than at any lower override: see [`terms`].
+    bounds: bool,
 }
 
 impl Watch {
-    /// What the machine file limits over time; `None` where it limits nothing.
+    /// What the machine file limits over time; `None` where it limits nothing. Where
+    /// overrides below the largest count, each limit is watched twice: at the largest, and
+    /// as a bound over all.
     pub fn new(machine: &Machine, model: &PowerModel) -> Option<Box<Self>> {
-        let tracks: Vec<Track> = machine
-            .converters
-            .iter()
-            .enumerate()
-            .flat_map(|(index, converter)| {
+        let lower = machine.limits.override_at.is_none();
+        let all = |bounds: bool| {
+            let converters = machine.converters.iter().enumerate();
+            converters.flat_map(move |(index, converter)| {
                 let margin = machine.limits.margin;
                 let supply_w = model.limit_w(index);
                 let regen_w = model.regen_limit_w(index);
@@ -100,8 +106,13 @@ impl Watch {
                     flow,
                     limits,
                     time_s: 0.0,
+                    bounds,
                 })
             })
+        };
+        let bounds = all(true).filter(|_| lower);
+        let tracks: Vec<Track> = all(false)
+            .chain(bounds)
             .filter(|track| !track.limits.is_empty())
             .collect();
         let spindle = machine.spindle.as_ref();
@@ -119,7 +130,7 @@ impl Watch {
                 kept: Kept::default(),
                 powers: Vec::new(),
                 repeated: false,
-                lower: machine.limits.override_at.is_none(),
+                models: Models::new(model, lower),
             })
         })
     }
@@ -147,7 +158,8 @@ impl Watch {
             return;
         };
         let Some(mv) = &beside.alone else {
-            waiting.hand_on(model, beside.levels.as_slice(), &mut self.tracks);
+            let levels = beside.levels.as_slice();
+            waiting.hand_on(model, &self.models, levels, &mut self.tracks);
             return;
         };
         let place = Place::of(mv);
@@ -173,54 +185,52 @@ impl Watch {
         if !plan.duration_s.is_finite() {
             // At rest for ever.
             let tracks = self.tracks.iter();
-            let powers = tracks.map(|track| model.resting_w(track.converter, mv));
+            let powers = tracks.map(|track| {
+                let [drawn_w, fed_back_w] = model.resting_w(track.converter, mv);
+                [drawn_w, fed_back_w, 0.0]
+            });
             self.powers.extend(powers);
             return self.last(Span::ANY, place);
         }
-        if self.waiting.is_none() && mv.arc.is_some() {
-            // Many slices: they are not kept.
-            for track in &mut self.tracks {
-                if let Some(tracer) = model.tracer(track.converter, track.flow) {
-                    tracer.plan(mv, plan, &mut |slice| track.take(&slice, place));
-                }
-            }
-            return self.linger(model, mv, plan.top_speed_mm_s);
-        }
         let mut kept = std::mem::take(&mut self.kept);
-        for (index, track) in self.tracks.iter().enumerate() {
-            let Some(tracer) = model.tracer(track.converter, track.flow) else {
+        for (index, track) in self.tracks.iter_mut().enumerate() {
+            let own = track.model(model, &self.models);
+            let Some(tracer) = track.tracer(own) else {
                 continue;
             };
+            if track.bounds {
+                bound(&tracer, (mv, plan), index, &mut kept);
+                if let Trajectory::Axes(profiles) = &plan.trajectory {
+                    let out = &mut |slice| kept.push(index, slice);
+                    let apart = tracer.apart(mv, profiles, out);
+                    let peak_w = kept.peak_w(index, 0);
+                    if let Some(terms) = kept.terms(index) {
+                        (terms.apart, terms.cruise_w) = (apart, peak_w);
+                    }
+                    continue;
+                }
+            }
             if let Trajectory::Path(profile) = &plan.trajectory
                 && track.limits.only_stores()
                 && let Some(line) = tracer.line(mv, profile)
                 && let Some(most_w) = tracer.fed_back_bound_w(&line)
             {
                 kept.push_line(index, most_w, line);
+            } else if self.waiting.is_none() && mv.arc.is_some() && !track.bounds {
+                // Many slices: they are not kept.
+                tracer.plan(mv, plan, &mut |slice| track.take(&slice, place));
             } else {
                 tracer.plan(mv, plan, &mut |slice| kept.push(index, slice));
+                if track.bounds && mv.arc.is_some() {
+                    let peak_w = kept.peak_w(index, 0);
+                    if let Some(terms) = kept.terms(index) {
+                        terms.cruise_w = peak_w;
+                    }
+                }
             }
         }
-        let on_path = matches!(plan.trajectory, Trajectory::Path(_));
-        let cruises_mm_s = if on_path { plan.top_speed_mm_s } else { 0.0 };
-        self.kept(model, mv, &mut kept, cruises_mm_s);
+        self.kept(model, mv, &mut kept);
         self.kept = kept;
-    }
-
-    /// A move has been taken that runs at up to this speed.
-    fn linger(&mut self, model: &PowerModel, mv: &Move, top_speed_mm_s: f64) {
-        let place = Place::of(mv);
-        for track in &mut self.tracks {
-            let (converter, lower) = (track.converter, self.lower && top_speed_mm_s > 0.0);
-            let mut cruise = |above_w: f64| {
-                if lower {
-                    linger::lingers_s(model, converter, mv, top_speed_mm_s, above_w)
-                } else {
-                    0.0
-                }
-            };
-            track.limits.linger(track.time_s, place, &mut cruise);
-        }
     }
 
     /// Keeps a piece of a plan for the move that it belongs to, with the step of
@@ -234,9 +244,10 @@ impl Watch {
         kept: &mut Kept,
     ) {
         for (index, track) in self.tracks.iter().enumerate() {
-            let Some(tracer) = model.tracer(track.converter, track.flow) else {
+            let Some(tracer) = track.tracer(track.model(model, &self.models)) else {
                 continue;
             };
+            let before = kept.slices(index).len();
             let (mut most_s, mut more_w) = (0.0, 0.0);
             if let Some(step) = step {
                 most_s = step.response_s.min(planned.duration_s());
@@ -244,20 +255,69 @@ impl Watch {
             }
             if more_w <= 0.0 || more_w.is_nan() {
                 tracer.piece(mv, planned, &mut |slice| kept.push(index, slice));
-                continue;
+            } else {
+                tracer.piece(mv, planned, &mut |slice| {
+                    let [first, rest] = slice.cut(most_s);
+                    most_s -= slice.duration_s;
+                    for slice in first.map(|it| it.raised(more_w)).into_iter().chain(rest) {
+                        kept.push(index, slice);
+                    }
+                });
             }
-            tracer.piece(mv, planned, &mut |slice| {
-                let [first, rest] = slice.cut(most_s);
-                most_s -= slice.duration_s;
-                for slice in first.map(|it| it.raised(more_w)).into_iter().chain(rest) {
-                    kept.push(index, slice);
+            if track.bounds {
+                let rest_w = tracer.rest_w(mv);
+                let cruise_w = match &planned.piece {
+                    Piece::Along { .. } if mv.arc.is_none() => {
+                        tracer.cruise_w(mv, planned.top_speed_mm_s())
+                    }
+                    Piece::Joined { direction } => {
+                        let line = straight_line(mv, direction, planned.length_mm);
+                        tracer.cruise_w(&line, planned.top_speed_mm_s())
+                    }
+                    _ => kept.peak_w(index, before),
+                };
+                if let Some(terms) = kept.terms(index) {
+                    terms.rest_w = terms.rest_w.max(rest_w);
+                    terms.cruise_w = terms.cruise_w.max(cruise_w);
                 }
-            });
+            }
         }
     }
 
-    /// Takes what was kept of a move that runs as planned, at up to a speed.
-    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept, top_speed_mm_s: f64) {
+    /// At lower overrides a piece may be sped up or braked where it is not at the
+    /// largest.
+    #[cold]
+    pub fn surge(
+        &self,
+        model: &PowerModel,
+        mv: &Move,
+        planned: &Planned<u64>,
+        surge: &Surge,
+        kept: &mut Kept,
+    ) {
+        let lasts_s = surge.lasts_s();
+        if lasts_s <= 0.0 {
+            return;
+        }
+        for (index, track) in self.tracks.iter().enumerate() {
+            if !track.bounds {
+                continue;
+            }
+            let own = track.model(model, &self.models);
+            let [drawn_w, fed_back_w] = surge_powers(own, track.converter, mv, planned, *surge);
+            let power_w = match track.flow {
+                Flow::Drawn => drawn_w,
+                Flow::FedBack => fed_back_w,
+            };
+            if let Some(terms) = kept.terms(index) {
+                terms.surge_w = terms.surge_w.max(power_w);
+                terms.surge_s += lasts_s;
+            }
+        }
+    }
+
+    /// Takes what was kept of a move that runs as planned.
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
         let place = Place::of(mv);
         if let Some(waiting) = &mut self.waiting {
             let slices = std::mem::replace(kept, waiting.room());
@@ -269,10 +329,10 @@ impl Watch {
             return;
         }
         for (index, track) in self.tracks.iter_mut().enumerate() {
-            track.take_kept(index, model, kept, &mut Levels::none(), place);
+            let own = track.model(model, &self.models);
+            track.take_kept(index, own, kept, &mut Levels::none(), place);
         }
         kept.clear();
-        self.linger(model, mv, top_speed_mm_s);
     }
 
     /// Takes a move whose timing is not known: its largest speeds and those of
@@ -288,16 +348,19 @@ impl Watch {
     ) {
         let place = Place::of(mv);
         for (index, track) in self.tracks.iter().enumerate() {
-            let mut powers = model.robust_powers(track.converter, mv, parts);
+            let own = track.model(model, &self.models);
+            let mut powers = own.robust_powers(track.converter, mv, parts);
             let of_flow = match track.flow {
                 Flow::Drawn => &mut powers[0],
                 Flow::FedBack => &mut powers[1],
             };
-            let own = kept.slices(index).iter();
-            *of_flow = own.fold(*of_flow, |most, slice| {
+            let slices = kept.slices(index).iter();
+            *of_flow = slices.fold(*of_flow, |most, slice| {
                 super::demand::larger(most, slice.peak_w())
             });
-            self.powers.push(powers);
+            let tracer = track.tracer(own).filter(|_| track.bounds);
+            let rest_w = tracer.map_or(0.0, |tracer| tracer.rest_w(mv));
+            self.powers.push([powers[0], powers[1], rest_w]);
         }
         kept.clear();
         self.last(span, place);
@@ -319,16 +382,57 @@ impl Watch {
         }
     }
 
-    /// What was found, converter by converter.
+    /// What was found, converter by converter. A limit that is kept at the largest
+    /// overrides, but not by the bound over all, has that.
     pub fn ratings(&self) -> Vec<Rating> {
-        let tracks = self.tracks.iter();
-        tracks
-            .flat_map(|track| track.limits.ratings(track.converter, self.repeated))
-            .collect()
+        let of = |bounds: bool| {
+            let tracks = self
+                .tracks
+                .iter()
+                .filter(move |track| track.bounds == bounds);
+            tracks.flat_map(|track| track.limits.ratings(track.converter, self.repeated))
+        };
+        let mut ratings: Vec<Rating> = of(false).collect();
+        for (rating, bound) in ratings.iter_mut().zip(of(true)) {
+            if rating.keeps() && !bound.keeps() {
+                rating.bound = Some(bound.value);
+            }
+        }
+        ratings
+    }
+}
+
+/// What a bound over all lower overrides has to know of a move by itself.
+fn bound(tracer: &Tracer<'_>, (mv, plan): (&Move, &Plan), index: usize, kept: &mut Kept) {
+    if matches!(plan.trajectory, Trajectory::Rest) {
+        // It lasts as long as it does.
+        return;
+    }
+    let Some(terms) = kept.terms(index) else {
+        return;
+    };
+    terms.rest_w = tracer.rest_w(mv);
+    if mv.arc.is_none() && matches!(plan.trajectory, Trajectory::Path(_)) {
+        terms.cruise_w = tracer.cruise_w(mv, plan.top_speed_mm_s);
+        terms.line_s = Some(mv.length_mm / plan.top_speed_mm_s);
     }
 }
 
 impl Track {
+    /// The model that it is reckoned with.
+    fn model<'a>(&self, model: &'a PowerModel, models: &'a Models) -> &'a PowerModel {
+        if self.bounds && self.flow == Flow::FedBack {
+            models.fed_back(model)
+        } else {
+            model
+        }
+    }
+
+    fn tracer<'a>(&self, model: &'a PowerModel) -> Option<Tracer<'a>> {
+        let tracer = model.tracer(self.converter, self.flow)?;
+        Some(if self.bounds { tracer.raised() } else { tracer })
+    }
+
     /// All power passes here, slice by slice.
     fn take(&mut self, slice: &Slice, place: Place) {
         self.limits.take(slice, self.time_s, place);
@@ -336,12 +440,23 @@ impl Track {
     }
 
     /// A power that lasts for a time that is not known.
-    fn span(&mut self, powers: [f64; 2], span: Span, place: Place) {
+    fn span(&mut self, powers: [f64; 3], span: Span, place: Place) {
         let power_w = match self.flow {
             Flow::Drawn => powers[0],
             Flow::FedBack => powers[1],
         };
+        let terms = Terms {
+            rest_w: powers[2],
+            cruise_w: power_w,
+            ..Terms::default()
+        };
+        if self.bounds {
+            self.limits.begin(&terms, self.time_s, place);
+        }
         self.limits.span(power_w, span, self.time_s, place);
+        if self.bounds {
+            self.limits.end(&terms, self.time_s, place);
+        }
         if span.longest_s.is_finite() {
             self.time_s += span.longest_s;
         }

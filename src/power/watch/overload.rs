@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
-use super::super::trace::Slice;
+use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
+use super::terms::Terms;
 
 /// Intervals that are kept of a window; with more, neighbours are joined, the
 /// gap between them counted in.
@@ -29,8 +30,16 @@ pub(super) struct Overload {
     clock_s: f64,
     /// The intervals that begin within the first window.
     head: Vec<(f64, f64)>,
-    /// Of the move that is being taken, s.
+    /// Where this is a bound over all lower overrides: how much longer the move at hand
+    /// may lie above the power, and whether its time below counts.
+    stretch: f64,
+    dropped: bool,
+    /// Of a line how long it has lain above, and for how long it may at most, s.
     own_s: f64,
+    line_s: Option<f64>,
+    /// What a window may cut off a move in which it is not known where the time lies
+    /// above, s.
+    pub edge_s: f64,
     pub worst: Worst,
 }
 
@@ -43,7 +52,11 @@ impl Overload {
             sum_s: 0.0,
             clock_s: 0.0,
             head: Vec::new(),
+            stretch: 1.0,
+            dropped: false,
             own_s: 0.0,
+            line_s: None,
+            edge_s: 0.0,
             worst: Worst::default(),
         }
     }
@@ -57,46 +70,107 @@ impl Overload {
     /// Time passes at no more than that.
     #[inline]
     pub fn pass(&mut self, duration_s: f64) {
-        self.clock_s += duration_s;
+        if !self.dropped {
+            self.clock_s += duration_s;
+        }
     }
 
     pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
         let start_s = self.clock_s;
         for (part, above) in slice.sides(self.calm_w()) {
             let from_s = self.clock_s;
-            self.clock_s += part.duration_s;
             if above {
-                self.own_s += part.duration_s;
+                let lasts_s = if self.line_s.is_some() {
+                    part.duration_s
+                } else {
+                    part.duration_s * self.stretch
+                };
+                self.clock_s += lasts_s;
+                self.own_s += lasts_s;
                 let found_s = self.count(from_s, self.clock_s);
                 let now_s = time_s + (self.clock_s - start_s);
                 self.worst.raise(found_s, now_s, place);
+            } else if !self.dropped {
+                self.clock_s += part.duration_s;
             }
         }
     }
 
-    /// A move ends of which some lies above the power; at a lower override a cruise may
-    /// last longer there. `cruise` gives for how long at most the move lies above a
-    /// power at any override, s.
-    pub fn linger(&mut self, time_s: f64, place: Place, cruise: &mut impl FnMut(f64) -> f64) {
-        let own_s = std::mem::take(&mut self.own_s);
-        if own_s <= 0.0 {
+    /// A move begins, where this is a bound: see [`Terms`].
+    pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        let Terms {
+            rest_w,
+            cruise_w,
+            line_s,
+            ..
+        } = *terms;
+        (self.stretch, self.own_s, self.line_s) = (1.0, 0.0, None);
+        if rest_w > self.calm_w() {
+            self.worst.raise(f64::INFINITY, time_s, place);
+        } else if cruise_w > self.calm_w() && rest_w < self.above_w {
+            self.stretch = (cruise_w - rest_w) / (self.above_w - rest_w);
+            self.line_s = line_s.map(|line_s| line_s * self.stretch);
+        }
+        self.dropped = terms.surge_s > 0.0 && terms.surge_w > self.calm_w();
+    }
+
+    /// It ends.
+    pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        if let Some(line_s) = self.line_s.take() {
+            let more_s = line_s.min(self.own_s * self.stretch) - self.own_s;
+            if more_s > 0.0 {
+                self.prolong(more_s, time_s, place);
+            }
+        }
+        if self.dropped {
+            self.above(terms.surge_s, time_s, place);
+        }
+        (self.stretch, self.dropped) = (1.0, false);
+    }
+
+    /// The last interval lasts longer.
+    fn prolong(&mut self, more_s: f64, time_s: f64, place: Place) {
+        let Some(last) = self.intervals.back_mut() else {
             return;
+        };
+        let to_s = last.1;
+        let after_s = (self.clock_s - to_s).max(0.0);
+        if let Some(head) = self.head.last_mut()
+            && head.1 == to_s
+        {
+            head.1 += more_s;
         }
-        // More than the window is no worse than the window.
-        let more_s = cruise(self.above_w).min(2.0 * self.every_s) - own_s;
-        if more_s > 0.0 {
-            let from_s = self.clock_s;
-            self.clock_s += more_s;
-            let found_s = self.count(from_s, self.clock_s);
-            self.worst.raise(found_s, time_s, place);
+        let found_s = self.count(to_s, to_s + more_s);
+        self.clock_s = to_s + more_s + after_s;
+        self.worst.raise(found_s, time_s, place);
+    }
+
+    /// So much time above the power.
+    fn above(&mut self, lasts_s: f64, time_s: f64, place: Place) {
+        let from_s = self.clock_s;
+        self.clock_s += lasts_s;
+        let found_s = self.count(from_s, self.clock_s);
+        self.worst.raise(found_s, time_s, place);
+    }
+
+    /// Axes that run for themselves: what they do in all cannot last longer than this
+    /// above the power.
+    pub fn apart(&mut self, apart: &Apart, rest_w: f64, time_s: f64, place: Place) {
+        let mut below_s = apart.duration_s;
+        if rest_w + apart.most_w > self.calm_w() && rest_w < self.above_w {
+            let lasts_s = apart.work_j / (self.above_w - rest_w);
+            self.above(lasts_s, time_s, place);
+            self.edge_s = self.edge_s.max(lasts_s);
+            below_s = (below_s - lasts_s).max(0.0);
         }
+        self.clock_s += below_s;
     }
 
     /// Adds an interval, and gives the sum over the window that ends with it: over
     /// a window that slides it is largest where its end leaves an interval.
     fn count(&mut self, start_s: f64, end_s: f64) -> f64 {
         if start_s < self.every_s {
-            self.begin(start_s, end_s);
+            self.lead(start_s, end_s);
         }
         match self.intervals.back_mut() {
             Some(last) if start_s <= last.1 + GAP_S => {
@@ -126,7 +200,7 @@ impl Overload {
     }
 
     /// Keeps an interval of the first window.
-    fn begin(&mut self, start_s: f64, end_s: f64) {
+    fn lead(&mut self, start_s: f64, end_s: f64) {
         match self.head.last_mut() {
             Some(last) if start_s <= last.1 + GAP_S => last.1 = end_s,
             _ => self.head.push((start_s, end_s)),
@@ -182,7 +256,8 @@ impl Overload {
     /// A power that lasts for a time that is not known.
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
         let below = power_w <= self.calm_w();
-        let lasts_s = span.worse_s(!below);
+        let stretch = if below { 1.0 } else { self.stretch };
+        let lasts_s = span.worse_s(!below) * stretch;
         if below {
             self.clock_s += lasts_s;
         } else if lasts_s < f64::INFINITY {

@@ -83,12 +83,24 @@ pub struct Rating {
     pub lasting: bool,
     /// The overrides at which it is worst, where those are lower than the largest.
     pub overrides: Option<OverrideAt>,
+    /// A bound of the value over all overrides up to the largest, if by that the limit is
+    /// not kept though by the value it is, and nothing has settled it yet.
+    pub bound: Option<f64>,
+    /// The value is that bound: what was looked at settles nothing.
+    pub any: bool,
+    /// Looked at with knobs at lower overrides, since the bound settles nothing.
+    pub looked_at: bool,
 }
 
 impl Rating {
-    /// Whether the limit is kept.
+    /// Whether the limit is kept at every override.
     #[must_use]
     pub fn fits(&self) -> bool {
+        self.keeps() && self.bound.is_none()
+    }
+
+    /// Whether it is kept by the value.
+    pub(in crate::power) fn keeps(&self) -> bool {
         let slack = ROUNDING * self.limit.abs().max(1e-3);
         match self.measure {
             Measure::LowestVoltage => self.value >= self.limit - slack,
@@ -163,6 +175,9 @@ impl Worst {
             text: self.place.text,
             lasting: self.lasting,
             overrides: None,
+            bound: None,
+            any: false,
+            looked_at: false,
         }
     }
 }

@@ -8,7 +8,7 @@
 //! once more, or as often as it fits; what is left of its last cell comes on top of the
 //! first.
 
-use super::super::trace::Slice;
+use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
 
@@ -56,6 +56,47 @@ impl Continuous {
         self.lasting.last(power_w, time_s, place);
     }
 
+    /// Both ways, where this is a bound: see [`Terms`](super::terms::Terms).
+    fn ways(&mut self) -> impl Iterator<Item = &mut Rms> {
+        std::iter::once(&mut self.lasting).chain(&mut self.dense)
+    }
+
+    /// A power that may last as long as it will at low overrides.
+    pub fn rest(&mut self, power_w: f64, time_s: f64, place: Place) {
+        self.ways().for_each(|rms| rms.rest(power_w, time_s, place));
+    }
+
+    /// A power that comes in addition.
+    pub fn surge(&mut self, power_w: f64, duration_s: f64, time_s: f64, place: Place) {
+        for rms in self.ways() {
+            let square = rms.beyond(power_w) * duration_s;
+            rms.edge = rms.edge.max(square);
+            rms.cell += square;
+            rms.total += square;
+            rms.last = (time_s, place);
+        }
+    }
+
+    /// Axes that run for themselves: their work at no more than their largest power.
+    pub fn apart(&mut self, apart: &Apart, rest_w: f64, time_s: f64, place: Place) {
+        let Apart {
+            most_w,
+            work_j,
+            duration_s,
+        } = *apart;
+        if duration_s <= 0.0 {
+            return;
+        }
+        for rms in self.ways() {
+            let at_most_s = if most_w > 0.0 { work_j / most_w } else { 0.0 };
+            let square = rms.beyond(rest_w + most_w) * at_most_s;
+            rms.edge = rms.edge.max(square);
+            let floor2 = rms.floor_w * rms.floor_w;
+            let even_w = (floor2 + square / duration_s).sqrt();
+            rms.take(&Slice::constant(duration_s, even_w), time_s, place);
+        }
+    }
+
     /// The worst mean as its root, in W.
     pub fn result(&self) -> Worst {
         self.least(Rms::result)
@@ -68,6 +109,14 @@ impl Continuous {
     }
 
     fn least(&self, of: impl Fn(&Rms) -> Worst) -> Worst {
+        let of = |rms: &Rms| {
+            let mut worst = of(rms);
+            if rms.edge > 0.0 {
+                let over_s = rms.window_s.min(rms.elapsed_s);
+                worst.value = (worst.value * worst.value + rms.edge / over_s).sqrt();
+            }
+            worst
+        };
         let lasting = of(&self.lasting);
         let dense = self.dense.as_ref().map(of);
         dense
@@ -101,6 +150,9 @@ struct Rms {
     last: (f64, Place),
     /// The first full cells, N at most, and what the others of the program come to.
     head: Vec<f64>,
+    /// What a window may hold more of, of a move of which it is not known when it draws,
+    /// W²·s.
+    edge: f64,
 }
 
 impl Rms {
@@ -123,6 +175,21 @@ impl Rms {
             worst: Worst::default(),
             last: (0.0, Place::default()),
             head: Vec::new(),
+            edge: 0.0,
+        }
+    }
+
+    /// How far the square of a power lies above that of what all slices count at least.
+    fn beyond(&self, power_w: f64) -> f64 {
+        (power_w * power_w - self.floor_w * self.floor_w).max(0.0)
+    }
+
+    /// A power that may last as long as it will at low overrides.
+    fn rest(&mut self, power_w: f64, time_s: f64, place: Place) {
+        if power_w > self.floor_w {
+            self.lift(power_w);
+            let square = power_w * power_w * self.window_s;
+            self.worst.raise(square, time_s, place);
         }
     }
 
@@ -332,6 +399,13 @@ impl Rms {
         if covered {
             return;
         }
+        self.lift(power_w);
+        self.worst
+            .raise_lasting(power_w * power_w * self.window_s, time_s, place);
+    }
+
+    /// All slices count more at least.
+    fn lift(&mut self, power_w: f64) {
         // max(P², F'²) ≤ max(P², F²) + F'² − F² for what has been counted.
         let more = power_w * power_w - self.floor_w * self.floor_w;
         for cell in self.ring.iter_mut().chain(&mut self.head) {
@@ -341,8 +415,6 @@ impl Rms {
         self.cell += more * self.filled_s;
         self.total += more * self.elapsed_s;
         self.floor_w = power_w;
-        self.worst
-            .raise_lasting(power_w * power_w * self.window_s, time_s, place);
     }
 
     /// The worst mean as its root, in W.

@@ -1,9 +1,10 @@
 //! A store of energy that fills above a power and empties below it: what a
 //! capacitor lacks or holds in excess, or the heat in a resistor.
 
-use super::super::trace::Slice;
+use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
+use super::terms::Terms;
 use arrayvec::ArrayVec;
 
 /// Energies that are noted, and by what factor they differ.
@@ -27,6 +28,10 @@ pub(super) struct Store {
     /// Time so far, s, and when it had given off certain energies first.
     clock_s: f64,
     given_off: ArrayVec<(f64, f64), NOTED_MAX>,
+    /// Where this is a bound over all lower overrides: the move at hand gives nothing off.
+    dropped: bool,
+    /// What may come in at the end of a move of which it is not known when, J.
+    pub edge_j: f64,
     pub worst: Worst,
 }
 
@@ -39,6 +44,8 @@ impl Store {
             most_j: 0.0,
             clock_s: 0.0,
             given_off: ArrayVec::new(),
+            dropped: false,
+            edge_j: 0.0,
             worst: Worst::default(),
         }
     }
@@ -75,6 +82,11 @@ impl Store {
     ) {
         let mut now_s = time_s;
         for (part, above) in slice.sides(self.taken_w) {
+            if self.dropped && !above {
+                passed(&part, now_s);
+                now_s += part.duration_s;
+                continue;
+            }
             let change_j = part.energy_j() - self.taken_w * part.duration_s;
             self.net_j += change_j;
             self.most_j = self.most_j.max(self.net_j);
@@ -104,8 +116,59 @@ impl Store {
     /// Time passes with an energy that fills nothing.
     #[inline]
     pub fn pass(&mut self, energy_j: f64, duration_s: f64) {
+        if self.dropped {
+            return;
+        }
         self.net_j += energy_j - self.taken_w * duration_s;
         self.note(duration_s);
+    }
+
+    /// A move begins, where this is a bound: see [`Terms`].
+    pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        if terms.rest_w > self.taken_w * (1.0 + ROUNDING) {
+            self.worst.raise(f64::INFINITY, time_s, place);
+        }
+        self.dropped = terms.surge_s > 0.0;
+    }
+
+    /// It ends.
+    pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        self.dropped = false;
+        if terms.surge_s > 0.0 && terms.surge_w > self.taken_w {
+            let energy_j = (terms.surge_w - self.taken_w) * terms.surge_s;
+            self.fill(energy_j, time_s, place);
+        }
+    }
+
+    fn fill(&mut self, energy_j: f64, time_s: f64, place: Place) {
+        self.net_j += energy_j;
+        self.most_j = self.most_j.max(self.net_j);
+        self.held_j += energy_j;
+        self.worst.raise(self.held_j, time_s, place);
+    }
+
+    /// Axes that run for themselves: what comes in at once at most, and the rest evenly.
+    pub fn apart(&mut self, apart: &Apart, rest_w: f64, time_s: f64, place: Place) {
+        let Apart {
+            most_w,
+            work_j,
+            duration_s,
+        } = *apart;
+        let mut burst_j = 0.0;
+        if rest_w + most_w > self.taken_w && most_w > 0.0 {
+            burst_j = work_j * ((rest_w + most_w - self.taken_w) / most_w).min(1.0);
+            self.fill(burst_j, time_s, place);
+            self.edge_j = self.edge_j.max(burst_j);
+        }
+        let even_w = rest_w + (work_j - burst_j) / duration_s;
+        if duration_s > 0.0 && burst_j > 0.0 {
+            let slice = Slice::constant(duration_s, even_w);
+            self.take(&slice, time_s, place, &mut |_, _| {});
+        } else if duration_s > 0.0 {
+            // Nothing comes in.
+            let slice = Slice::constant(duration_s, even_w.min(self.taken_w));
+            self.take(&slice, time_s, place, &mut |_, _| {});
+        }
     }
 
     /// The worst of all runs, where the program runs again and again: each begins with

@@ -1,0 +1,118 @@
+//! What a bound over all lower overrides has to know of a move besides its slices.
+//!
+//! The slices are those at the largest overrides, raised (see `trace/raised`), so that
+//! what fills stores and means over windows is no less than at any lower override, and
+//! takes no longer. Beyond that
+//!
+//! * what is drawn next to rest lasts for ever where the override is next to nothing:
+//!   means count at least that, and where it lies above a limit nothing is kept;
+//! * what lies above a power lasts longer at a lower speed: a cruise of `P` by
+//!   `(P − P₀)/(λ − P₀)` at most, P₀ next to rest, since below that speed it does not
+//!   lie above λ;
+//!   A line from rest to rest of length L lies above λ for no longer than `L/v`, v the
+//!   speed at which a cruise comes to λ: in all it takes `L/v + v/a`, and as long as it
+//!   takes to brake, and some of speeding up, lie below;
+//! * where a lower override makes axes speed up or brake that do not at the largest, so
+//!   much power counts for so long in addition, and nothing is given off meanwhile;
+//! * axes that run for themselves meet otherwise: their work counts, at no more than
+//!   the largest powers of all together.
+
+use super::limits::Limits;
+use super::rating::Place;
+use crate::power::axis::AxisPower;
+use crate::power::model::PowerModel;
+use crate::power::trace::Apart;
+
+/// See the module.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Terms {
+    /// What is drawn or fed back next to rest, W.
+    pub rest_w: f64,
+    /// In a cruise at most, W.
+    pub cruise_w: f64,
+    /// Of a line from rest to rest its length by its largest speed, s.
+    pub line_s: Option<f64>,
+    /// In ramps that are none at the largest overrides, W, and for how long, s.
+    pub surge_w: f64,
+    pub surge_s: f64,
+    /// Axes that run for themselves.
+    pub apart: Option<Apart>,
+}
+
+impl Terms {
+    /// With what the spindle draws as well.
+    pub fn raised(mut self, by_w: f64) -> Self {
+        self.rest_w += by_w;
+        self.cruise_w += by_w;
+        self.surge_w += by_w;
+        self
+    }
+}
+
+/// The models that bounds need.
+#[derive(Debug)]
+pub(super) struct Models(Option<Box<PowerModel>>);
+
+impl Models {
+    pub fn new(model: &PowerModel, needed: bool) -> Self {
+        let curved = model.axes.iter().any(AxisPower::is_curved);
+        let credits = model.converters.iter().any(|it| it.credit_regen);
+        let needed = needed && (curved || credits);
+        Self(needed.then(|| Box::new(model.unbraked())))
+    }
+
+    /// That of what is fed back.
+    pub fn fed_back<'a>(&'a self, model: &'a PowerModel) -> &'a PowerModel {
+        self.0.as_deref().unwrap_or(model)
+    }
+}
+
+/// How the limits take the move that is at hand, where they are bounds.
+impl Limits {
+    /// A move begins.
+    pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        for (overload, ..) in &mut self.overload {
+            overload.begin(terms, time_s, place);
+        }
+        if let Some((continuous, ..)) = &mut self.continuous {
+            continuous.rest(terms.rest_w, time_s, place);
+        }
+        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
+        let brake = self.brake.iter_mut().map(|(store, ..)| store);
+        for store in bus.chain(brake) {
+            store.begin(terms, time_s, place);
+        }
+    }
+
+    /// It ends.
+    pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        for (overload, ..) in &mut self.overload {
+            overload.end(terms, time_s, place);
+        }
+        if let Some((continuous, ..)) = &mut self.continuous
+            && terms.surge_s > 0.0
+        {
+            continuous.surge(terms.surge_w, terms.surge_s, time_s, place);
+        }
+        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
+        let brake = self.brake.iter_mut().map(|(store, ..)| store);
+        for store in bus.chain(brake) {
+            store.end(terms, time_s, place);
+        }
+    }
+
+    /// A move whose axes run for themselves, after [`Self::begin`].
+    pub fn apart(&mut self, apart: &Apart, rest_w: f64, time_s: f64, place: Place) {
+        for (overload, ..) in &mut self.overload {
+            overload.apart(apart, rest_w, time_s, place);
+        }
+        if let Some((continuous, ..)) = &mut self.continuous {
+            continuous.apart(apart, rest_w, time_s, place);
+        }
+        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
+        let brake = self.brake.iter_mut().map(|(store, ..)| store);
+        for store in bus.chain(brake) {
+            store.apart(apart, rest_w, time_s, place);
+        }
+    }
+}
