@@ -119,6 +119,7 @@ fn controller() -> Controller {
             rapid_joint: gwatt::machine::RapidJoint::Stop,
             spindle_wait: gwatt::machine::SpindleWait::Unknown,
             dwell_stops: false,
+            shortest_block_s: 0.01,
             look_ahead: None,
         },
         knobs: Vec::new(),

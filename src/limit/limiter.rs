@@ -9,8 +9,9 @@ use std::collections::VecDeque;
 use super::change::{Change, Permit};
 use super::depth::Depths;
 use super::lever::Obstacle;
-use super::options::LimitOptions;
+use super::options::{LimitOptions, Strategy};
 use super::solver::{Ends, Solver};
+use super::split::Split;
 use super::window;
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -23,6 +24,11 @@ use crate::power::{Assessment, Certificate};
 pub struct Outcome {
     /// The change; `None` where the move fits or cannot be helped.
     pub change: Option<Box<Change>>,
+    /// The pieces that it is written in, where these are more than one; the change is
+    /// that of the last one then.
+    pub split: Option<Box<Split>>,
+    /// Why it is not, where that was asked for.
+    pub unsplit: Option<&'static str>,
     /// Why a move that does not fit stays as it is.
     pub obstacle: Option<Box<Obstacle>>,
 }
@@ -73,6 +79,12 @@ impl<'m> Limiter<'m> {
             depths,
             shifted: false,
         }
+    }
+
+    /// Whether blocks may be written as several.
+    #[must_use]
+    pub fn splits(&self) -> bool {
+        self.solver.how.strategy == Strategy::Split
     }
 
     /// Takes the next move. Outcomes are handed on in the order of the moves;
@@ -199,16 +211,29 @@ impl<'m> Limiter<'m> {
         if fits && self.solver.fits_later(mv, assessment, &permit, ends) {
             return Outcome::default();
         }
-        match self.solver.solve(mv, assessment, &permit, ends) {
-            Ok(change) => Outcome {
-                change: (!change.is_none()).then(|| Box::new(change)),
-                obstacle: None,
-            },
-            Err(obstacle) => Outcome {
-                change: None,
-                obstacle: Some(Box::new(obstacle)),
-            },
+        let solved = self.solver.solve(mv, assessment, &permit, ends);
+        let mut outcome = Outcome::default();
+        if self.splits() && !fits {
+            let otherwise = solved.as_ref().ok();
+            match self.solver.pieces(mv, assessment, &permit, ends, otherwise) {
+                Ok(split) => {
+                    let last = split.pieces.last().and_then(|piece| piece.accel);
+                    let change = Change {
+                        accel: last,
+                        ..Change::NONE
+                    };
+                    outcome.change = Some(Box::new(change));
+                    outcome.split = Some(Box::new(split));
+                    return outcome;
+                }
+                Err(reason) => outcome.unsplit = Some(reason),
+            }
         }
+        match solved {
+            Ok(change) => outcome.change = (!change.is_none()).then(|| Box::new(change)),
+            Err(obstacle) => outcome.obstacle = Some(Box::new(obstacle)),
+        }
+        outcome
     }
 }
 

@@ -186,6 +186,7 @@ fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
             rapids: decision.rapids,
             feeds: decision.feeds,
             change: &decision.change,
+            pieces: &[],
             stops: decision.stops,
             rests: false,
         };

@@ -18,6 +18,6 @@ mod single;
 mod state;
 mod turned;
 
-pub use block::{BlockView, Rewriter};
+pub use block::{BlockView, PieceWords, Rewriter};
 pub use single::{CycleBlock, Singles};
 pub use state::Mark;

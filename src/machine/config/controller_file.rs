@@ -242,6 +242,9 @@ pub(crate) struct PlannerTable {
     /// What waits for the spindle's speed; default: not known, so that both
     /// cases are counted.
     pub(crate) spindle_wait: Option<SpindleWaitName>,
+    /// The shortest time that a block may last for the control to keep its speed;
+    /// default 0.01.
+    pub(crate) shortest_block_s: Option<Positive>,
     /// How corners are run through; default: not modelled.
     pub(crate) look_ahead: Option<At<LookAheadTable>>,
 }
@@ -309,6 +312,9 @@ pub(crate) struct KnobTable {
     pub(crate) min: Option<Positive>,
     /// Whether a document confirms it; default false: used on request only.
     pub(crate) verified: Option<bool>,
+    /// Whether it acts between two moves that run into each other, without a stop, so
+    /// that a block may be written as several of one line; default false.
+    pub(crate) between_moves: Option<bool>,
 }
 
 /// What a knob acts on.
