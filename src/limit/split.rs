@@ -153,7 +153,7 @@ impl Solver<'_> {
         };
         let jerk = |axis: usize| {
             let data = self.machine.axes[axis].as_ref();
-            data.is_some_and(|axis| axis.jerk_mm_s3.is_finite())
+            data.is_some_and(|axis| axis.jerk_mm_s3 > 0.0 && axis.jerk_mm_s3.is_finite())
         };
         let unlike = !self.machine.force_curves.is_empty()
             || mv.moving.iter().any(jerk)
