@@ -31,6 +31,10 @@ const SHORTEST_MM: f64 = 0.1;
 /// What a piece more must bring in, as a share of the time, and what all of them must.
 const PRICE: f64 = 1e-4;
 const GAIN: f64 = 1e-3;
+/// By what share of its path a brake begins earlier than it must. On its stretch more than
+/// the limit may be had for speeding up: a control that comes there a little late and slow
+/// must not find room for that.
+const EARLIER: f64 = 0.01;
 /// Accelerations that are tried for the last stages.
 const TRIES: u32 = 60;
 
@@ -147,7 +151,11 @@ impl Solver<'_> {
         let flows = mv.path_mode == PathMode::LookAhead
             && assessment.certificate == Certificate::Planned
             && assessment.ends2.iter().all(|end2| end2.is_finite())
-            && rules.is_some_and(|rules| assessment.ahead && rules.min_cruise_ratio == 0.0);
+            && match rules {
+                Some(rules) => assessment.ahead && rules.min_cruise_ratio == 0.0,
+                // Between two stops, since nothing is known of corners.
+                None => !assessment.blended && assessment.ends2 == [0.0; 2],
+            };
         let Some(knob) = knob.filter(|_| flows && mv.unknown_start.is_empty()) else {
             return Err(NO_LOOK_AHEAD);
         };
@@ -347,13 +355,18 @@ impl Road<'_> {
             let (low, rise) = (first.1, first.2);
             let (foot, fall) = (last.1, last.2);
             let (a, d) = (rise.accel_mm_s2, fall.accel_mm_s2);
-            // v² = low² + 2·a·(left − (v² − foot²)/2d)
-            let top2 = (low * low + 2.0 * a * left_mm + a / d * foot * foot) / (1.0 + a / d);
+            // The stretch before the brakes has to slow down for the last hundredth of
+            // v² − foot²: 2·a·l = 2·v² − low² − (foot² + kept·(v² − foot²)) with
+            // l = left − kept·(v² − foot²)/2d.
+            let kept = 1.0 - EARLIER;
+            let foot2 = foot * foot;
+            let top2 = (low * low + 2.0 * a * left_mm + (EARLIER + kept * a / d) * foot2)
+                / (1.0 + EARLIER + kept * a / d);
             let top = top2.max(0.0).sqrt().min(self.top_mm_s);
             if !(top > low && top > foot) {
                 return Err(SHORT);
             }
-            let braking_mm = 0.5 * (top * top - foot * foot) / d;
+            let braking_mm = 0.5 * kept * (top * top - foot2) / d;
             if self.ramp_load(low, top, a) > AIM {
                 first.2 = self.lower(rise).ok_or(NO_FIT)?;
             } else if self.ramp_load(top, foot, d) > AIM {

@@ -252,7 +252,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
-            let moved = steps.iter().any(Step::moves_axes);
+            let moved = facts.turns_knob || steps.iter().any(Step::moves_axes);
             assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
     }

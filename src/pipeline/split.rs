@@ -39,6 +39,11 @@ pub(super) struct Places {
 }
 
 impl Entry {
+    /// Whether axes move in it, or it only turns a knob.
+    pub(super) fn moves_on(&self) -> bool {
+        self.facts.turns_knob || self.steps.iter().any(Step::moves_axes)
+    }
+
     /// Keeps the places of its move; the interpreter has just executed the block.
     pub(super) fn keep_places(&mut self, interpreter: &Interpreter<'_>) {
         self.places = match self.steps.as_slice() {
@@ -173,7 +178,8 @@ pub(super) fn impossible(machine: &Machine) -> Option<String> {
     }
     if !acts.contains(&true) {
         return Some(format!(
-            "the word for acceleration of the controller `{name}` is not known to act between              moving blocks (between_moves)"
+            "the word for acceleration of the controller `{name}` is not known to act between \
+             moving blocks (between_moves)"
         ));
     }
     if machine.path.mode == Some(PathMode::ExactStop) {
@@ -181,11 +187,7 @@ pub(super) fn impossible(machine: &Machine) -> Option<String> {
             "with path.mode = \"exact-stop\" each piece of a block would end at rest".to_owned(),
         );
     }
-    controller.planner.look_ahead.is_none().then(|| {
-        format!(
-            "how the controller `{name}` runs from block to block is not modelled              ([planner.look_ahead])"
-        )
-    })
+    None
 }
 
 /// Whether a word is the motion word, an F, or a place that the block really goes to.

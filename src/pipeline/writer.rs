@@ -274,7 +274,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
             self.decide_at_once(&mut entry, judged);
-            let moved = entry.steps.iter().any(Step::moves_axes);
+            let moved = entry.moves_on();
             self.assessor.end_line(moved, &mut |_, _, _| {});
             self.ready = Some(entry);
         } else {
@@ -301,7 +301,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         } = self;
         let entries = &*entries;
         let Some(entry) = entries.back() else { return };
-        let moved = entry.steps.iter().any(Step::moves_axes);
+        let moved = entry.moves_on();
         // Behind the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
         for (index, step) in steps.enumerate() {

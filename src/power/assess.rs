@@ -12,6 +12,7 @@ use super::effect::{Effect, Switched};
 use super::eye::Eye;
 use super::held::{Behind, Held, Rider};
 use super::idle::Idle;
+use super::line::Line;
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::watch::{Rating, Watch};
@@ -35,6 +36,8 @@ pub struct Assessor<'m> {
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
     pub(super) held: Option<Box<Held>>,
+    /// What began with a move that was held, where it goes straight on.
+    pub(super) line: Line,
     /// The one that was held before, and room that is used again.
     pub(super) before: Option<Box<Held>>,
     pub(super) spare: Option<Box<Held>>,
@@ -73,6 +76,7 @@ impl<'m> Assessor<'m> {
             requested,
             want,
             held: None,
+            line: Line::default(),
             before: None,
             spare: None,
             idle: Idle::default(),
@@ -145,7 +149,7 @@ impl<'m> Assessor<'m> {
     #[must_use]
     pub fn waits(&self, mv: &Move) -> bool {
         let open = self.ahead.as_ref().is_some_and(|ahead| ahead.is_open());
-        open || self.last_held().is_some() || self.may_blend(mv)
+        open || self.last_held().is_some() || !self.line.is_empty() || self.may_blend(mv)
     }
 
     /// Takes something that moves no axis: it may stop the motion. Hands on what
@@ -165,7 +169,9 @@ impl<'m> Assessor<'m> {
     }
 
     fn act_on_axes(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        let Some(ahead) = &mut self.ahead else { return };
+        let Some(ahead) = &mut self.ahead else {
+            return self.line.close();
+        };
         match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
             Effect::Part => ahead.part(),
@@ -270,6 +276,23 @@ impl<'m> Assessor<'m> {
                 self.stop_between(sink);
             }
         }
+        if self.goes_straight_on(mv, text) {
+            return;
+        }
+        if !self.line.is_empty() {
+            self.end_straight(Some(mv), sink);
+        }
+        self.push_unmodelled(mv, text, sink);
+    }
+
+    /// A move by itself, or beside others under the robust bound.
+    #[inline]
+    pub(super) fn push_unmodelled(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
         self.eye.show(self.machine, mv, self.nominal);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
@@ -315,6 +338,7 @@ impl<'m> Assessor<'m> {
     }
 
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        self.end_straight(None, sink);
         self.release(Behind::Stop, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(self.machine, &self.model, &mut self.eye);

@@ -33,6 +33,7 @@ mod interval;
 mod joining;
 mod knob;
 mod ladder;
+mod line;
 mod model;
 mod motion;
 mod piece;
