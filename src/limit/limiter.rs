@@ -11,7 +11,7 @@ use super::depth::Depths;
 use super::lever::Obstacle;
 use super::options::{LimitOptions, Strategy};
 use super::solver::{Ends, Solver};
-use super::split::Split;
+use super::split::{SPLIT_TRIES, Split};
 use super::window;
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -101,7 +101,7 @@ impl<'m> Limiter<'m> {
         self.shifted &= assessment.spindle.runs;
         if assessment.ahead {
             self.settle(find, sink);
-            let depth = self.depths.of(mv);
+            let depth = self.depth(mv);
             let ends = match assessment.certificate {
                 _ if depth == 0 && !assessment.blended => Ends::Rest,
                 Certificate::Planned => Ends::Any(depth),
@@ -192,6 +192,17 @@ impl<'m> Limiter<'m> {
         self.slots.iter().rposition(|slot| !slot.rider)
     }
 
+    /// How deep a move that stays one block is to be lowered: the first rounds try others
+    /// pieces.
+    fn depth(&self, mv: &Move) -> u8 {
+        let depth = self.depths.of(mv);
+        if self.splits() {
+            depth.saturating_sub(SPLIT_TRIES)
+        } else {
+            depth
+        }
+    }
+
     #[inline]
     fn alone<'a>(
         &self,
@@ -200,7 +211,7 @@ impl<'m> Limiter<'m> {
         ends: Ends,
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Outcome {
-        let deeper = assessment.ahead && self.depths.of(mv) > 0;
+        let deeper = assessment.ahead && self.depth(mv) > 0;
         let fits = self.solver.model.fits(&assessment.demand) && !deeper;
         if fits && !(self.shifted && assessment.spindle.runs) {
             return Outcome::default();
@@ -215,7 +226,11 @@ impl<'m> Limiter<'m> {
         let mut outcome = Outcome::default();
         if self.splits() && !fits {
             let otherwise = solved.as_ref().ok();
-            match self.solver.pieces(mv, assessment, &permit, ends, otherwise) {
+            let tries = self.depths.of(mv);
+            let pieces = self
+                .solver
+                .pieces(mv, assessment, &permit, tries, otherwise);
+            match pieces {
                 Ok(split) => {
                     let last = split.pieces.last().and_then(|piece| piece.accel);
                     let change = Change {

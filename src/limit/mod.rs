@@ -13,6 +13,7 @@ mod limiter;
 mod optimum;
 mod options;
 mod refusal;
+mod road;
 mod root;
 mod solver;
 mod split;

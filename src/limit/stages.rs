@@ -7,7 +7,7 @@
 //! shorter than the control can use.
 
 /// Speeds at which a stage may end.
-const LEVELS: usize = 64;
+const LEVELS: usize = 128;
 
 /// What stages have to keep to.
 #[derive(Debug, Clone, Copy)]

@@ -245,6 +245,9 @@ pub struct Planner {
     pub spindle_wait: SpindleWait,
     /// The shortest time that a block may last for the control to keep its speed, s.
     pub shortest_block_s: f64,
+    /// The shortest time that the path of a block may take at its F for the control to
+    /// keep that, s.
+    pub shortest_at_feed_s: f64,
     /// How corners are run through; `None`: not modelled.
     pub look_ahead: Option<LookAhead>,
 }

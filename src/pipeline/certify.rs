@@ -423,7 +423,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             let place = (original.text, original.line);
-            if after.ahead && !original.hopeless && !self.model.fits(&after.demand) {
+            let planned = after.ahead || original.split.is_some();
+            if planned && !original.hopeless && !self.model.fits(&after.demand) {
                 // Under the robust bound the neighbours count as well.
                 let robust = after.certificate == Certificate::Robust;
                 let before = self.before.filter(|_| robust);

@@ -10,9 +10,11 @@ use super::assess::Assessor;
 use super::assessment::{Assessment, Certificate, Loads};
 use super::bus::SpindleShare;
 use super::demand::Want;
+use super::model::PowerModel;
 use super::piece::piece_demand;
+use super::watch::Watch;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, CornerAngle, CornerRule, LookAhead};
+use crate::machine::{AXES, CornerAngle, CornerRule, LookAhead, Machine};
 use crate::plan::lookahead::{Element, Joint, PathPlanner, Planned};
 use crate::plan::{Overrides, is_independent};
 
@@ -41,6 +43,14 @@ pub(super) struct Line {
     blocks: Vec<(Move, Vec<u8>)>,
     /// Something stands behind the last move that may stop it.
     closed: bool,
+}
+
+/// Whether blocks of one line are planned together though corners are not modelled. What
+/// runs beside the axes, and limits over time, know nothing of such lines.
+#[must_use]
+pub fn plans_lines(machine: &Machine, model: &PowerModel) -> bool {
+    let modelled = machine.controller.planner.look_ahead.is_some();
+    !modelled && machine.spindle.is_none() && Watch::new(machine, model).is_none()
 }
 
 impl Line {

@@ -67,6 +67,7 @@ pub use demand::{Demand, Want};
 pub(crate) use effect::{Effect, Switched};
 pub use instant::{AxisInstant, Instant, SpindleInstant};
 pub(crate) use ladder::{rungs, rungs_in_words};
+pub use line::plans_lines;
 pub use model::PowerModel;
 pub use motion::Motion;
 pub use spindle::{RunPhase, SpindlePower, SpindleRun, spindle_run};

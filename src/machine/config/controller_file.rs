@@ -243,8 +243,11 @@ pub(crate) struct PlannerTable {
     /// cases are counted.
     pub(crate) spindle_wait: Option<SpindleWaitName>,
     /// The shortest time that a block may last for the control to keep its speed;
-    /// default 0.01.
+    /// default 0.005.
     pub(crate) shortest_block_s: Option<Positive>,
+    /// The shortest time that the path of a block may take at its F for the control to
+    /// keep that; default 0: any.
+    pub(crate) shortest_at_feed_s: Option<NotNegative>,
     /// How corners are run through; default: not modelled.
     pub(crate) look_ahead: Option<At<LookAheadTable>>,
 }

@@ -225,7 +225,8 @@ fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner>
             Some(SpindleWaitName::Feeds) => SpindleWait::Feeds,
             Some(SpindleWaitName::Blocks) => SpindleWait::Blocks,
         },
-        shortest_block_s: table.shortest_block_s.as_ref().map_or(0.01, |it| it.value),
+        shortest_block_s: table.shortest_block_s.as_ref().map_or(0.005, |it| it.value),
+        shortest_at_feed_s: table.shortest_at_feed_s.as_ref().map_or(0.0, |it| it.value),
         look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
     })
 }
