@@ -13,6 +13,7 @@ mod random;
 mod reader;
 mod rewriting;
 mod rows;
+mod split;
 mod stops;
 mod ways;
 mod whole;

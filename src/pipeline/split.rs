@@ -24,6 +24,11 @@ const DECIMALS: f64 = 1e6;
 const DECIMALS_INCH: f64 = 1e7;
 /// How far a place may lie beside the line for that, mm.
 pub(super) const BESIDE_MM: f64 = 3e-6;
+/// Why blocks stay one that the limiter has not tried to divide.
+pub(super) const BLENDED: &str =
+    "it may be blended with its neighbours, and how the control does that is not modelled";
+pub(super) const SEVERAL_RUNS: &str =
+    "the program has calls or loops, or there are several ways through it";
 /// What is left of a place by rounding alone, as a share.
 const ROUNDING: f64 = 1e-9;
 
@@ -224,8 +229,8 @@ impl Line {
         }
     }
 
-    /// Whether a move runs along the line to `end`, from place to place in its direction.
-    pub(super) fn holds(&self, end: &AxisValues, mv: &Move) -> bool {
+    /// Whether a move from one place to another runs along the line to `end`, forwards.
+    pub(super) fn holds(&self, end: &AxisValues, [from, to]: [&AxisValues; 2]) -> bool {
         let way: AxisValues = std::array::from_fn(|axis| end[axis] - self.start[axis]);
         let length2: f64 = way.iter().map(|way| way * way).sum();
         let share = |place: &AxisValues| {
@@ -239,10 +244,10 @@ impl Line {
                 off.is_nan() || off.abs() > BESIDE_MM
             })
         };
-        let [from, to] = [share(&mv.start), share(&mv.end)];
+        let [first, last] = [share(from), share(to)];
         let rounding = BESIDE_MM / length2.sqrt();
-        let forwards = from >= -rounding && to > from && to <= 1.0 + rounding;
-        forwards && !beside(&mv.start) && !beside(&mv.end)
+        let forwards = first >= -rounding && last > first && last <= 1.0 + rounding;
+        forwards && !beside(from) && !beside(to)
     }
 }
 
@@ -261,5 +266,40 @@ impl Unsplit {
         let span = Span::new(0, split_line_end(text).0.len());
         let note = Diagnostic::note("not-split", message).at(mv.line, span, text);
         self.notes.push(note);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Line;
+    use crate::machine::{AXES, AxisValues};
+
+    fn place(x: f64, y: f64) -> AxisValues {
+        let mut place = [0.0; AXES];
+        (place[0], place[1]) = (x, y);
+        place
+    }
+
+    /// A line from 10, 20 to 70, 100, of 100 mm.
+    #[test]
+    fn pieces_lie_on_the_line_and_run_forwards() {
+        let line = Line {
+            start: place(10.0, 20.0),
+            pieces: 2,
+        };
+        let holds = |from, to| line.holds(&place(70.0, 100.0), [&from, &to]);
+        let (start, end) = (place(10.0, 20.0), place(70.0, 100.0));
+        assert!(holds(start, place(16.0, 28.0)));
+        assert!(holds(place(16.0, 28.0), end));
+        // A millionth beside it is rounding, a thousandth is not.
+        assert!(holds(start, place(16.000_001, 28.0)));
+        assert!(!holds(start, place(16.001, 28.0)));
+        assert!(!holds(place(16.001, 28.0), end));
+        // Backwards, before the start, beyond the end, on the spot.
+        assert!(!holds(place(16.0, 28.0), place(13.0, 24.0)));
+        assert!(!holds(place(7.0, 16.0), end));
+        assert!(!holds(start, place(76.0, 108.0)));
+        assert!(!holds(start, start));
+        assert!(!holds(start, place(f64::NAN, 28.0)));
     }
 }

@@ -26,7 +26,7 @@ impl Verdict<'_, '_> {
         let line = original.split.as_deref()?;
         let last = self.pieces.done + 1 == line.pieces;
         self.pieces.done = if last { 0 } else { self.pieces.done + 1 };
-        let on_line = line.holds(&original.end, mv);
+        let on_line = line.holds(&original.end, [&mv.start, &mv.end]);
         // The last piece ends where the line does.
         let found = if last {
             different(original, mv)

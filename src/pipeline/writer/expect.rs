@@ -8,7 +8,7 @@ use crate::limit::Change;
 use crate::pipeline::describe::{describe, describe_split, row};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::expected::{Expected, ExpectedMove};
-use crate::pipeline::split::Line;
+use crate::pipeline::split::{BLENDED, Line};
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Tells the certifier of the rows of the spindle before the next move.
@@ -38,10 +38,11 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             self.expect_spindle();
             self.spindle.write();
             let hopeless = outcome.obstacle.is_some();
-            if let Some(reason) = outcome.unsplit {
+            let split = outcome.split.as_deref();
+            if self.limiter.splits() && change.is_some() && split.is_none() {
+                let reason = outcome.unsplit.unwrap_or(BLENDED);
                 self.unsplit.stays(mv, reason, entry.text_of(mv));
             }
-            let split = outcome.split.as_deref();
             if let Some(obstacle) = outcome.obstacle.take() {
                 self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
             }
