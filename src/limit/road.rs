@@ -154,15 +154,18 @@ impl<'a> Road<'a> {
     /// The largest acceleration with which a ramp between rest and a speed fits; `None`
     /// where hardly any does.
     fn largest_mm_s2(&self, top_mm_s: f64, brakes: bool) -> Option<f64> {
-        let load = |accel: f64| match brakes {
-            true => self.ramp_load(top_mm_s, 0.0, accel),
-            false => self.ramp_load(0.0, top_mm_s, accel),
+        let [from_mm_s, to_mm_s] = if brakes {
+            [top_mm_s, 0.0]
+        } else {
+            [0.0, top_mm_s]
         };
+        let load = |accel: f64| self.ramp_load(from_mm_s, to_mm_s, accel);
         if load(self.accel_mm_s2) <= self.aim {
             return Some(self.accel_mm_s2);
         }
         let (mut low, mut high) = (1e-4 * self.accel_mm_s2, self.accel_mm_s2);
-        if !(load(low) <= self.aim) {
+        let least = load(low);
+        if least > self.aim || least.is_nan() {
             return None;
         }
         for _ in 0..HALVINGS {

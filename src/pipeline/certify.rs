@@ -14,7 +14,7 @@ mod spindle;
 use std::collections::VecDeque;
 
 use compare::compare;
-use pieces::Pieces;
+use pieces::{Found, Pieces};
 
 use super::batch::Batch;
 use super::expected::{Expected, Originals, added_mode, added_stop, different};
@@ -391,7 +391,10 @@ impl<'m, 'r> Verdict<'m, 'r> {
         let original = self.originals.get(place).map(|original| &*original);
         self.done += usize::from(piece.is_none());
         let message = match (step, original) {
-            _ if piece.is_some() => piece.flatten(),
+            _ if piece.is_some() => match piece {
+                Some(Found::Wrong(what)) => Some(what),
+                Some(Found::Right) | None => None,
+            },
             (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
             (Step::Action(action), Some(Expected::Action(original)))
                 if action.kind == original.kind && same(action.value, original.value) =>

@@ -94,7 +94,13 @@ impl Entry {
                 "its feed is not by the minute",
             ),
             (
-                facts.computed_feed || facts.reads_state,
+                facts.computed_feed
+                    || facts.reads_state
+                    || !self
+                        .block
+                        .words
+                        .iter()
+                        .all(|word| written(word, &self.text)),
                 "its values are worked out by the program",
             ),
             (
@@ -205,6 +211,13 @@ fn plain(word: &Word, places: &Places) -> bool {
             (end - word.value).abs() <= ROUNDING * end.abs().max(1.0)
         }),
     }
+}
+
+/// Whether the value of a word is what its text says, and not worked out: from where the
+/// axes are, it would be another one behind the first piece.
+fn written(word: &Word, text: &[u8]) -> bool {
+    let number = std::str::from_utf8(word.number.of(text)).ok();
+    number.and_then(|number| number.trim().parse::<f64>().ok()) == Some(word.value)
 }
 
 /// The axis of a letter.

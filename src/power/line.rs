@@ -87,9 +87,8 @@ impl Assessor<'_> {
         let planned = self.requested != Some(Certificate::Robust);
         let plain = self.bus.is_none() && self.eye.watch.is_none() && self.eye.motions.is_none();
         let fits = !modelled && planned && plain && self.line.blocks.len() < BLOCKS_MAX;
-        if !(fits && self.joins(last, mv) && self.may_run(last) && self.may_run(mv))
-            || !straight_on(last, mv)
-        {
+        let runs = fits && self.joins(last, mv) && self.may_run(last) && self.may_run(mv);
+        if !(runs && straight_on(last, mv)) {
             return false;
         }
         if let Some(held) = self.held.take_if(|_| self.line.is_empty()) {
@@ -109,7 +108,6 @@ impl Assessor<'_> {
             && self.machine.force_curves.is_empty()
             && !mv.moving.iter().any(jerk)
             && !is_independent(self.machine, mv)
-            && self.may_blend(mv)
     }
 
     /// Judges a line that `next` ends, or the end of the program.

@@ -397,15 +397,17 @@ fn blocks_that_cannot_be_divided_stay_one() {
             "$FOR P1 = 1, 2, 1\nG0 X300\nG4 P1\nX0\nG4 P1\n$ENDFOR\nM30\n",
             "the program has calls or loops, or there are several ways through it",
         ),
-        (
-            "G0 X15\nM30\n",
-            "its pieces would be shorter than the control can use",
-        ),
+        ("G0 X12.6\nM30\n", "one acceleration is as good"),
     ] {
         let found = notes(&machine, HOW, program);
         let message = format!("the block is not written in pieces: {reason}");
         assert_eq!(found, [message], "{program}");
     }
+    let mut slow = machine.clone();
+    slow.controller.planner.shortest_block_s = 0.2;
+    let message = "the block is not written in pieces: its pieces would be shorter than the \
+                   control can use";
+    assert_eq!(notes(&slow, HOW, "G0 X300\nM30\n"), [message]);
     // Nothing is said where nothing is lowered.
     assert_eq!(notes(&machine, HOW, "G0 X1\nM30\n"), [""; 0]);
 }

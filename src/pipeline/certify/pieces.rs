@@ -16,10 +16,18 @@ pub(super) struct Pieces {
     sum: Option<Assessment>,
 }
 
+/// What a piece is found to be.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Found {
+    Right,
+    /// With what differs.
+    Wrong(&'static str),
+}
+
 impl Verdict<'_, '_> {
-    /// Whether a move is a piece of the line that the original runs here, but not the last
-    /// one; what differs from the line, if anything.
-    pub(super) fn compare_piece(&mut self, mv: &Move) -> Option<Option<&'static str>> {
+    /// What a move is as a piece of the line that the original runs here, if it runs one
+    /// that is divided.
+    pub(super) fn compare_piece(&mut self, mv: &Move) -> Option<Found> {
         let Some(Expected::Move(original)) = self.originals.get(self.done) else {
             return None;
         };
@@ -39,7 +47,7 @@ impl Verdict<'_, '_> {
         };
         let found = if on_line { found } else { Some("another path") };
         self.done += usize::from(last);
-        Some(found)
+        Some(found.map_or(Found::Right, Found::Wrong))
     }
 
     /// What a judged piece adds up to with those before it; `None` before the last one.
