@@ -4,8 +4,8 @@
     benches/fit-rate.py target/release/gwatt fanuc=FOLDER haas=FOLDER siemens=FOLDER ...
 
 Each program is read with a machine that suits its control: linear rapids, the control's
-own path modes, a converter of 60 % and of 80 % of the program's own largest peak, no
-margin. Printed are, by control and share, how many programs are certified, and why the
+own path modes, known reference points, work offsets and tools, a converter of 60 % and of
+80 % of the program's own largest peak, no margin. Printed are, by control and share, how many programs are certified, and why the
 others are not, by the rules that refuse them.
 """
 
@@ -18,7 +18,12 @@ import subprocess
 import tempfile
 
 PRINTERS = {"marlin", "klipper", "reprap"}
-LATHES = {"fanuc-lathe", "fanuc-lathe-b", "okuma-lathe"}
+LATHES = {"fanuc-lathe", "fanuc-lathe-b", "haas-lathe", "okuma-lathe"}
+# Controls that return to reference points of the machine, from places that offsets and tool
+# lengths make known.
+MILLS = {"fanuc", "haas", "mitsubishi", "mazak", "syntec", "iso"}
+OFFSETS = "".join(f"G5{n} = {{ X = -{100 * n}, Y = -250, Z = -400 }}\n" for n in range(4, 10))
+TOOLS = "".join(f"T{n} P{n} Z{50 + n}\n" for n in range(1, 1000))
 # Rapid in mm/min or deg/min, acceleration in mm/s² or deg/s², mass or inertia, friction.
 MILL = {"X": (30000, 4000, 600, 500), "Y": (30000, 4000, 700, 500), "Z": (30000, 4000, 500, 700)}
 PRINTER = {"X": (12000, 3000, 0.5, 2), "Y": (12000, 3000, 1.2, 3), "Z": (900, 100, 2, 5), "E": (3000, 3000, 0.2, 5)}
@@ -36,8 +41,14 @@ def machine(profile, peak_w):
         axes, rotary, rest = MILL, ROTARY, "[path]\nrapid = \"linear\"\n"
     text = f'schema = 1\nname = "fit rate"\ncontroller = "{profile}"\n{rest}'
     text += f"[converter]\npeak_power_w = {peak_w!r}\n[limits]\nmargin = 0.0\n"
+    if profile in MILLS:
+        text += "[offsets]\n" + OFFSETS
     for name, (rapid, accel, mass, friction) in axes.items():
         text += f"[axes.{name}]\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\nmass_kg = {mass}\ncoulomb_n = {friction}\n"
+        if profile in MILLS | LATHES:
+            text += "reference_mm = 0\n"
+        if profile in PRINTERS and name != "E":
+            text += f"reference_mm = 0\nreference_mm_min = {min(rapid, 3000)}\n"
     for name, (rapid, accel, inertia, friction) in rotary.items():
         text += f'[axes.{name}]\nkind = "rotary"\nrapid_deg_min = {rapid}\naccel_deg_s2 = {accel}\ninertia_kg_m2 = {inertia}\nfriction_nm = {friction}\n'
     return text
@@ -57,7 +68,11 @@ def judge(gwatt, profile, program, shares, options, seconds):
         folder = pathlib.Path(folder)
         file = folder / "machine.toml"
         file.write_text(machine(profile, 1e9))
-        common = ["-m", str(file), "--sub-path", str(program.parent)]
+        common = ["-m", str(file), "--sub-path", str(program.resolve().parent)]
+        if profile in MILLS:
+            tools = folder / "tools.tbl"
+            tools.write_text(TOOLS)
+            common += ["--tool-table", str(tools)]
         code, out, _ = run([gwatt, "check", str(program), *common, "--format", "json"], seconds)
         if code != 0:
             return {share: "unread" for share in shares}

@@ -17,8 +17,8 @@ pub(crate) fn axis() -> Axis {
     Axis {
         kind: AxisKind::Linear,
         rapid_mm_s: 500.0,
-        home_mm_s: f64::INFINITY,
-        home_mm: None,
+        reference_mm_s: f64::INFINITY,
+        reference_mm: None,
         accel_mm_s2: 5000.0,
         jerk_mm_s3: 0.0,
         mass_kg: 100.0,
@@ -60,6 +60,8 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             ratings: Ratings::default(),
         }],
         path: Path {
+            max_feed_mm_s: f64::INFINITY,
+            clearance_mm: [None; AXES],
             mode: None,
             rapid: RapidPath::Linear,
             response_time_s: 0.01,
@@ -69,6 +71,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         spindle: None,
         tools: Vec::new(),
         loads: Vec::new(),
+        offsets: [None; 9],
         presets: Vec::new(),
         limits: Limits {
             margin: 0.0,
@@ -109,6 +112,7 @@ fn controller() -> Controller {
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,
+            arc_tolerance_mm: None,
             kept_variables: Vec::new(),
             dialect: gwatt::machine::Dialect::default(),
         },
@@ -163,6 +167,7 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
         loads: 0,
         path_mode: PathMode::ExactStop,
         corner: gwatt::interpret::Corner::default(),
+        stray: gwatt::interpret::Stray::NONE,
     }
 }
 

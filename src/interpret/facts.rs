@@ -17,6 +17,8 @@ pub struct Facts {
     pub machine_coordinates: bool,
     /// G28 or G30.
     pub reference: bool,
+    /// It homes the axes at a speed of the control's own, under the limits in force.
+    pub homes: bool,
     /// The block carries a checksum.
     pub checksum: bool,
     /// An F in this block would be the time of its dwell.

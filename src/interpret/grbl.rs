@@ -67,10 +67,10 @@ impl Control<'_> {
                 .map(|axis| self.machine.axes[axis].as_ref())
         };
         let square = |speed_mm_s: f64| speed_mm_s * speed_mm_s;
-        let squares = axes().map(|data| data.map_or(0.0, |it| square(it.home_mm_s)));
+        let squares = axes().map(|data| data.map_or(0.0, |it| square(it.reference_mm_s)));
         let speed_mm_s = squares.sum::<f64>().sqrt();
         if speed_mm_s.is_infinite() {
-            let message = "without `home_mm_min` of its axes in the machine file, how fast $H homes \
+            let message = "without `reference_mm_min` of its axes in the machine file, how fast $H homes \
                            is not known: every axis counts at its full speed and acceleration";
             run.report.note_once("unknown-moves", message, whole);
         }
@@ -81,14 +81,14 @@ impl Control<'_> {
         let end = self.position.at;
         self.go_at(run, MoveKind::Feed, &end, all, None, Some(speed_mm_s));
         for axis in all.iter() {
-            let home_mm = self.machine.axes[axis]
+            let reference_mm = self.machine.axes[axis]
                 .as_ref()
-                .and_then(|data| data.home_mm);
-            if let Some(home_mm) = home_mm {
-                self.position.home(axis, home_mm);
+                .and_then(|data| data.reference_mm);
+            if let Some(reference_mm) = reference_mm {
+                self.position.home(axis, reference_mm);
             } else {
                 self.position.unknown.insert(axis);
-                let message = "without `home_mm` of its axis in the machine file, where $H ends is \
+                let message = "without `reference_mm` of its axis in the machine file, where $H ends is \
                                not known: the power of the next moves counts from anywhere";
                 run.report.note_once("home", message, whole);
             }

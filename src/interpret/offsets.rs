@@ -51,8 +51,10 @@ pub(super) struct Offsets {
     pub(super) tool: AxisValues,
     /// Rotation, scaling and mirroring of the program.
     pub(super) programmed: Affine,
-    /// True when a file has given the offsets.
+    /// A parameter file has given all offsets.
     pub(super) known: bool,
+    /// Systems whose offsets the machine file gives, as bits.
+    given: u16,
 }
 
 /// First parameter of a work coordinate system.
@@ -86,8 +88,16 @@ impl Offsets {
             tool: [0.0; AXES],
             programmed: Affine::IDENTITY,
             known: parameters.is_some(),
+            given: 0,
         };
         offsets.set_stored(SYSTEM, 1.0);
+        for (system, origin) in (1..).zip(&machine.offsets) {
+            let Some(origin) = origin else { continue };
+            for (axis, value_mm) in origin.iter().enumerate() {
+                offsets.set_origin_of(system, axis, *value_mm);
+            }
+            offsets.given |= 1 << system;
+        }
         for (number, value) in parameters.into_iter().flat_map(ParameterFile::iter) {
             offsets.set_stored(number, value);
         }
@@ -199,6 +209,11 @@ impl Offsets {
             self.set_stored(SYSTEM, f64::from(system));
             self.load();
         }
+    }
+
+    /// Whether the offset of the system in force is known, not taken as 0.
+    pub(super) fn is_known(&self) -> bool {
+        self.known || self.system <= SYSTEMS && self.given & 1 << self.system != 0
     }
 
     /// Takes over what is stored for the system in force.

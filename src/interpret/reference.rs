@@ -5,7 +5,7 @@ use super::motion::POSITION_MAX_MM;
 use super::moves::MoveKind;
 use super::offsets::REFERENCE;
 use super::words::bit;
-use crate::machine::{ALL_AXES, AXES, AxisSet, Family};
+use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, RapidPath};
 use crate::source::Span;
 use arrayvec::ArrayVec;
 
@@ -17,16 +17,7 @@ impl Control<'_> {
             // Its place is a setting of the control; P2 to P4 name further ones.
             run.words.take(b'P');
         }
-        let offsets = self.position.offsets();
         let second = usize::from(number == 300);
-        let mut point = [0.0; AXES];
-        if self.machine.controller.language.family == Family::Rs274 {
-            point = offsets.axes_from(REFERENCE[second]);
-        }
-        if !offsets.known && point == [0.0; AXES] {
-            let message = "the reference points of G28 and G30 are taken as machine zero";
-            run.report.note_once("reference-point", message, span);
-        }
         let mut named = AxisSet::default();
         run.words.axes().for_each(|(axis, _)| named.insert(axis));
         self.refuse_turned(named, span, run);
@@ -46,6 +37,7 @@ impl Control<'_> {
             };
             self.go(run, MoveKind::Rapid, &via, unknown, None);
         }
+        let point = self.reference_point(second, named, span, run);
         let mut home = self.position.at;
         if named != self.machine.axis_set && !self.position.frame.is_plain() {
             // LinuxCNC: the named coordinates of the program become those of
@@ -63,7 +55,64 @@ impl Control<'_> {
             }
         }
         let unknown = AxisSet(named.0 & self.position.unknown.0);
+        let rapid_factor = self.knobs.rapid_factor;
+        if second == 0 {
+            self.knobs.rapid_factor *= self.return_factor(&home, named, unknown);
+        }
         self.go(run, MoveKind::Rapid, &home, unknown, None);
+        self.knobs.rapid_factor = rapid_factor;
+    }
+
+    /// The point that G28 or G30 goes to, machine coordinates: `LinuxCNC` keeps it among
+    /// its parameters, for others the first is in the machine file.
+    fn reference_point(
+        &self,
+        second: usize,
+        named: AxisSet,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> AxisValues {
+        let offsets = self.position.offsets();
+        if self.machine.controller.language.family == Family::Rs274 {
+            let point = offsets.axes_from(REFERENCE[second]);
+            if !offsets.known && point == [0.0; AXES] {
+                note_machine_zero(span, run);
+            }
+            return point;
+        }
+        let mut point = [0.0; AXES];
+        for axis in named.iter() {
+            let data = self.machine.axes[axis].as_ref();
+            match data.and_then(|data| data.reference_mm) {
+                Some(place_mm) if second == 0 => point[axis] = place_mm,
+                _ => note_machine_zero(span, run),
+            }
+        }
+        point
+    }
+
+    /// The share of the rapid speed at which the axes return to the reference point: no
+    /// axis is faster than the machine file says.
+    fn return_factor(&self, home: &AxisValues, named: AxisSet, unknown: AxisSet) -> f64 {
+        let mut times = [0.0_f64; 2];
+        let mut largest = 0.0_f64;
+        for axis in named.iter() {
+            let Some(data) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let speed_mm_s = data.reference_mm_s.min(data.rapid_mm_s);
+            let way_mm = (home[axis] - self.position.at[axis]).abs();
+            times[0] = times[0].max(way_mm / data.rapid_mm_s);
+            times[1] = times[1].max(way_mm / speed_mm_s);
+            largest = largest.max(speed_mm_s / data.rapid_mm_s);
+        }
+        // Each axis for itself, or from an unknown place: the least slowed axis counts.
+        let straight = self.machine.path.rapid == RapidPath::Linear && unknown.is_empty();
+        if straight && times[1] > 0.0 {
+            times[0] / times[1]
+        } else {
+            largest
+        }
     }
 
     /// G28.1 and G30.1: the place becomes the point that G28 or G30 goes to.
@@ -168,4 +217,9 @@ impl Control<'_> {
             self.position.set_offset(axis, value);
         }
     }
+}
+
+fn note_machine_zero(span: Span, run: &mut Run<'_, '_>) {
+    let message = "the reference points of G28 and G30 are taken as machine zero";
+    run.report.note_once("reference-point", message, span);
 }

@@ -39,6 +39,8 @@ pub(super) struct Tools {
     /// T, and what M6 or M61 has loaded; 0: none.
     pub(super) selected: u32,
     pub(super) loaded: u32,
+    /// A length in force was taken as 0, since nothing is known of the tool.
+    pub(super) length_guessed: bool,
     /// The number of G43 in force (Fanuc: H alone changes it).
     length: Option<(ToolLength, u32)>,
 }
@@ -125,6 +127,7 @@ impl Control<'_> {
             run.words.take(b'H');
             let message = "the tool length is taken as 0";
             run.report.note_once("no-tool-table", message, span);
+            self.tools.length_guessed = form != ToolLength::Off;
             return;
         }
         let offset = match form {
@@ -138,8 +141,13 @@ impl Control<'_> {
                 self.fanuc_length(form, number, span, run)
             }
         };
-        if form == ToolLength::Off {
-            self.tools.length = None;
+        match form {
+            ToolLength::Off => {
+                self.tools.length = None;
+                self.tools.length_guessed = false;
+            }
+            ToolLength::Given => self.tools.length_guessed = false,
+            ToolLength::On | ToolLength::Reversed | ToolLength::Added => {}
         }
         if let Some(offset) = offset {
             self.position.change(|offsets| offsets.tool = offset);
@@ -191,6 +199,7 @@ impl Control<'_> {
         } else {
             number
         };
+        self.tools.length_guessed = self.tools.find(number).is_none() || self.tools.unknown();
         let tool = self.known_tool(number, at, run)?;
         let mut offset = self.tool_offsets_mm(&tool);
         if form == ToolLength::Added {
@@ -233,6 +242,7 @@ impl Control<'_> {
             None => self.tools.length.map_or(0, |(_, number)| number),
         };
         self.tools.length = Some((form, number));
+        self.tools.length_guessed = number != 0 && self.tools.find(number).is_none();
         let tool = if number == 0 {
             Tool::default()
         } else {

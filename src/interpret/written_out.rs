@@ -2,7 +2,7 @@
 
 use super::code::Motion;
 use super::execute::Interpreter;
-use crate::machine::AxisValues;
+use crate::machine::{AxisId, AxisSet, AxisValues};
 
 impl Interpreter<'_> {
     /// Whether the values of a canned cycle are in force.
@@ -38,5 +38,24 @@ impl Interpreter<'_> {
             *value = control.in_unit(axis, *value);
         }
         place
+    }
+
+    /// Why the places of the program may not be those of the machine that they are taken
+    /// for, for a move of these axes; `None` where all between them is known.
+    #[must_use]
+    pub(crate) fn unsure_of_places(&self, moving: AxisSet) -> Option<&'static str> {
+        let control = &self.control;
+        let language = &control.machine.controller.language;
+        let lathe = language.dialect.lathe.is_some();
+        if lathe && control.tools.selected != 0 {
+            return Some("the offsets of a lathe's tools are not known");
+        }
+        if control.tools.length_guessed && moving.contains(AxisId::Z as usize) {
+            return Some("the length of the tool is not known: give it with --tool-table");
+        }
+        (!control.position.offsets().is_known()).then_some(
+            "the work offset is not known: give it in [offsets] of the machine file, or with \
+             --parameters",
+        )
     }
 }

@@ -24,8 +24,8 @@ mod window;
 
 pub use change::{Change, Permit};
 pub use depth::{Depths, Place};
-pub use lever::{Obstacle, UNTOUCHABLE};
+pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
-pub use options::{Law, LimitOptions, Strategy};
+pub use options::{Allowed, Law, LimitOptions, Strategy};
 pub use solver::{Ends, Solver};
 pub use split::{Piece, Split};

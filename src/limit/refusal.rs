@@ -1,10 +1,11 @@
 //! Why a move cannot be lowered, and what would permit it.
 
 use super::change::Change;
-use super::lever::{Obstacle, SpeedLever, UNTOUCHABLE};
-use super::options::LimitOptions;
+use super::lever::{NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE};
+use super::options::{Allowed, LimitOptions};
 use super::solver::{Case, Solver};
 use crate::interpret::MoveKind;
+use crate::machine::{RapidKnob, RapidPath};
 
 /// What can always be done about a block that may not be changed.
 const BY_HAND: &str = "change it by hand";
@@ -36,9 +37,22 @@ impl Solver<'_> {
         }
         if !mv.unknown_start.is_empty() {
             return Obstacle::new(
-                "no-knob",
+                NO_KNOB,
                 "the rapid may not be written as a feed: where it starts is not known",
                 "give --start X…,Y…,Z…, or write the move as a feed by hand",
+            );
+        }
+        let each_for_itself = self.machine.path.rapid == RapidPath::Independent
+            && self.machine.controller.rapid_knob == RapidKnob::G1
+            && mv.moving.iter().count() > 1;
+        if permit.reason.is_empty() && each_for_itself {
+            return Obstacle::new(
+                NO_KNOB,
+                "the rapid may not be written as a feed: its axes move each for itself, not along \
+                 a line",
+                "where the control moves them along a line (a parameter), say rapid = \"linear\" \
+                 under [path]; or permit lines where there is room: `clearance` under [path] and \
+                 --allow straighten",
             );
         }
         let message = if permit.reason.is_empty() {
@@ -51,15 +65,17 @@ impl Solver<'_> {
         };
         let help = permit
             .help_or("write the move as a feed by hand, or lower the rapid speed of the machine");
-        Obstacle::new("no-knob", message, help)
+        Obstacle::new(NO_KNOB, message, help)
     }
 
     /// The same where cutting feeds may be lowered.
     fn allowing_feeds(&self) -> Self {
         Self {
             how: LimitOptions {
-                allow_feed: true,
-                allow_expand: false,
+                allowed: Allowed {
+                    feed: true,
+                    ..Allowed::NOTHING
+                },
                 ..self.how
             },
             model: self.model.clone(),
@@ -76,7 +92,7 @@ impl Solver<'_> {
             "the controller `{}` has no word for this acceleration",
             self.machine.controller.name
         );
-        Obstacle::new("no-knob", message, "use --strategy optimal or speed")
+        Obstacle::new(NO_KNOB, message, "use --strategy optimal or speed")
     }
 }
 

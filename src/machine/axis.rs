@@ -112,10 +112,11 @@ pub struct Axis {
     pub kind: AxisKind,
     /// Rapid speed in mm/s or degrees/s; caps feeds too.
     pub rapid_mm_s: f64,
-    /// Homing speed of a printer's axis, or grbl's, in mm/s; infinite where it is not given.
-    pub home_mm_s: f64,
-    /// Where a printer's axis stands after G28, or grbl's after `$H`, mm; `None` where it is not given.
-    pub home_mm: Option<f64>,
+    /// Speed on the way to the reference point (G28, homing) in mm/s or degrees/s; infinite
+    /// where it is not given: that of rapids.
+    pub reference_mm_s: f64,
+    /// Machine coordinate of the reference point; `None` where it is not given.
+    pub reference_mm: Option<f64>,
     /// Acceleration limit in mm/s² or degrees/s².
     pub accel_mm_s2: f64,
     /// Jerk limit in mm/s³ or degrees/s³; 0: none.

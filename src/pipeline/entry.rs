@@ -5,13 +5,15 @@ use super::split::Places;
 use super::table::LineKey;
 use crate::interpret::{CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint};
+use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
 
 /// Why a rapid is not written as a feed, where the program can help.
 const PER_REVOLUTION: &str = "the feed in force is per revolution";
+const REFERENCE: &str = "it moves to a reference point";
+const MACHINE_COORDINATES: &str = "G53 is for rapids";
 const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
 
 /// A block that waits until all its moves are decided.
@@ -182,6 +184,7 @@ impl Entry {
             (facts.turns_knob, "it sets limits itself"),
         ];
         let feed = [
+            (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
             (
                 self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
@@ -201,9 +204,18 @@ impl Entry {
             ),
         ];
         let rapid = [
-            (facts.machine_coordinates, "G53 is for rapids"),
-            (facts.reference, "it moves to a reference point"),
+            (
+                // RS274/NGC: G53 goes with G0 and G1.
+                facts.machine_coordinates && machine.controller.language.family != Family::Rs274,
+                MACHINE_COORDINATES,
+            ),
+            (facts.reference, REFERENCE),
             (!stays, WITHOUT_STOP),
+            (
+                // The blocks that follow would become lines too.
+                facts.no_motion_word && machine.path.rapid == RapidPath::Independent,
+                "no motion word is in force that could be put back",
+            ),
         ];
         let reason = |checks: &[(bool, &'static str)]| {
             checks
@@ -218,6 +230,11 @@ impl Entry {
             CYCLE => {
                 "--allow expand writes canned cycles out as single blocks; where it taps, more \
                  power or slower axes are needed"
+            }
+            REFERENCE | MACHINE_COORDINATES => {
+                "the way is gone by a feed before it where the places are known: reference_mm of \
+                 the axes, the work offset ([offsets] or --parameters) and the tool's length \
+                 (--tool-table); or give the speed of the return, reference_mm_min"
             }
             PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
                 "program G98 (feed per minute) and F in it before the rapid"

@@ -41,6 +41,8 @@ const STRAIGHT_ON: LookAhead = LookAhead {
 #[derive(Debug, Default)]
 pub(super) struct Line {
     blocks: Vec<(Move, Vec<u8>)>,
+    /// The move before the first, or a dwell, has ended at rest.
+    rested: bool,
     /// Something stands behind the last move that may stop it.
     closed: bool,
 }
@@ -92,9 +94,11 @@ impl Assessor<'_> {
             return false;
         }
         if let Some(held) = self.held.take_if(|_| self.line.is_empty()) {
+            self.line.rested = held.rested;
             self.line.blocks.push((held.mv, held.text));
         }
         self.line.blocks.push((mv.clone(), text.to_vec()));
+        self.rested = self.ends_at_rest(mv).unwrap_or(self.rested);
         true
     }
 
@@ -103,6 +107,7 @@ impl Assessor<'_> {
         let jerk = |axis: usize| self.machine.axes[axis].is_some_and(|axis| axis.jerk_mm_s3 > 0.0);
         matches!(mv.kind, MoveKind::Rapid | MoveKind::Feed)
             && mv.arc.is_none()
+            && !mv.stray.strays()
             && mv.unknown_start.is_empty()
             && mv.length_mm > 0.0
             && self.machine.force_curves.is_empty()
@@ -119,11 +124,14 @@ impl Assessor<'_> {
         let Some((last, _)) = self.line.blocks.last() else {
             return;
         };
-        let stops = next.is_none_or(|next| {
+        // As for one block between two stops, the ends of the program are none for feeds.
+        let rapid = last.kind == MoveKind::Rapid;
+        let stops = next.map_or(rapid, |next| {
             let passes = next.kind != MoveKind::Dwell && !next.moves_axes();
             !passes && !self.joins(last, next)
         });
-        if !(stops && self.plan_line(sink)) {
+        let between = stops && (rapid || self.line.rested);
+        if !(between && self.plan_line(sink)) {
             self.bound_line(sink);
         }
     }
@@ -131,6 +139,9 @@ impl Assessor<'_> {
     /// Gives the blocks that wait the robust bound.
     #[cold]
     pub(super) fn bound_line(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        if !self.line.is_empty() {
+            self.rested = self.line.rested;
+        }
         for (mv, text) in std::mem::take(&mut self.line.blocks) {
             self.push_unmodelled(&mv, &text, sink);
         }

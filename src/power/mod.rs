@@ -53,6 +53,7 @@ mod surface_speed;
 mod surge;
 mod tandem;
 mod straight;
+mod stray;
 mod steps;
 mod stretch;
 mod trace;

@@ -11,6 +11,7 @@
 //! the word is written; where somebody may look at the state (stops, tool
 //! changes, the end, blocks that may be skipped) a line puts it right.
 
+mod beforehand;
 mod block;
 mod knob_line;
 mod number;
@@ -18,6 +19,7 @@ mod single;
 mod state;
 mod turned;
 
+pub use beforehand::Return;
 pub use block::{BlockView, PieceWords, Rewriter};
 pub use single::{CycleBlock, Singles};
 pub use state::Mark;

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::number::decimal;
+use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, Modal, Motion, Move, MoveKind, Step};
 use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Machine};
@@ -16,8 +16,6 @@ use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
 
-/// Decimals of a coordinate: finer than any control takes.
-const DECIMALS: f64 = 1e6;
 /// Cycles of plain moves, times ten: drilling, pecking, counterboring and boring.
 const PLAIN: [u16; 7] = [730, 810, 820, 830, 850, 860, 890];
 /// Turning cycles along a contour of `LinuxCNC`, times ten.
@@ -386,24 +384,5 @@ fn one_action(action: &Action, lines: &mut Lines<'_>) -> Result<(), &'static str
         // Said again wherever the path mode or the feed is.
         ActionKind::PathMode | ActionKind::Feed => Ok(()),
         _ => Err("it does more than move and turn the spindle"),
-    }
-}
-
-fn rounded(value: f64) -> f64 {
-    let rounded = (value * DECIMALS).round() / DECIMALS;
-    // No -0.
-    if rounded == 0.0 { 0.0 } else { rounded }
-}
-
-/// A word with the blanks before it.
-fn with_blanks(text: &[u8], word: Span) -> Span {
-    let before = text.get(..word.start as usize).unwrap_or_default();
-    let blanks = before
-        .iter()
-        .rev()
-        .take_while(|byte| matches!(byte, b' ' | b'\t'));
-    Span {
-        start: word.start - blanks.count() as u32,
-        end: word.end,
     }
 }

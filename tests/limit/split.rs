@@ -4,7 +4,7 @@ use super::{EXACT_STOP, RIG, Rig, Run};
 use crate::rows::Rows;
 use gwatt::machine::{Machine, PathMode};
 use gwatt::pipeline::{
-    Certificate, Failure, Law, LimitOptions, Options, Row, Strategy, analyze, limit,
+    Allowed, Certificate, Failure, Law, LimitOptions, Options, Row, Strategy, analyze, limit,
 };
 
 const ISG: Rig = Rig {
@@ -19,8 +19,7 @@ const ISG: Rig = Rig {
 const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Split,
     law: Law::Exact,
-    allow_feed: false,
-    allow_expand: false,
+    allowed: Allowed::NOTHING,
 };
 
 /// The text that `limit` writes for a program that it makes fit, and its rows.
@@ -469,7 +468,7 @@ fn lines_between_two_stops_are_planned() {
     for program in [
         "G0 X100\nX300\nM30\n",
         "G0 X100\nG231 = 50\nX300\nG4 P1\nX0\nM30\n",
-        "G1 F9000 X30 Y40\nX60 Y80\nX90 Y120 G60\nG0 X0\nM30\n",
+        "G4 P1\nG1 F9000 X30 Y40\nX60 Y80\nX90 Y120 G60\nG0 X0\nM30\n",
     ] {
         let found = certificates(program);
         assert!(found.iter().all(|it| *it == planned), "{program} {found:?}");

@@ -32,7 +32,7 @@ impl Control<'_> {
     /// Source: Marlin G28 (no axis: all of X Y Z), Klipper G28.
     pub(super) fn home(&mut self, run: &mut Run<'_, '_>, parameters: &Parameters, span: Span) {
         run.facts.reference = true;
-        run.facts.fixed = Some("it homes the axes");
+        run.facts.homes = true;
         let mut named = AxisSet::default();
         for parameter in parameters {
             if let Some(axis) = AxisId::from_letter(parameter.letter) {
@@ -59,11 +59,11 @@ impl Control<'_> {
             }
         }
         for axis in named.iter() {
-            let home = self.machine.axes[axis].and_then(|data| data.home_mm);
+            let home = self.machine.axes[axis].and_then(|data| data.reference_mm);
             self.position.home(axis, home.unwrap_or(0.0));
             if home.is_none() {
                 self.position.unknown.insert(axis);
-                let message = "without `home_mm` of its axis in the machine file, where G28 ends \
+                let message = "without `reference_mm` of its axis in the machine file, where G28 ends \
                                is not known: the power of the next moves counts from anywhere, \
                                their time from 0";
                 run.report.note_once("home", message, span);
@@ -74,12 +74,12 @@ impl Control<'_> {
     fn home_group(&mut self, run: &mut Run<'_, '_>, group: AxisSet) {
         let speeds = group
             .iter()
-            .filter_map(|axis| Some(self.machine.axes[axis].as_ref()?.home_mm_s));
+            .filter_map(|axis| Some(self.machine.axes[axis].as_ref()?.reference_mm_s));
         let feed_mm_s = speeds.fold(0.0, f64::max);
         let mut end = self.position.at;
         for axis in group.iter() {
             end[axis] = self.machine.axes[axis]
-                .and_then(|data| data.home_mm)
+                .and_then(|data| data.reference_mm)
                 .unwrap_or(0.0);
         }
         self.go_at(run, MoveKind::Feed, &end, group, None, Some(feed_mm_s));

@@ -146,13 +146,35 @@ impl Builder {
                 ),
             ],
         );
+        let reference_mm_s = self.quantities.given(
+            findings,
+            [
+                form(
+                    "reference_mm_min",
+                    table.reference_mm_min.as_ref(),
+                    1.0 / SECONDS_PER_MINUTE,
+                ),
+                form(
+                    "home_mm_min",
+                    table.home_mm_min.as_ref(),
+                    1.0 / SECONDS_PER_MINUTE,
+                ),
+            ],
+        );
+        let reference_mm = self.quantities.given(
+            findings,
+            [
+                form("reference_mm", table.reference_mm.as_ref(), 1.0),
+                form("home_mm", table.home_mm.as_ref(), 1.0),
+            ],
+        );
         warn_unused_lead(findings, table);
         let (rapid, accel, mass) = (rapid?, accel?, mass?);
         plausible::linear(findings, table, &accel, &mass);
         Some(Axis {
             rapid_mm_s: rapid.value,
-            home_mm_s: value(table.home_mm_min.as_ref(), f64::INFINITY) / SECONDS_PER_MINUTE,
-            home_mm: table.home_mm.as_ref().map(|number| number.value),
+            reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
+            reference_mm,
             accel_mm_s2: accel.value,
             jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
             mass_kg: mass.value,
@@ -224,6 +246,9 @@ impl Builder {
             rapid_mm_s: rapid.value,
             accel_mm_s2: accel.value,
             jerk_mm_s3: value(table.jerk_deg_s3.as_ref(), 0.0),
+            reference_mm_s: value(table.reference_deg_min.as_ref(), f64::INFINITY)
+                / SECONDS_PER_MINUTE,
+            reference_mm: table.reference_deg.as_ref().map(|number| number.value),
             mass_kg: inertia.value,
             coulomb_n,
             viscous_n_s_m,
@@ -239,8 +264,8 @@ impl Builder {
         Axis {
             kind: self.kind,
             rapid_mm_s: 0.0,
-            home_mm_s: f64::INFINITY,
-            home_mm: None,
+            reference_mm_s: f64::INFINITY,
+            reference_mm: None,
             accel_mm_s2: 0.0,
             jerk_mm_s3: 0.0,
             mass_kg: 0.0,
@@ -275,6 +300,16 @@ impl Builder {
                     ),
                     ("accel_deg_s2", span(t.accel_deg_s2.as_ref()), "accel_mm_s2"),
                     ("jerk_deg_s3", span(t.jerk_deg_s3.as_ref()), "jerk_mm_s3"),
+                    (
+                        "reference_deg_min",
+                        span(t.reference_deg_min.as_ref()),
+                        "reference_mm_min",
+                    ),
+                    (
+                        "reference_deg",
+                        span(t.reference_deg.as_ref()),
+                        "reference_mm",
+                    ),
                 ],
                 "linear",
                 "rotary",
@@ -286,8 +321,22 @@ impl Builder {
                         span(t.rapid_mm_min.as_ref()),
                         "rapid_deg_min",
                     ),
-                    ("home_mm_min", span(t.home_mm_min.as_ref()), "rapid_deg_min"),
-                    ("home_mm", span(t.home_mm.as_ref()), "rapid_deg_min"),
+                    (
+                        "reference_mm_min",
+                        span(t.reference_mm_min.as_ref()),
+                        "reference_deg_min",
+                    ),
+                    (
+                        "reference_mm",
+                        span(t.reference_mm.as_ref()),
+                        "reference_deg",
+                    ),
+                    (
+                        "home_mm_min",
+                        span(t.home_mm_min.as_ref()),
+                        "reference_deg_min",
+                    ),
+                    ("home_mm", span(t.home_mm.as_ref()), "reference_deg"),
                     ("accel_mm_s2", span(t.accel_mm_s2.as_ref()), "accel_deg_s2"),
                     ("jerk_mm_s3", span(t.jerk_mm_s3.as_ref()), "jerk_deg_s3"),
                     ("mass_kg", span(t.mass_kg.as_ref()), "inertia_kg_m2"),

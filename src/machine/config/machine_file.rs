@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::controller_file::{CompensationTable, DistanceName, PointName};
+use super::offsets::OffsetsTable;
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, ResponseTime, Share,
@@ -34,6 +35,8 @@ pub(crate) struct MachineFile {
     pub(crate) path: Option<At<PathTable>>,
     /// Parameters of the control that change how programs are read.
     pub(crate) language: Option<At<OwnLanguageTable>>,
+    /// Work offsets that the control keeps, by the words that select them.
+    pub(crate) offsets: Option<At<OffsetsTable>>,
     /// The axes by letter; at least one.
     #[schemars(required)]
     pub(crate) axes: Option<At<PerAxis<At<AxisTable>>>>,
@@ -115,6 +118,13 @@ pub(crate) struct PathTable {
     /// Over how long the drives spread a step of speed at a corner, in s; default
     /// 0.01, or what follows for axes that give `position_gain_1_s`.
     pub(crate) response_time_s: Option<ResponseTime>,
+    /// Largest F of a cutting move in mm/min: one in a program counts as it, and none above
+    /// it is written; default: none is known.
+    pub(crate) max_feed_mm_min: Option<Positive>,
+    /// Machine coordinates, in mm or degrees, from which on in positive direction nothing
+    /// stands in the way of the axes: there `--allow straighten` may write rapids of axes that
+    /// move each for itself as lines.
+    pub(crate) clearance: Option<PerAxis<Number>>,
 }
 
 /// Parameters of the control that change how programs are read; what is absent
@@ -130,6 +140,16 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) arc_centre: Option<DistanceName>,
     /// How G41 and G42 shift the path.
     pub(crate) cutter_compensation: Option<CompensationTable>,
+    /// G and M words that move no axis and raise no limit on this machine, besides those of
+    /// the profile, such as "M101" or a remap "M428". What one switches on is a [[load]].
+    pub(crate) ignored: Option<Vec<At<String>>>,
+    /// Extended commands of a printer that move nothing and set nothing, besides those of
+    /// the profile; `*` at the end stands for anything.
+    pub(crate) ignored_macros: Option<Vec<At<String>>>,
+    /// Commands of a printer whose moves are not known, besides those of the profile: every
+    /// axis counts at its full speed and acceleration, and its place is not known
+    /// afterwards. They must leave feed and modes as they are.
+    pub(crate) unknown_moves: Option<Vec<At<String>>>,
 }
 
 /// What happens at the joint of two blocks.
@@ -164,11 +184,22 @@ pub(crate) struct AxisTable {
     pub(crate) kind: Option<At<KindName>>,
     /// Linear: rapid speed in mm/min; caps feeds too.
     pub(crate) rapid_mm_min: Option<Positive>,
-    /// Linear: homing speed of a printer (G28) and of grbl ($H) in mm/min; default: the rapid speed.
+    /// Linear: speed on the way to the reference point (G28, homing) in mm/min; default: the
+    /// rapid speed.
+    pub(crate) reference_mm_min: Option<Positive>,
+    /// Linear: machine coordinate of the reference point (G28, homing) in mm; default: not
+    /// known. Then G28 of a mill or lathe is taken to go to machine zero, with a note; after
+    /// homing (G28 of a printer, grbl's $H) the next move counts at full speed and
+    /// acceleration.
+    pub(crate) reference_mm: Option<Number>,
+    /// The same as `reference_mm_min`, by an earlier name.
     pub(crate) home_mm_min: Option<Positive>,
-    /// Linear: where the axis stands after a printer's G28 or grbl's $H, in mm; default: not
-    /// known, so that its next move counts at full speed and acceleration.
+    /// The same as `reference_mm`, by an earlier name.
     pub(crate) home_mm: Option<Number>,
+    /// Rotary: speed on the way to the reference point in degrees/min; default: the rapid speed.
+    pub(crate) reference_deg_min: Option<Positive>,
+    /// Rotary: machine coordinate of the reference point in degrees; default: not known.
+    pub(crate) reference_deg: Option<Number>,
     /// Rotary: rapid speed in degrees/min.
     pub(crate) rapid_deg_min: Option<Positive>,
     /// Largest speed of the motor (of the table without `gear_ratio`) in 1/min.

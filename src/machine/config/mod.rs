@@ -16,6 +16,8 @@ mod hints;
 mod load;
 mod look_ahead;
 mod machine_file;
+mod offsets;
+mod own_language;
 mod plausible;
 mod preset;
 mod printer;

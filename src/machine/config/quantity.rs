@@ -88,14 +88,21 @@ impl Quantities {
         findings: &mut Findings<'_>,
         forms: [Form; N],
     ) -> f64 {
-        let Ok(Some(given)) = self.one(findings, forms) else {
-            return 0.0;
-        };
+        self.given(findings, forms).unwrap_or(0.0)
+    }
+
+    /// A quantity that need not be given.
+    pub(crate) fn given<const N: usize>(
+        &self,
+        findings: &mut Findings<'_>,
+        forms: [Form; N],
+    ) -> Option<f64> {
+        let given = self.one(findings, forms).ok()??;
         if !given.value.is_finite() {
             let message = format!("`{}` is too large to compute with", given.key);
             findings.error("machine-range", &given.span, message, None);
         }
-        given.value
+        Some(given.value)
     }
 
     /// Acceleration as given, or the rapid speed by the time to reach it.

@@ -8,8 +8,8 @@ use crate::machine::Machine;
 use crate::pipeline::front::Front;
 use crate::pipeline::{Failure, Options};
 
-/// Rounding of a coordinate that is written with six decimals, mm.
-const ROUNDING_MM: f64 = 2e-6;
+/// Rounding of a coordinate that is written with six decimals, in inches too, mm.
+const ROUNDING_MM: f64 = 2e-5;
 /// Rounding of other figures, as a share.
 const ROUNDING: f64 = 1e-9;
 
@@ -82,7 +82,7 @@ impl Steps<'_, '_> {
             };
             self.line = line.key.1;
             let counts = |step: &Step| match step {
-                Step::Move(mv) => mv.moves_axes() || mv.kind == MoveKind::Dwell,
+                Step::Move(mv) => mv.length_mm > ROUNDING_MM || mv.kind == MoveKind::Dwell,
                 // The moves themselves show them.
                 Step::Action(action) => {
                     !matches!(action.kind, ActionKind::Feed | ActionKind::PathMode)

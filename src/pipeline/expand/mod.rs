@@ -1,4 +1,5 @@
-//! Canned cycles written out as single blocks, which can then be limited like all others.
+//! Canned cycles written out as single blocks, and returns to the reference point with their
+//! way gone before: all of that can then be limited like other moves.
 //!
 //! Input: a program, and the lines whose moves have to be lowered. Output: the program with
 //! the cycles of these lines written out, from the block that begins each of them to the one
@@ -6,6 +7,7 @@
 //! held against the original step by step, so it makes the same moves or is not handed on.
 
 mod compare;
+mod returns;
 mod trace;
 
 use std::collections::BTreeMap;
@@ -56,8 +58,11 @@ pub(super) enum Way {
 /// What the lines of one series of cycle blocks become, or why they stay, with the line.
 type Lines = Result<BTreeMap<u64, Vec<u8>>, (u64, &'static str)>;
 
-/// One series of cycle blocks, from the one that begins the cycle to the one that ends it.
+/// One series of cycle blocks, from the one that begins the cycle to the one that ends it;
+/// or one block that returns to the reference point.
 struct Series {
+    /// What is said where it stays as it is.
+    stays: &'static str,
     /// Its lines, with their N words.
     numbers: BTreeMap<u64, Option<f64>>,
     written_out: Lines,
@@ -71,6 +76,7 @@ struct Series {
 impl Default for Series {
     fn default() -> Self {
         Self {
+            stays: "the canned cycle is not written out",
             numbers: BTreeMap::new(),
             written_out: Ok(BTreeMap::new()),
             placed: Ok(BTreeMap::new()),
@@ -107,7 +113,7 @@ pub(super) fn expand(
                 continue;
             }
             Some(Way::WrittenOut) => series.written_out.or_else(|(line, why)| {
-                notes.stays(line, why, program);
+                notes.stays(line, series.stays, why, program);
                 series.placed
             }),
             Some(Way::Placed) => series.placed,
@@ -117,13 +123,13 @@ pub(super) fn expand(
                 let Some(first) = lines.keys().next().copied() else {
                     continue;
                 };
-                written.insert(first, lines);
+                written.insert(first, (series.stays, lines));
                 levels.extend(series.level.map(|level| (first, level)));
                 let named = numbers.into_iter();
                 n_words.extend(named.filter_map(|(line, word)| Some((line, word?))));
             }
             Err((line, why)) => {
-                notes.stays(line, why, program);
+                notes.stays(line, series.stays, why, program);
                 kept.extend(series.level);
             }
         }
@@ -136,7 +142,7 @@ pub(super) fn expand(
         lines.extend(
             written
                 .values()
-                .flatten()
+                .flat_map(|(_, lines)| lines)
                 .map(|(line, bytes)| (*line, bytes.clone())),
         );
         let expanded = put_together(program, &lines, &n_words);
@@ -152,12 +158,13 @@ pub(super) fn expand(
         // The last series before the place stays as it is.
         let line = expanded.origin(line);
         let place = written.range(..=line).next_back().map(|(first, _)| *first);
-        let Some(lines) = place.and_then(|first| written.remove(&first)) else {
+        let Some((stays, lines)) = place.and_then(|first| written.remove(&first)) else {
             return Ok((None, notes.list));
         };
         kept.extend(levels.remove(lines.keys().next().unwrap_or(&0)));
         notes.stays(
             line,
+            stays,
             "written in another way it would not move as it does",
             program,
         );
@@ -171,8 +178,8 @@ struct Notes {
 }
 
 impl Notes {
-    fn stays(&mut self, line: u64, why: &str, program: &[u8]) {
-        let message = format!("the canned cycle is not written out: {why}");
+    fn stays(&mut self, line: u64, what: &str, why: &str, program: &[u8]) {
+        let message = format!("{what}: {why}");
         let said = |note: &Diagnostic| note.line == line && note.message == message;
         if self.list.iter().any(said) {
             return;
@@ -210,14 +217,20 @@ fn survey_path(
     let singles = Singles::new(machine);
     let mut front = Front::new(Cursor::new(program), machine, options);
     let mut open: Option<Series> = None;
+    let mut before = returns::Before::of(front.interpreter().modal());
     while let Some(line) = front.next_line()? {
         let (facts, interpreter) = (&*line.facts, line.interpreter);
         if !facts.cycle {
             if !interpreter.in_cycle() {
                 close(&mut open, all);
             }
+            if facts.reference || facts.machine_coordinates {
+                close(&mut returns::series(&line, &before), all);
+            }
+            before = returns::Before::of(interpreter.modal());
             continue;
         }
+        before = returns::Before::of(interpreter.modal());
         // A block that says all of a cycle depends on none before it.
         let has = |letter| line.block.words.iter().any(|word| word.letter == letter);
         if facts.motion_word.is_some() && has(b'R') && has(b'Z') {
