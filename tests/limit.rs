@@ -15,6 +15,7 @@ mod reader;
 mod returns;
 mod rewriting;
 mod rows;
+mod split;
 mod stops;
 mod ways;
 mod whole;

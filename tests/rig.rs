@@ -123,6 +123,8 @@ fn controller() -> Controller {
             rapid_joint: gwatt::machine::RapidJoint::Stop,
             spindle_wait: gwatt::machine::SpindleWait::Unknown,
             dwell_stops: false,
+            shortest_block_s: 0.005,
+            shortest_at_feed_s: 0.0,
             look_ahead: None,
         },
         knobs: Vec::new(),

@@ -94,6 +94,8 @@ pub enum Strategy {
     Accel,
     /// The shortest time with the words that the controller has
     Optimal,
+    /// The same, and long straight blocks in pieces, each with its acceleration
+    Split,
 }
 
 /// See [`pipeline::Law`].
@@ -121,6 +123,7 @@ impl From<Strategy> for pipeline::Strategy {
             Strategy::Speed => Self::Speed,
             Strategy::Accel => Self::Accel,
             Strategy::Optimal => Self::Optimal,
+            Strategy::Split => Self::Split,
         }
     }
 }

@@ -228,7 +228,10 @@ fn isg_g_code(number: u16) -> Option<GCode> {
         // feed forward, corrections of centres, weightings that are off.
         80 | 90 | 9000 | 9010 | 100..=130 if number.is_multiple_of(10) => Some(GCode::Ignored),
         960 | 970 => Some(GCode::SurfaceSpeed),
-        600 | 3590 | 3600 | 2600 | 2610 => Some(GCode::Ignored),
+        // "Exact stop (G60/G360/G359)".
+        600 => Some(GCode::ExactOnce),
+        3590 | 3600 => Some(GCode::PathMode),
+        2600 | 2610 => Some(GCode::Ignored),
         1150..=1170 | 1350..=1370 | 1640 | 1650 | 1660 | 250 | 260 if number.is_multiple_of(10) => {
             Some(GCode::Ignored)
         }
@@ -326,6 +329,8 @@ pub(super) fn refused_m_name(number: u16) -> &'static str {
 /// Path modes that G61, G61.1 and G64 select under a controller.
 pub(super) fn path_mode(number: u16, language: &crate::machine::Language) -> PathMode {
     match number {
+        3590 => PathMode::LookAhead,
+        3600 => PathMode::ExactStop,
         610 => language.g61,
         611 => language.g61_1,
         _ => language.g64,

@@ -162,7 +162,8 @@ impl Control<'_> {
         let exact = self.machine.path.mode == Some(PathMode::ExactStop);
         self.modal.path_mode = if exact { PathMode::ExactStop } else { asked };
         // "G64 Path Blending" (`LinuxCNC`): Q is P where only P is given.
-        self.modal.corner = if number == 640 {
+        let blends = number == 640 || number == 3590;
+        self.modal.corner = if blends {
             let mm_per_unit = self.modal.mm_per_unit;
             let [p, q] = [b'P', b'Q'].map(|letter| run.words.take(letter));
             let [tolerance_mm, join_mm] =

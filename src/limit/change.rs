@@ -15,6 +15,8 @@ pub struct Permit {
     pub as_feed: bool,
     /// Such a feed may run in exact stop, in place of dwells before and after it.
     pub exact_stop: bool,
+    /// Why the block may not be written as several; `None`: it may.
+    pub unsplit: Option<&'static str>,
     /// Why not, for a person; empty when all is permitted.
     pub reason: &'static str,
     /// What the programmer can do about it; empty when nothing in particular.

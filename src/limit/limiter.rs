@@ -9,8 +9,9 @@ use std::collections::VecDeque;
 use super::change::{Change, Permit};
 use super::depth::Depths;
 use super::lever::Obstacle;
-use super::options::LimitOptions;
+use super::options::{LimitOptions, Strategy};
 use super::solver::{Ends, Solver};
+use super::split::{SPLIT_TRIES, Split};
 use super::window;
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -23,6 +24,11 @@ use crate::power::{Assessment, Certificate};
 pub struct Outcome {
     /// The change; `None` where the move fits or cannot be helped.
     pub change: Option<Box<Change>>,
+    /// The pieces that it is written in, where these are more than one; the change is
+    /// that of the last one then.
+    pub split: Option<Box<Split>>,
+    /// Why it is not, where that was asked for.
+    pub unsplit: Option<&'static str>,
     /// Why a move that does not fit stays as it is.
     pub obstacle: Option<Box<Obstacle>>,
 }
@@ -75,6 +81,12 @@ impl<'m> Limiter<'m> {
         }
     }
 
+    /// Whether blocks may be written as several.
+    #[must_use]
+    pub fn splits(&self) -> bool {
+        self.solver.how.strategy == Strategy::Split
+    }
+
     /// Takes the next move. Outcomes are handed on in the order of the moves;
     /// until then the caller keeps them, and `find` gives the one at a place,
     /// counted from the first that waits. It is asked only where that matters.
@@ -89,7 +101,7 @@ impl<'m> Limiter<'m> {
         self.shifted &= assessment.spindle.runs;
         if assessment.ahead {
             self.settle(find, sink);
-            let depth = self.depths.of(mv);
+            let depth = self.depth(mv);
             let ends = match assessment.certificate {
                 _ if depth == 0 && !assessment.blended => Ends::Rest,
                 Certificate::Planned => Ends::Any(depth),
@@ -180,6 +192,17 @@ impl<'m> Limiter<'m> {
         self.slots.iter().rposition(|slot| !slot.rider)
     }
 
+    /// How deep a move that stays one block is to be lowered: the first rounds try others
+    /// pieces.
+    fn depth(&self, mv: &Move) -> u8 {
+        let depth = self.depths.of(mv);
+        if self.splits() {
+            depth.saturating_sub(SPLIT_TRIES)
+        } else {
+            depth
+        }
+    }
+
     #[inline]
     fn alone<'a>(
         &self,
@@ -188,7 +211,7 @@ impl<'m> Limiter<'m> {
         ends: Ends,
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Outcome {
-        let deeper = assessment.ahead && self.depths.of(mv) > 0;
+        let deeper = assessment.ahead && self.depth(mv) > 0;
         let fits = self.solver.model.fits(&assessment.demand) && !deeper;
         if fits && !(self.shifted && assessment.spindle.runs) {
             return Outcome::default();
@@ -199,16 +222,33 @@ impl<'m> Limiter<'m> {
         if fits && self.solver.fits_later(mv, assessment, &permit, ends) {
             return Outcome::default();
         }
-        match self.solver.solve(mv, assessment, &permit, ends) {
-            Ok(change) => Outcome {
-                change: (!change.is_none()).then(|| Box::new(change)),
-                obstacle: None,
-            },
-            Err(obstacle) => Outcome {
-                change: None,
-                obstacle: Some(Box::new(obstacle)),
-            },
+        let solved = self.solver.solve(mv, assessment, &permit, ends);
+        let mut outcome = Outcome::default();
+        if self.splits() && !fits {
+            let otherwise = solved.as_ref().ok();
+            let tries = self.depths.of(mv);
+            let pieces = self
+                .solver
+                .pieces(mv, assessment, &permit, tries, otherwise);
+            match pieces {
+                Ok(split) => {
+                    let last = split.pieces.last().and_then(|piece| piece.accel);
+                    let change = Change {
+                        accel: last,
+                        ..Change::NONE
+                    };
+                    outcome.change = Some(Box::new(change));
+                    outcome.split = Some(Box::new(split));
+                    return outcome;
+                }
+                Err(reason) => outcome.unsplit = Some(reason),
+            }
         }
+        match solved {
+            Ok(change) => outcome.change = (!change.is_none()).then(|| Box::new(change)),
+            Err(obstacle) => outcome.obstacle = Some(Box::new(obstacle)),
+        }
+        outcome
     }
 }
 

@@ -11,6 +11,9 @@ pub enum Strategy {
     Accel,
     /// The shortest time with the words that the controller has.
     Optimal,
+    /// The same, and long straight blocks in several of one line, each with an
+    /// acceleration of its own.
+    Split,
 }
 
 /// How far the ratio V = limit/peak lowers speed or acceleration.

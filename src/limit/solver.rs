@@ -108,10 +108,12 @@ impl<'m> Solver<'m> {
             (Strategy::Accel, _) => self.by_accel(case, levers)?,
             // Under the robust bound a neighbour's speed meets this move's
             // acceleration: where a pair was not enough, speeds alone go down.
-            (Strategy::Optimal, _) if case.ends > Ends::Any(2) && levers.speed.is_some() => {
+            (Strategy::Optimal | Strategy::Split, _)
+                if case.ends > Ends::Any(2) && levers.speed.is_some() =>
+            {
                 self.by_speed(case, levers)?
             }
-            (Strategy::Optimal, _) => self.optimal(case, levers)?,
+            (Strategy::Optimal | Strategy::Split, _) => self.optimal(case, levers)?,
         };
         self.verify(case, change)
     }

@@ -84,7 +84,7 @@ fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, c
     let done = match solver.how.strategy {
         _ if by_rule => by_law(solver, slots, window, &found),
         Strategy::Accel => by_accel() && lower_accel(solver, slots, window, &found),
-        Strategy::Optimal if by_accel() => {
+        Strategy::Optimal | Strategy::Split if by_accel() => {
             faster_of_both(solver, slots, window, &found, by_speed())
         }
         _ => by_speed() && lower_speed(solver, slots, window, &found),

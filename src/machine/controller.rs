@@ -246,6 +246,11 @@ pub struct Planner {
     pub dwell_stops: bool,
     /// What waits for the spindle's speed, if the machine does not say.
     pub spindle_wait: SpindleWait,
+    /// The shortest time that a block may last for the control to keep its speed, s.
+    pub shortest_block_s: f64,
+    /// The shortest time that the path of a block may take at its F for the control to
+    /// keep that, s.
+    pub shortest_at_feed_s: f64,
     /// How corners are run through; `None`: not modelled.
     pub look_ahead: Option<LookAhead>,
 }
@@ -326,6 +331,8 @@ pub struct Knob {
     pub min: f64,
     /// True when a document confirms it.
     pub verified: bool,
+    /// It acts between two moves that run into each other, without a stop.
+    pub between_moves: bool,
 }
 
 /// What a knob acts on.

@@ -87,14 +87,15 @@ fn judge<R: Read + Seek + Send>(
         front = relay(front, |files, line| {
             analysis.tally.learn_files(files);
             let text_of = |step, _: &Move| line.text_of(step);
-            analysis.take(line.steps(), text_of, || *line.circumstances)
+            let circumstances = || *line.circumstances;
+            analysis.take(line.steps(), line.turns_knob, text_of, circumstances)
         })?;
     } else {
         while let Some(line) = front.next_line()? {
             analysis.tally.learn_files(line.files);
             let text_of = |_, mv: &Move| line.text_of(mv);
             let circumstances = || Circumstances::of(line.interpreter);
-            analysis.take(line.steps, text_of, circumstances)?;
+            analysis.take(line.steps, line.facts.turns_knob, text_of, circumstances)?;
         }
     }
     analysis.finish(front)
@@ -136,6 +137,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
     fn take<'t>(
         &mut self,
         steps: &[Step],
+        turns_knob: bool,
         text_of: impl Fn(usize, &Move) -> &'t [u8],
         circumstances: impl Fn() -> Circumstances,
     ) -> Result<(), Failure> {
@@ -157,7 +159,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
             }
             assessor.want = wanted(tally);
         }
-        let moved = steps.iter().any(Step::moves_axes);
+        let moved = turns_knob || steps.iter().any(Step::moves_axes);
         assessor.end_line(moved, &mut |mv, assessment, text| {
             let help = || adviser.help(mv, assessment, &circumstances());
             tally.take(mv, assessment, text, help);

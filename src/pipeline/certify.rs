@@ -7,12 +7,17 @@
 //! actions are the original's, (c) no effective path speed or acceleration
 //! went up, (d) the effective feed of each untouched move is what it was.
 
+mod compare;
+mod pieces;
 mod spindle;
 
 use std::collections::VecDeque;
 
+use compare::compare;
+use pieces::{Found, Pieces};
+
 use super::batch::Batch;
-use super::expected::{Expected, ExpectedMove, Originals, added_mode, added_stop, different};
+use super::expected::{Expected, Originals, added_mode, added_stop, different};
 use super::tally::Tally;
 use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
@@ -23,9 +28,6 @@ use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
 use crate::source::{Span, lines};
 use crate::syntax::{Block, scan_line};
-
-/// Rounding that speeds and accelerations may differ by, as a share.
-const ROUNDING: f64 = 1e-9;
 
 /// Reads the written program.
 pub(super) struct Certifier<'m, 'r> {
@@ -51,6 +53,7 @@ pub(super) struct Verdict<'m, 'r> {
     tally: Tally<'m, 'r>,
     /// What the original does, from the first move that is not judged.
     originals: Originals,
+    pieces: Pieces,
     /// How much of it the written program has done, and how much is judged.
     done: usize,
     judged: usize,
@@ -259,7 +262,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
-            let moved = steps.iter().any(Step::moves_axes);
+            let moved = facts.turns_knob || steps.iter().any(Step::moves_axes);
             assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
     }
@@ -303,6 +306,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             tally: Tally::new(machine, options, rows),
             stop_s: machine.controller.language.shortest_dwell().1,
             originals: Originals::default(),
+            pieces: Pieces::default(),
             done: 0,
             judged: 0,
             reasons: Reasons::default(),
@@ -389,8 +393,18 @@ impl<'m, 'r> Verdict<'m, 'r> {
         if matches!(step, Step::Action(action) if added_mode(action, original)) {
             return;
         }
-        self.done += 1;
+        let place = self.done;
+        let piece = match step {
+            Step::Move(mv) => self.compare_piece(mv),
+            Step::Action(_) => None,
+        };
+        let original = self.originals.get(place).map(|original| &*original);
+        self.done += usize::from(piece.is_none());
         let message = match (step, original) {
+            _ if piece.is_some() => match piece {
+                Some(Found::Wrong(what)) => Some(what),
+                Some(Found::Right) | None => None,
+            },
             (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
             (Step::Action(action), Some(Expected::Action(original)))
                 if action.kind == original.kind && same(action.value, original.value) =>
@@ -422,7 +436,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             let place = (original.text, original.line);
-            if after.ahead && !original.hopeless && !self.model.fits(&after.demand) {
+            let planned = after.ahead || original.split.is_some();
+            if planned && !original.hopeless && !self.model.fits(&after.demand) {
                 // Under the robust bound the neighbours count as well.
                 let robust = after.certificate == Certificate::Robust;
                 let before = self.before.filter(|_| robust);
@@ -435,12 +450,17 @@ impl<'m, 'r> Verdict<'m, 'r> {
             self.deeper.truncate(Depths::wanted() + 1);
             self.before = Some(place);
             compare(&self.model, original, mv, after, text, &mut self.reasons);
-            if let Some(row) = &mut original.row {
-                row.peak_after_w = Some(after.demand.peak_w);
-                row.regen_after_w = Some(after.demand.regen_w);
-                row.duration_after_s = Some(after.duration_s);
-                self.tally.write(row);
-            }
+        }
+        let Some(after) = &self.add_piece(after) else {
+            return;
+        };
+        if let Some(Expected::Move(original)) = self.originals.get(self.judged)
+            && let Some(row) = &mut original.row
+        {
+            row.peak_after_w = Some(after.demand.peak_w);
+            row.regen_after_w = Some(after.demand.regen_w);
+            row.duration_after_s = Some(after.duration_s);
+            self.tally.write(row);
         }
         // What is found counts for the line of the program that was read.
         let line = match self.originals.get(self.judged) {
@@ -453,51 +473,6 @@ impl<'m, 'r> Verdict<'m, 'r> {
 }
 
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
-
-/// (a), (c) and (d) for one move.
-fn compare(
-    model: &PowerModel,
-    original: &ExpectedMove,
-    mv: &Move,
-    after: &Assessment,
-    text: &[u8],
-    reasons: &mut Reasons,
-) {
-    let line = original.line;
-    if !model.fits(&after.demand) && !original.hopeless {
-        let limit_w = model.limit_w(after.demand.converter);
-        let message = format!(
-            "the block still needs {:.1} W of {limit_w:.1} W",
-            after.demand.peak_w
-        );
-        let help = "another strategy, or --allow feed, may help";
-        reasons.push(line, "does-not-fit", message, help, text);
-    }
-    let rises = |before: f64, after: f64| after > before * (1.0 + ROUNDING);
-    let axis_rises = !original.as_feed
-        && mv
-            .moving
-            .iter()
-            .any(|axis| rises(original.axis_accel_mm_s2[axis], mv.accel_mm_s2[axis]));
-    // A slower arc, and a slower move under a curve of force, may leave more to the
-    // acceleration along the path than a faster one.
-    let slower = after.speed_mm_s < original.speed_mm_s;
-    if rises(original.speed_mm_s, after.speed_mm_s)
-        || !slower && rises(original.accel_mm_s2, after.accel_mm_s2)
-        || axis_rises
-    {
-        let message = "a speed or an acceleration went up".to_owned();
-        reasons.push(line, "went-up", message, BUG, text);
-    }
-    let falls = |before: f64, after: f64| after < before * (1.0 - ROUNDING);
-    if !original.changed
-        && (falls(original.speed_mm_s, after.speed_mm_s)
-            || falls(original.accel_mm_s2, after.accel_mm_s2))
-    {
-        let message = "the feed of a block that was not to be changed differs".to_owned();
-        reasons.push(line, "changed-feed", message, BUG, text);
-    }
-}
 
 /// Whether two values are one; a place that is not known is not a number.
 fn same(a: f64, b: f64) -> bool {

@@ -106,10 +106,17 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
     };
     let percent = |factor: f64| factor * 100.0;
     let limits = &machine.limits;
+    let modelled = machine.controller.planner.look_ahead.is_some();
+    let on_lines = summary.ahead && !modelled;
     let mut conditions = vec![match summary.certificate {
         Some(Certificate::Robust) => {
             "robust: blended moves hold for any look-ahead, blending and filtering that \
              keeps each axis inside its own limits; times are those with a stop at each block"
+                .to_owned()
+        }
+        _ if on_lines => {
+            "planned: blocks of one line between two stops run on into each other, each with \
+             its own speed and acceleration"
                 .to_owned()
         }
         _ if summary.ahead => format!(
@@ -118,7 +125,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         ),
         _ => "planned: every block ends at rest (exact stop)".to_owned(),
     }];
-    if summary.ahead && summary.certificate == Some(Certificate::Robust) {
+    if summary.ahead && modelled && summary.certificate == Some(Certificate::Robust) {
         conditions.push(format!(
             "the other moves are planned with the look-ahead of `{}`",
             machine.controller.name

@@ -3,7 +3,7 @@
 use super::Row;
 use super::tally::axes;
 use crate::interpret::Move;
-use crate::limit::Change;
+use crate::limit::{Change, Split};
 use crate::machine::{AxisValues, KnobUnit, Machine};
 use crate::power::{Assessment, PowerModel};
 
@@ -93,6 +93,22 @@ pub(super) fn describe(
         }
     }
     row.knob = names.join(" ");
+}
+
+/// The same for a block in pieces; the value is that of the piece with the lowest.
+pub(super) fn describe_split(machine: &Machine, mv: &Move, split: &Split, row: &mut Row) {
+    let least = |values: &AxisValues| {
+        let values = mv.moving.iter().map(|axis| values[axis]);
+        values.fold(f64::INFINITY, f64::min)
+    };
+    let accels = split.pieces.iter().filter_map(|piece| piece.accel);
+    let lowest = accels.min_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
+    let change = Change {
+        accel: lowest,
+        ..Change::NONE
+    };
+    describe(machine, mv, Some(&change), None, row);
+    row.action = "split";
 }
 
 /// The knob whose word says these values: where they differ, the one by axis.

@@ -1,6 +1,7 @@
 //! A block that waits to be written, and what may be changed about it.
 
 use super::front::Line;
+use super::split::Places;
 use super::table::LineKey;
 use crate::interpret::{CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
@@ -39,6 +40,8 @@ pub(super) struct Entry {
     /// Millimetres in a program unit before it.
     pub(super) mm_per_unit_before: f64,
     pub(super) moves: usize,
+    /// Of its only move, where it may be written as several blocks.
+    pub(super) places: Option<Places>,
     pub(super) decided: Vec<(Assessment, Outcome)>,
 }
 
@@ -61,6 +64,7 @@ impl Entry {
             mode_before: modal.path_mode,
             mm_per_unit_before: modal.mm_per_unit,
             moves: 0,
+            places: None,
             decided: Vec::new(),
         }
     }
@@ -95,6 +99,7 @@ impl Entry {
         self.feed_mode = modal.feed_mode;
         self.mode_before = mode_before;
         self.mm_per_unit_before = mm_per_unit_before;
+        self.places = None;
         self.decided.clear();
     }
 
@@ -250,6 +255,7 @@ impl Entry {
             feed_word: reasons[..2] == [None, None],
             as_feed: reasons == [None; 3],
             exact_stop: self.between_stops(machine) && self.may_stop_exactly(machine),
+            unsplit: self.unsplit(mv),
             reason: reason_text,
             reason_help,
             mm_per_unit: facts.feed_mm_per_unit,

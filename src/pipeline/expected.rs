@@ -1,6 +1,7 @@
 //! What the written program must do: what the original does.
 
 use super::Row;
+use super::split::Line;
 use crate::interpret::{Action, ActionKind, Arc, Corner, Move, MoveKind};
 use crate::machine::{AxisSet, AxisValues, PathMode};
 use crate::power::Assessment;
@@ -42,6 +43,8 @@ pub(super) struct ExpectedMove {
     pub(super) as_feed: bool,
     /// It does not fit and could not be helped; the reason has been given.
     pub(super) hopeless: bool,
+    /// The written program runs its line in pieces.
+    pub(super) split: Option<Box<Line>>,
     /// Its row, where rows are wanted.
     pub(super) row: Option<Box<Row>>,
 }
@@ -66,6 +69,7 @@ impl ExpectedMove {
             changed: false,
             as_feed: false,
             hopeless: false,
+            split: None,
             row: None,
         }
     }

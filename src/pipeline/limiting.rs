@@ -14,6 +14,7 @@ use super::front::read_whole;
 use super::lower::lower_further;
 use super::over_time::OverTime;
 use super::relay::no_thread;
+use super::split::impossible;
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
 use super::writer::{Writer, Written};
@@ -486,9 +487,13 @@ fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
                 "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
             ))
         }
-        Strategy::Preset | Strategy::Optimal if how.law == Law::Patent => {
+        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
             unsuitable("--law patent goes with --strategy speed or accel".to_owned())
         }
+        Strategy::Split => match impossible(machine) {
+            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
+            None => Ok(()),
+        },
         _ => Ok(()),
     }
 }

@@ -27,6 +27,7 @@ mod series;
 pub mod size;
 mod spindle;
 mod spindle_rows;
+mod split;
 mod summary;
 mod table;
 mod tally;

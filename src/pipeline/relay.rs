@@ -40,6 +40,7 @@ struct Batch {
 struct Executed {
     steps_end: usize,
     text: Range<usize>,
+    turns_knob: bool,
 }
 
 /// A line that has been executed, in its batch.
@@ -48,6 +49,8 @@ pub(super) struct Relayed<'b> {
     batch: &'b Batch,
     steps: Range<usize>,
     text: Range<usize>,
+    /// The line turns a knob.
+    pub(super) turns_knob: bool,
     pub(super) circumstances: &'b Circumstances,
 }
 
@@ -95,6 +98,7 @@ impl Batch {
         self.lines.push(Executed {
             steps_end: self.steps.len(),
             text,
+            turns_knob: line.facts.turns_knob,
         });
     }
 
@@ -119,6 +123,7 @@ impl Batch {
                     batch: self,
                     steps: start..line.steps_end,
                     text: line.text.clone(),
+                    turns_knob: line.turns_knob,
                     circumstances,
                 })?;
                 start = line.steps_end;

@@ -91,7 +91,7 @@ pub fn series<R: Read + Seek + Send>(
             }
             sampler.take_all(&mut assessor, false)?;
         }
-        let moved = line.steps.iter().any(Step::moves_axes);
+        let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
         assessor.end_line(moved, &mut |_, _, _| {});
         sampler.take_all(&mut assessor, false)?;
     }

@@ -187,6 +187,7 @@ fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
             rapids: decision.rapids,
             feeds: decision.feeds,
             change: &decision.change,
+            pieces: &[],
             stops: decision.stops,
             rests: false,
         };
@@ -334,7 +335,7 @@ impl<'m, 'p> Original<'m, 'p> {
                         Step::Action(action) => assessor.act(action, &mut sink),
                     }
                 }
-                let moved = line.steps.iter().any(Step::moves_axes);
+                let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
                 assessor.end_line(moved, &mut |mv, assessment, _| {
                     waiting.judge(mv, assessment);
                 });
@@ -430,7 +431,7 @@ fn certify(
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
-            let moved = line.steps.iter().any(Step::moves_axes);
+            let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
             assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
         verdict.check()?;

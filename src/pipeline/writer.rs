@@ -3,6 +3,7 @@
 
 mod expect;
 mod forced;
+mod noted;
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
@@ -14,6 +15,7 @@ use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::spindle_rows::SpindleRows;
+use super::split::Unsplit;
 use super::table::Table;
 use super::tally::Tally;
 use super::watching::watching;
@@ -71,6 +73,7 @@ pub(super) struct Writer<'m, R, W> {
     knobs: Option<KnobState>,
     batch: Batch,
     reasons: Reasons,
+    unsplit: Unsplit,
     /// Every figure is wanted exactly: there are rows.
     exact: bool,
     model: PowerModel,
@@ -119,6 +122,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             decided: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
+            unsplit: Unsplit::default(),
             exact,
             model,
             start_s: 0.0,
@@ -186,6 +190,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let mut before = self.tally.finish(self.exact);
         before.lines = lines;
         before.notes = notes;
+        before.notes.append(&mut self.unsplit.notes);
         let written = Written {
             before,
             edited_lines: self.rewriter.edited_lines,
@@ -250,6 +255,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let spare = self.spare.pop();
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
+        if self.limiter.splits() && self.table.is_none() {
+            entry.keep_places(line.interpreter);
+        }
         self.mm_per_unit = entry.mark.mm_per_unit;
         self.may_skip |=
             entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
@@ -265,7 +273,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
             self.decide_at_once(&mut entry, judged);
-            let moved = entry.steps.iter().any(Step::moves_axes);
+            let moved = entry.moves_on();
             self.assessor.end_line(moved, &mut |_, _, _| {});
             self.ready = Some(entry);
         } else {
@@ -292,7 +300,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         } = self;
         let entries = &*entries;
         let Some(entry) = entries.back() else { return };
-        let moved = entry.steps.iter().any(Step::moves_axes);
+        let moved = entry.moves_on();
         // Behind the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
         for (index, step) in steps.enumerate() {
@@ -456,6 +464,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.note(&entry, change);
             return self.spare.push(entry);
         }
+        let pieces = entry.pieces(self.machine);
         let view = BlockView {
             text: &entry.text,
             block: &entry.block,
@@ -466,6 +475,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
             feeds: entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
             change: change.as_ref().unwrap_or(&Change::NONE),
+            pieces: &pieces,
             stops: entry.needs_stops(self.machine, change.as_ref()),
             rests: entry.rests(self.machine, change.as_ref()),
         };
@@ -481,19 +491,5 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
         self.spare.push(entry);
-    }
-
-    /// Keeps what was decided for a run of a line.
-    fn note(&mut self, entry: &Entry, change: Option<Change>) {
-        self.spindle.clear();
-        let Some(table) = &mut self.table else { return };
-        if !table.decide(self.machine, entry.key, entry, change) {
-            return;
-        }
-        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
-            if let Some(obstacle) = outcome.obstacle.as_deref() {
-                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
-            }
-        }
     }
 }

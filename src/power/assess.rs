@@ -12,6 +12,7 @@ use super::effect::{Effect, Switched};
 use super::eye::Eye;
 use super::held::{Behind, Held, Rider};
 use super::idle::Idle;
+use super::line::Line;
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::watch::{Rating, Watch};
@@ -35,6 +36,8 @@ pub struct Assessor<'m> {
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
     pub(super) held: Option<Box<Held>>,
+    /// What began with a move that was held, where it goes straight on.
+    pub(super) line: Line,
     /// The one that was held before, and room that is used again.
     pub(super) before: Option<Box<Held>>,
     pub(super) spare: Option<Box<Held>>,
@@ -42,7 +45,7 @@ pub struct Assessor<'m> {
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
     /// The last move has ended at rest.
-    rested: bool,
+    pub(super) rested: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     pub(super) ahead: Option<Box<Ahead>>,
     pub(super) eye: Eye,
@@ -75,6 +78,7 @@ impl<'m> Assessor<'m> {
             requested,
             want,
             held: None,
+            line: Line::default(),
             before: None,
             spare: None,
             idle: Idle::default(),
@@ -148,7 +152,7 @@ impl<'m> Assessor<'m> {
     #[must_use]
     pub fn waits(&self, mv: &Move) -> bool {
         let open = self.ahead.as_ref().is_some_and(|ahead| ahead.is_open());
-        open || self.last_held().is_some() || self.may_blend(mv)
+        open || self.last_held().is_some() || !self.line.is_empty() || self.may_blend(mv)
     }
 
     /// Takes something that moves no axis: it may stop the motion. Hands on what
@@ -168,7 +172,9 @@ impl<'m> Assessor<'m> {
     }
 
     fn act_on_axes(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        let Some(ahead) = &mut self.ahead else { return };
+        let Some(ahead) = &mut self.ahead else {
+            return self.line.close();
+        };
         match self.switched.effect(&self.machine.controller, action) {
             Effect::None => {}
             Effect::Part => ahead.part(),
@@ -273,6 +279,23 @@ impl<'m> Assessor<'m> {
                 self.stop_between(sink);
             }
         }
+        if self.goes_straight_on(mv, text) {
+            return;
+        }
+        if !self.line.is_empty() {
+            self.end_straight(Some(mv), sink);
+        }
+        self.push_unmodelled(mv, text, sink);
+    }
+
+    /// A move by itself, or beside others under the robust bound.
+    #[inline]
+    pub(super) fn push_unmodelled(
+        &mut self,
+        mv: &Move,
+        text: &[u8],
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
         self.eye.show(self.machine, mv, self.nominal);
         let rests = self.ends_at_rest(mv).unwrap_or(self.rested);
         let rested = std::mem::replace(&mut self.rested, rests);
@@ -320,6 +343,7 @@ impl<'m> Assessor<'m> {
     }
 
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        self.end_straight(None, sink);
         self.release(Behind::End, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(self.machine, &self.model, &mut self.eye);
@@ -341,6 +365,7 @@ impl<'m> Assessor<'m> {
                 speed_mm_s: path.speed_limit_mm_s,
                 accel_mm_s2: path.accel_mm_s2,
                 top_speed_mm_s: path.top_speed_mm_s,
+                ends2: [0.0; 2],
                 fastest_s: path.duration_s,
                 demand,
                 loads: Loads::NONE,
@@ -403,6 +428,7 @@ impl<'m> Assessor<'m> {
             speed_mm_s,
             accel_mm_s2: peak_plan.accel_mm_s2,
             top_speed_mm_s: peak_plan.top_speed_mm_s,
+            ends2: [0.0; 2],
             fastest_s: peak_plan.duration_s,
             demand,
             loads: Loads::NONE,

@@ -53,6 +53,9 @@ pub struct Assessment {
     pub accel_mm_s2: f64,
     /// Path speed reached at the largest override, mm/s.
     pub top_speed_mm_s: f64,
+    /// Path speeds with which it begins and ends there, squared, mm²/s²; infinite where
+    /// they are not known.
+    pub ends2: [f64; 2],
     /// Duration at the largest overrides in s.
     pub fastest_s: f64,
     /// Peaks at the largest overrides, and the energy at 100 %.
@@ -75,12 +78,25 @@ pub struct Assessment {
 }
 
 impl Assessment {
+    /// Takes in the next part of the same move: its time, and the larger peaks.
+    pub fn add(&mut self, next: &Self) {
+        self.duration_s += next.duration_s;
+        self.fastest_s += next.fastest_s;
+        self.top_speed_mm_s = self.top_speed_mm_s.max(next.top_speed_mm_s);
+        let energy_j = self.demand.energy_j + next.demand.energy_j;
+        self.demand.include(&next.demand);
+        self.demand.energy_j = energy_j;
+        self.certificate = self.certificate.max(next.certificate);
+        self.ends2 = [self.ends2[0], next.ends2[1]];
+    }
+
     /// Nothing known yet of a move that is planned with others.
     pub(super) const AHEAD: Self = Self {
         duration_s: 0.0,
         speed_mm_s: 0.0,
         accel_mm_s2: 0.0,
         top_speed_mm_s: 0.0,
+        ends2: [f64::INFINITY; 2],
         fastest_s: 0.0,
         demand: Demand::NONE,
         loads: Loads::NONE,

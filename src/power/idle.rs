@@ -30,7 +30,7 @@ impl Idle {
 
 impl Assessor<'_> {
     /// Takes the end of a line whose steps have been taken; `moved`: some axis moves
-    /// in it. Behind some thousands of lines in a row that move none, what waits is
+    /// in it, or it only turns a knob. Behind some thousands of lines in a row that move none, what waits is
     /// handed on with the robust bound, and what follows begins in doubt.
     #[inline]
     pub fn end_line(&mut self, moved: bool, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
@@ -41,6 +41,7 @@ impl Assessor<'_> {
             self.idle.lines = 0;
             return;
         }
+        self.line.close();
         self.idle.lines += 1;
         if self.idle.lines == IDLE_LINES {
             self.run_dry(sink);
@@ -64,6 +65,7 @@ impl Assessor<'_> {
             ahead.run_dry(self.machine, &self.model, &mut self.eye);
             ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
         }
+        self.bound_line(sink);
         self.idle.in_doubt |= self.held.is_some();
         self.release(Behind::Doubt, sink);
     }

@@ -1,10 +1,14 @@
 //! One block at a time: its edits, and the lines before it.
 
+mod pieces;
+
 use std::fmt::Write as _;
+
+pub use pieces::PieceWords;
 
 use super::number::{Style, decimal, feed_again, has_point, with_digit};
 use super::state::{FeedValue, Mark, Written};
-use super::turned::{Acted, InForce, Turned};
+use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
@@ -37,6 +41,8 @@ pub struct BlockView<'a> {
     pub feeds: bool,
     /// What its moves get.
     pub change: &'a Change,
+    /// Pieces of its line that come before it.
+    pub pieces: &'a [PieceWords],
     /// It starts and ends at rest: where the axes do not stand anyway, the shortest dwell
     /// stands before it, and after it unless it runs in exact stop.
     pub stops: bool,
@@ -129,17 +135,8 @@ impl<'m> Rewriter<'m> {
             return true;
         }
         if view.rapids || view.feeds {
-            let acted = Acted {
-                rapids: view.rapids,
-                feeds: view.feeds,
-            };
-            let in_force = InForce {
-                knobs: view.knobs,
-                mm_per_unit: view.before.mm_per_unit,
-            };
-            for line in self.turned.turn(view.change, acted, in_force) {
-                self.insert_line(&line, out);
-            }
+            self.write_pieces(view, out);
+            self.turn_knobs(view.change, view, out);
         }
         // Its F is by the minute where the others are by the revolution.
         let apart = view.change.as_feed && !view.after.per_minute;

@@ -20,6 +20,6 @@ mod state;
 mod turned;
 
 pub use beforehand::Return;
-pub use block::{BlockView, Rewriter};
+pub use block::{BlockView, PieceWords, Rewriter};
 pub use single::{CycleBlock, Singles};
 pub use state::Mark;

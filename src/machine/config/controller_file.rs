@@ -246,6 +246,12 @@ pub(crate) struct PlannerTable {
     /// What waits for the spindle's speed; default: not known, so that both
     /// cases are counted.
     pub(crate) spindle_wait: Option<SpindleWaitName>,
+    /// The shortest time that a block may last for the control to keep its speed;
+    /// default 0.005.
+    pub(crate) shortest_block_s: Option<Positive>,
+    /// The shortest time that the path of a block may take at its F for the control to
+    /// keep that; default 0: any.
+    pub(crate) shortest_at_feed_s: Option<NotNegative>,
     /// How corners are run through; default: not modelled.
     pub(crate) look_ahead: Option<At<LookAheadTable>>,
 }
@@ -313,6 +319,9 @@ pub(crate) struct KnobTable {
     pub(crate) min: Option<Positive>,
     /// Whether a document confirms it; default false: used on request only.
     pub(crate) verified: Option<bool>,
+    /// Whether it acts between two moves that run into each other, without a stop, so
+    /// that a block may be written as several of one line; default false.
+    pub(crate) between_moves: Option<bool>,
 }
 
 /// What a knob acts on.

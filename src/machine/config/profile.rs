@@ -230,6 +230,8 @@ fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner>
             Some(SpindleWaitName::Feeds) => SpindleWait::Feeds,
             Some(SpindleWaitName::Blocks) => SpindleWait::Blocks,
         },
+        shortest_block_s: table.shortest_block_s.as_ref().map_or(0.005, |it| it.value),
+        shortest_at_feed_s: table.shortest_at_feed_s.as_ref().map_or(0.0, |it| it.value),
         look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
     })
 }
@@ -313,6 +315,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         step: knob.step.as_ref()?.value,
         min: knob.min.as_ref()?.value,
         verified: knob.verified.unwrap_or(false),
+        between_moves: knob.between_moves.unwrap_or(false),
     })
 }
 

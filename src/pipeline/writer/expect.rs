@@ -5,9 +5,10 @@ use std::io::{Read, Seek, Write};
 use super::Writer;
 use crate::interpret::{MoveKind, Step};
 use crate::limit::Change;
-use crate::pipeline::describe::{describe, row};
+use crate::pipeline::describe::{describe, describe_split, row};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::expected::{Expected, ExpectedMove};
+use crate::pipeline::split::{BLENDED, Line};
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Tells the certifier of the rows of the spindle before the next move.
@@ -37,6 +38,11 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             self.expect_spindle();
             self.spindle.write();
             let hopeless = outcome.obstacle.is_some();
+            let split = outcome.split.as_deref();
+            if self.limiter.splits() && change.is_some() && split.is_none() {
+                let reason = outcome.unsplit.unwrap_or(BLENDED);
+                self.unsplit.stays(mv, reason, entry.text_of(mv));
+            }
             if let Some(obstacle) = outcome.obstacle.take() {
                 self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
             }
@@ -45,6 +51,9 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             let row = self.exact.then(|| {
                 let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
                 describe(self.machine, mv, change, feed_before, &mut row);
+                if let Some(split) = split {
+                    describe_split(self.machine, mv, split, &mut row);
+                }
                 if hopeless {
                     row.action = "none possible";
                 }
@@ -55,6 +64,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
                 changed: change.is_some(),
                 as_feed: change.is_some_and(|change| change.as_feed),
                 hopeless,
+                split: split.map(|split| Box::new(Line::of(mv, split))),
                 row,
                 ..ExpectedMove::of(mv, assessment)
             }));

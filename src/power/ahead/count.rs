@@ -82,6 +82,11 @@ impl Ahead {
             let top_speed_mm_s = planned.top_speed_mm_s();
             open.rests |= planned.rests;
             open.assessment.fastest_s += duration_s;
+            let [start2, end2] = &mut open.assessment.ends2;
+            if open.assessment.top_speed_mm_s == 0.0 {
+                *start2 = planned.speeds2.start;
+            }
+            *end2 = planned.speeds2.end;
             open.assessment.top_speed_mm_s = open.assessment.top_speed_mm_s.max(top_speed_mm_s);
             let doubtful =
                 open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;

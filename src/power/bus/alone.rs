@@ -81,6 +81,7 @@ impl SpindleBus<'_> {
             speed_mm_s: 0.0,
             accel_mm_s2: 0.0,
             top_speed_mm_s: 0.0,
+            ends2: [0.0; 2],
             fastest_s: duration_s,
             demand,
             loads: Loads::NONE,

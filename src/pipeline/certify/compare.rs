@@ -1,0 +1,56 @@
+//! What is judged of a move by itself.
+
+use super::pieces::rounding;
+use super::{BUG, Reasons};
+use crate::interpret::Move;
+use crate::pipeline::expected::ExpectedMove;
+use crate::power::{Assessment, PowerModel};
+
+/// Rounding that speeds and accelerations may differ by, as a share.
+const ROUNDING: f64 = 1e-9;
+
+/// (a), (c) and (d) for one move.
+pub(super) fn compare(
+    model: &PowerModel,
+    original: &ExpectedMove,
+    mv: &Move,
+    after: &Assessment,
+    text: &[u8],
+    reasons: &mut Reasons,
+) {
+    let line = original.line;
+    if !model.fits(&after.demand) && !original.hopeless {
+        let limit_w = model.limit_w(after.demand.converter);
+        let message = format!(
+            "the block still needs {:.1} W of {limit_w:.1} W",
+            after.demand.peak_w
+        );
+        let help = "another strategy, or --allow feed, may help";
+        reasons.push(line, "does-not-fit", message, help, text);
+    }
+    let rounding = rounding(original, mv, ROUNDING);
+    let rises = |before: f64, after: f64| after > before * (1.0 + rounding);
+    let axis_rises = !original.as_feed
+        && mv
+            .moving
+            .iter()
+            .any(|axis| rises(original.axis_accel_mm_s2[axis], mv.accel_mm_s2[axis]));
+    // A slower arc, and a slower move under a curve of force, may leave more to the
+    // acceleration along the path than a faster one.
+    let slower = after.speed_mm_s < original.speed_mm_s;
+    if rises(original.speed_mm_s, after.speed_mm_s)
+        || !slower && rises(original.accel_mm_s2, after.accel_mm_s2)
+        || axis_rises
+    {
+        let message = "a speed or an acceleration went up".to_owned();
+        reasons.push(line, "went-up", message, BUG, text);
+    }
+    let falls = |before: f64, after: f64| after < before * (1.0 - ROUNDING);
+    if !original.changed
+        && (falls(original.speed_mm_s, after.speed_mm_s)
+            || falls(original.accel_mm_s2, after.accel_mm_s2))
+    {
+        let message = "the feed of a block that was not to be changed differs".to_owned();
+        reasons.push(line, "changed-feed", message, BUG, text);
+    }
+}

@@ -1,0 +1,31 @@
+//! Decisions that are kept by line, for a program with calls or loops.
+
+use std::io::{Read, Seek, Write};
+
+use super::Writer;
+use crate::limit::Change;
+use crate::pipeline::entry::Entry;
+use crate::pipeline::split::SEVERAL_RUNS;
+
+impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+    /// Keeps what was decided for a run of a line.
+    pub(super) fn note(&mut self, entry: &Entry, change: Option<Change>) {
+        self.spindle.clear();
+        if self.limiter.splits() && change.is_some() {
+            let moves = entry.its_moves().zip(&entry.decided);
+            let lowered = moves.into_iter().find(|(_, (_, it))| it.change.is_some());
+            if let Some((mv, _)) = lowered {
+                self.unsplit.stays(mv, SEVERAL_RUNS, entry.text_of(mv));
+            }
+        }
+        let Some(table) = &mut self.table else { return };
+        if !table.decide(self.machine, entry.key, entry, change) {
+            return;
+        }
+        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
+            if let Some(obstacle) = outcome.obstacle.as_deref() {
+                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
+            }
+        }
+    }
+}
