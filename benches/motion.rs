@@ -132,6 +132,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         edit: true,
         feed_word: true,
         as_feed: false,
+        exact_stop: false,
         reason: "",
         reason_help: "",
         mm_per_unit: 1.0,

@@ -98,6 +98,7 @@ impl Whole<'_> {
         for options in paths {
             survey(program, machine, options, &mut table)?;
         }
+        table.settle();
         let aimed = rungs(target);
         let mut befores = Vec::with_capacity(paths.len());
         let mut reasons = Reasons::default();
@@ -120,6 +121,7 @@ impl Whole<'_> {
             reasons.join(written.reasons);
             may_skip |= written.may_skip;
         }
+        table.spread_word(machine);
         Ok(Decided {
             befores,
             reasons,

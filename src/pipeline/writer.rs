@@ -24,7 +24,7 @@ use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 
-/// Why a block before any motion word is not changed where lines run several times.
+/// Why a block before any motion word is not changed where one of them cannot have its own.
 const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
@@ -257,7 +257,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if let Some(table) = &self.table {
             entry.skips = table.skips;
             // A line that runs again would meet another motion word.
-            let without = entry.facts.no_motion_word.then_some(NO_MOTION_WORD);
+            let without = entry.facts.no_motion_word && !table.may_get_word();
+            let without = without.then_some(NO_MOTION_WORD);
             let fixed = entry.facts.fixed.or(without);
             entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
             entry.one_corner = table.one_corner(entry.key);
@@ -482,19 +483,5 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         std::mem::swap(&mut self.mark, &mut entry.mark);
         self.knobs = entry.knobs.take();
         self.spare.push(entry);
-    }
-
-    /// Keeps what was decided for a run of a line.
-    fn note(&mut self, entry: &Entry, change: Option<Change>) {
-        self.spindle.clear();
-        let Some(table) = &mut self.table else { return };
-        if !table.decide(self.machine, entry.key, entry, change) {
-            return;
-        }
-        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
-            if let Some(obstacle) = outcome.obstacle.as_deref() {
-                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
-            }
-        }
     }
 }

@@ -88,7 +88,7 @@ pub(super) struct Compensation {
 
 impl Compensation {
     /// Whether G41 or G42 is in force.
-    fn is_on(&self) -> bool {
+    pub(super) fn is_on(&self) -> bool {
         matches!(self.state, State::Entry | State::On)
     }
 

@@ -1,4 +1,5 @@
-//! Blocks before any motion word, where an earlier one was written as a feed.
+//! Blocks before any motion word, where another one was written as a feed; and what is
+//! kept of a line that runs several times.
 
 use std::io::{Read, Seek, Write};
 
@@ -16,6 +17,11 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         if !entry.facts.no_motion_word || !(as_feed || self.rewriter.feeds_from_here()) {
             return change;
         }
+        self.own_feed(entry, change)
+    }
+
+    /// A block as a feed at its own speed, or lower where `change` says so.
+    fn own_feed(&self, entry: &Entry, change: Option<Change>) -> Option<Change> {
         let rapids = entry.its_moves().enumerate().zip(&entry.decided);
         let own = rapids.filter(|((_, mv), _)| mv.kind == MoveKind::Rapid);
         let mut forced = own.fold(change, |change, ((step, mv), (assessment, _))| {
@@ -31,5 +37,27 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             *feed = feed.min(in_force);
         }
         Some(forced)
+    }
+
+    /// Keeps what was decided for a run of a line.
+    pub(super) fn note(&mut self, entry: &Entry, change: Option<Change>) {
+        self.spindle.clear();
+        let own = if entry.facts.no_motion_word {
+            self.own_feed(entry, change)
+        } else {
+            None
+        };
+        let Some(table) = &mut self.table else { return };
+        if let Some(own) = own {
+            table.offer_word(self.machine, entry.key, entry, own);
+        }
+        if !table.decide(self.machine, entry.key, entry, change) {
+            return;
+        }
+        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
+            if let Some(obstacle) = outcome.obstacle.as_deref() {
+                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
+            }
+        }
     }
 }
