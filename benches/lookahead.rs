@@ -76,6 +76,7 @@ fn moves() -> Vec<Move> {
             loads: 0,
             path_mode: PathMode::LookAhead,
             corner: gwatt::interpret::Corner::default(),
+            stray: gwatt::interpret::Stray::NONE,
         }
     };
     (0..MOVES).map(between).collect()

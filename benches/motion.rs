@@ -2,7 +2,7 @@
 
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
-use gwatt::limit::{Ends, Law, LimitOptions, Permit, Solver, Strategy};
+use gwatt::limit::{Allowed, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use gwatt::machine::{Axis, AxisSet, Machine, PathMode};
 use gwatt::plan::jerk::{JerkLimits, State, position_target, speed_target};
 use gwatt::plan::{Overrides, plan};
@@ -50,6 +50,7 @@ fn feed() -> Move {
         loads: 0,
         path_mode: PathMode::ExactStop,
         corner: gwatt::interpret::Corner::default(),
+        stray: gwatt::interpret::Stray::NONE,
     }
 }
 
@@ -151,8 +152,10 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
     let how = LimitOptions {
         strategy,
         law: Law::Exact,
-        allow_feed: true,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
     };
     let solver = Solver::new(&machine, how);
     if let Err(obstacle) = solver.solve(&mv, &assessment, &permit, Ends::Rest) {

@@ -13,7 +13,7 @@ use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Diagnostics, Facts, Interpreter, Move, Step};
 use gwatt::machine::{Machine, PathMode};
-use gwatt::pipeline::{Law, LimitOptions, Options, Strategy, analyze, limit};
+use gwatt::pipeline::{Allowed, Law, LimitOptions, Options, Strategy, analyze, limit};
 use gwatt::plan::{Overrides, Plan, plan};
 use gwatt::power::{PowerModel, Want};
 use gwatt::report::CsvRows;
@@ -29,8 +29,10 @@ const MACHINES: [&str; 4] = ["vmc", AHEAD, STOPS, "three-axis"];
 const LIMIT: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
-    allow_feed: true,
-    allow_expand: false,
+    allowed: Allowed {
+        feed: true,
+        ..Allowed::NOTHING
+    },
 };
 
 fn main() {

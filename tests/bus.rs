@@ -11,7 +11,7 @@ use crate::rows::Rows;
 use gwatt::interpret::{MoveKind, Reading, Start};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{
-    Law, LimitOptions, LimitSummary, Options, Row, Strategy, Summary, analyze, limit,
+    Allowed, Law, LimitOptions, LimitSummary, Options, Row, Strategy, Summary, analyze, limit,
 };
 use gwatt::plan::SpindleDrive;
 use gwatt::plan::period::{Motion, Ramp};
@@ -251,8 +251,10 @@ fn surface_speed_where_the_axis_stands_or_is_not_known() {
     let how = LimitOptions {
         strategy: Strategy::Optimal,
         law: Law::Exact,
-        allow_feed: true,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
     };
     let (program, mut out) = (format!("G21 G90\n{facing}M2\n"), Vec::new());
     let summary = limit(Cursor::new(&program), &lathe, &options, how, &mut out, None).unwrap();
@@ -332,8 +334,10 @@ fn limited(machine: &Machine, program: &str, allow_feed: bool) -> (String, Limit
     let how = LimitOptions {
         strategy: Strategy::Optimal,
         law: Law::Exact,
-        allow_feed,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: allow_feed,
+            ..Allowed::NOTHING
+        },
     };
     let program = format!("G21 G90\n{program}M2\n");
     let (mut out, mut rows) = (Vec::new(), Rows::default());

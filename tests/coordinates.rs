@@ -71,8 +71,46 @@ fn arcs_in_a_turned_system() {
 3 arc X0.0000 Y0.0000 center 0.0000,5.0000 turns 0.5000 F600.0000
 4 arc X0.0000 Y0.0000 center 0.0000,5.0000 turns 1.0000 F600.0000
 ");
+}
+
+/// How fast a spiral climbs is not followed.
+#[test]
+fn a_helix_that_only_linuxcnc_bears_is_refused() {
+    let helix = "G0 X20\nG2 X-20.028 Y0 Z1 I-20 F100\n";
+    assert_eq!(rules("linuxcnc", helix), ["2 arc-radius"]);
+    let close = "G0 X20\nG2 X-20.004 Y0 Z1 I-20 F100\n";
+    assert_eq!(rules("linuxcnc", close), [""; 0]);
+}
+
+/// In G18 the plane turns along with X: a circle as chords, which ends where rs274 has it.
+/// A helix there is refused: the planner sees to each axis of a circle only.
+#[test]
+fn arcs_in_another_plane_of_a_turned_system() {
     let other_plane = "G10 L2 P1 R90\nG18 G2 X10 Z0 I5 F600\n";
-    assert_eq!(rules("linuxcnc", other_plane), ["2 arc-turned"]);
+    let shown = linuxcnc(other_plane);
+    assert_eq!(shown.lines().count(), 24, "{shown}");
+    assert_eq!(
+        shown.lines().nth(11),
+        Some("2 feed Y5.0000 Z-5.0000 F600.0000")
+    );
+    assert_eq!(
+        shown.lines().last(),
+        Some("2 feed Y10.0000 Z0.0000 F600.0000")
+    );
+    for refused in [
+        "G18 G2 X10 Y1 Z0 I5 F600",
+        "G18 G93 G2 X10 Z0 I5 F60",
+        "G19 G41.1 D1\nG2 Y10 Z0 J5 F600",
+    ] {
+        let program = format!("G10 L2 P1 R30\n{refused}\n");
+        let found = rules("linuxcnc", &program);
+        assert!(
+            found
+                .iter()
+                .any(|rule| rule.ends_with("arc-turned") || rule.ends_with("compensation")),
+            "{refused}: {found:?}"
+        );
+    }
 }
 
 /// "G10 L20": the place gets these coordinates, along the turned axes.

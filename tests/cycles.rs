@@ -12,7 +12,7 @@ use gwatt::diagnostic::Severity;
 use gwatt::interpret::Corner;
 use gwatt::limit::{Law, Strategy};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Failure, LimitOptions, Limits, Options, Reading};
+use gwatt::pipeline::{self, Allowed, Failure, LimitOptions, Limits, Options, Reading};
 use insta::assert_snapshot;
 
 /// A machine with X Y Z and a rotary axis A; 10 kg on each linear axis.
@@ -81,8 +81,10 @@ fn moves_with(controller: &str, program: &str, reading: Reading) -> String {
 const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
-    allow_feed: true,
-    allow_expand: false,
+    allowed: Allowed {
+        feed: true,
+        ..Allowed::NOTHING
+    },
 };
 
 const SPINDLE: &str = "G21 G90 F100 S500 M3\n";

@@ -289,9 +289,8 @@ fn each_refusal_once() {
 1 no-such-axis: the machine has no B axis | choose a machine with it, or describe it in the machine file: [axes.B]
 1 arc-radius: the arc's end is not on its circle: radius 1.0000 mm at the start, 8.0000 mm at the end | check the end point and the centre; a G90.1/G91.1 mix-up looks like this: arc_centre under [language] in the machine file says how I, J and K are meant
 1 dwell-time: G4 without a time | this controller takes the time from P or X or F
-1 reference-point: the reference points of G28 and G30 are taken as machine zero | 
 1 reference-axes: a reference point without axes | name the axes, as in G28 G91 Z0
-1 unsupported-code: M123 is a user-defined word, which gwatt does not support | if it moves no axis, list it under `ignored_m` in the controller profile
+1 unsupported-code: M123 is a user-defined word, which gwatt does not support | if it moves no axis, say so in the machine file: ignored = ["M123"] under [language]; what it switches on is a [[load]]
 1 no-motion-word: axis words without a motion word in force | write G0, G1, G2 or G3 in this block or before
 "#);
 }

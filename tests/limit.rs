@@ -8,11 +8,13 @@ mod figures;
 mod flow_through;
 mod knobs;
 mod lathe;
+mod lines;
 mod no_word;
 mod obstacles;
 mod partial;
 mod random;
 mod reader;
+mod returns;
 mod rewriting;
 mod rows;
 mod stops;
@@ -21,7 +23,9 @@ mod whole;
 
 use gwatt::diagnostic::Diagnostic;
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Failure, Law, LimitOptions, LimitSummary, Options, Strategy, limit};
+use gwatt::pipeline::{
+    Allowed, Failure, Law, LimitOptions, LimitSummary, Options, Strategy, limit,
+};
 
 /// X and Y of 500 kg, 0.5 m/s and 5 m/s²: without friction an axis takes
 /// 0.5 m/s · 500 kg · 5 m/s² = 1250 W at the end of its ramp.
@@ -132,8 +136,10 @@ pub(crate) fn run(
     let how = LimitOptions {
         strategy: run.strategy,
         law: run.law,
-        allow_feed: run.allow_feed,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: run.allow_feed,
+            ..Allowed::NOTHING
+        },
     };
     let mut text = Vec::new();
     let summary = limit(

@@ -51,5 +51,6 @@ mod pocket;
 mod borrowed;
 mod lathe_cycles;
 mod repeated;
+mod strayed;
 mod effort;
 mod oracle;

@@ -60,6 +60,8 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             ratings: Ratings::default(),
         }],
         path: Path {
+            max_feed_mm_s: f64::INFINITY,
+            clearance_mm: [None; AXES],
             mode: None,
             rapid: RapidPath::Linear,
             response_time_s: 0.01,
@@ -110,6 +112,7 @@ fn controller() -> Controller {
             printer: gwatt::machine::Printer::default(),
             mill_cycles: false,
             peck_clearance_mm: 1.0,
+            arc_tolerance_mm: None,
             kept_variables: Vec::new(),
             dialect: gwatt::machine::Dialect::default(),
         },
@@ -162,6 +165,7 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
         loads: 0,
         path_mode: PathMode::ExactStop,
         corner: gwatt::interpret::Corner::default(),
+        stray: gwatt::interpret::Stray::NONE,
     }
 }
 

@@ -397,3 +397,46 @@ fn garbage_is_refused() {
     moves(&format!("X={}1", "-".repeat(100_000)));
     moves(&format!("X=1{}", "+1".repeat(50_000)));
 }
+
+/// "Variable axis identifiers": AX, variables of the type AXIS, AXNAME, and the axes of the
+/// plane, `$P_AXN1` to `$P_AXN3`.
+#[test]
+fn axes_by_computed_names() {
+    let program = "DEF AXIS WHICH\nWHICH=X\nG0 AX[WHICH]=5\nWHICH=$P_AXN2\nAX[WHICH]=IC(3) Z1\nG18\nAX[$P_AXN1]=7\nWHICH=AXNAME(\"x\")\nIF WHICH==X\nG1 AX[WHICH]=$AA_IW[WHICH]+1 F=$AA_IW[$P_AXN1]*100\nENDIF\nAX[C]=90\n";
+    assert_snapshot!(moves(program), @r"
+3 rapid X5
+5 rapid Y3 Z1
+7 rapid Z7
+10 feed X6 F700
+12 feed C90 F700
+");
+    let refused = [
+        (
+            "AX[3]=1",
+            "1 no-such-axis: this is the name of no axis of the machine",
+        ),
+        (
+            "AX[B]=1",
+            "1 unknown-value: B is not defined in this program",
+        ),
+        (
+            "G0 X=AXNAME(\"B\")",
+            "1 no-such-axis: AXNAME of a text that names no axis of the machine",
+        ),
+        (
+            "G0 X=$P_AXN1",
+            "1 expression: a text stands where a number is needed",
+        ),
+        (
+            "G0 X=$P_AXN4",
+            "1 unknown-value: $P_AXN4 is the control's, and gwatt does not know its value",
+        ),
+        (
+            "$P_AXN1=3",
+            "1 unsupported-word: $P_AXN1 belongs to the control, and may change offsets or limits",
+        ),
+    ];
+    for (line, expected) in refused {
+        assert_eq!(refusal(line), expected, "{line}");
+    }
+}

@@ -6,7 +6,7 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::size::{
     Curve, Job, Outcome, ProgramSize, Rung, Size, Sizing, Wish, rated, size,
 };
-use gwatt::pipeline::{Failure, Law, LimitOptions, Options, Strategy, limit};
+use gwatt::pipeline::{Allowed, Failure, Law, LimitOptions, Options, Strategy, limit};
 use gwatt::report::{Verdict, size_chart, size_csv, size_json, size_text, size_verdict};
 
 use crate::limit::{EXACT_STOP, RIG, Rig};
@@ -14,8 +14,7 @@ use crate::limit::{EXACT_STOP, RIG, Rig};
 const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
-    allow_feed: false,
-    allow_expand: false,
+    allowed: Allowed::NOTHING,
 };
 
 /// 500 kg, 0.5 m/s, 5 m/s² and 100 N of friction: 0.5 · (2500 + 100) = 1300 W at the
@@ -110,7 +109,10 @@ fn the_ends_are_those_worked_by_hand() {
 
     // With the permission it goes on, and less is fed back at each step.
     let how = LimitOptions {
-        allow_feed: true,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
         ..HOW
     };
     let found = sized(&FRICTION.machine(), &[("a", FEED)], &Wish { how, ..wish() });
@@ -274,7 +276,10 @@ fn limit_does_what_sizing_says() {
         },
     ];
     let how = LimitOptions {
-        allow_feed: true,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
         ..HOW
     };
     let wish = Wish {

@@ -8,7 +8,7 @@
 use std::sync::OnceLock;
 
 use gwatt::machine::{Machine, builtin};
-use gwatt::pipeline::{
+use gwatt::pipeline::{Allowed, 
     Certificate, Law, LimitOptions, Reading, LimitSummary, Options, Start, Strategy, analyze, limit,
 };
 use libfuzzer_sys::fuzz_target;
@@ -61,8 +61,10 @@ fuzz_target!(|bytes: &[u8]| {
         } else {
             Law::Patent
         },
-        allow_feed: strategy & 8 == 0,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: strategy & 8 == 0,
+            ..Allowed::NOTHING
+        },
     };
     let options = Options {
         once: false,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gwatt::pipeline;
+use gwatt::pipeline::{self, Allowed};
 
 use super::{MachineArgs, ProgramArgs};
 
@@ -69,6 +69,18 @@ pub enum Allow {
     Feed,
     /// Canned cycles may be written out as single blocks
     Expand,
+    /// Rapids of axes that move each for itself may become lines where the machine file's
+    /// `clearance` leaves room
+    Straighten,
+}
+
+/// What a list of `--allow` allows.
+pub fn allowed(list: &[Allow]) -> Allowed {
+    Allowed {
+        feed: list.contains(&Allow::Feed),
+        expand: list.contains(&Allow::Expand),
+        straighten: list.contains(&Allow::Straighten),
+    }
 }
 
 /// See [`pipeline::Strategy`].

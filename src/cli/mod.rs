@@ -26,7 +26,7 @@ pub use dialect::DialectArgs;
 pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
-pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy};
+pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy, allowed};
 pub use machine::MachineCommand;
 pub use moves::MovesArgs;
 pub use override_arg::OverrideArg;

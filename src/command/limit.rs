@@ -16,7 +16,7 @@ use super::output::{Spool, Target, back_up, print};
 use super::rows::Rows;
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
-use crate::cli::{Allow, LimitArgs};
+use crate::cli::{LimitArgs, allowed};
 
 /// Bytes that go to the spool at once.
 const SPOOL_BYTES: usize = 1 << 16;
@@ -74,8 +74,7 @@ fn options(args: &LimitArgs) -> LimitOptions {
     LimitOptions {
         strategy: args.strategy.into(),
         law: args.law.into(),
-        allow_feed: args.allow.contains(&Allow::Feed),
-        allow_expand: args.allow.contains(&Allow::Expand),
+        allowed: allowed(&args.allow),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::io::{BufWriter, IntoInnerError};
 
 use anyhow::Result;
-use gwatt::pipeline::{self, Failure, Law, LimitOptions, Strategy};
+use gwatt::pipeline::{self, Allowed, Failure, Law, LimitOptions, Strategy};
 use gwatt::report::SeriesRows;
 
 use super::input::Program;
@@ -50,8 +50,10 @@ pub fn write(
         let how = LimitOptions {
             strategy: Strategy::Optimal,
             law: Law::Exact,
-            allow_feed: args.allow == Some(Allow::Feed),
-            allow_expand: false,
+            allowed: Allowed {
+                feed: args.allow == Some(Allow::Feed),
+                ..Allowed::NOTHING
+            },
         };
         let mut written = BufWriter::new(Target::Stdout.spool()?);
         let summary = program

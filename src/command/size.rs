@@ -15,7 +15,7 @@ use super::input::{Program, is_dash};
 use super::output::{Spool, Target, print};
 use super::setup::{Setup, machine_file, machine_name};
 use super::terminal::Terminal;
-use crate::cli::{Allow, SizeArgs};
+use crate::cli::{SizeArgs, allowed};
 
 /// Says how large the converter must be.
 pub fn run(args: &SizeArgs, terminal: Terminal) -> Result<Verdict> {
@@ -68,8 +68,7 @@ fn wish(args: &SizeArgs, setup: &Setup) -> Result<Wish> {
         how: LimitOptions {
             strategy: args.strategy.into(),
             law: args.law.into(),
-            allow_feed: args.allow.contains(&Allow::Feed),
-            allow_expand: args.allow.contains(&Allow::Expand),
+            allowed: allowed(&args.allow),
         },
         converter: converter(args.converter.as_deref(), &setup.machine)?,
         steps: args.steps,

@@ -1,16 +1,21 @@
 //! Geometry of arcs: centre and sweep from I J K or R.
 //!
-//! Tolerances are those of LinuxCNC ("G2, G3 Arc Move": the radii at start and
-//! end may differ by 0.5 mm, and by 0.005 mm or 0.1 % of the radius).
+//! Start and end need not be on one circle exactly: how far off they may be is the
+//! controller's own (`arc_tolerance_mm` in its profile). LinuxCNC and grbl judge alike
+//! (`arc_data_ijk` of rs274ngc, `gc_execute_line` of grbl): up to a small difference
+//! always, up to a hundred times that where it is at most 0.1 % of the radius.
 
 use std::f64::consts::TAU;
 
 use super::moves::Arc;
+use crate::machine::Language;
 
-/// Largest difference of the radii, mm.
+/// Largest difference of the radii, mm, where the profile says nothing (grbl).
 const RADIUS_DIFFERENCE_MAX_MM: f64 = 0.5;
-/// Difference of the radii that is always allowed, in mm, and in an inch program.
+/// Difference of the radii that is always allowed then, in mm, and in an inch program.
 const RADIUS_TOLERANCE_MM: [f64; 2] = [0.005, 0.0127];
+/// What the parts of an arc may be off, mm, in programs in mm and in inches.
+const PART_TOLERANCE_MM: [f64; 2] = [0.0283, 0.0719];
 /// Share of the radius that the radii may differ by.
 const RADIUS_TOLERANCE: f64 = 1e-3;
 /// Angles below it count as none, so that the arc is a full circle.
@@ -42,7 +47,61 @@ pub(super) struct Ends {
     pub(super) clockwise: bool,
     /// Number of started turns; 1 for all but `P`.
     pub(super) turns: f64,
-    pub(super) inch: bool,
+    pub(super) slack: Slack,
+}
+
+/// How far the radii at start and end may differ.
+#[derive(Debug, Clone, Copy)]
+#[allow(clippy::struct_field_names, reason = "the unit belongs to each name")]
+pub(super) struct Slack {
+    /// What every controller bears, mm.
+    small_mm: f64,
+    /// What this one bears always, mm.
+    always_mm: f64,
+    /// What it bears where the radius is large, mm.
+    most_mm: f64,
+}
+
+impl Slack {
+    /// That of controllers that say nothing of it.
+    pub(super) fn usual(inch: bool) -> Self {
+        let small_mm = RADIUS_TOLERANCE_MM[usize::from(inch)];
+        Self {
+            small_mm,
+            always_mm: small_mm,
+            most_mm: RADIUS_DIFFERENCE_MAX_MM,
+        }
+    }
+
+    /// What every controller bears at a radius, mm.
+    fn usual_mm(&self, radius_mm: f64) -> f64 {
+        let share_mm = RADIUS_TOLERANCE * radius_mm;
+        self.small_mm.max(share_mm.min(RADIUS_DIFFERENCE_MAX_MM))
+    }
+
+    /// That of a language.
+    pub(super) fn of(language: &Language, inch: bool) -> Self {
+        let usual = Self::usual(inch);
+        language.arc_tolerance_mm.map_or(usual, |own| {
+            let always_mm = own[usize::from(inch)].max(usual.always_mm);
+            Self {
+                small_mm: usual.small_mm,
+                always_mm,
+                most_mm: usual.most_mm.max(100.0 * always_mm),
+            }
+        })
+    }
+
+    /// For a part of an arc that was found good: what the most generous controller
+    /// bears (LinuxCNC).
+    pub(super) fn of_part(inch: bool) -> Self {
+        let small_mm = PART_TOLERANCE_MM[usize::from(inch)];
+        Self {
+            small_mm,
+            always_mm: small_mm,
+            most_mm: 100.0 * small_mm,
+        }
+    }
 }
 
 /// The arc about `center`.
@@ -55,16 +114,27 @@ pub(super) fn from_center(ends: &Ends, center: [f64; 2]) -> Result<Arc, ArcFault
         return Err(ArcFault::NoRadius);
     }
     let difference = (start_mm - end_mm).abs();
-    let allowed =
-        RADIUS_TOLERANCE_MM[usize::from(ends.inch)].max(RADIUS_TOLERANCE * start_mm.max(end_mm));
-    if difference > RADIUS_DIFFERENCE_MAX_MM || difference > allowed {
-        return Err(ArcFault::RadiiDiffer {
-            start_mm,
-            end_mm,
-            center,
-        });
+    let found = arc(ends, center, start_mm.min(end_mm), from, to);
+    let slack = &ends.slack;
+    let outer_mm = start_mm.max(end_mm);
+    let own_mm = slack
+        .always_mm
+        .max((RADIUS_TOLERANCE * outer_mm).min(slack.most_mm));
+    if difference <= slack.usual_mm(outer_mm).max(own_mm) {
+        return Ok(found);
     }
-    Ok(arc(ends, center, start_mm.min(end_mm), from, to))
+    Err(ArcFault::RadiiDiffer {
+        start_mm,
+        end_mm,
+        center,
+    })
+}
+
+/// Whether an arc is further off its circle than any controller bears.
+pub(super) fn is_loose(ends: &Ends, arc: &Arc) -> bool {
+    let radius = |[x, y]: [f64; 2]| libm::hypot(x - arc.center[0], y - arc.center[1]);
+    let (start_mm, end_mm) = (radius(ends.start), radius(ends.end));
+    (start_mm - end_mm).abs() > ends.slack.usual_mm(start_mm.max(end_mm))
 }
 
 /// The arc of radius `r` (negative: the longer one).
@@ -75,7 +145,7 @@ pub(super) fn from_radius(ends: &Ends, r: f64) -> Result<Arc, ArcFault> {
     if half == 0.0 {
         return Err(ArcFault::NoChord);
     }
-    if radius == 0.0 || half - radius > RADIUS_TOLERANCE_MM[usize::from(ends.inch)] {
+    if radius == 0.0 || half - radius > ends.slack.small_mm {
         return Err(ArcFault::RadiusTooSmall {
             radius_mm: radius,
             half_chord_mm: half,
@@ -134,7 +204,7 @@ mod tests {
             end,
             clockwise,
             turns: 1.0,
-            inch: false,
+            slack: Slack::usual(false),
         }
     }
 
@@ -193,6 +263,30 @@ mod tests {
             from_radius(&ends([0.0, 0.0], [10.0, 0.0], true), 4.9),
             Err(ArcFault::RadiusTooSmall { .. })
         ));
+    }
+
+    #[test]
+    fn a_controller_s_own_tolerance_counts() {
+        let own = |inch: usize, start: f64, end: f64| {
+            let always_mm = [0.028_284_271_247_461_9, 0.071_842_048_968_553_3][inch];
+            let slack = Slack {
+                always_mm,
+                most_mm: 100.0 * always_mm,
+                ..Slack::usual(inch == 1)
+            };
+            let half = Ends {
+                slack,
+                ..ends([start, 0.0], [-end, 0.0], false)
+            };
+            from_center(&half, [0.0, 0.0]).is_ok()
+        };
+        assert!(own(0, 25.0, 25.028) && !own(0, 25.0, 25.029));
+        assert!(own(1, 25.0, 25.071) && !own(1, 25.0, 25.073));
+        // 0.1 %, up to a hundred times as much.
+        assert!(own(0, 2800.0, 2802.8) && !own(0, 2830.0, 2832.83));
+        assert!(own(1, 7100.0, 7107.1) && !own(1, 7190.0, 7197.19));
+        // What is always allowed is so on short arcs too.
+        assert!(own(0, 0.05, 0.078) && !own(0, 0.05, 0.079));
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! G2 and G3: the words of an arc.
 
-use super::arc::{self, ArcFault, Ends};
+use super::arc::{self, ArcFault, Ends, Slack};
 use super::code::Motion;
 use super::execute::{Control, Run};
+use super::motion::STANDSTILL_MM;
 use super::moves::{Arc, MoveKind};
+use super::turned_arc::Tilted;
 use crate::machine::{ALL_AXES, AxisKind, Family};
 use crate::source::Span;
 use crate::units::MM_PER_INCH;
@@ -81,13 +83,21 @@ impl Control<'_> {
             end: [end_at[first], end_at[second]],
             clockwise: self.modal.motion == Motion::ArcCw,
             turns,
-            inch: self.modal.mm_per_unit == MM_PER_INCH,
+            slack: Slack::of(
+                &self.machine.controller.language,
+                self.modal.mm_per_unit == MM_PER_INCH,
+            ),
         };
+        let rises = (end[normal] - self.position.at[normal]).abs() > STANDSTILL_MM;
         match self.arc_geometry(run, &ends) {
+            Some(Ok(arc)) if rises && arc::is_loose(&ends, &arc) => refuse_loose(run, whole),
             Some(Ok(arc)) if turned => {
-                if let Some(arc) = self.arc_in_machine(&arc, whole, run) {
-                    self.go(run, MoveKind::Arc, &end, unknown, Some(arc));
-                }
+                let tilted = Tilted {
+                    arc: &arc,
+                    ends: [&start_at, &end_at],
+                    to: &end,
+                };
+                self.turned_arc(&tilted, unknown, run);
             }
             Some(Ok(arc)) => {
                 if self.printer.adjusts {
@@ -153,6 +163,14 @@ impl Control<'_> {
         }
         Some(arc::from_center(ends, center))
     }
+}
+
+/// A helix that only its own controller bears.
+fn refuse_loose(run: &mut Run<'_, '_>, span: Span) {
+    let message = "a helix whose end is not on its circle: how fast it climbs is not followed";
+    run.report
+        .error("arc-radius", message, span)
+        .help("write the end point or the centre with more decimals");
 }
 
 pub(super) fn report_fault(fault: ArcFault, run: &mut Run<'_, '_>, span: Span) {

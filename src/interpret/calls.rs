@@ -5,7 +5,7 @@ use super::execute::Interpreter;
 use super::expression::{Fault, Name, Reader, Value};
 use super::isg::Pending;
 use super::parameters::{LOCALS, Scope};
-use super::transfer::Transfer;
+use super::transfer::{Label, Transfer};
 use crate::machine::Family;
 use crate::source::Span;
 
@@ -118,9 +118,21 @@ impl Interpreter<'_> {
         }
     }
 
+    /// Whether the program is a subprogram with parameters, which nobody has called.
+    pub(crate) fn is_uncalled(&self) -> bool {
+        let siemens = self.control.siemens.as_ref();
+        siemens.is_some_and(|siemens| siemens.is_uncalled())
+    }
+
     /// The program ends here.
     pub(crate) fn end(&mut self) {
         self.control.ended = true;
+    }
+
+    /// The label of an O-word that is worked out from what stands at a place of its line.
+    pub(super) fn label(&self, text: &[u8], at: usize) -> Result<Label, Fault> {
+        let mut reader = Reader::new(text.trim_ascii_end(), at);
+        self.control.o_number(&mut reader, at)
     }
 
     /// The truth of a condition that stands in a line.

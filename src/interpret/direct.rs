@@ -9,7 +9,7 @@ use super::execute::Control;
 use super::facts::Facts;
 use super::modal::{Feed, NumberText};
 use super::motion::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM, path_length};
-use super::moves::{FeedMode, Move, MoveKind, Step};
+use super::moves::{FeedMode, Move, MoveKind, Step, Stray};
 use super::words::axis_of;
 use crate::machine::{AxisKind, AxisSet, AxisValues, Family, Machine};
 use crate::syntax::{Block, Word};
@@ -76,7 +76,8 @@ impl Control<'_> {
                 feed.linear_mm_s()
             } else {
                 feed.rotary_deg_s()
-            };
+            }
+            .min(self.machine.path.max_feed_mm_s);
         }
 
         // From here on, it happens.
@@ -102,6 +103,7 @@ impl Control<'_> {
             loads: self.loads,
             path_mode: self.modal.path_mode,
             corner: self.modal.corner,
+            stray: Stray::NONE,
         }));
         *facts = Facts {
             feed_word: straight.feed_word.copied(),

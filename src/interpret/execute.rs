@@ -4,14 +4,13 @@
 
 use std::cell::Cell;
 
-use super::code::GCode;
 use super::compensation::{Choice, Compensation, Corners};
 use super::direct::is_direct;
 use super::facts::Facts;
 use super::isg::Isg;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Corner, Step};
+use super::moves::{Action, ActionKind, Step};
 use super::osp::Osp;
 use super::parameters::Parameters;
 use super::position::{BlockDelete, Position, Reading};
@@ -29,7 +28,7 @@ use super::tools::Tools;
 use super::transfer::Transfer;
 use super::turning::Turning;
 use super::words::Words;
-use crate::machine::{Family, Machine, PathMode};
+use crate::machine::{Family, Machine};
 use crate::source::Span;
 use crate::syntax::Block;
 
@@ -159,7 +158,7 @@ impl<'m> Interpreter<'m> {
             compensation: None,
             choice: Choice::default(),
             corners: None,
-            printer: printer::State::new(machine),
+            printer: printer::State::new(machine, reading),
             adapts: machine.controller.language.dialect.adapts(),
             direct: is_direct(machine),
             callee: None,
@@ -248,6 +247,7 @@ impl<'m> Interpreter<'m> {
         facts: &mut Facts,
         diagnostics: &mut Diagnostics,
     ) {
+        self.control.parameters.line = line;
         let mut report = Report {
             diagnostics,
             line,
@@ -474,19 +474,7 @@ impl Control<'_> {
         self.settings(run);
         self.note_queue_and_spindle(run);
         self.turn_knobs(run);
-        let stops = run
-            .words
-            .g
-            .iter()
-            .any(|(code, ..)| *code == GCode::ExactOnce);
-        let kept = (self.modal.path_mode, self.modal.corner);
-        if stops {
-            (self.modal.path_mode, self.modal.corner) = (PathMode::ExactStop, Corner::Exact);
-        }
-        self.motion(run);
-        if stops {
-            (self.modal.path_mode, self.modal.corner) = kept;
-        }
+        self.motion_in_mode(run);
         if run.report.diagnostics.errors == errors {
             self.complain_about_rest(run);
         }

@@ -110,6 +110,19 @@ fn inverse(m: &[[f64; SPACE]; SPACE]) -> Option<[[f64; SPACE]; SPACE]> {
     })
 }
 
+/// Whether a map turns, mirrors and scales all axes alike: its columns are as long as one
+/// another and at right angles.
+pub(super) fn keeps_circles(matrix: &[[f64; SPACE]; SPACE]) -> bool {
+    let product =
+        |one: usize, other: usize| -> f64 { matrix.iter().map(|row| row[one] * row[other]).sum() };
+    let square = product(0, 0);
+    let near = |value: f64, wanted: f64| (value - wanted).abs() <= ROUNDING * square;
+    square > 0.0
+        && (0..SPACE).all(|axis| {
+            near(product(axis, axis), square) && near(product(axis, (axis + 1) % SPACE), 0.0)
+        })
+}
+
 /// How a plane appears behind the map: its own scale, and whether it is flipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PlaneMap {
@@ -218,6 +231,13 @@ impl Frame {
             let own = f64::from(u8::from(by == axis));
             axis >= SPACE || factor(axis, by) == own && factor(by, axis) == own
         })
+    }
+
+    /// Whether circles in any plane stay circles.
+    pub(super) fn keeps_circles(&self) -> bool {
+        self.turn
+            .as_ref()
+            .is_none_or(|turn| keeps_circles(&turn.forward))
     }
 
     /// How a plane appears in the machine; `None` when it is no longer that

@@ -56,6 +56,7 @@ mod thread_cycle;
 mod spindle_speed;
 mod spindle_told;
 mod stance;
+mod stray;
 mod state_words;
 mod targets;
 mod tool_table;

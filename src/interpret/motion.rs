@@ -2,9 +2,10 @@
 
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
-use super::moves::{Arc, FeedMode, Move, MoveKind, Step};
+use super::moves::{Arc, FeedMode, Move, MoveKind, Step, Stray};
 use super::printer::Course;
 use super::report::Report;
+use super::stray;
 use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
 use crate::source::Span;
@@ -105,6 +106,7 @@ impl Control<'_> {
             loads: self.loads,
             path_mode: self.modal.path_mode,
             corner: self.modal.corner,
+            stray: Stray::NONE,
         }));
     }
 
@@ -244,6 +246,9 @@ impl Control<'_> {
                 return;
             };
             feed_mm_s = speed_mm_s;
+            if matches!(kind, MoveKind::Feed | MoveKind::Arc) {
+                feed_mm_s = feed_mm_s.min(self.machine.path.max_feed_mm_s);
+            }
         }
         let mut rapid_factor = self.knobs.rapid_factor;
         if self.printer.adjusts {
@@ -261,6 +266,10 @@ impl Control<'_> {
             }
             rapid_factor = self.printer_speed_factor(&course);
         }
+        let stray = match &arc {
+            Some(arc) => stray::of_arc(arc, &self.position.at, end),
+            None => Stray::NONE,
+        };
         self.moved = true;
         run.steps.push(Step::Move(Move {
             line: run.line,
@@ -283,6 +292,7 @@ impl Control<'_> {
             loads: self.loads,
             path_mode: self.modal.path_mode,
             corner: self.modal.corner,
+            stray,
         }));
         self.position.at = *end;
         self.special.left = None;

@@ -128,6 +128,47 @@ pub struct Move {
     pub path_mode: PathMode,
     /// What may happen to the corner there, if the path does not stop.
     pub corner: Corner,
+    /// How far the controller's own path may stray from this one.
+    pub stray: Stray,
+}
+
+/// How far the path that a controller takes may stray from the move that stands for it: a
+/// spiral from a circle, an arc in a tilted plane from its chords. A move whose path is far
+/// from it is bounded and not planned; else what may differ is added to what it draws.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stray {
+    /// The largest distance between the unit vectors of both directions; 0: it is the
+    /// path.
+    pub direction: f64,
+    /// The share by which the controller may exceed the axes' accelerations.
+    pub accel: f64,
+}
+
+/// From this distance of directions on a path is far from the move.
+const FAR_DIRECTION: f64 = 0.1;
+/// The same for the share of accelerations.
+const FAR_ACCEL: f64 = 0.2;
+
+impl Stray {
+    /// The path is the controller's.
+    pub const NONE: Self = Self {
+        direction: 0.0,
+        accel: 0.0,
+    };
+
+    /// Whether the path is so far from this one that the move is bounded and not planned.
+    #[must_use]
+    #[inline]
+    pub fn is_far(self) -> bool {
+        self.direction > FAR_DIRECTION || self.accel > FAR_ACCEL
+    }
+
+    /// Whether the path is another one.
+    #[must_use]
+    #[inline]
+    pub fn strays(self) -> bool {
+        self != Self::NONE
+    }
 }
 
 impl Move {

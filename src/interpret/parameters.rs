@@ -38,6 +38,8 @@ pub(super) struct Parameters {
     own: u32,
     /// All that the control has kept is known.
     complete: bool,
+    /// The line that is executed, from 1, where its values may ask for it.
+    pub(super) line: u64,
 }
 
 /// Which variables a subprogram has of its own.
@@ -66,6 +68,7 @@ impl Parameters {
             callers: Vec::new(),
             own: if family == Family::Rs274 { 31 } else { 34 },
             complete: false,
+            line: 0,
         }
     }
 
@@ -93,6 +96,11 @@ impl Parameters {
             locals: std::mem::replace(&mut self.locals, locals),
             names: std::mem::take(&mut self.local_names),
         });
+    }
+
+    /// How many subprograms run inside one another.
+    pub(super) fn call_level(&self) -> usize {
+        self.callers.len()
     }
 
     /// A subprogram with this scope has ended.

@@ -435,11 +435,11 @@ impl Control<'_> {
             return;
         }
         let zero = before.origin_of(system) == [0.0; AXES] && before.rotation_of(system) == 0.0;
-        if system > 1 && zero && !before.known {
+        self.position.change(|offsets| offsets.select(system));
+        if system > 1 && zero && !self.position.offsets().is_known() {
             let message = "without a parameter file all work offsets are taken as 0";
             run.report.note_once("no-offsets", message, span);
         }
-        self.position.change(|offsets| offsets.select(system));
         self.note_bent();
     }
 

@@ -108,11 +108,17 @@ impl Report<'_, '_> {
             )
         };
         let help = if letter == b'M' {
-            "if it moves no axis, list it under `ignored_m` in the controller profile"
+            format!(
+                "if it moves no axis, say so in the machine file: ignored = [\"{code}\"] under \
+                 [language]; what it switches on is a [[load]]"
+            )
         } else if name == "a word" {
-            "if it moves no axis and changes no motion, list it under `ignored_g` in the controller profile"
+            format!(
+                "if it moves no axis and changes no motion, say so in the machine file: \
+                 ignored = [\"{code}\"] under [language]"
+            )
         } else {
-            "nothing is estimated for a program with motion that is not understood"
+            "nothing is estimated for a program with motion that is not understood".to_owned()
         };
         self.error(rule, message, word.span).help(help);
     }

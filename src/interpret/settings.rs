@@ -104,6 +104,18 @@ impl Control<'_> {
         self.note_bent();
     }
 
+    /// The motion of a block, in exact stop where a word of it asks for that.
+    pub(super) fn motion_in_mode(&mut self, run: &mut Run<'_, '_>) {
+        let mut words = run.words.g.iter();
+        if !words.any(|(code, ..)| *code == GCode::ExactOnce) {
+            return self.motion(run);
+        }
+        let kept = (self.modal.path_mode, self.modal.corner);
+        (self.modal.path_mode, self.modal.corner) = (PathMode::ExactStop, Corner::Exact);
+        self.motion(run);
+        (self.modal.path_mode, self.modal.corner) = kept;
+    }
+
     /// The ISG kernel ends a turn where the plane changes, with a warning.
     fn choose_plane(&mut self, plane: [usize; 3], span: Span, run: &mut Run<'_, '_>) {
         if self.isg.is_none() || plane == self.modal.plane || !self.refuse_while_turned(span, run) {

@@ -242,7 +242,7 @@ impl Control<'_> {
             // Turning cycles see to diameters and frames themselves.
             return true;
         }
-        if self.modal.diameter {
+        if self.modal.diameter && !matches!(number, 330 | 760) {
             return false;
         }
         let follows = matches!(number, 380..=389 | 730 | 740 | 800..=860 | 880 | 890);

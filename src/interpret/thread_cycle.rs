@@ -98,7 +98,10 @@ impl Control<'_> {
         run: &mut Run<'_, '_>,
     ) -> Option<Thread> {
         let whole = run.whole();
-        let words = [b'P', b'I', b'J', b'K'].map(|letter| run.words.take(letter));
+        // "G7": I, J and K are diameters too (`convert_threading_cycle`).
+        let share = if self.modal.diameter { 0.5 } else { 1.0 };
+        let words = [(b'P', 1.0), (b'I', share), (b'J', share), (b'K', share)]
+            .map(|(letter, share)| run.words.take(letter).map(|value| value * share));
         let [Some(pitch), Some(peak), Some(first_depth), Some(full_depth)] = words else {
             run.report
                 .error(

@@ -46,6 +46,8 @@ pub(crate) enum Transfer {
     Siemens(Siemens),
     /// A word of the ISG kernel or of OSP.
     Go(Go),
+    /// A macro of a printer, in a file of its own.
+    Macro(String),
     /// A turning cycle about a contour that stands elsewhere in the program.
     Contour(Box<Contour>),
     /// The same for `LinuxCNC`, where it stands in a subroutine.

@@ -76,9 +76,8 @@ impl Change {
     /// A rapid as a feed at a path speed, mm/s.
     #[must_use]
     pub fn as_feed_at(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_s: f64) -> Self {
-        let feed = speed_mm_s * SECONDS_PER_MINUTE / feed_unit(machine, mv, permit);
         Self {
-            feed: Some(round_feed_down(feed)),
+            feed: Some(feed_word(machine, mv, permit, speed_mm_s)),
             as_feed: true,
             ..Self::NONE
         }
@@ -166,7 +165,15 @@ fn either<T>(a: Option<T>, b: Option<T>, both: impl FnOnce(T, T) -> T) -> Option
 
 /// Path speed in mm/s (degrees/s) of an F in program units.
 pub(super) fn feed_speed(machine: &Machine, mv: &Move, permit: &Permit, feed: f64) -> f64 {
-    feed * feed_unit(machine, mv, permit) / SECONDS_PER_MINUTE
+    let speed_mm_s = feed * feed_unit(machine, mv, permit) / SECONDS_PER_MINUTE;
+    speed_mm_s.min(machine.path.max_feed_mm_s)
+}
+
+/// The F in program units, rounded down, of a path speed in mm/s (degrees/s): none that the
+/// control does not take.
+pub(super) fn feed_word(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_s: f64) -> f64 {
+    let speed_mm_s = speed_mm_s.min(machine.path.max_feed_mm_s);
+    round_feed_down(speed_mm_s * SECONDS_PER_MINUTE / feed_unit(machine, mv, permit))
 }
 
 /// Millimetres, or degrees, in the unit of length that F speaks of.

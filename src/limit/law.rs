@@ -1,13 +1,12 @@
 //! Values by rule instead of by solution: presets, and the squared ratio.
 
-use super::change::{Change, feed_unit, round_feed_down, round_to_step};
+use super::change::{Change, feed_word, round_to_step};
 use super::lever::{Levers, NO_KNOB, Obstacle, SpeedLever};
 use super::options::Strategy;
 use super::solver::{Case, Solver};
 use crate::interpret::MoveKind;
 use crate::machine::{AXES, AxisSet, AxisValues};
 use crate::plan::{Caps, SpeedBound, speed_bound};
-use crate::units::SECONDS_PER_MINUTE;
 
 /// The limits of the preset for exactly the axes that start together.
 pub(super) fn preset(
@@ -118,11 +117,10 @@ fn scale_speed(
             Err(no_lever("speed"))
         };
     }
-    let unit = feed_unit(solver.machine, case.mv, case.permit);
     change.as_feed = lever == SpeedLever::AsFeed;
     change.exact_stop = change.as_feed && case.exact_stop;
     let speed_mm_s = case.assessment.speed_mm_s * share;
-    change.feed = Some(round_feed_down(speed_mm_s * SECONDS_PER_MINUTE / unit));
+    change.feed = Some(feed_word(solver.machine, case.mv, case.permit, speed_mm_s));
     Ok(())
 }
 

@@ -80,7 +80,7 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         return Levers::default();
     }
     if mv.kind != MoveKind::Rapid {
-        let speed = (how.allow_feed && permit.feed_word).then_some(SpeedLever::FeedWord);
+        let speed = (how.allowed.feed && permit.feed_word).then_some(SpeedLever::FeedWord);
         return Levers {
             speed,
             accel: accel_knob(machine, KnobTarget::FeedAccel),
@@ -88,7 +88,7 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     }
     let speed = match rapid_knob(machine) {
         Some(knob) => Some(SpeedLever::RapidPercent(knob)),
-        None => rapid_as_feed(machine, mv, permit).then_some(SpeedLever::AsFeed),
+        None => rapid_as_feed(machine, how, mv, permit).then_some(SpeedLever::AsFeed),
     };
     // A rapid written as a feed is under the knobs of feeds, which differ.
     let accel = accel_knob(machine, KnobTarget::RapidAccel);
@@ -98,10 +98,13 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     }
 }
 
-/// Whether G1 runs the same path as this G0, no faster.
-fn rapid_as_feed(machine: &Machine, mv: &Move, permit: &Permit) -> bool {
+/// Whether G1 runs the same path as this G0, or one that is permitted, no faster.
+fn rapid_as_feed(machine: &Machine, how: LimitOptions, mv: &Move, permit: &Permit) -> bool {
+    let straight = machine.path.rapid == RapidPath::Linear
+        || mv.moving.iter().count() == 1
+        || how.allowed.straighten && machine.path.is_clear(mv.moving, &mv.start, &mv.end);
     machine.controller.rapid_knob == RapidKnob::G1
-        && machine.path.rapid == RapidPath::Linear
+        && straight
         && permit.as_feed
         && permit.feed_word
         && mv.unknown_start.is_empty()

@@ -23,5 +23,5 @@ pub use change::{Change, Permit};
 pub use depth::{Depths, Place};
 pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
-pub use options::{Law, LimitOptions, Strategy};
+pub use options::{Allowed, Law, LimitOptions, Strategy};
 pub use solver::{Ends, Solver};

@@ -29,8 +29,27 @@ pub struct LimitOptions {
     pub strategy: Strategy,
     /// How far.
     pub law: Law,
-    /// Whether cutting feeds may be lowered.
-    pub allow_feed: bool,
-    /// Whether canned cycles may be written out as single blocks.
-    pub allow_expand: bool,
+    /// What may be changed besides rapids and accelerations.
+    pub allowed: Allowed,
+}
+
+/// What `limit` may change only with permission.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Allowed {
+    /// Cutting feeds may be lowered.
+    pub feed: bool,
+    /// Canned cycles may be written out as single blocks.
+    pub expand: bool,
+    /// Rapids of axes that move each for itself may become lines, inside the machine's
+    /// clearance.
+    pub straighten: bool,
+}
+
+impl Allowed {
+    /// Nothing of it.
+    pub const NOTHING: Self = Self {
+        feed: false,
+        expand: false,
+        straighten: false,
+    };
 }

@@ -2,9 +2,10 @@
 
 use super::change::Change;
 use super::lever::{NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE};
-use super::options::LimitOptions;
+use super::options::{Allowed, LimitOptions};
 use super::solver::{Case, Solver};
 use crate::interpret::MoveKind;
+use crate::machine::{RapidKnob, RapidPath};
 
 /// What can always be done about a block that may not be changed.
 const BY_HAND: &str = "change it by hand";
@@ -41,6 +42,19 @@ impl Solver<'_> {
                 "give --start X…,Y…,Z…, or write the move as a feed by hand",
             );
         }
+        let each_for_itself = self.machine.path.rapid == RapidPath::Independent
+            && self.machine.controller.rapid_knob == RapidKnob::G1
+            && mv.moving.iter().count() > 1;
+        if permit.reason.is_empty() && each_for_itself {
+            return Obstacle::new(
+                NO_KNOB,
+                "the rapid may not be written as a feed: its axes move each for itself, not along \
+                 a line",
+                "where the control moves them along a line (a parameter), say rapid = \"linear\" \
+                 under [path]; or permit lines where there is room: `clearance` under [path] and \
+                 --allow straighten",
+            );
+        }
         let message = if permit.reason.is_empty() {
             format!(
                 "the controller `{}` has no word that lowers this rapid",
@@ -58,8 +72,10 @@ impl Solver<'_> {
     fn allowing_feeds(&self) -> Self {
         Self {
             how: LimitOptions {
-                allow_feed: true,
-                allow_expand: false,
+                allowed: Allowed {
+                    feed: true,
+                    ..Allowed::NOTHING
+                },
                 ..self.how
             },
             model: self.model.clone(),

@@ -1,6 +1,6 @@
 //! One move by itself: the change that makes it fit.
 
-use super::change::{Change, Permit, feed_unit, round_feed_down, round_to_step};
+use super::change::{Change, Permit, feed_unit, feed_word, round_feed_down, round_to_step};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
@@ -161,11 +161,13 @@ impl<'m> Solver<'m> {
                 depth.saturating_sub(steps::ROUNDS)
             }
             Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
+            _ if mv.stray.is_far() => 2,
             _ => return self.planned_load(case, mv),
         };
         let share = &share(case, mv);
         let speed_mm_s = blended_speed(self.machine, mv, self.largest);
-        if mv.arc.is_none() && mv.unknown_start.is_empty() && depth < 2 {
+        let planned = mv.unknown_start.is_empty() && !mv.stray.is_far();
+        if mv.arc.is_none() && planned && depth < 2 {
             let ramps = ramps(self.machine, mv, self.largest, [f64::INFINITY; 2]);
             let demand = self.model.demand(mv, &ramps, Want::PEAKS);
             let demand = self.model.with_cruises(demand, mv, speed_mm_s);
@@ -205,7 +207,8 @@ impl<'m> Solver<'m> {
     /// Whether a move has to fit whatever its neighbours do, changed or not.
     fn is_open(&self, case: Case<'_>, mv: &Move) -> bool {
         let known = mv.unknown_start.is_empty() && mv.length_mm > 0.0;
-        known && matches!(case.ends, Ends::Any(_)) && !self.gets_stops(case.mv, mv)
+        let open = matches!(case.ends, Ends::Any(_)) && !self.gets_stops(case.mv, mv);
+        known && (open || mv.stray.is_far())
     }
 
     pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
@@ -265,8 +268,8 @@ impl<'m> Solver<'m> {
     /// The F, in program units and rounded down, for a path speed at the
     /// largest override.
     fn feed_number(&self, case: Case<'_>, trial: &Change, speed_mm_s: f64) -> Option<f64> {
-        let unit = feed_unit(self.machine, case.mv, case.permit);
-        let mut feed = round_feed_down(speed_mm_s / self.largest.feed * SECONDS_PER_MINUTE / unit);
+        let speed_mm_s = speed_mm_s / self.largest.feed;
+        let mut feed = feed_word(self.machine, case.mv, case.permit, speed_mm_s);
         for _ in 0..RETRIES {
             let rounded = Change {
                 feed: Some(feed),

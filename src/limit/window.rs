@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use arrayvec::ArrayVec;
 
-use super::change::{Change, Permit, feed_unit, round_feed_down};
+use super::change::{Change, Permit, feed_word};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::{Slot, Waiting};
@@ -18,7 +18,6 @@ use super::solver::{Case, Ends, Solver};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
-use crate::units::SECONDS_PER_MINUTE;
 
 /// A move of a window.
 struct Member<'a> {
@@ -303,9 +302,8 @@ fn lower_feed(
     } else {
         changed.feed_mm_s.min(1e6) * solver.largest.feed
     };
-    let unit = feed_unit(solver.machine, member.mv, &member.permit);
-    let feed =
-        round_feed_down(speed_mm_s * factor / solver.largest.feed * SECONDS_PER_MINUTE / unit);
+    let speed_mm_s = speed_mm_s * factor / solver.largest.feed;
+    let feed = feed_word(solver.machine, member.mv, &member.permit, speed_mm_s);
     if !(feed > 0.0 && feed.is_finite()) {
         return false;
     }

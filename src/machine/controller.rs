@@ -80,6 +80,9 @@ pub struct Language {
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
+    /// How far the radii of an arc at its start and end may always differ, mm: in a
+    /// program in mm, and in one in inches; `None`: not known, the least of all.
+    pub arc_tolerance_mm: Option<[f64; 2]>,
     /// Numbered variables that outlast a program: first and last of each range.
     pub kept_variables: Vec<[u32; 2]>,
     /// What Fanuc, Haas and their relatives have besides.

@@ -149,6 +149,31 @@ pub struct Path {
     pub rapid: RapidPath,
     /// Over how long the drives spread a step of speed at a corner, s.
     pub response_time_s: f64,
+    /// Largest F of a cutting move, mm/s; infinite where none is known.
+    pub max_feed_mm_s: f64,
+    /// Machine coordinates from which on, in positive direction, nothing stands in the way
+    /// of the axes, mm or degrees; `None` for axes without such a place.
+    pub clearance_mm: [Option<f64>; AXES],
+}
+
+impl Path {
+    /// Whether the axes of a move stay beyond the clearance wherever each of them is between
+    /// `start` and `end`; false without one.
+    #[must_use]
+    pub fn is_clear(&self, moving: AxisSet, start: &AxisValues, end: &AxisValues) -> bool {
+        let mut clear = false;
+        for (axis, clearance_mm) in self.clearance_mm.iter().enumerate() {
+            let Some(clearance_mm) = clearance_mm else {
+                continue;
+            };
+            let lowest_mm = start[axis].min(end[axis]);
+            if !(lowest_mm >= *clearance_mm) {
+                return false;
+            }
+            clear = true;
+        }
+        clear && !moving.is_empty()
+    }
 }
 
 /// The spindle's data, SI.

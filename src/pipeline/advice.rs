@@ -2,7 +2,7 @@
 
 use super::entry::turns_apart;
 use crate::interpret::{FeedMode, Interpreter, Move, MoveKind};
-use crate::limit::{Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
+use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::{AxisValues, Machine};
 use crate::power::Assessment;
 
@@ -45,8 +45,10 @@ impl<'m> Adviser<'m> {
         let how = LimitOptions {
             strategy: Strategy::Optimal,
             law: Law::Exact,
-            allow_feed: true,
-            allow_expand: false,
+            allowed: Allowed {
+                feed: true,
+                ..Allowed::NOTHING
+            },
         };
         Self {
             machine,

@@ -83,18 +83,27 @@ const FAULTS: [&str; 5] = [
 pub(super) struct Reasons {
     pub(super) list: Vec<Diagnostic>,
     pub(super) count: u64,
+    /// One of [`FAULTS`] is among them, in the list or not.
+    faulty: bool,
 }
 
 impl Reasons {
     /// Whether nothing is said but that moves still draw too much.
     pub(super) fn only_power(&self) -> bool {
-        let fault = |reason: &Diagnostic| FAULTS.contains(&reason.rule);
-        self.count == self.list.len() as u64 && !self.list.iter().any(fault)
+        !self.faulty
+    }
+
+    /// Takes those of the certificate too.
+    pub(super) fn extend(&mut self, other: Self) {
+        self.count += other.count;
+        self.faulty |= other.faulty;
+        self.list.extend(other.list);
     }
 
     /// With those found on another way through the program, each line once.
     pub(super) fn join(&mut self, other: Self) {
         self.count += other.count - other.list.len() as u64;
+        self.faulty |= other.faulty;
         for reason in other.list {
             let mut known = self.list.iter();
             if !known.any(|it| (it.line, it.rule) == (reason.line, reason.rule)) {
@@ -124,6 +133,7 @@ impl Reasons {
         text: &[u8],
     ) {
         self.count += 1;
+        self.faulty |= FAULTS.contains(&rule);
         if self.list.len() < Summary::KEPT {
             let span = Span::new(0, crate::source::split_line_end(text).0.len());
             self.list.push(

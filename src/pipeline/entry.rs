@@ -6,7 +6,7 @@ use crate::interpret::{
     CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step, TURNING_CYCLE,
 };
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint};
+use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
@@ -195,6 +195,11 @@ impl Entry {
             ),
             (facts.reference, REFERENCE),
             (!stays, WITHOUT_STOP),
+            (
+                // The blocks that follow would become lines too.
+                facts.no_motion_word && machine.path.rapid == RapidPath::Independent,
+                "no motion word is in force that could be put back",
+            ),
         ];
         let reason = |checks: &[(bool, &'static str)]| {
             checks

@@ -269,10 +269,11 @@ impl<'m, R: Read + Seek> Front<'m, R> {
 
     /// The warnings and notes of a run without errors.
     pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Failure> {
-        if self.executed == 0 && self.diagnostics.errors == 0 {
+        let uncalled = self.interpreter.is_uncalled();
+        if (self.executed == 0 || uncalled) && self.diagnostics.errors == 0 {
             let flow = self.flow.as_deref();
-            self.diagnostics
-                .push(nothing_done(flow.is_some_and(Flow::holds_subprograms)));
+            let subs = uncalled || flow.is_some_and(Flow::holds_subprograms);
+            self.diagnostics.push(nothing_done(subs));
         }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
             let (rule, message, help) = if self.interpreter.holds_corner() {

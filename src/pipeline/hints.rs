@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
-use super::{Failure, Law, LimitOptions, Options, Strategy, Summary};
+use super::{Allowed, Failure, Law, LimitOptions, Options, Strategy, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::machine::Machine;
 
@@ -30,8 +30,11 @@ pub fn take_hints<R: Read + Seek + Send>(
         let how = LimitOptions {
             strategy: Strategy::Optimal,
             law: Law::Exact,
-            allow_feed: true,
-            allow_expand,
+            allowed: Allowed {
+                feed: true,
+                expand: allow_expand,
+                ..Allowed::NOTHING
+            },
         };
         let limited = limit(&mut input, machine, options, how, io::sink(), None)?;
         let mut reasons = BTreeMap::new();

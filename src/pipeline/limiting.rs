@@ -22,7 +22,7 @@ use super::{
 };
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
-use crate::machine::{KnobArgument, KnobTarget, Machine};
+use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
 use crate::power::{PowerModel, rungs};
 
 /// Pieces that may wait for the certifier.
@@ -130,7 +130,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     let mut last: Option<LimitSummary> = None;
     for way in [Way::Placed, Way::WrittenOut] {
         let refused = last.as_ref().unwrap_or(&first);
-        if refused.certified || way == Way::WrittenOut && !how.allow_expand {
+        if refused.certified || way == Way::WrittenOut && !how.allowed.expand {
             break;
         }
         let all = refused.reasons.len() >= Summary::KEPT;
@@ -206,10 +206,10 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             };
             let (written, certified) = job.run(&mut input, &mut output, rows)?;
             if certified.deeper.is_empty() {
-                return Ok(conclude(machine, target, paths, written, certified));
+                return Ok(conclude(machine, target, paths, how, written, certified));
             }
             if !depths.deepen(&certified.deeper) {
-                let mut stopped = conclude(machine, target, paths, written, certified);
+                let mut stopped = conclude(machine, target, paths, how, written, certified);
                 stopped.reasons.push(last_round(&depths));
                 return Ok(stopped);
             }
@@ -388,6 +388,7 @@ fn conclude(
     machine: &Machine,
     target: &Machine,
     paths: &[Options],
+    how: LimitOptions,
     written: Written,
     certified: Certified,
 ) -> LimitSummary {
@@ -407,8 +408,7 @@ fn conclude(
         // figures show it.
         reasons = Reasons::default();
     }
-    reasons.count += found.count;
-    reasons.list.extend(found.list);
+    reasons.extend(found);
     let missed = after.over_time.iter().filter(|it| !it.rating.fits());
     for reason in missed.map(OverTime::reason) {
         reasons.count += 1;
@@ -427,6 +427,18 @@ fn conclude(
     {
         let taken = "blocks before the first motion word are taken for rapids (G0)";
         after.conditions.push(taken.to_owned());
+    }
+    let rooms = machine.path.clearance_mm.iter().zip(ALL_AXES);
+    let rooms: Vec<String> = rooms
+        .filter_map(|(room, axis)| Some(format!("{} {}", char::from(axis.letter()), (*room)?)))
+        .collect();
+    let each_for_itself = machine.path.rapid == RapidPath::Independent;
+    if how.allowed.straighten && each_for_itself && !rooms.is_empty() {
+        after.conditions.push(format!(
+            "rapids of several axes may run along lines beyond the clearance ({}, machine \
+             coordinates)",
+            rooms.join(", ")
+        ));
     }
     let certified = reasons.count == 0 && after.fits();
     LimitSummary {

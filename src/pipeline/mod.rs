@@ -42,7 +42,7 @@ pub use by_line::LineSummary;
 pub use hints::take_hints;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};
-pub use options::{Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
+pub use options::{Allowed, Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
 pub use over_time::OverTime;
 pub use restart::{Restart, RestartRows};
 pub use row::{Certificate, Row, RowSink};

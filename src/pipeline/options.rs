@@ -3,7 +3,7 @@
 pub use crate::interpret::{Limits, Reading, Start};
 
 use super::row::Certificate;
-pub use crate::limit::{Law, LimitOptions, Strategy};
+pub use crate::limit::{Allowed, Law, LimitOptions, Strategy};
 
 /// How a program is read and judged.
 #[derive(Debug, Clone, PartialEq)]

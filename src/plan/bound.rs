@@ -54,6 +54,9 @@ pub fn speed_bound(machine: &Machine, mv: &Move, overrides: Overrides, caps: Cap
     if !mv.unknown_start.is_empty() {
         return unknown(machine, mv, overrides, &caps);
     }
+    if mv.stray.strays() && mv.length_mm > 0.0 {
+        return strayed(machine, mv, overrides, &caps);
+    }
     bound.excess = excess(machine, mv);
     if mv.length_mm > 0.0 {
         let v = PathLimits::of(machine, mv, overrides, &caps).speed_mm_s;
@@ -69,7 +72,8 @@ pub fn speed_bound(machine: &Machine, mv: &Move, overrides: Overrides, caps: Cap
 #[must_use]
 pub fn blended_bound(machine: &Machine, mv: &Move, overrides: Overrides) -> SpeedBound {
     let caps = Caps::default();
-    if mv.arc.is_none() || !mv.unknown_start.is_empty() || mv.length_mm <= 0.0 {
+    let strays = mv.stray.strays() || !mv.unknown_start.is_empty();
+    if mv.arc.is_none() || strays || mv.length_mm <= 0.0 {
         return speed_bound(machine, mv, overrides, caps);
     }
     let mut bound = SpeedBound {
@@ -143,6 +147,12 @@ impl PathShares {
 /// Path speed in mm/s (degrees/s) to which [`blended_bound`] belongs.
 #[must_use]
 pub fn blended_speed(machine: &Machine, mv: &Move, overrides: Overrides) -> f64 {
+    if mv.stray.strays() {
+        // What the axes permit along the move says nothing of the path.
+        let axes = moving(machine, mv).map(|(_, limit)| limit.rapid_mm_s);
+        let most = axes.sum::<f64>() * rapid_factor(mv, overrides, &Caps::default());
+        return (mv.feed_mm_s * overrides.feed).min(most);
+    }
     match &mv.arc {
         Some(arc) => (mv.feed_mm_s * overrides.feed).min(axis_speed(machine, mv, arc)),
         None => PathLimits::of(machine, mv, overrides, &Caps::default()).speed_mm_s,
@@ -186,6 +196,32 @@ fn raise_plane(arc: &Arc, v: f64, bound: &mut SpeedBound) {
 /// True for the plane axes of an arc.
 fn in_plane(mv: &Move, axis: usize) -> bool {
     mv.arc.is_some_and(|arc| arc.plane.contains(&axis))
+}
+
+/// The bounds of a move whose path is another one: of the path speed each axis takes as
+/// much as along the move, and of X, Y and Z as much more or less as the directions may
+/// differ. What the axes themselves permit along the move says nothing of that path.
+fn strayed(machine: &Machine, mv: &Move, overrides: Overrides, caps: &Caps) -> SpeedBound {
+    let mut bound = SpeedBound {
+        excess: (1.0 + excess(machine, mv)) * (1.0 + mv.stray.accel) - 1.0,
+        ..SpeedBound::default()
+    };
+    let speed = (mv.feed_mm_s * feed_factor(mv.kind, overrides)).min(caps.speed_mm_s);
+    let factor = rapid_factor(mv, overrides, caps);
+    let along = PathShares::of(mv, [0.0, mv.length_mm]).along;
+    for (axis, limit) in moving(machine, mv) {
+        let more = if axis < 3 { mv.stray.direction } else { 0.0 };
+        let largest = limit.rapid_mm_s * factor;
+        let of = |share: f64| {
+            let share = share + more;
+            // An F that is not known is infinite.
+            let speed = if share > 0.0 { speed * share } else { 0.0 };
+            speed.min(largest)
+        };
+        bound.positive[axis] = of(along.positive[axis]);
+        bound.negative[axis] = of(along.negative[axis]);
+    }
+    bound
 }
 
 /// Both directions at what the axis and F allow: from an unknown start neither

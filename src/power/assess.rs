@@ -41,6 +41,8 @@ pub struct Assessor<'m> {
     pub(super) idle: Idle,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
+    /// The last move has ended at rest.
+    rested: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     pub(super) ahead: Option<Box<Ahead>>,
     pub(super) eye: Eye,
@@ -77,6 +79,7 @@ impl<'m> Assessor<'m> {
             spare: None,
             idle: Idle::default(),
             needs_robust: false,
+            rested: false,
             ahead,
             eye: Eye::default(),
             switched: Switched::default(),
@@ -271,6 +274,8 @@ impl<'m> Assessor<'m> {
             }
         }
         self.eye.show(self.machine, mv, self.nominal);
+        let rests = self.ends_at_rest(mv).unwrap_or(self.rested);
+        let rested = std::mem::replace(&mut self.rested, rests);
         let figures = path_figures(self.machine, mv, self.largest);
         let joined = self
             .last_held()
@@ -299,7 +304,7 @@ impl<'m> Assessor<'m> {
             return;
         }
         assessment.blended = true;
-        self.hold(mv, text, assessment, figures.as_ref(), sink);
+        self.hold(mv, text, assessment, figures.as_ref(), rested, sink);
     }
 
     /// Hands on what was waiting, at the end of the program.
@@ -315,7 +320,7 @@ impl<'m> Assessor<'m> {
     }
 
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        self.release(Behind::Stop, sink);
+        self.release(Behind::End, sink);
         if let Some(ahead) = &mut self.ahead {
             ahead.stop(self.machine, &self.model, &mut self.eye);
             ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
@@ -328,6 +333,7 @@ impl<'m> Assessor<'m> {
     fn alone(&self, mv: &Move, figures: Option<&PathFigures>) -> Assessment {
         let blended = self.may_blend(mv);
         if let Some(path) = figures
+            && !mv.stray.strays()
             && let Some(demand) = self.quick_demand(mv, path, blended)
         {
             let mut assessment = Assessment {
@@ -387,6 +393,9 @@ impl<'m> Assessor<'m> {
             if self.want.energy {
                 demand.energy_j = self.model.demand(mv, &nominal, self.want).energy_j;
             }
+        }
+        if mv.stray.strays() {
+            demand = self.model.with_stray(demand, mv, peak_plan.top_speed_mm_s);
         }
         let unknown = !mv.unknown_start.is_empty();
         Assessment {

@@ -162,7 +162,7 @@ impl Eye {
     ) {
         let Some(watch) = &mut self.watch else { return };
         let mut span = Span::ANY;
-        if mv.unknown_start.is_empty() {
+        if mv.unknown_start.is_empty() && !mv.stray.is_far() {
             span.longest_s = plan(machine, mv, largest).duration_s;
             let shortest_s = mv.length_mm / blended_speed(machine, mv, largest);
             if shortest_s < span.longest_s && !is_independent(machine, mv) {

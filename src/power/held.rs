@@ -16,6 +16,8 @@ pub(super) struct Held {
     pub assessment: Assessment,
     /// Its largest speeds, its neighbours left aside.
     pub bound: SpeedBound,
+    /// The move before it, or a dwell, has ended at rest.
+    pub rested: bool,
     /// Moves of no length behind it: controllers leave them out and blend
     /// across them.
     pub riders: Vec<Rider>,
@@ -41,8 +43,10 @@ pub(super) struct Rider {
 /// What stands behind a move that waits.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Behind<'a> {
-    /// A stop.
+    /// A stop: a dwell, or a move that begins at rest.
     Stop,
+    /// The end of the program.
+    End,
     /// A move that it runs into.
     Move(Part<'a>),
     /// So much that moves no axis that it may have stopped.
@@ -57,10 +61,13 @@ impl Assessor<'_> {
         text: &[u8],
         assessment: Assessment,
         figures: Option<&PathFigures>,
+        rested: bool,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let bound = match figures {
-            Some(path) if mv.arc.is_none() => path_bound(self.machine, mv, path.speed_limit_mm_s),
+            Some(path) if mv.arc.is_none() && !mv.stray.is_far() => {
+                path_bound(self.machine, mv, path.speed_limit_mm_s)
+            }
             _ => blended_bound(self.machine, mv, self.largest),
         };
         let fresh = match self.spare.take() {
@@ -70,6 +77,7 @@ impl Assessor<'_> {
                 fresh.text.extend_from_slice(text);
                 fresh.assessment = assessment;
                 fresh.bound = bound;
+                fresh.rested = rested;
                 fresh
             }
             None => Box::new(Held {
@@ -77,6 +85,7 @@ impl Assessor<'_> {
                 text: text.to_vec(),
                 assessment,
                 bound,
+                rested,
                 riders: Vec::new(),
             }),
         };
@@ -100,15 +109,20 @@ impl Assessor<'_> {
             return;
         };
         let joined = held.assessment.joined;
-        // A straight move between two stops is planned like any other: a feed between
-        // rapids of a controller that waits at both, or between dwells.
-        let stops = matches!(behind, Behind::Stop);
+        // A rapid between two stops is planned like any other, and so is a straight feed
+        // between dwells, or between rapids of a controller that waits at both.
+        let stops = matches!(behind, Behind::Stop | Behind::End);
         let alone = !joined && stops && self.requested != Some(Certificate::Robust);
         if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
             self.eye
                 .alone(self.machine, &self.model, &held.mv, self.largest);
-        } else if alone && held.mv.arc.is_none() {
+        } else if alone
+            && held.rested
+            && !matches!(behind, Behind::End)
+            && held.mv.arc.is_none()
+            && !held.mv.stray.is_far()
+        {
             let figures = path_figures(self.machine, &held.mv, self.largest);
             held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
             self.eye

@@ -16,6 +16,7 @@ impl Assessor<'_> {
         let (planner, ahead) = (&self.machine.controller.planner, self.ahead.as_ref());
         let rapid = mv.kind == MoveKind::Rapid;
         self.requested == Some(Certificate::Robust)
+            || mv.stray.is_far()
             || mv.path_mode == PathMode::LookAhead
                 && (!rapid || planner.rapid_joint != RapidJoint::Stop)
             || mv.arc.is_some() && ahead.is_some_and(|ahead| ahead.slows_last_arcs())
@@ -24,6 +25,18 @@ impl Assessor<'_> {
     /// Whether a move has a path of its own, begun and ended at rest.
     pub(super) fn is_alone(&self, mv: &Move) -> bool {
         mv.path_mode == PathMode::ExactStop && role(self.machine, mv) == Role::Path
+    }
+
+    /// Whether a move ends at rest, whatever follows; `None` where it moves no axis.
+    pub(super) fn ends_at_rest(&self, mv: &Move) -> Option<bool> {
+        if mv.kind == MoveKind::Dwell {
+            return Some(true);
+        }
+        mv.moves_axes().then(|| {
+            let rapid = mv.kind == MoveKind::Rapid;
+            mv.path_mode == PathMode::ExactStop
+                || rapid && self.machine.controller.planner.rapid_joint == RapidJoint::Stop
+        })
     }
 
     /// Whether the controller may run from `first` into `second` without a stop.

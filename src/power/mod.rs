@@ -52,6 +52,7 @@ mod surface_speed;
 mod surge;
 mod tandem;
 mod straight;
+mod stray;
 mod steps;
 mod stretch;
 mod trace;

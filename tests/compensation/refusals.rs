@@ -30,7 +30,6 @@ fn paths_that_a_tool_cannot_follow() {
         "G3 X10 Y-2 I10 J24",
         "G40\nG18\nG41.1 D4 L2\nG2 Z10 X0 K5",
         "G1 X10\nX20\nG40\nG2 X30 I5",
-        "G93 G1 X10 F1",
     ]
     .map(refused)
     .join("\n");
@@ -48,8 +47,17 @@ fn paths_that_a_tool_cannot_follow() {
 4 compensation: no arc leads the tool from where it is to the side of this arc's end | lead in with a straight move
 7 compensation: the first move under cutter compensation must be straight here | lead in with a straight move
 7 compensation: the move that leaves cutter compensation must be straight | lead out with a straight move behind G40
-4 compensation: inverse-time feed (G93) under cutter compensation is not supported | write the feed per minute: G94
 "#);
+}
+
+/// LinuxCNC takes the time for the programmed way (tests/conformance); what other controls
+/// take it for is not known.
+#[test]
+fn a_time_for_the_block_under_another_control_s_compensation() {
+    let program = "G10 L12 P1 R5.\nG0 X-20. Y-20.\nG41 D1 G1 X0. Y0. F600\nG93 Y40. F2\nG94 G40 X-20. Y-20. F600\nM30\n";
+    let found = shown("fanuc", &Options::default(), program);
+    let expected = "compensation: inverse-time feed (G93) under cutter compensation is not supported | write the feed per minute: G94";
+    assert!(found.contains(expected), "{found}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::Cursor;
 
-use gwatt::pipeline::{LimitOptions, Strategy as How, analyze, limit};
+use gwatt::pipeline::{Allowed, LimitOptions, Strategy as How, analyze, limit};
 use proptest::prelude::*;
 
 use super::{machine, options, run};
@@ -166,8 +166,10 @@ proptest! {
         let how = LimitOptions {
             strategy: if by_speed { How::Speed } else { How::Optimal },
             law: gwatt::pipeline::Law::Exact,
-            allow_feed: true,
-            allow_expand: false,
+            allowed: Allowed {
+                feed: true,
+                ..Allowed::NOTHING
+            },
         };
         let mut text = Vec::new();
         let summary = limit(Cursor::new(&program), &machine, &options, how, &mut text, None).expect("a program");

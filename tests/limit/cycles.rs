@@ -71,22 +71,17 @@ fn the_way_to_a_hole_needs_no_permission() {
     assert_snapshot!(text, @r"
     G21 G90 G54
     G0 X0. Y0. Z50.
-    G4 P1
-    G1 X400. Y300. F26966
-    G4 P1
+    G9 G1 X400. Y300. F26966
     G0
     N10 G98 G81 X400. Y300. Z-12. R40. F200.
     G0 X410.
     G81 X410. R40. Z-12.
-    G4 P1
-    G1 X0. Y0. F27173.
-    G4 P1
+    G9 G1 X0. Y0. F27173.
     G0 F200.
     N20 G81 X0. Y0. R40. Z-12. (LAST)
     G80
     G4 P1
-    G1 X400. Y300. F26966.
-    G4 P1
+    G9 G1 X400. Y300. F26966.
     G0 F200.
     G84 X400. Y300. Z-8. R40. F1000.
     G80 G0 Z50.
@@ -107,8 +102,7 @@ fn all_moves_of_a_cycle_are_written_out() {
     G1 X1. F500.
     N10 F150. M8 (FIRST) (G83 written out)
     G4 P1
-    G1 X200. Y-80. F12359.
-    G4 P1
+    G9 G1 X200. Y-80. F12359.
     G0 Z2.
     G1 Z-2. F150.
     G0 Z2.
@@ -121,8 +115,7 @@ fn all_moves_of_a_cycle_are_written_out() {
     G1
     G98 (G83 written out)
     G4 P1
-    G1 X250. F13714.
-    G4 P1
+    G9 G1 X250. F13714.
     G1 Z-2. F150.
     G0 Z2.
     G0 Z-1.
@@ -133,8 +126,7 @@ fn all_moves_of_a_cycle_are_written_out() {
     X260.
     F120. (G82 written out)
     G4 P1
-    G1 X50. Y50. F11383.
-    G4 P1
+    G9 G1 X50. Y50. F11383.
     G0 Z1.
     G1 Z-3. F120.
     G4 P500
@@ -153,8 +145,7 @@ fn all_moves_of_a_cycle_are_written_out() {
     G0 Z3.
     G1
     G4 P1
-    G90 G80 G1 Z50. F13714.
-    G4 P1
+    G9 G90 G80 G1 Z50. F13714.
     G0 F120.
     M30
     ");

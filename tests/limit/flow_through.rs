@@ -4,13 +4,15 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Law, LimitOptions, Options, Restart, Strategy, limit};
+use gwatt::pipeline::{Allowed, Law, LimitOptions, Options, Restart, Strategy, limit};
 
 const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
-    allow_feed: true,
-    allow_expand: false,
+    allowed: Allowed {
+        feed: true,
+        ..Allowed::NOTHING
+    },
 };
 
 /// Bytes that a run has read and written, and the most that lay between.

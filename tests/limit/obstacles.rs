@@ -148,19 +148,26 @@ fn blocks_that_are_not_touched() {
 
 #[test]
 fn rapids_that_are_not_written_as_feeds() {
-    let no_knob = |program: &str, reason: &str| {
+    let no_knob = |program: &str, reason: &str, help: &str| {
         stopped(
             RIG,
             program,
             1,
             "no-knob",
             &format!("the rapid may not be written as a feed: {reason}"),
-            "write the move as a feed by hand, or lower the rapid speed of the machine",
+            help,
         );
     };
-    no_knob("G53 G0 X400\n", "G53 is for rapids");
-    no_knob("G28 X400\n", "it moves to a reference point");
-    no_knob("G0 G4 P1 Y400\n", "an F in it would be its dwell");
+    let known = "the way is gone by a feed before it where the places are known: reference_mm of \
+                 the axes, the work offset ([offsets] or --parameters) and the tool's length \
+                 (--tool-table); or give the speed of the return, reference_mm_min";
+    no_knob("G53 G0 X400\n", "G53 is for rapids", known);
+    no_knob("G28 X400\n", "it moves to a reference point", known);
+    no_knob(
+        "G0 G4 P1 Y400\n",
+        "an F in it would be its dwell",
+        "write the move as a feed by hand, or lower the rapid speed of the machine",
+    );
 }
 
 #[test]

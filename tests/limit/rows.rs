@@ -2,7 +2,7 @@
 
 use super::RIG;
 use crate::rows::Rows;
-use gwatt::pipeline::{Law, LimitOptions, Strategy, analyze, limit};
+use gwatt::pipeline::{Allowed, Law, LimitOptions, Strategy, analyze, limit};
 
 #[test]
 fn peaks_are_exact_in_every_row() {
@@ -24,8 +24,10 @@ fn peaks_are_exact_in_every_row() {
     let how = LimitOptions {
         strategy: Strategy::Optimal,
         law: Law::Exact,
-        allow_feed: true,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
     };
     limit(
         std::io::Cursor::new(program),

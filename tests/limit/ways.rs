@@ -7,7 +7,7 @@ use std::io::Cursor;
 use super::reader::read;
 use super::{EXACT_STOP, RIG, Rig, options};
 use gwatt::interpret::{BlockDelete, ProbeResult, ProbeWay};
-use gwatt::pipeline::{LimitOptions, LimitSummary, Options, analyze, limit};
+use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Options, analyze, limit};
 use proptest::prelude::*;
 
 /// The program as a control reads it with these switches on.
@@ -183,8 +183,10 @@ fn limited(program: &str) -> (String, LimitSummary) {
     let how = LimitOptions {
         strategy: MILL.options.strategy,
         law: MILL.options.law,
-        allow_feed: true,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
     };
     let mut text = Vec::new();
     let summary = limit(

@@ -190,6 +190,7 @@ fn chords_of_a_helix_end_where_it_ends() {
         loads: 0,
         path_mode: PathMode::LookAhead,
         corner: gwatt::interpret::Corner::default(),
+        stray: gwatt::interpret::Stray::NONE,
     };
     let element = Element::of(&machine, &mv, Overrides::default(), FREE, 0).unwrap();
     let rule = machine.controller.planner.look_ahead.unwrap();

@@ -41,7 +41,7 @@ fn printer() -> Machine {
             "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {speed}\naccel_mm_s2 = {accel}\nmass_kg = 1\n"
         );
         if axis != "E" {
-            text += "home_mm_min = 3000\n";
+            text += "reference_mm_min = 3000\n";
         }
     }
     let mut machine = Machine::from_toml("printer.toml", &text)

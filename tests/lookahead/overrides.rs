@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::Cursor;
 
 use gwatt::machine::{Machine, OverrideAt};
-use gwatt::pipeline::{Law, LimitOptions, Options, Strategy, Summary, analyze, limit};
+use gwatt::pipeline::{Allowed, Law, LimitOptions, Options, Strategy, Summary, analyze, limit};
 
 use super::glide::judged;
 
@@ -245,8 +245,10 @@ fn sweep(seed: u64, programs: usize) -> [usize; 2] {
         let how = LimitOptions {
             strategy: Strategy::Optimal,
             law: Law::Exact,
-            allow_feed: true,
-            allow_expand: false,
+            allowed: Allowed {
+                feed: true,
+                ..Allowed::NOTHING
+            },
         };
         let mut out = Vec::new();
         let input = Cursor::new(text.as_bytes());

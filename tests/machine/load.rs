@@ -166,3 +166,34 @@ fn loads_limits_and_converters() {
     assert_eq!(machine.limits.spindle_override_max, 1.0);
     assert_eq!(machine.limits.min_feed_mm_s, 1.0);
 }
+
+/// `[language]` of a machine file: words of this machine that move nothing.
+#[test]
+fn words_that_a_machine_ignores() {
+    let with = |controller: &str, language: &str| {
+        let text = format!(
+            "schema = 1\nname = \"t\"\ncontroller = \"{controller}\"\n[language]\n{language}\n[converter]\npeak_power_w = 1e5\n[axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n"
+        );
+        gwatt::machine::Machine::from_toml("t.toml", &text)
+    };
+    let (machine, _) = with("iso", "ignored = [\"M101\", \"G187\"]").expect("a machine");
+    let language = &machine.controller.language;
+    assert_eq!(language.ignored_m, [48, 49, 101]);
+    assert_eq!(language.ignored_g, [1870]);
+    let refused = |controller: &str, language: &str| {
+        let error = with(controller, language).expect_err("a mistake");
+        error
+            .iter()
+            .map(|found| found.message.clone())
+            .collect::<String>()
+    };
+    assert!(refused("iso", "ignored = [\"101\"]").contains("\"101\" is not a G or M word"));
+    assert!(
+        refused("linuxcnc", "ignored_macros = [\"START\"]")
+            .contains("`ignored_macros` belongs to the controllers of printers")
+    );
+    assert!(
+        refused("haas", "unknown_moves = [\"START\"]")
+            .contains("`unknown_moves` belongs to the controllers of printers")
+    );
+}

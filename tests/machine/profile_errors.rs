@@ -232,3 +232,16 @@ fn dwell_letter_twice() {
       |                ^^^
     "#);
 }
+
+#[test]
+fn the_word_for_exact_stop_is_a_g_word() {
+    let text = edited("ignored =", "exact_stop_word = \"M9\"\nignored =");
+    let Err(errors) = Controller::from_toml(&text) else {
+        panic!("no error");
+    };
+    let errors = render(&errors);
+    assert!(
+        errors.contains("\"M9\" is not a G word / such as \"G9\""),
+        "{errors}"
+    );
+}

@@ -304,3 +304,54 @@ fn lead_on_a_rotary_axis() {
       |           ^^
     "#);
 }
+
+#[test]
+fn two_names_of_the_reference_point() {
+    let both = edited(
+        "mass_kg = 900",
+        "mass_kg = 900\nreference_mm = 0\nhome_mm = 5",
+    );
+    assert_snapshot!(findings(&both), @r"
+    line 14, error machine-twice: `reference_mm` and `home_mm` give the same quantity of axis X / keep one of the two
+      | home_mm = 5
+      |           ^
+    ");
+    // The earlier name alone goes on meaning the same.
+    let old = edited(
+        "mass_kg = 900",
+        "mass_kg = 900\nhome_mm = 5\nhome_mm_min = 600",
+    );
+    let new = old.replace("home_mm", "reference_mm");
+    assert_eq!(findings(&old), "");
+    let [old, new] = [old, new].map(|text| super::machine(&text).axes[0]);
+    assert_eq!(old, new);
+    assert_eq!(new.and_then(|axis| axis.reference_mm), Some(5.0));
+}
+
+#[test]
+fn a_reference_point_in_the_unit_of_the_other_kind() {
+    let rotary = edited("inertia_kg_m2 = 12", "inertia_kg_m2 = 12\nreference_mm = 1");
+    assert!(
+        findings(&rotary).contains(
+            "`reference_mm` belongs to a linear axis, but axis B is rotary / give `reference_deg`"
+        ),
+        "{}",
+        findings(&rotary)
+    );
+    let linear = edited("mass_kg = 900", "mass_kg = 900\nreference_deg_min = 1");
+    assert!(
+        findings(&linear)
+            .contains("`reference_deg_min` belongs to a rotary axis, but axis X is linear"),
+        "{}",
+        findings(&linear)
+    );
+}
+
+#[test]
+fn offsets_of_axes_and_systems_that_are_not_there() {
+    let found = findings(&with(
+        "[offsets]\nG54 = { X = 1, Q = 2 }\nG55 = { Y = 3 }\nG60 = { X = 1 }",
+    ));
+    assert!(found.contains("the machine has no axis Y"), "{found}");
+    assert!(found.contains("`Q`") && found.contains("`G60`"), "{found}");
+}

@@ -4,7 +4,8 @@ use std::io::Cursor;
 
 use gwatt::machine::{Machine, OverrideAt};
 use gwatt::pipeline::{
-    Failure, Law, LimitOptions, LimitSummary, Options, OverTime, Strategy, Summary, analyze, limit,
+    Allowed, Failure, Law, LimitOptions, LimitSummary, Options, OverTime, Strategy, Summary,
+    analyze, limit,
 };
 
 /// Z lifts 100 kg without friction; what else is in the file comes on top.
@@ -35,8 +36,10 @@ fn limited(machine: &Machine, program: &str) -> Result<(LimitSummary, String), F
     let how = LimitOptions {
         strategy: Strategy::Optimal,
         law: Law::Exact,
-        allow_feed: true,
-        allow_expand: false,
+        allowed: Allowed {
+            feed: true,
+            ..Allowed::NOTHING
+        },
     };
     let (mut out, input) = (Vec::new(), Cursor::new(program.as_bytes()));
     let summary = limit(input, machine, &Options::default(), how, &mut out, None)?;

@@ -164,3 +164,83 @@ fn subprograms_in_files_of_their_own() {
 1 subprogram: the subprogram ends without a return
 ");
 }
+
+/// A main program may call the subprogram that has its name, in its own text or in a file.
+#[test]
+fn a_program_calls_the_subprogram_of_its_own_name() {
+    let both = "%_N_PART_MPF\nG0 X5\nPART\nM30\n%_N_PART_SPF\nG0 X20\nM17\n";
+    assert_eq!(moves(both), "2 rapid X5\n6 rapid X20\n");
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("PART.SPF"), "G0 X30\nM17\n").unwrap();
+    std::fs::write(folder.path().join("PART.MPF"), "G0 X99\nM17\n").unwrap();
+    let alone = "%_N_PART_MPF\nG0 X5\nPART\nM30\n";
+    let said = listing(alone, &machine("siemens"), Some(folder.path()));
+    assert_eq!(said, "2 rapid X5\n1 rapid X30\n");
+    // One that calls itself does so for ever.
+    assert!(moves(alone).ends_with("3 call-depth: more than 100 calls inside one another\n"));
+}
+
+/// "Subprogram technique": arrays as VAR parameters.
+#[test]
+fn arrays_are_passed_and_given_back() {
+    let sub = "%_N_STEP_SPF\nPROC STEP(VAR REAL A[2], REAL B[2], VAR REAL M)\nA[0]=A[0]+B[0]\nA[1]=A[1]+B[1]\nB[0]=99\nM=M+1\nM17\n";
+    let main = |call: &str| {
+        format!(
+            "%_N_M_MPF\nDEF REAL P[2]=SET(1,2), Q[2]=SET(10,20), RR[3], CNT=0\nDEF INT II[2]\n{call}\nG0 X=P[0] Y=P[1] Z=CNT\nX=Q[0]\nM30\n{sub}"
+        )
+    };
+    assert_eq!(
+        moves(&main("STEP(P,Q,CNT)")),
+        "5 rapid X11 Y22 Z1\n6 rapid X10\n"
+    );
+    let refused = [
+        (
+            "STEP(RR,Q,CNT)",
+            "A cannot take this value: the call gives it something of another type or length",
+        ),
+        (
+            "STEP(II,Q,CNT)",
+            "A cannot take this value: the call gives it something of another type or length",
+        ),
+        (
+            "STEP(CNT,Q,CNT)",
+            "A cannot take this value: the call gives it something of another type or length",
+        ),
+        (
+            "STEP(P,,CNT)",
+            "B cannot take this value: it is an array, and the call gives it nothing",
+        ),
+        (
+            "STEP(P,Q,P)",
+            "M cannot take this value: the call gives it something of another type or length",
+        ),
+    ];
+    for (call, message) in refused {
+        let said = moves(&main(call));
+        assert!(
+            said.contains(&format!("assignment: {message}")),
+            "{call}: {said}"
+        );
+    }
+    let twice = "%_N_M_MPF\nDEF REAL P[2]\nTWO(P,P)\nM30\n%_N_TWO_SPF\nPROC TWO(VAR REAL A[2], VAR REAL B[2])\nM17\n";
+    let said = moves(twice);
+    assert!(said.contains("assignment: B cannot take this value: the call gives one variable to two VAR parameters"), "{said}");
+}
+
+/// A subprogram with parameters does nothing by itself: what it is called with decides.
+#[test]
+fn a_subprogram_with_parameters_by_itself() {
+    let run = |program: &str| {
+        let machine = machine("siemens");
+        let options = gwatt::pipeline::Options::default();
+        gwatt::pipeline::analyze(std::io::Cursor::new(program), &machine, &options, None)
+            .map(|summary| summary.only_subprograms())
+            .map_err(|failure| failure.to_string())
+    };
+    assert_eq!(
+        run("PROC HOLE(REAL D, VAR REAL E[3])\nG0 X=D\nM17\n"),
+        Ok(true)
+    );
+    assert_eq!(run("PROC HOLE(REAL D=4)\nG0 X=D\nM17\n"), Ok(false));
+    assert_eq!(run("PROC HOLE\nG0 X4\nM17\n"), Ok(false));
+}

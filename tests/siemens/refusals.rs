@@ -54,10 +54,6 @@ fn refusals_name_the_construct() {
             "1 unsupported-word: $P_UIFR belongs to the control, and may change offsets or limits",
         ),
         (
-            "PROC A(REAL B[3])",
-            "1 unsupported-word: an array as the parameter of a subprogram is not supported",
-        ),
-        (
             "PROC A BLSYNC",
             "1 unsupported-word: PROC with BLSYNC, which gwatt does not follow",
         ),
@@ -248,7 +244,7 @@ fn refusals_name_the_construct() {
             "1 arc-in-g53: an arc with G53, G153 or SUPA",
         ),
         (
-            "ROT X30\nG2 X10 CR=5",
+            "SCALE X2\nG2 X10 CR=5",
             "2 arc-turned: an arc that is no circle in a plane of the machine, as the coordinates are turned or scaled",
         ),
         (

@@ -40,7 +40,10 @@ impl Compensation {
         if !matches!(mv.kind, MoveKind::Rapid | MoveKind::Feed | MoveKind::Arc) {
             return Err(Fault::OtherMotion);
         }
-        if mv.feed_mode == FeedMode::InverseTime && mv.kind != MoveKind::Rapid {
+        // LinuxCNC takes the time for the way that is programmed, so that the speed is
+        // known already (`inverse_time_rate_straight`, `inverse_time_rate_arc`).
+        let beside = self.style.lead == CompensationLead::Beside;
+        if mv.feed_mode == FeedMode::InverseTime && mv.kind != MoveKind::Rapid && !beside {
             return Err(Fault::InverseTime);
         }
         let [first, second] = self.plane;
@@ -50,7 +53,6 @@ impl Compensation {
         let corner = [mv.start[first], mv.start[second]];
         let target = [mv.end[first], mv.end[second]];
         let stays = mv.arc.is_none() && corner == target;
-        let beside = self.style.lead == CompensationLead::Beside;
         if self.state == State::Entry && (beside || !stays) {
             return self.enter(mv, corner, target);
         }

@@ -2,9 +2,10 @@
 
 use super::Fault;
 use super::corner::Track;
-use crate::interpret::arc::{self, Ends};
+use crate::interpret::arc::{self, Ends, Slack};
 use crate::interpret::motion::{STANDSTILL_MM, path_length};
-use crate::interpret::moves::{Arc, Move, MoveKind, Step};
+use crate::interpret::moves::{Arc, Move, MoveKind, Step, Stray};
+use crate::interpret::stray;
 use crate::interpret::vector::{Vector, add, distance, dot, sub};
 use crate::machine::AxisSet;
 
@@ -170,7 +171,7 @@ impl Hold {
             end,
             clockwise: programmed < 0.0,
             turns: turns(programmed),
-            inch: self.inch,
+            slack: Slack::of_part(self.inch),
         };
         let arc = arc::from_center(&ends, add(center, self.nose)).map_err(|_| Fault::NoArc)?;
         let tolerance_rad = SWEEP_TOLERANCE_RAD[usize::from(self.inch)];
@@ -196,6 +197,7 @@ impl Hold {
     ) -> Result<(), Fault> {
         let mut first = mv.clone();
         first.arc = None;
+        first.stray = Stray::NONE;
         if shares {
             for axis in 0..3 {
                 first.end[axis] = mv.start[axis];
@@ -220,7 +222,7 @@ impl Hold {
                 end: to,
                 clockwise: side > 0.0,
                 turns: 1.0,
-                inch: self.inch,
+                slack: Slack::of_part(self.inch),
             };
             let center = add(pivot, self.nose);
             Some(arc::from_center(&ends, center).map_err(|_| Fault::NoArc)?)
@@ -290,6 +292,7 @@ pub(super) fn place(
     }
     let (length_mm, linear) = path_length(&mv.start, &mv.end, moving, arc.as_ref());
     mv.moving = moving;
+    mv.stray = arc.map_or(Stray::NONE, |arc| stray::of_arc(&arc, &mv.start, &mv.end));
     mv.arc = arc;
     mv.length_mm = length_mm;
     linear

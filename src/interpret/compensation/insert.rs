@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use super::Fault;
 use super::corner::{Circle, Track, meet};
 use super::hold::place;
-use crate::interpret::arc::{self, Ends};
+use crate::interpret::arc::{self, Ends, Slack};
 use crate::interpret::code::GCode;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::moves::{Arc, FeedMode, Move, MoveKind, Step};
@@ -349,7 +349,7 @@ impl Corner {
             end,
             clockwise,
             turns: 1.0,
-            inch: self.inch,
+            slack: Slack::of_part(self.inch),
         }
     }
 

@@ -315,14 +315,17 @@ impl Control<'_> {
             return Err(Fault::ArcAfterExit);
         }
         let timed = mv.feed_mode == super::moves::FeedMode::InverseTime;
-        if timed && mv.kind != MoveKind::Rapid {
+        let beside = compensation.style.lead == CompensationLead::Beside;
+        if timed && mv.kind != MoveKind::Rapid && !beside {
             return Err(Fault::InverseTime);
         }
         if compensation.style.lead == CompensationLead::Corner {
             compensation.turn_to_leave(mv, run.steps)?;
         }
         let linear = compensation.leave(mv);
+        // Its time is for the programmed way too.
         if mv.kind != MoveKind::Rapid
+            && !timed
             && let Some(speed_mm_s) =
                 self.feed_speed(run, &mv.end, mv.arc.as_ref(), mv.length_mm, linear)
         {

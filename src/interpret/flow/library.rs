@@ -10,6 +10,33 @@ use crate::interpret::transfer::Label;
 /// Bytes that all files of subprograms may have together.
 const BYTES_MAX: u64 = 64 << 20;
 
+/// The files that may hold a macro of a printer.
+pub(in crate::interpret) fn macro_files(name: &str) -> [String; 2] {
+    [format!("{name}.gcode"), format!("{name}.g")]
+}
+
+/// The file with one of these names, whatever the case of their letters; the first folder,
+/// and in it the first name that exists, counts.
+pub(in crate::interpret) fn find_named(folders: &[PathBuf], wanted: &[String]) -> Option<PathBuf> {
+    let find = |folder: &PathBuf| {
+        let mut found: Vec<(usize, PathBuf)> = fs::read_dir(folder)
+            .ok()?
+            .flatten()
+            .filter_map(|entry| {
+                let file = entry.file_name().to_string_lossy().into_owned();
+                let rank = wanted
+                    .iter()
+                    .position(|name| name.eq_ignore_ascii_case(&file))?;
+                Some((rank, entry.path()))
+            })
+            .filter(|(_, path)| path.is_file())
+            .collect();
+        found.sort();
+        found.into_iter().next().map(|(_, path)| path)
+    };
+    folders.iter().find_map(find)
+}
+
 /// The folders where subprograms are looked for.
 #[derive(Debug)]
 pub(super) struct Library {
@@ -52,6 +79,21 @@ impl Library {
         Trouble::new("no-such-subprogram", message, help)
     }
 
+    /// The contents of `NAME.SPF`, if there is such a file.
+    pub(super) fn load_subprogram(&mut self, name: &str) -> Result<Option<Vec<u8>>, Trouble> {
+        self.load_named(&[
+            format!("{name}.SPF"),
+            format!("_N_{name}_SPF"),
+            format!("{name}_SPF"),
+        ])
+    }
+
+    /// That there is no such macro any more.
+    pub(super) fn no_macro(name: &str) -> Trouble {
+        let message = format!("there is no file of the macro {name}");
+        Trouble::new("unknown-macro", message, "check the folders of --sub-path")
+    }
+
     /// The contents of the file that holds a subprogram of SINUMERIK:
     /// `NAME.SPF` or `NAME.MPF`, whatever the case of its letters.
     pub(super) fn load_siemens(&mut self, name: &str) -> Result<Vec<u8>, Trouble> {
@@ -75,23 +117,7 @@ impl Library {
     /// The contents of the file with one of these names, whatever the case of
     /// their letters; the first name that exists counts.
     pub(super) fn load_named(&mut self, wanted: &[String]) -> Result<Option<Vec<u8>>, Trouble> {
-        let find = |folder: &PathBuf| {
-            let mut found: Vec<(usize, PathBuf)> = fs::read_dir(folder)
-                .ok()?
-                .flatten()
-                .filter_map(|entry| {
-                    let file = entry.file_name().to_string_lossy().into_owned();
-                    let rank = wanted
-                        .iter()
-                        .position(|name| name.eq_ignore_ascii_case(&file))?;
-                    Some((rank, entry.path()))
-                })
-                .filter(|(_, path)| path.is_file())
-                .collect();
-            found.sort();
-            found.into_iter().next().map(|(_, path)| path)
-        };
-        match self.folders.iter().find_map(find) {
+        match find_named(&self.folders, wanted) {
             Some(path) => self.read(&path).map(Some),
             None => Ok(None),
         }

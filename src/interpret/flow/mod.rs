@@ -5,9 +5,10 @@ mod contour;
 mod go;
 mod landmarks;
 mod lathe_cycle;
-mod library;
+pub(in crate::interpret) mod library;
 mod limits;
 mod macro_b;
+mod macro_file;
 mod o_word;
 mod outline;
 mod siemens;
@@ -99,6 +100,8 @@ enum Style {
     Sub,
     /// M98, M97, G65, to M99.
     Program,
+    /// A macro of a printer, to the end of its file.
+    Macro,
 }
 
 /// A loop that runs.
@@ -180,7 +183,8 @@ impl Flow {
                 if self.calls.is_empty() {
                     return Ok(None);
                 }
-                return Err(self.without_return());
+                self.end_of_text()?;
+                continue;
             }
             let tape = text
                 .line(self.next.line)
@@ -198,18 +202,6 @@ impl Flow {
             self.next.line += 1;
             return Ok(Some(self.now));
         }
-    }
-
-    fn without_return(&self) -> Box<Diagnostic> {
-        let message = "the subprogram ends without a return";
-        let help = if self.is_siemens {
-            "end it with M17 or RET"
-        } else if self.is_isg {
-            "end it with M17 or M29"
-        } else {
-            "end it with M99, or endsub"
-        };
-        self.trouble(Trouble::new("subprogram", message, help))
     }
 
     /// Where the line that is being executed stands.
@@ -329,6 +321,7 @@ impl Flow {
             Transfer::EndLoop(number) => self.end_loop(number),
             Transfer::Siemens(word) => self.siemens(word, interpreter),
             Transfer::Go(word) => self.go(word, interpreter),
+            Transfer::Macro(name) => self.call_macro(&name, interpreter),
             // Its moves belong to its line: see `turn`.
             Transfer::Contour(_) | Transfer::LatheCycle(_) => Ok(()),
         };

@@ -39,16 +39,18 @@ impl Flow {
                 self.enter(begin, 1, Some(arguments), Style::Sub, interpreter)
             }
             Verb::If(true) | Verb::EndIf => Ok(()),
-            Verb::If(false) => self.next_branch(label),
+            Verb::If(false) => self.next_branch(label, interpreter),
             Verb::ElseIf(condition) if undecided.as_ref() == Some(&label) => {
                 if self.holds(condition, interpreter)? {
                     Ok(())
                 } else {
-                    self.next_branch(label)
+                    self.next_branch(label, interpreter)
                 }
             }
-            Verb::ElseIf(_) | Verb::Else => self.behind(&label, &[Keyword::EndIf], "endif"),
-            Verb::While(holds) => self.begin_while(label, holds),
+            Verb::ElseIf(_) | Verb::Else => {
+                self.behind(&label, &[Keyword::EndIf], "endif", interpreter)
+            }
+            Verb::While(holds) => self.begin_while(label, holds, interpreter),
             Verb::EndWhile => match self.take_loop(&label) {
                 Some(running) if running.kind == LoopKind::While => {
                     self.next.line = running.line;
@@ -68,15 +70,15 @@ impl Flow {
                     return Err(Trouble::new("endless", message, "write a smaller number"));
                 }
                 if times < 1.0 {
-                    return self.behind(&label, &[Keyword::EndRepeat], "endrepeat");
+                    return self.behind(&label, &[Keyword::EndRepeat], "endrepeat", interpreter);
                 }
                 let left = times as u64 - 1;
                 self.begin_loop_of(label, LoopKind::Repeat { left });
                 Ok(())
             }
             Verb::EndRepeat => self.end_repeat(&label),
-            Verb::Break => self.break_loop(&label),
-            Verb::Continue => self.continue_loop(&label),
+            Verb::Break => self.break_loop(&label, interpreter),
+            Verb::Continue => self.continue_loop(&label, interpreter),
         }
     }
 
@@ -95,7 +97,7 @@ impl Flow {
         {
             return Err(duplicate(&label, known.line));
         }
-        self.behind(&label, &[Keyword::EndSub], "endsub")?;
+        self.behind(&label, &[Keyword::EndSub], "endsub", interpreter)?;
         self.subs.insert(label, self.now);
         Ok(())
     }
@@ -166,8 +168,9 @@ impl Flow {
         label: &Label,
         keywords: &'static [Keyword],
         name: &str,
+        interpreter: &Interpreter<'_>,
     ) -> Result<(), Trouble> {
-        self.next.line = self.find_o_word(label, keywords, name)? + 1;
+        self.next.line = self.find_o_word(label, keywords, name, interpreter)? + 1;
         Ok(())
     }
 
@@ -176,13 +179,20 @@ impl Flow {
         label: &Label,
         keywords: &'static [Keyword],
         name: &str,
+        interpreter: &Interpreter<'_>,
     ) -> Result<usize, Trouble> {
         let search = Search::OWord(label.clone(), keywords);
         let from = self.now.line + 1;
-        let found = self.texts.get_mut(self.now.text).and_then(|text| {
-            let line = text.find(&search, from)?;
-            Some((line, text.keyword(line)?))
-        });
+        let mut found = None;
+        if let Some(text) = self.texts.get_mut(self.now.text) {
+            let line = if text.works_out_labels() {
+                text.find_worked_out(label, keywords, from, interpreter)
+                    .map_err(|fault| Trouble::new(fault.rule, fault.message, fault.help))?
+            } else {
+                text.find(&search, from)
+            };
+            found = line.and_then(|line| Some((line, text.keyword(line)?)));
+        }
         match found {
             Some((line, keyword)) if keywords.contains(&keyword) => Ok(line),
             Some((_, Keyword::Sub)) => Err(nested()),
@@ -199,13 +209,11 @@ impl Flow {
     }
 
     /// Goes on at the next branch of an IF.
-    fn next_branch(&mut self, label: Label) -> Result<(), Trouble> {
+    fn next_branch(&mut self, label: Label, interpreter: &Interpreter<'_>) -> Result<(), Trouble> {
         const BRANCHES: &[Keyword] = &[Keyword::ElseIf, Keyword::Else, Keyword::EndIf];
-        let line = self.find_o_word(&label, BRANCHES, "endif")?;
-        let found = Search::OWord(label.clone(), &[Keyword::ElseIf]);
-        let text = self.texts.get_mut(self.now.text);
-        let else_if = text.and_then(|text| text.find(&found, self.now.line + 1)) == Some(line);
-        if else_if {
+        let line = self.find_o_word(&label, BRANCHES, "endif", interpreter)?;
+        let text = self.texts.get(self.now.text);
+        if text.and_then(|text| text.keyword(line)) == Some(Keyword::ElseIf) {
             self.next.line = line;
             self.undecided = Some(label);
         } else {
@@ -228,7 +236,7 @@ impl Flow {
     ) -> Result<(), Trouble> {
         match self.calls.last().map(|frame| frame.style) {
             Some(Style::Sub) => {}
-            Some(Style::Program) => {
+            Some(Style::Program | Style::Macro) => {
                 let message = "a program that M98 has called ends with M99";
                 return Err(Trouble::new("o-word", message, "write M99"));
             }
@@ -239,7 +247,12 @@ impl Flow {
         Ok(())
     }
 
-    fn begin_while(&mut self, label: Label, holds: bool) -> Result<(), Trouble> {
+    fn begin_while(
+        &mut self,
+        label: Label,
+        holds: bool,
+        interpreter: &Interpreter<'_>,
+    ) -> Result<(), Trouble> {
         // The end of a DO loop.
         if self.running(&label) == Some(LoopKind::Do) {
             if std::mem::take(&mut self.broke) && holds {
@@ -260,7 +273,7 @@ impl Flow {
             self.begin_loop_of(label, LoopKind::While);
             return Ok(());
         }
-        self.behind(&label, &[Keyword::EndWhile], "endwhile")
+        self.behind(&label, &[Keyword::EndWhile], "endwhile", interpreter)
     }
 
     fn begin_loop_of(&mut self, label: Label, kind: LoopKind) {
@@ -285,16 +298,20 @@ impl Flow {
         Ok(())
     }
 
-    fn break_loop(&mut self, label: &Label) -> Result<(), Trouble> {
+    fn break_loop(&mut self, label: &Label, interpreter: &Interpreter<'_>) -> Result<(), Trouble> {
         let Some(running) = self.take_loop(label) else {
             return Err(stray("break"));
         };
         self.broke |= running.kind == LoopKind::While;
         let (keywords, name) = end_of(running.kind);
-        self.behind(label, keywords, name)
+        self.behind(label, keywords, name, interpreter)
     }
 
-    fn continue_loop(&mut self, label: &Label) -> Result<(), Trouble> {
+    fn continue_loop(
+        &mut self,
+        label: &Label,
+        interpreter: &Interpreter<'_>,
+    ) -> Result<(), Trouble> {
         let Some(kind) = self.running(label) else {
             return Err(stray("continue"));
         };
@@ -308,7 +325,7 @@ impl Flow {
             LoopKind::Do => &[Keyword::Break, Keyword::While],
             _ => end_of(kind).0,
         };
-        let line = self.find_o_word(label, ends, end_of(kind).1)?;
+        let line = self.find_o_word(label, ends, end_of(kind).1, interpreter)?;
         let text = self.texts.get(self.now.text);
         if text.and_then(|text| text.keyword(line)) == Some(Keyword::Break) {
             // It goes on at the next line with the label, whatever that says.

@@ -10,6 +10,8 @@ use super::text::Text;
 pub(super) struct Outline {
     /// `%_N_NAME_SPF` lines with their names, in order.
     programs: Vec<(usize, String)>,
+    /// Those of them that are no subprograms: `%_N_NAME_MPF`.
+    mains: Vec<usize>,
     /// Lines of each label and block number (`N10`), in order.
     labels: HashMap<String, Vec<usize>>,
     /// Where a structure goes on: IF to its ELSE or ENDIF, ELSE to ENDIF, the
@@ -39,6 +41,9 @@ impl Outline {
             let mut rest = Rest(text.line(line));
             if let Some(name) = program_name(rest.0) {
                 open.clear();
+                if is_main(rest.0) {
+                    outline.mains.push(line);
+                }
                 outline.programs.push((line, name));
                 continue;
             }
@@ -98,9 +103,11 @@ impl Outline {
         }
     }
 
-    /// Where a program or subprogram begins, behind its header.
-    pub(super) fn program(&self, name: &str) -> Option<usize> {
-        let found = self.programs.iter().find(|(_, found)| found == name);
+    /// Where a subprogram, or a main program (`main`), begins behind its header.
+    pub(super) fn program(&self, name: &str, main: bool) -> Option<usize> {
+        let mut programs = self.programs.iter();
+        let found = programs
+            .find(|(line, found)| found == name && self.mains.binary_search(line).is_ok() == main);
         found.map(|(line, _)| line + 1)
     }
 
@@ -150,6 +157,15 @@ impl Outline {
     pub(super) fn counts(&self, line: usize) -> bool {
         self.counting.binary_search(&line).is_ok()
     }
+}
+
+/// Whether a header is that of a main program.
+fn is_main(line: &[u8]) -> bool {
+    let line = line.trim_ascii().to_ascii_uppercase();
+    let name = line.strip_prefix(b"%_N_").unwrap_or_default();
+    let inside = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
+    let end = name.iter().take_while(inside).count();
+    name.get(..end).is_some_and(|name| name.ends_with(b"_MPF"))
 }
 
 /// The name in `%_N_NAME_MPF`, upper case.

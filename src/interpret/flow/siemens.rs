@@ -224,7 +224,8 @@ impl Flow {
         self.enter(begin, times, own, Style::Program, interpreter)
     }
 
-    /// A subprogram: in the texts that are there, or in a file of its own.
+    /// A subprogram: in the texts that are there, or in a file of its own. A main program
+    /// comes last: one may call the subprogram that has its name.
     fn find_siemens(&mut self, name: &str) -> Result<Place, Trouble> {
         let stem = name
             .strip_prefix("_N_")
@@ -239,15 +240,28 @@ impl Flow {
                 line: 0,
             });
         }
-        for text in 0..self.texts.len() {
-            if let Some(line) = self.outline(text)?.program(stem) {
-                return Ok(Place { text, line });
-            }
+        if let Some(place) = self.find_header(stem, false)? {
+            return Ok(place);
         }
-        let bytes = self.library.load_siemens(stem)?;
+        let main = self.find_header(stem, true)?;
+        let bytes = match (self.library.load_subprogram(stem)?, main) {
+            (Some(bytes), _) => bytes,
+            (None, Some(place)) => return Ok(place),
+            (None, None) => self.library.load_siemens(stem)?,
+        };
         let text = self.texts.len();
         self.texts.push(Text::new(bytes));
         self.named.push((stem.to_owned(), text));
         Ok(Place { text, line: 0 })
+    }
+
+    /// A program or subprogram with a header, in the texts that are there.
+    fn find_header(&mut self, stem: &str, main: bool) -> Result<Option<Place>, Trouble> {
+        for text in 0..self.texts.len() {
+            if let Some(line) = self.outline(text)?.program(stem, main) {
+                return Ok(Some(Place { text, line }));
+            }
+        }
+        Ok(None)
     }
 }

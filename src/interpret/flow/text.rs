@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use super::landmarks::Landmarks;
 use super::outline::Outline;
-use crate::interpret::statement::{Keyword, glance};
+use crate::interpret::execute::Interpreter;
+use crate::interpret::expression::Fault;
+use crate::interpret::statement::{Keyword, Sight, glance, glance_at};
 use crate::interpret::transfer::Label;
 use crate::source::lines;
 use crate::syntax::{Block, scan_line};
@@ -33,6 +35,8 @@ struct Index {
     /// `O1000` lines by number, and all of them in order.
     programs: HashMap<u32, usize>,
     borders: Vec<usize>,
+    /// Some O-word has a label that is worked out: `o[#1] while`.
+    works_out: bool,
 }
 
 /// What is looked for from some line on.
@@ -127,7 +131,38 @@ impl Text {
 
     /// What the O-word at the beginning of a line does.
     pub(super) fn keyword(&self, line: usize) -> Option<Keyword> {
-        glance(self.line(line))?.1
+        match glance_at(self.line(line))? {
+            Sight::Plain(_, keyword) => keyword,
+            Sight::WorkedOut { keyword, .. } => Some(keyword),
+        }
+    }
+
+    /// Whether some O-word has a label that is worked out.
+    pub(super) fn works_out_labels(&mut self) -> bool {
+        self.index().works_out
+    }
+
+    /// As [`Self::find`] of an O-word, with labels that are worked out. `LinuxCNC` does so
+    /// for lines that it passes over, with the values that are in force then.
+    pub(super) fn find_worked_out(
+        &self,
+        label: &Label,
+        keywords: &[Keyword],
+        from: usize,
+        interpreter: &Interpreter<'_>,
+    ) -> Result<Option<usize>, Fault> {
+        for line in from..self.len() {
+            let text = self.line(line);
+            let (found, keyword) = match glance_at(text) {
+                Some(Sight::Plain(found, Some(keyword))) => (found, keyword),
+                Some(Sight::WorkedOut { at, keyword }) => (interpreter.label(text, at)?, keyword),
+                _ => continue,
+            };
+            if is_wanted(keyword, found == *label, keywords) {
+                return Ok(Some(line));
+            }
+        }
+        Ok(None)
     }
 
     /// Whether that line is an O number alone.
@@ -157,7 +192,9 @@ impl Text {
                 {
                     continue;
                 }
-                match glance(text) {
+                let sight = glance_at(text);
+                index.works_out |= matches!(sight, Some(Sight::WorkedOut { .. }));
+                match sight.and_then(Sight::plain) {
                     Some((label, Some(Keyword::Sub))) => {
                         index.subs.entry(label).or_insert(line);
                     }
@@ -194,10 +231,7 @@ impl Text {
                 let Some((found, Some(keyword))) = glance(self.line(*line)) else {
                     return false;
                 };
-                let wanted = keywords.contains(&keyword) || keyword.opens();
-                // A subroutine begins inside another.
-                let nested = keyword == Keyword::Sub && keywords.contains(&Keyword::EndSub);
-                found == *label && wanted || nested
+                is_wanted(keyword, found == *label, keywords)
             }),
             Search::Block(number) => {
                 // From here to the end of the program, then from its beginning.
@@ -218,6 +252,14 @@ impl Text {
             }
         }
     }
+}
+
+/// Whether an O-word, with the label that is looked for or another, is what is looked for.
+fn is_wanted(keyword: Keyword, same_label: bool, keywords: &[Keyword]) -> bool {
+    let wanted = keywords.contains(&keyword) || keyword.opens();
+    // A subroutine begins inside another.
+    let nested = keyword == Keyword::Sub && keywords.contains(&Keyword::EndSub);
+    same_label && wanted || nested
 }
 
 /// The N word at the beginning of a line.

@@ -13,7 +13,7 @@ mod shape;
 pub(crate) use self::contour::Reader;
 
 use self::passes::{Cut, CutKind};
-use super::arc::{self, Ends};
+use super::arc::{self, Ends, Slack};
 use super::arc_words::report_fault;
 use super::code::{GCode, Motion};
 use super::execute::{Control, Interpreter, Run};
@@ -322,7 +322,7 @@ impl Control<'_> {
             end: [end[Z], end[X]],
             clockwise: !round.ccw,
             turns: 1.0,
-            inch: unit == MM_PER_INCH,
+            slack: Slack::of(&self.machine.controller.language, unit == MM_PER_INCH),
         };
         match arc::from_center(&ends, machine(self, round.center)) {
             Ok(arc) => self.go(run, MoveKind::Arc, &end, AxisSet::default(), Some(arc)),

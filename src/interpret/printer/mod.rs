@@ -18,7 +18,10 @@ mod scale;
 mod settings;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
 
+use super::position::Reading;
 use super::report::Report;
 use crate::machine::{AXES, AxisSet, AxisValues, Controller, Family, Machine, Retract};
 use crate::syntax::{Block, Word};
@@ -49,6 +52,8 @@ pub(super) struct State {
     retract_given: bool,
     retracted: bool,
     lifted_mm: f64,
+    /// Where files of macros are looked for.
+    sub_paths: Arc<[PathBuf]>,
     /// Steps per unit that M92 has named; 0 for none.
     steps: AxisValues,
     /// The tool in use.
@@ -62,7 +67,7 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn new(machine: &Machine) -> Self {
+    pub(super) fn new(machine: &Machine, reading: &Reading) -> Self {
         let language = &machine.controller.language;
         Self {
             adjusts: false,
@@ -78,6 +83,7 @@ impl State {
             retract_given: false,
             retracted: false,
             lifted_mm: 0.0,
+            sub_paths: Arc::clone(&reading.sub_paths),
             steps: [0.0; AXES],
             tool: 0,
             lit: [0; 32],

@@ -8,8 +8,10 @@ use super::command::{note_advance, note_levelling};
 use super::kept::Back;
 use super::line::{Parameters, Text};
 use crate::interpret::execute::{Control, Run};
+use crate::interpret::flow::library;
 use crate::interpret::motion::EXTRUDER;
 use crate::interpret::moves::ActionKind;
+use crate::interpret::transfer::Transfer;
 use crate::machine::Command;
 use crate::source::Span;
 
@@ -50,7 +52,23 @@ impl Control<'_> {
             self.shift_axes(&Parameters::new());
             run.act(ActionKind::Other, 0.0);
         } else if !(printer.velocity_limit && self.klipper(run, text, upper, span, at)) {
-            refuse_name(run, name, span);
+            self.macro_file(run, name, span);
+        }
+    }
+
+    /// A name that the profile does not know: what its file says, if there is one.
+    fn macro_file(&mut self, run: &mut Run<'_, '_>, name: &[u8], span: Span) {
+        let plain = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+        let name = String::from_utf8_lossy(name).to_ascii_uppercase();
+        let files = library::macro_files(&name);
+        if name.as_bytes().iter().all(plain)
+            && !is_meta(name.as_bytes())
+            && library::find_named(&self.printer.sub_paths, &files).is_some()
+        {
+            self.transfer = Some(Transfer::Macro(name));
+            run.facts.transfers = true;
+        } else {
+            refuse_name(run, name.as_bytes(), span);
         }
     }
 
@@ -126,12 +144,15 @@ impl Control<'_> {
     }
 }
 
+/// Whether it is a word of `RepRapFirmware`'s conditional language.
+fn is_meta(name: &[u8]) -> bool {
+    let mut words = META.iter();
+    words.any(|word| word.as_bytes().eq_ignore_ascii_case(name))
+}
+
 fn refuse_name(run: &mut Run<'_, '_>, name: &[u8], span: Span) {
-    let shown = crate::diagnostic::excerpt(name, 60);
-    if META
-        .iter()
-        .any(|word| word.as_bytes().eq_ignore_ascii_case(name))
-    {
+    let shown = crate::diagnostic::excerpt(span.of(run.report.text), 60);
+    if is_meta(name) {
         let message = format!("`{shown}`: branches, loops and variables are not supported");
         run.report
             .error("meta-command", message, span)
@@ -139,8 +160,10 @@ fn refuse_name(run: &mut Run<'_, '_>, name: &[u8], span: Span) {
         return;
     }
     let message = format!("`{shown}` is a macro or a command that this profile does not know");
-    run.report.error("unknown-macro", message, span).help(
-        "in [language.printer] of a profile of your own, list it under `ignored_macros` if it \
-         moves nothing and sets nothing, or under `unknown_moves` if it moves",
-    );
+    run.report.error("unknown-macro", message, span).help(format!(
+        "write what it comes to into a file {shown}.gcode in the program's folder or one given by \
+         --sub-path; or in the machine file, under [language], list it in `ignored_macros` if it \
+         moves nothing and sets nothing, or in `unknown_moves` if it moves and leaves feed and \
+         modes as they are"
+    ));
 }

@@ -3,11 +3,12 @@
 
 use super::target::Target;
 use super::{Measure, Siemens};
-use crate::interpret::arc::{self, ArcFault, Ends};
+use crate::interpret::arc::{self, ArcFault, Ends, Slack};
 use crate::interpret::arc_words::report_fault;
 use crate::interpret::code::Motion;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::moves::{Arc, MoveKind};
+use crate::interpret::turned_arc::Tilted;
 use crate::machine::{ALL_AXES, AxisKind, AxisValues};
 
 /// How far a point of an arc may lie off its plane, mm.
@@ -64,7 +65,7 @@ impl Control<'_> {
             end: [target.program[first], target.program[second]],
             clockwise: self.modal.motion == Motion::ArcCw,
             turns: run.words.take(b'P').unwrap_or(1.0),
-            inch: self.in_inches(),
+            slack: Slack::usual(self.in_inches()),
         };
         if !(ends.turns >= 1.0 && ends.turns <= 1e6 && ends.turns.fract() == 0.0) {
             run.report
@@ -89,10 +90,9 @@ impl Control<'_> {
             None => return,
         };
         let Some((scale, flipped)) = state.frame.plane(plane) else {
-            let message = "an arc that is no circle in a plane of the machine, as the coordinates are turned or scaled";
-            run.report
-                .error("arc-turned", message, whole)
-                .help("choose the plane of the turn, and scale its axes alike");
+            if !self.siemens_tilted(state, &arc, &start, &target, run) {
+                Self::refuse_tilted(whole, run);
+            }
             return;
         };
         let mut middle = start;
@@ -113,6 +113,30 @@ impl Control<'_> {
             },
         };
         self.siemens_go(state, run, MoveKind::Arc, &target, Some(arc));
+    }
+
+    /// An arc in a tilted plane, as chords; false where it is not followed.
+    fn siemens_tilted(
+        &mut self,
+        state: &mut Siemens,
+        arc: &Arc,
+        start: &AxisValues,
+        target: &Target,
+        run: &mut Run<'_, '_>,
+    ) -> bool {
+        let tilted = Tilted {
+            arc,
+            ends: [start, &target.program],
+            to: &target.machine,
+        };
+        let before = run.steps.len();
+        let followed = target.unknown.is_empty()
+            && state.frame.keeps_circles()
+            && self.tilted_arc(&tilted, |point| state.machine_place(point), run);
+        if followed {
+            state.arrive(target, before, run);
+        }
+        followed
     }
 
     /// An arc by its centre, radius or opening angle; `None` when it was

@@ -58,6 +58,7 @@ impl Control<'_> {
                 state.begin_block();
             }
         }
+        self.ended |= state.is_uncalled();
         self.siemens = Some(state);
         self.settle_siemens();
         transfers

@@ -247,29 +247,65 @@ impl Reading<'_, '_, '_> {
         let start = self.cursor.at;
         let name = self.cursor.name();
         self.cursor.at += name.len();
+        let mut dimensions = SINGLE;
         if self.cursor.peek() == Some(b'[') {
-            let message = "an array as the parameter of a subprogram is not supported";
-            let help = "pass its elements";
-            return Err(self.cursor.fault("unsupported-word", message, help, start));
+            dimensions = self.index()?.map(|length| length.max(1));
         }
-        let mut value = kind.default();
-        if self.cursor.take(b'=') {
-            value = self.expression()?;
+        let Some(mut variable) = Variable::new(kind, dimensions) else {
+            return Err(self.cannot(&name, "it has more than 100000 elements", start));
+        };
+        let given = self.cursor.take(b'=');
+        if given {
+            let value = self.expression()?;
+            variable.values = vec![value; variable.values.len()];
         }
         let Some(scope) = self.state.scopes.last_mut() else {
             return Ok(());
         };
-        if let Some(Some(argument)) = scope.arguments.get(position) {
-            value = argument.value.clone();
+        let argument = scope.arguments.get(position).cloned().flatten();
+        if argument.is_none() && !given && !self.state.is_called() {
+            // By itself the program runs nowhere: what it is called with decides.
+            self.state.uncalled = true;
+        }
+        let single = dimensions == SINGLE;
+        let Some(scope) = self.state.scopes.last_mut() else {
+            return Ok(());
+        };
+        if let Some(argument) = &argument {
+            match &argument.array {
+                Some(array) if array.dimensions == dimensions && array.kind == kind => {
+                    variable.values.clone_from(&array.values);
+                }
+                None if single => {}
+                _ => {
+                    let reason = "the call gives it something of another type or length";
+                    return Err(self.cannot(&name, reason, start));
+                }
+            }
             if let Some(callers) = argument.variable.clone().filter(|_| gives_back) {
+                if scope.given_back.iter().any(|(_, other)| *other == callers) {
+                    let reason = "the call gives one variable to two VAR parameters";
+                    return Err(self.cannot(&name, reason, start));
+                }
                 scope.given_back.push((name.to_string(), callers));
             }
+        } else if !single && !given && self.state.is_called() {
+            let reason = "it is an array, and the call gives it nothing";
+            return Err(self.cannot(&name, reason, start));
         }
-        if let Some(variable) = Variable::new(kind, SINGLE)
+        let first = match argument {
+            Some(argument) if single => Some(argument.value),
+            _ if single => variable.values.first().cloned(),
+            _ => None,
+        };
+        if let Some(scope) = self.state.scopes.last_mut()
             && scope.variables.len() < COUNT_MAX
         {
             scope.variables.insert(name.to_string(), variable);
         }
-        self.assign(&name, [0; 3], value, start)
+        match first {
+            Some(value) => self.assign(&name, [0; 3], value, start),
+            None => Ok(()),
+        }
     }
 }

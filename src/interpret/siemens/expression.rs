@@ -214,6 +214,12 @@ impl Reading<'_, '_, '_> {
                     "FALSE" => return Ok(truth(false)),
                     _ => {}
                 }
+                if name.as_str() == "AXNAME" {
+                    return self.axis_of_text(start);
+                }
+                if self.axis_letter(&name).is_some() && !self.is_variable(&name) {
+                    return Ok(Val::Text(name.to_string()));
+                }
                 if self.cursor.peek() == Some(b'(') {
                     return self.function(&name, start).map(Val::Number);
                 }

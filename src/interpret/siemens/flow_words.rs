@@ -328,15 +328,14 @@ impl Reading<'_, '_, '_> {
             let value = self.expression()?;
             let written = self.cursor.text.get(from..self.cursor.at);
             let alone = written.is_some_and(|text| text.trim_ascii().len() == name.len());
-            let is_variable = alone
-                && self
-                    .state
-                    .scopes
-                    .last()
-                    .is_some_and(|scope| scope.variables.contains_key(name.as_str()));
+            let variables = self.state.scopes.last().map(|scope| &scope.variables);
+            let variable = variables
+                .and_then(|variables| variables.get(name.as_str()))
+                .filter(|_| alone);
             arguments.push(Some(Argument {
                 value,
-                variable: is_variable.then(|| name.into()),
+                array: variable.filter(|it| it.values.len() > 1).cloned(),
+                variable: variable.is_some().then(|| name.into()),
             }));
             if self.cursor.peek() != Some(b')') {
                 self.cursor.expect(b',')?;

@@ -79,6 +79,11 @@ impl Frame {
         self.back = product(&diagonal(factors.map(|factor| 1.0 / factor)), &self.back);
     }
 
+    /// Whether circles in any plane stay circles.
+    pub(super) fn keeps_circles(&self) -> bool {
+        crate::interpret::frame::keeps_circles(&self.matrix)
+    }
+
     /// Machine coordinates of program coordinates.
     pub(super) fn machine(&self, program: &AxisValues) -> AxisValues {
         let [x, y, z] = multiply(&self.matrix, [program[0], program[1], program[2]]);

@@ -7,6 +7,7 @@
 //! read here, word by word, and worked out on the way.
 
 mod arc;
+mod axis_name;
 mod block;
 mod codes;
 mod cursor;
@@ -131,6 +132,8 @@ pub(super) struct Siemens {
     scopes: Vec<Scope>,
     /// Arguments for the program that is called next.
     pending: Vec<Option<Argument>>,
+    /// The program is a subprogram with parameters, which nobody has called.
+    uncalled: bool,
     /// FOR counts on: its ENDFOR was reached.
     again: bool,
     extra: Extra,
@@ -175,6 +178,7 @@ impl Siemens {
             globals: HashMap::new(),
             scopes: vec![Scope::default()],
             pending: Vec::new(),
+            uncalled: false,
             again: false,
             extra: Extra::default(),
             active: false,
@@ -245,9 +249,19 @@ impl Siemens {
             self.modal_call = None;
         }
         for (own, callers) in &scope.given_back {
-            let value = scope.variables.get(own).and_then(|own| own.values.first());
-            if let Some(value) = value.cloned() {
-                let _ = self.set_variable(callers, [0; 3], value);
+            let Some(own) = scope.variables.get(own) else {
+                continue;
+            };
+            let caller = self.scopes.last_mut();
+            let array = caller.and_then(|caller| caller.variables.get_mut(callers));
+            match (array, own.values.as_slice()) {
+                (Some(array), [_, _, ..]) if array.values.len() == own.values.len() => {
+                    array.values.clone_from(&own.values);
+                }
+                (_, [value, ..]) => {
+                    let _ = self.set_variable(callers, [0; 3], value.clone());
+                }
+                _ => {}
             }
         }
         self.pending = scope.arguments;
@@ -265,6 +279,11 @@ impl Siemens {
         }
         self.frame = saved.frame;
         true
+    }
+
+    /// Whether the program is a subprogram with parameters, which nobody has called.
+    pub(super) fn is_uncalled(&self) -> bool {
+        self.uncalled
     }
 
     /// Whether the program that runs was called by another.

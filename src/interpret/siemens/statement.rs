@@ -101,6 +101,9 @@ impl Reading<'_, '_, '_> {
         if self.is_variable(&name) && (assigns || self.cursor.peek() == Some(b'[')) {
             return self.assignment(&name, start).map(|()| None);
         }
+        if name.as_str() == "AX" && self.cursor.peek() == Some(b'[') {
+            return self.indirect_axis(start, block).map(|()| None);
+        }
         if self.setting(&name, start, block)? {
             return Ok(None);
         }
@@ -121,7 +124,7 @@ impl Reading<'_, '_, '_> {
         self.call(&name, start)
     }
 
-    fn is_variable(&self, name: &str) -> bool {
+    pub(super) fn is_variable(&self, name: &str) -> bool {
         let r = name
             .strip_prefix('R')
             .is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()));
@@ -284,7 +287,7 @@ impl Reading<'_, '_, '_> {
     }
 
     /// Keeps how the value of a letter is meant.
-    fn measure(&mut self, letter: u8, measure: Measure, start: usize) -> Outcome<()> {
+    pub(super) fn measure(&mut self, letter: u8, measure: Measure, start: usize) -> Outcome<()> {
         if measure == Measure::Modal {
             return Ok(());
         }

@@ -16,13 +16,14 @@ impl Reading<'_, '_, '_> {
         if name == "$PI" {
             return Ok(Val::Number(std::f64::consts::PI));
         }
-        if self.cursor.take(b'[') {
-            let axis = self.cursor.name();
-            self.cursor.at += axis.len();
-            if self.cursor.take(b']')
-                && let [letter] = axis.as_bytes()
-                && let Some(value) = self.position(&name, *letter)
-            {
+        if let Some(axis) = self.plane_axis(&name) {
+            return Ok(axis);
+        }
+        if matches!(name.as_str(), "$AA_IW" | "$P_EP" | "$AA_IM")
+            && self.cursor.peek() == Some(b'[')
+        {
+            let letter = self.axis_in_brackets()?;
+            if let Some(value) = self.position(&name, letter) {
                 return Ok(Val::Number(value));
             }
         }

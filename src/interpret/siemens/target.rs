@@ -24,6 +24,22 @@ pub(super) struct Target {
     turns: AxisValues,
 }
 
+impl Siemens {
+    /// Keeps what follows from the moves to a target, those since there were `before`
+    /// steps.
+    pub(super) fn arrive(&mut self, target: &Target, before: usize, run: &mut Run<'_, '_>) {
+        for step in run.steps.iter_mut().skip(before) {
+            if let Step::Move(mv) = step {
+                mv.feed_mm_s *= self.feed_factor;
+            }
+        }
+        for axis in target.named.iter() {
+            self.turns[axis] += target.turns[axis];
+        }
+        self.adrift.0 &= !target.named.0;
+    }
+}
+
 impl Control<'_> {
     /// The motion of a block.
     pub(super) fn siemens_motion(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
@@ -93,15 +109,7 @@ impl Control<'_> {
     ) {
         let before = run.steps.len();
         self.go(run, kind, &target.machine, target.unknown, arc);
-        for step in run.steps.iter_mut().skip(before) {
-            if let Step::Move(mv) = step {
-                mv.feed_mm_s *= state.feed_factor;
-            }
-        }
-        for axis in target.named.iter() {
-            state.turns[axis] += target.turns[axis];
-        }
-        state.adrift.0 &= !target.named.0;
+        state.arrive(target, before, run);
     }
 
     /// Reads the axis words and polar coordinates. `None` when something was

@@ -84,7 +84,7 @@ pub(super) fn truth(yes: bool) -> Val {
 }
 
 /// A variable, or an array of them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Variable {
     pub(super) kind: Kind,
     /// Lengths of the dimensions; 1 for those that it does not have.
@@ -120,6 +120,8 @@ pub(in crate::interpret) struct Argument {
     pub(super) value: Val,
     /// The caller's variable, where it is one: VAR parameters give back.
     pub(super) variable: Option<String>,
+    /// The whole of it, where that is an array.
+    pub(super) array: Option<Variable>,
 }
 
 /// The variables of one program.

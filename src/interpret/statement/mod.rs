@@ -5,7 +5,7 @@ mod macro_b;
 mod o_word;
 mod trace;
 
-pub(super) use o_word::{Keyword, glance};
+pub(super) use o_word::{Keyword, Sight, glance, glance_at};
 pub(super) use trace::{Trace, Traces};
 
 use self::trace::{For, Recorder, Target};

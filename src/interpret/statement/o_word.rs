@@ -2,7 +2,7 @@
 
 use super::{For, Statement, Unread};
 use crate::interpret::execute::Control;
-use crate::interpret::expression::Reader;
+use crate::interpret::expression::{Fault, Reader};
 use crate::interpret::parameters::LOCALS;
 use crate::interpret::transfer::{Label, Transfer, Verb};
 use crate::source::Span;
@@ -35,15 +35,9 @@ impl Control<'_> {
             Label::Name(reader.angle_name()?.into_owned())
         } else {
             let from = reader.tape.ops.len();
-            let value = reader.value(self)?.unwrap_or(0.0);
+            let label = self.o_number(reader, start)?;
             statement.recorder.fixed(from, reader);
-            if !(0.0..4e9).contains(&value) || (value - value.round()).abs() > 1e-4 {
-                let message = format!("{value} is not the number of a subroutine");
-                return Err(reader
-                    .fault("o-word", message, "write a whole positive number", start)
-                    .into());
-            }
-            Label::Number(value.round() as u32)
+            label
         };
         if reader.peek().is_none()
             && let Label::Number(value) = label
@@ -73,6 +67,21 @@ impl Control<'_> {
         }
         statement.transfer = Some(Transfer::Structure { label, verb });
         Ok(())
+    }
+
+    /// The number of an O-word that begins at `start`.
+    pub(in crate::interpret) fn o_number(
+        &self,
+        reader: &mut Reader<'_>,
+        start: usize,
+    ) -> Result<Label, Fault> {
+        let value = reader.value(self)?.unwrap_or(0.0);
+        if !(0.0..4e9).contains(&value) || (value - value.round()).abs() > 1e-4 {
+            let message = format!("{value} is not the number of a subroutine");
+            let help = "write a whole positive number";
+            return Err(reader.fault("o-word", message, help, start));
+        }
+        Ok(Label::Number(value.round() as u32))
     }
 
     fn verb(
@@ -216,9 +225,32 @@ fn keyword(reader: &mut Reader<'_>) -> Option<Keyword> {
         .map(|(_, keyword)| *keyword)
 }
 
+/// The O-word at the beginning of a line that is passed over.
+pub(in crate::interpret) enum Sight {
+    /// Its label, and what it does.
+    Plain(Label, Option<Keyword>),
+    /// Its label is worked out from what stands at this place.
+    WorkedOut { at: usize, keyword: Keyword },
+}
+
+impl Sight {
+    /// That of a label that does not have to be worked out.
+    pub(in crate::interpret) fn plain(self) -> Option<(Label, Option<Keyword>)> {
+        match self {
+            Self::Plain(label, keyword) => Some((label, keyword)),
+            Self::WorkedOut { .. } => None,
+        }
+    }
+}
+
 /// The O-word at the beginning of a line that is passed over: its label, where
 /// it does not have to be worked out, and what it does.
 pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword>)> {
+    glance_at(line)?.plain()
+}
+
+/// The same with labels in brackets and in parameters.
+pub(in crate::interpret) fn glance_at(line: &[u8]) -> Option<Sight> {
     let mut reader = Reader::new(line.trim_ascii_end(), 0);
     while matches!(reader.peek(), Some(b'/' | b'N' | b'0'..=b'9' | b'.')) {
         reader.at += 1;
@@ -226,7 +258,8 @@ pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword
     if reader.peek() == Some(b'<') {
         // A program name of Fanuc, alone in its line.
         let name = reader.angle_name().ok()?.into_owned();
-        return reader.peek().is_none().then_some((Label::Name(name), None));
+        let alone = reader.peek().is_none();
+        return alone.then_some(Sight::Plain(Label::Name(name), None));
     }
     if !(reader.take(b'O') || reader.take(b':')) {
         return None;
@@ -234,7 +267,37 @@ pub(in crate::interpret) fn glance(line: &[u8]) -> Option<(Label, Option<Keyword
     let label = match reader.peek()? {
         b'<' => Label::Name(reader.angle_name().ok()?.into_owned()),
         b'0'..=b'9' => Label::Number(reader.number(true).ok()? as u32),
+        b'[' | b'#' => {
+            let at = reader.at;
+            pass_value(&mut reader)?;
+            let keyword = keyword(&mut reader)?;
+            return Some(Sight::WorkedOut { at, keyword });
+        }
         _ => return None,
     };
-    Some((label, keyword(&mut reader)))
+    let keyword = keyword(&mut reader);
+    Some(Sight::Plain(label, keyword))
+}
+
+/// Passes over `[ … ]`, `#1`, `#[ … ]` and `#<name>`.
+fn pass_value(reader: &mut Reader<'_>) -> Option<()> {
+    while reader.take(b'#') {}
+    match reader.peek()? {
+        b'<' => reader.angle_name().ok().map(|_| ()),
+        b'0'..=b'9' => reader.number(true).ok().map(|_| ()),
+        b'[' => {
+            let mut depth = 0_usize;
+            while let Some(byte) = reader.peek() {
+                reader.at += 1;
+                match byte {
+                    b'[' => depth += 1,
+                    b']' if depth == 1 => return Some(()),
+                    b']' => depth -= 1,
+                    _ => {}
+                }
+            }
+            None
+        }
+        _ => None,
+    }
 }

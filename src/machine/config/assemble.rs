@@ -1,17 +1,16 @@
 //! The file's structs to the validated machine.
 
-use super::controller_file::DistanceName;
 use super::findings::Findings;
 use super::machine_file::{
     LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName,
 };
-use super::value::{At, Num};
+use super::value::{At, Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, offsets, plausible, preset, profile, response, servo, spindle,
-    tool, word,
+    axis, converter, drive_curve, offsets, own_language, plausible, preset, response, servo,
+    spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
-use crate::machine::controller::{Controller, PathMode, RapidKnob, RapidPath};
+use crate::machine::controller::{Controller, PathMode, RapidPath};
 use crate::machine::model::{Converter, Limits, Load, Machine, Path};
 use crate::machine::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
@@ -27,26 +26,8 @@ pub(crate) fn machine(
     mut controller: Controller,
 ) -> Option<Machine> {
     let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
-    if path.rapid == RapidPath::Independent {
-        // A feed is straight: written as one, such a rapid would take another path.
-        controller.rapid_knob = RapidKnob::None;
-    }
     if let Some(table) = &file.language {
-        let dialect = &mut controller.language.dialect;
-        dialect.point = table
-            .value
-            .decimal_point
-            .map(profile::point)
-            .or(dialect.point);
-        dialect.diameter = table.value.diameter.unwrap_or(dialect.diameter);
-        dialect.active = true;
-        let language = &mut controller.language;
-        if let Some(centre) = table.value.arc_centre {
-            language.arc_absolute = centre == DistanceName::Absolute;
-        }
-        if let Some(own) = &table.value.cutter_compensation {
-            language.compensation = profile::compensation(own);
-        }
+        own_language::take(findings, table, &mut controller.language);
     }
     let errors = file
         .limits
@@ -152,7 +133,21 @@ fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
             table.and_then(|table| table.response_time_s.as_ref()),
             RESPONSE_TIME_S,
         ),
+        max_feed_mm_s: value(
+            table.and_then(|table| table.max_feed_mm_min.as_ref()),
+            f64::INFINITY,
+        ) / SECONDS_PER_MINUTE,
+        clearance_mm: clearance(table.and_then(|table| table.clearance.as_ref())),
     }
+}
+
+/// Clearances by axis.
+fn clearance(given: Option<&PerAxis<Number>>) -> [Option<f64>; AXES] {
+    let mut clearance_mm = [None; AXES];
+    for (axis, number) in given.iter().flat_map(|given| given.iter()) {
+        clearance_mm[axis as usize] = Some(number.value);
+    }
+    clearance_mm
 }
 
 fn value<B>(number: Option<&Num<B>>, default: f64) -> f64 {

@@ -85,6 +85,10 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// How far an arc's end may always be off its circle, in mm: in a program in mm, and
+    /// in one in inches; where it is at most 0.1 % of the radius, a hundred times as far.
+    /// Default 0.005 and 0.0127, and 0.5 at most.
+    pub(crate) arc_tolerance_mm: Option<[Positive; 2]>,
     /// Numbered variables that the control keeps from one program to the next: first
     /// and last of each range; default 500 to 999, with family = "rs274" 31 to 5000.
     pub(crate) kept_variables: Option<Vec<[u32; 2]>>,

@@ -118,6 +118,13 @@ pub(crate) struct PathTable {
     /// Over how long the drives spread a step of speed at a corner, in s; default
     /// 0.01, or what follows for axes that give `position_gain_1_s`.
     pub(crate) response_time_s: Option<ResponseTime>,
+    /// Largest F of a cutting move in mm/min: one in a program counts as it, and none above
+    /// it is written; default: none is known.
+    pub(crate) max_feed_mm_min: Option<Positive>,
+    /// Machine coordinates, in mm or degrees, from which on in positive direction nothing
+    /// stands in the way of the axes: there `--allow straighten` may write rapids of axes that
+    /// move each for itself as lines.
+    pub(crate) clearance: Option<PerAxis<Number>>,
 }
 
 /// Parameters of the control that change how programs are read; what is absent
@@ -133,6 +140,16 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) arc_centre: Option<DistanceName>,
     /// How G41 and G42 shift the path.
     pub(crate) cutter_compensation: Option<CompensationTable>,
+    /// G and M words that move no axis and raise no limit on this machine, besides those of
+    /// the profile, such as "M101" or a remap "M428". What one switches on is a [[load]].
+    pub(crate) ignored: Option<Vec<At<String>>>,
+    /// Extended commands of a printer that move nothing and set nothing, besides those of
+    /// the profile; `*` at the end stands for anything.
+    pub(crate) ignored_macros: Option<Vec<At<String>>>,
+    /// Commands of a printer whose moves are not known, besides those of the profile: every
+    /// axis counts at its full speed and acceleration, and its place is not known
+    /// afterwards. They must leave feed and modes as they are.
+    pub(crate) unknown_moves: Option<Vec<At<String>>>,
 }
 
 /// What happens at the joint of two blocks.

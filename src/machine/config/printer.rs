@@ -152,7 +152,10 @@ fn retract(table: Option<&RetractTable>) -> Retract {
 }
 
 /// Names of commands: words such as `G29`, names such as `BED_MESH_*`.
-fn commands(findings: &mut Findings<'_>, list: Option<&Vec<At<String>>>) -> Vec<Command> {
+pub(crate) fn commands(
+    findings: &mut Findings<'_>,
+    list: Option<&Vec<At<String>>>,
+) -> Vec<Command> {
     let mut commands = Vec::new();
     for text in list.into_iter().flatten() {
         let name = text.value.trim().to_ascii_uppercase();

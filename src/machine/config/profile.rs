@@ -48,7 +48,8 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
 
 fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Language> {
     let dwell = dwell(findings, table);
-    let (ignored_g, ignored_m) = ignored(findings, table);
+    let ignored_words = table.ignored.as_deref().unwrap_or_default();
+    let (ignored_g, ignored_m) = ignored(findings, ignored_words);
     let power_on = path_mode(table.power_on?);
     let family = match table.family? {
         FamilyName::Iso => Family::Iso,
@@ -83,6 +84,10 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        arc_tolerance_mm: table
+            .arc_tolerance_mm
+            .as_ref()
+            .map(|[metric, inch]| [metric.value, inch.value]),
         kept_variables: table
             .kept_variables
             .clone()
@@ -181,9 +186,9 @@ fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
 }
 
 /// Ignored G words (number × 10) and M numbers.
-fn ignored(findings: &mut Findings<'_>, table: &LanguageTable) -> (Vec<u16>, Vec<u16>) {
+pub(crate) fn ignored(findings: &mut Findings<'_>, words: &[At<String>]) -> (Vec<u16>, Vec<u16>) {
     let (mut g, mut m) = (Vec::new(), Vec::new());
-    for text in table.ignored.iter().flatten() {
+    for text in words {
         match word::code(&text.value) {
             Some((b'G', code)) => g.push(code),
             Some((b'M', code)) if code % 10 == 0 => m.push(code / 10),

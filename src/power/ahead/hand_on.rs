@@ -72,6 +72,11 @@ impl Ahead {
             {
                 own.assessment.demand.include(&cruises);
             }
+            if own.mv.stray.strays() && own.assessment.ahead {
+                let top_speed_mm_s = own.assessment.top_speed_mm_s;
+                let demand = own.assessment.demand;
+                own.assessment.demand = model.with_stray(demand, &own.mv, top_speed_mm_s);
+            }
             let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
             // What no piece speaks of is not known.
             let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;

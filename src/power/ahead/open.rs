@@ -88,7 +88,11 @@ pub(crate) fn role(machine: &Machine, mv: &Move) -> Role {
     let synchronous = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap | MoveKind::Probe);
     if mv.moving.is_empty() && mv.unknown_start.is_empty() {
         Role::Nothing
-    } else if synchronous || !mv.unknown_start.is_empty() || is_independent(machine, mv) {
+    } else if synchronous
+        || !mv.unknown_start.is_empty()
+        || mv.stray.is_far()
+        || is_independent(machine, mv)
+    {
         Role::Unknown
     } else {
         Role::Path

@@ -72,6 +72,7 @@ impl Terms {
             && mv.length_mm > 0.0
             && mv.arc.is_none()
             && mv.unknown_start.is_empty()
+            && !mv.stray.strays()
             && mv.path_mode == PathMode::LookAhead
     }
 
