@@ -23,6 +23,7 @@ LATHES = {"fanuc-lathe", "fanuc-lathe-b", "haas-lathe", "okuma-lathe"}
 # lengths make known.
 MILLS = {"fanuc", "haas", "mitsubishi", "mazak", "syntec", "iso"}
 OFFSETS = "".join(f"G5{n} = {{ X = -{100 * n}, Y = -250, Z = -400 }}\n" for n in range(4, 10))
+LATHE_OFFSETS = "".join(f"G5{n} = {{ X = -150, Z = {-100 * n} }}\n" for n in range(4, 10))
 TOOLS = "".join(f"T{n} P{n} Z{50 + n}\n" for n in range(1, 1000))
 # Rapid in mm/min or deg/min, acceleration in mm/s² or deg/s², mass or inertia, friction.
 MILL = {"X": (30000, 4000, 600, 500), "Y": (30000, 4000, 700, 500), "Z": (30000, 4000, 500, 700)}
@@ -43,6 +44,8 @@ def machine(profile, peak_w):
     text += f"[converter]\npeak_power_w = {peak_w!r}\n[limits]\nmargin = 0.0\n"
     if profile in MILLS:
         text += "[offsets]\n" + OFFSETS
+    if profile in LATHES:
+        text += "[offsets]\n" + LATHE_OFFSETS
     for name, (rapid, accel, mass, friction) in axes.items():
         text += f"[axes.{name}]\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\nmass_kg = {mass}\ncoulomb_n = {friction}\n"
         if profile in MILLS | LATHES:
@@ -69,7 +72,7 @@ def judge(gwatt, profile, program, shares, options, seconds):
         file = folder / "machine.toml"
         file.write_text(machine(profile, 1e9))
         common = ["-m", str(file), "--sub-path", str(program.resolve().parent)]
-        if profile in MILLS:
+        if profile in MILLS | LATHES:
             tools = folder / "tools.tbl"
             tools.write_text(TOOLS)
             common += ["--tool-table", str(tools)]

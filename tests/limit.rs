@@ -2,10 +2,12 @@
 
 mod ahead;
 mod blends;
+mod company;
 mod cycles;
 mod figures;
 mod flow_through;
 mod knobs;
+mod lathe;
 mod lines;
 mod no_word;
 mod obstacles;

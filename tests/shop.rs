@@ -30,6 +30,30 @@ impl Shop {
         shop
     }
 
+    /// A lathe with linear rapids, `mill.toml` all the same, and offsets of four tools in
+    /// `tools.tbl`. Its reference points and work offset are known.
+    pub fn lathe(controller: &str, power_w: f64, rest: &str) -> Self {
+        let shop = Self(tempfile::tempdir().unwrap());
+        let mut text = format!(
+            "schema = 1\nname = \"lathe\"\ncontroller = \"{controller}\"\n[converter]\n\
+             peak_power_w = {power_w}\n[path]\nrapid = \"linear\"\n[limits]\nmargin = 0\n{rest}\n\
+             [offsets]\nG54 = {{ X = 0, Z = -200 }}\n"
+        );
+        for letter in ["X", "Z"] {
+            let _ = write!(
+                text,
+                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 24000\naccel_mm_s2 = 5000\n\
+                 mass_kg = 200\ncoulomb_n = 200\nreference_mm = 0\n"
+            );
+        }
+        shop.put("mill.toml", &text);
+        shop.put(
+            "tools.tbl",
+            "T1 P1 X-20 Z-30\nT2 P2 X-25 Z-10\nT3 P3\nT4 P4 D0.8 Q3\n",
+        );
+        shop
+    }
+
     pub fn put(&self, name: &str, text: &str) {
         fs::write(self.0.path().join(name), text).unwrap();
     }

@@ -484,7 +484,7 @@ impl Control<'_> {
     /// Stops and the end come after the motion.
     pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
         self.loads &= !std::mem::take(&mut self.loads_off);
-        if !run.facts.boundary {
+        if !run.facts.boundary && run.facts.stop_word.is_none() {
             return;
         }
         for index in 0..run.words.m.len() {

@@ -1,5 +1,6 @@
 //! What a block is, besides what it does.
 
+use crate::source::Span;
 use crate::syntax::Word;
 
 /// What the rewriter must know of a block besides its moves.
@@ -29,11 +30,21 @@ pub struct Facts {
     pub no_motion_word: bool,
     /// Its moves are those of a canned cycle, and may stand as single blocks.
     pub cycle: bool,
+    /// Why what its cycle does is not known exactly, though it counts no lower than it is.
+    pub guessed: Option<&'static str>,
+    /// First and last line, from 1, of the contour that its turning cycle is about.
+    pub contour: Option<[u64; 2]>,
     /// Compensation is on, or lets go of moves: such blocks follow each other
     /// without anything between them.
     pub compensated: bool,
-    /// A stop, tool change or end: the modal state must be the original's.
+    /// It changes the tool, saves or restores the state or does more that shows it: the
+    /// modal state must be the original's, and no word of the block is changed.
     pub boundary: bool,
+    /// It selects a tool: the modal state before it must be the original's.
+    pub selects_tool: bool,
+    /// Its word that stops or ends the program once the axes stand: the modal state before
+    /// and after its motion must be the original's.
+    pub stop_word: Option<Span>,
     /// One of its values is the motion word or the F in force, which must be the
     /// original's then.
     pub reads_state: bool,

@@ -29,7 +29,7 @@ impl Control<'_> {
         {
             self.select_tool(tool, run);
             run.act(ActionKind::ToolSelect, tool);
-            run.facts.boundary = true;
+            run.facts.selects_tool = true;
         }
     }
 
@@ -131,12 +131,13 @@ impl Control<'_> {
                 ActionKind::Other => self.other_word(number, span, run),
                 _ => {}
             }
-            run.facts.boundary |= matches!(
-                kind,
-                ActionKind::Stop | ActionKind::End | ActionKind::ToolChange
-            );
             if !matches!(kind, ActionKind::Stop | ActionKind::End) {
+                run.facts.boundary |= kind == ActionKind::ToolChange;
                 run.act(kind, value);
+            } else if matches!(number, 0 | 10 | 20 | 300) && run.facts.stop_word.is_none() {
+                run.facts.stop_word = Some(span);
+            } else {
+                run.facts.boundary = true;
             }
         }
     }

@@ -86,3 +86,4 @@ pub use position::{BlockDelete, ProbeResult, ProbeWay, Reading, Start};
 pub use report::Diagnostics;
 pub use stance::Stance;
 pub use tool_table::{Tool, ToolTable};
+pub(crate) use turning::FIXED as TURNING_CYCLE;

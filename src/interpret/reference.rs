@@ -93,7 +93,7 @@ impl Control<'_> {
 
     /// The share of the rapid speed at which the axes return to the reference point: no
     /// axis is faster than the machine file says.
-    fn return_factor(&self, home: &AxisValues, named: AxisSet, unknown: AxisSet) -> f64 {
+    pub(super) fn return_factor(&self, home: &AxisValues, named: AxisSet, unknown: AxisSet) -> f64 {
         let mut times = [0.0_f64; 2];
         let mut largest = 0.0_f64;
         for axis in named.iter() {

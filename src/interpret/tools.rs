@@ -12,6 +12,8 @@ use crate::source::Span;
 
 /// Tools that a program may set itself; `LinuxCNC` has room for as many.
 const CHANGED_MAX: usize = 1000;
+/// Numbers of offsets that T has in its last two digits on lathes.
+pub(super) const OFFSETS_OF_T: u32 = 100;
 /// The axis along which Fanuc's tool length lies.
 const LENGTH_AXIS: usize = 2;
 
@@ -91,6 +93,32 @@ impl Control<'_> {
             self.tools.selected = number;
         } else if number >= 0.0 && number <= f64::from(u32::MAX) {
             self.tools.selected = number as u32;
+            if self.dialect().lathe.is_some() && self.osp.is_none() {
+                self.offset_of_lathe(run);
+            }
+        }
+    }
+
+    /// Fanuc's lathes: the last two digits of T are the number of an offset, 0 of none
+    /// ("Tool Offset"). The axes stay; the coordinates of the program change, where a table
+    /// gives the offsets.
+    fn offset_of_lathe(&mut self, run: &mut Run<'_, '_>) {
+        let number = self.tools.selected % OFFSETS_OF_T;
+        let known = if number == 0 {
+            Some(Tool::default())
+        } else {
+            self.tools.find(number).filter(|_| !self.tools.unknown())
+        };
+        self.tools.length_guessed = known.is_none();
+        if known.is_none() && !self.tools.unknown() {
+            let span = run.words.span(b'T', run.block);
+            let message = "offsets of tools that the table does not have are taken as 0";
+            run.report.note_once("no-tool-offset", message, span);
+        }
+        let tool = known.unwrap_or_default();
+        let offset = self.tool_offsets_mm(&tool);
+        if offset != self.position.offsets().tool {
+            self.position.change(|offsets| offsets.tool = offset);
         }
     }
 

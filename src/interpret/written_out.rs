@@ -29,6 +29,13 @@ impl Interpreter<'_> {
         !self.control.special.to_initial
     }
 
+    /// Whether G41 or G42 is in force, though the radius may be 0 here.
+    #[must_use]
+    pub(crate) fn chooses_radius(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|it| it.is_on())
+    }
+
     /// A place of the machine, mm and degrees, in coordinates and units of the program.
     #[must_use]
     pub(crate) fn place_in_program(&self, place: &AxisValues) -> AxisValues {
@@ -36,6 +43,9 @@ impl Interpreter<'_> {
         let mut place = control.position.frame.program(place);
         for (axis, value) in place.iter_mut().enumerate() {
             *value = control.in_unit(axis, *value);
+        }
+        if control.modal.diameter {
+            place[AxisId::X as usize] *= 2.0;
         }
         place
     }
@@ -47,8 +57,20 @@ impl Interpreter<'_> {
         let control = &self.control;
         let language = &control.machine.controller.language;
         let lathe = language.dialect.lathe.is_some();
-        if lathe && control.tools.selected != 0 {
-            return Some("the offsets of a lathe's tools are not known");
+        let offsets_unknown = if control.osp.is_some() {
+            control.tools.selected != 0
+        } else {
+            control.tools.length_guessed
+        };
+        if lathe && offsets_unknown {
+            return Some(
+                "the offsets of the lathe's tool are not known: give them with --tool-table",
+            );
+        }
+        if control.is_siemens() {
+            // The places are those of the machine there, whatever the frames are.
+            let off = control.tools.selected == 0 || control.choice.number == Some(0);
+            return (!off).then_some("the length of the tool is in force: write D0 before it");
         }
         if control.tools.length_guessed && moving.contains(AxisId::Z as usize) {
             return Some("the length of the tool is not known: give it with --tool-table");

@@ -85,6 +85,22 @@ impl Change {
         }
     }
 
+    /// The F at which no axis is faster than by a rapid of its own, in program units.
+    #[must_use]
+    pub fn slowest_rapid(machine: &Machine, mm_per_unit: f64) -> Option<f64> {
+        let axes = machine.axis_set.iter();
+        let feeds = axes.filter_map(|axis| {
+            let data = machine.axes[axis].as_ref()?;
+            let unit = if data.kind == AxisKind::Linear {
+                mm_per_unit
+            } else {
+                1.0
+            };
+            Some(round_feed_down(data.rapid_mm_s * SECONDS_PER_MINUTE / unit))
+        });
+        feeds.min_by(f64::total_cmp)
+    }
+
     /// The lower value of each word, for a block with several moves.
     #[must_use]
     pub fn lower(&self, other: &Self) -> Self {

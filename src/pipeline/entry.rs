@@ -3,7 +3,9 @@
 use super::front::Line;
 use super::split::Places;
 use super::table::LineKey;
-use crate::interpret::{CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step};
+use crate::interpret::{
+    CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step, TURNING_CYCLE,
+};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
@@ -167,22 +169,9 @@ impl Entry {
         let stops = mv.path_mode == PathMode::ExactStop && mode_before == PathMode::ExactStop;
         let planner = &machine.controller.planner;
         let stays = stops || planner.rapid_joint == RapidJoint::All || self.between_stops(machine);
-        let may_be_skipped =
-            self.block.delete_level > 0 && machine.controller.language.block_delete;
         // What forbids any edit, what forbids an F, what forbids G1 for G0.
-        let edit = [
-            (facts.fixed.is_some(), facts.fixed.unwrap_or_default()),
-            (facts.checksum, "it carries a checksum"),
-            (
-                may_be_skipped && !self.skips,
-                "it may be skipped (block delete)",
-            ),
-            (
-                facts.boundary,
-                "it stops, changes the tool or ends the program",
-            ),
-            (facts.turns_knob, "it sets limits itself"),
-        ];
+        let skips = self.skips || !machine.controller.language.block_delete;
+        let edit = self.keeps_its_words(skips);
         let feed = [
             (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
@@ -223,13 +212,16 @@ impl Entry {
                 .find(|(applies, _)| *applies)
                 .map(|(_, reason)| *reason)
         };
-        let reasons = [reason(&edit), reason(&feed), reason(&rapid)];
+        let reasons = [edit, reason(&feed), reason(&rapid)];
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
         let language = &machine.controller.language;
         let reason_help = match reason_text {
             CYCLE => {
                 "--allow expand writes canned cycles out as single blocks; where it taps, more \
                  power or slower axes are needed"
+            }
+            TURNING_CYCLE if facts.cycle => {
+                "--allow expand writes turning cycles out as single blocks, where they cut no thread"
             }
             REFERENCE | MACHINE_COORDINATES => {
                 "the way is gone by a feed before it where the places are known: reference_mm of \
@@ -263,6 +255,27 @@ impl Entry {
             feed_before: self.feed_before(),
             feed_accel_mm_s2,
         }
+    }
+
+    /// Why none of its words may be changed; `skips`: a change is right too where the block
+    /// is skipped.
+    pub(super) fn keeps_its_words(&self, skips: bool) -> Option<&'static str> {
+        let facts = &self.facts;
+        let checks = [
+            (facts.fixed.is_some(), facts.fixed.unwrap_or_default()),
+            (facts.checksum, "it carries a checksum"),
+            (
+                self.block.delete_level > 0 && !skips,
+                "it may be skipped (block delete)",
+            ),
+            (
+                facts.boundary,
+                "it stops, changes the tool or ends the program",
+            ),
+            (facts.turns_knob, "it sets limits itself"),
+        ];
+        let mut found = checks.iter().filter(|(applies, _)| *applies);
+        found.next().map(|(_, reason)| *reason)
     }
 
     /// Whether its rapid may be written as a feed between two dwells of no time,

@@ -225,7 +225,10 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         let mut done = Ok(());
         let cycle = match &mut transfer {
             Some(Transfer::Contour(contour)) => {
-                Some(flow.turn(contour, interpreter, block, steps, diagnostics))
+                let done = flow.turn(contour, interpreter, block, steps, diagnostics);
+                facts.contour = contour.lines;
+                facts.guessed = facts.guessed.or(contour.guessed());
+                Some(done)
             }
             Some(Transfer::LatheCycle(cycle)) => {
                 Some(flow.lathe_cycle(cycle, interpreter, block, steps, diagnostics))

@@ -20,6 +20,8 @@ pub(super) struct Table {
     lines: HashMap<LineKey, Entered>,
     /// See [`Table::new`].
     pub(super) skips: bool,
+    /// A block before any motion word cannot have one: then none gets one.
+    without_word: bool,
 }
 
 #[derive(Debug)]
@@ -30,6 +32,8 @@ struct Entered {
     /// Corners were taken in one way.
     one_corner: bool,
     decision: Option<Box<Decision>>,
+    /// What it gets where blocks before any motion word get one.
+    own_word: Option<Box<Decision>>,
     hopeless: bool,
 }
 
@@ -43,6 +47,7 @@ struct Sight {
     mm_per_unit: f64,
     mm_per_unit_before: f64,
     fixed: Option<&'static str>,
+    no_motion_word: bool,
 }
 
 /// What a line gets.
@@ -66,6 +71,7 @@ impl Table {
         Self {
             lines: HashMap::new(),
             skips,
+            without_word: false,
         }
     }
 
@@ -90,6 +96,7 @@ impl Table {
             mm_per_unit: entry.facts.feed_mm_per_unit,
             mm_per_unit_before: entry.mm_per_unit_before,
             fixed: entry.facts.fixed,
+            no_motion_word: facts.no_motion_word,
         };
         if let Some(entered) = self.lines.get_mut(&line) {
             entered.one_corner &= entered.sight.corner == sight.corner;
@@ -104,9 +111,26 @@ impl Table {
             unanimous: true,
             one_corner: true,
             decision: None,
+            own_word: None,
             hopeless: false,
         };
         self.lines.insert(line, entered);
+        self.without_word |= facts.no_motion_word && entry.keeps_its_words(self.skips).is_some();
+    }
+
+    /// All runs are seen.
+    pub(super) fn settle(&mut self) {
+        let fixed = |(key, entered): (&LineKey, &Entered)| {
+            entered.sight.no_motion_word
+                && (key.0 > 0 || !entered.unanimous || entered.sight.fixed.is_some())
+        };
+        self.without_word |= self.lines.iter().any(fixed);
+    }
+
+    /// Whether a block before any motion word may get one: G1 stays in force then for all
+    /// of them, in each of their runs.
+    pub(super) fn may_get_word(&self) -> bool {
+        !self.without_word
     }
 
     /// Why a line of the program may not be changed.
@@ -144,26 +168,7 @@ impl Table {
             return false;
         };
         if let Some(change) = change {
-            let stops = entry.needs_stops(machine, Some(&change));
-            match &mut entered.decision {
-                Some(decision) => {
-                    decision.change = decision.change.lower(&change);
-                    decision.stops |= stops;
-                }
-                None => {
-                    entered.decision = Some(Box::new(Decision {
-                        change,
-                        block: entry.block.clone(),
-                        facts: entry.facts,
-                        after: entry.mark,
-                        knobs: entry.knobs.clone(),
-                        rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
-                        feeds: entry
-                            .moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
-                        stops,
-                    }));
-                }
-            }
+            Decision::add(&mut entered.decision, machine, entry, change);
         }
         let hopeless = entry
             .decided
@@ -172,6 +177,42 @@ impl Table {
         let first = hopeless && !entered.hopeless;
         entered.hopeless |= hopeless;
         first
+    }
+
+    /// Takes what a run of a line before any motion word gets where such lines get one.
+    pub(super) fn offer_word(
+        &mut self,
+        machine: &Machine,
+        line: LineKey,
+        entry: &Entry,
+        change: Change,
+    ) {
+        if let Some(entered) = self.lines.get_mut(&line) {
+            Decision::add(&mut entered.own_word, machine, entry, change);
+        }
+    }
+
+    /// Where one line before any motion word is written as a feed, all of them are: G1 is
+    /// in force for whichever comes next.
+    pub(super) fn spread_word(&mut self, machine: &Machine) {
+        let feeds = |entered: &Entered| {
+            let decision = entered.decision.as_deref();
+            decision.is_some_and(|it| it.facts.no_motion_word && it.change.as_feed)
+        };
+        if !self.lines.values().any(feeds) {
+            return;
+        }
+        for entered in self.lines.values_mut() {
+            let Some(mut own) = entered.own_word.take() else {
+                continue;
+            };
+            if own.after.feed.is_none() {
+                // It stands in each of its runs; on the machine it may not.
+                let slowest = || Change::slowest_rapid(machine, own.facts.feed_mm_per_unit);
+                own.change.feed = own.change.feed.or_else(slowest);
+            }
+            entered.decision = Some(own);
+        }
     }
 
     /// What a line of the program gets.
@@ -184,5 +225,27 @@ impl Table {
         self.lines
             .get(&line)
             .is_some_and(|entered| entered.hopeless)
+    }
+}
+
+impl Decision {
+    /// Takes a change for another run of the line: the lower value of each word.
+    fn add(known: &mut Option<Box<Self>>, machine: &Machine, entry: &Entry, change: Change) {
+        let stops = entry.needs_stops(machine, Some(&change));
+        if let Some(decision) = known {
+            decision.change = decision.change.lower(&change);
+            decision.stops |= stops;
+            return;
+        }
+        *known = Some(Box::new(Self {
+            change,
+            block: entry.block.clone(),
+            facts: entry.facts,
+            after: entry.mark,
+            knobs: entry.knobs.clone(),
+            rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
+            feeds: entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
+            stops,
+        }));
     }
 }

@@ -101,6 +101,7 @@ impl Whole<'_> {
         for options in paths {
             survey(program, machine, options, &mut table)?;
         }
+        table.settle();
         let mut befores = Vec::with_capacity(paths.len());
         let mut reasons = Reasons::default();
         let mut may_skip = false;
@@ -121,6 +122,7 @@ impl Whole<'_> {
             reasons.join(written.reasons);
             may_skip |= written.may_skip;
         }
+        table.spread_word(machine);
         Ok(Decided {
             befores,
             reasons,

@@ -26,7 +26,7 @@ use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 
-/// Why a block before any motion word is not changed where lines run several times.
+/// Why a block before any motion word is not changed where one of them cannot have its own.
 const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
@@ -264,7 +264,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if let Some(table) = &self.table {
             entry.skips = table.skips;
             // A line that runs again would meet another motion word.
-            let without = entry.facts.no_motion_word.then_some(NO_MOTION_WORD);
+            let without = entry.facts.no_motion_word && !table.may_get_word();
+            let without = without.then_some(NO_MOTION_WORD);
             let fixed = entry.facts.fixed.or(without);
             entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
             entry.one_corner = table.one_corner(entry.key);

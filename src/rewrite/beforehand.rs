@@ -19,6 +19,9 @@ const SETTINGS: [f64; 12] = [
     20.0, 21.0, 43.0, 44.0, 49.0, 52.0, 54.0, 55.0, 56.0, 57.0, 58.0, 59.0,
 ];
 
+/// M words that stop or end the program once the axes stand.
+const STOPS: [f64; 4] = [0.0, 1.0, 2.0, 30.0];
+
 /// A block that moves by rapids to places of the machine.
 #[derive(Debug, Clone, Copy)]
 pub struct Return<'a> {
@@ -36,9 +39,50 @@ pub struct Return<'a> {
     pub modal: &'a Modal,
     /// Its words are the place itself (G53), not a point on the way (G28).
     pub in_machine: bool,
+    /// U, V and W are increments of X, Y and Z (lathes).
+    pub increments: bool,
 }
 
 impl Return<'_> {
+    /// The block with its way on a line before it, which is gone in coordinates of the
+    /// machine (SINUMERIK).
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    pub fn write_in_machine(&self, mm_per_unit: f64) -> Result<Vec<u8>, &'static str> {
+        let mut moves = self.moves();
+        let (Some(mv), None) = (moves.next(), moves.next()) else {
+            return Err("it makes more than one move");
+        };
+        if !mv.unknown_start.is_empty() {
+            return Err("it starts from a place that is not known");
+        }
+        let after = match self.motion_before {
+            Motion::Rapid => None,
+            Motion::Linear => Some("G1"),
+            _ => return Err("the motion word before it is neither G0 nor G1"),
+        };
+        if self.switching().next().is_some() {
+            return Err("it switches something too");
+        }
+        let (_, line_end) = split_line_end(self.text);
+        let line_end: &[u8] = if line_end.is_empty() { b"\n" } else { line_end };
+        let mut words = String::from("SUPA G0");
+        for axis in ALL_AXES {
+            if mv.moving.contains(axis as usize) {
+                let value = decimal(rounded(mv.end[axis as usize] / mm_per_unit), true);
+                let _ = write!(words, " {}=AC({value})", char::from(axis.letter()));
+            }
+        }
+        let mut out = Vec::new();
+        for words in [Some(words.as_str()), after].into_iter().flatten() {
+            out.extend_from_slice(words.as_bytes());
+            out.extend_from_slice(line_end);
+        }
+        out.extend_from_slice(self.text);
+        Ok(out)
+    }
+
     /// The block with its way on lines before it; `place` gives a place of the machine in
     /// coordinates and units of the program.
     ///
@@ -104,10 +148,11 @@ impl Return<'_> {
         })
     }
 
-    /// Words that switch something: they move to the first line.
+    /// Words that switch something before the axes move: they move to the first line.
     fn switching(&self) -> impl Iterator<Item = &Word> {
         let words = self.block.words.iter();
-        words.filter(|word| matches!(word.letter, b'M' | b'S' | b'T'))
+        let stops = |word: &Word| word.letter == b'M' && STOPS.contains(&word.value);
+        words.filter(move |word| matches!(word.letter, b'M' | b'S' | b'T') && !stops(word))
     }
 
     /// A rapid to the end of a move, in absolute coordinates: where it begins may be known
@@ -135,7 +180,8 @@ impl Return<'_> {
             let Some(axis) = AxisId::from_letter(word.letter) else {
                 continue;
             };
-            let value = if self.modal.absolute {
+            let increment = self.increments && b"UVW".contains(&word.letter);
+            let value = if self.modal.absolute && !increment {
                 rounded(place[axis as usize])
             } else {
                 0.0

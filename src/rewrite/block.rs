@@ -6,15 +6,15 @@ use std::fmt::Write as _;
 
 pub use pieces::PieceWords;
 
-use super::number::{Style, decimal, feed_again, has_point, with_digit};
+use super::number::{Style, decimal, feed_again, has_point, with_blanks, with_digit};
 use super::state::{FeedValue, Mark, Written};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
 use crate::limit::Change;
 use crate::machine::{Family, Lathe, Machine};
-use crate::source::split_line_end;
-use crate::syntax::Block;
+use crate::source::{Span, split_line_end};
+use crate::syntax::{Block, Word};
 
 /// Exact stop at the end of each move, on controls without a word for one block.
 const EXACT_STOP: &str = "G61.1";
@@ -120,6 +120,8 @@ impl<'m> Rewriter<'m> {
         // Nothing can be put back inside a block that takes no further word.
         let sealed = facts.checksum || facts.dwell_takes_feed;
         let looked_at = facts.boundary
+            || facts.selects_tool
+            || facts.stop_word.is_some()
             // Nothing may come between blocks under compensation.
             || facts.compensated
             || facts.turns_knob
@@ -149,6 +151,10 @@ impl<'m> Rewriter<'m> {
             self.insert_stop(out);
         }
         self.edits.clear();
+        let stop = facts.stop_word.filter(|_| !view.change.is_none());
+        if let Some(word) = stop {
+            self.edits.push(Edit::replace(without(word, view), ""));
+        }
         if view.change.exact_stop {
             self.exact_stop(view, out);
         }
@@ -163,16 +169,38 @@ impl<'m> Rewriter<'m> {
         };
         self.stopped = view.stops || view.rests || view.text.trim_ascii() == self.stop.as_bytes();
         if view.stops && !view.change.exact_stop {
-            if !self.complete {
-                out.extend_from_slice(&self.line_end);
-                self.complete = true;
-            }
+            self.complete_line(out);
             self.insert_stop(out);
         }
         if apart {
             self.back_to_revolutions(view, out);
         }
+        if let Some(word) = stop {
+            self.stop_after(word, view, out);
+        }
         fine
+    }
+
+    /// The stop or end of a block whose motion was changed, on a line of its own: whoever
+    /// looks at the state there finds the original's.
+    fn stop_after(&mut self, word: Span, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        self.complete_line(out);
+        self.blend_again(out);
+        self.restore(view.after, view.knobs, out);
+        out.extend_from_slice(self.skip.as_bytes());
+        out.extend_from_slice(word.of(view.text));
+        let (_, line_end) = split_line_end(view.text);
+        out.extend_from_slice(line_end);
+        self.complete = !line_end.is_empty();
+        self.edited_lines += 1;
+    }
+
+    /// Ends the last line that was written, where it has no end.
+    fn complete_line(&mut self, out: &mut Vec<u8>) {
+        if !self.complete {
+            out.extend_from_slice(&self.line_end);
+            self.complete = true;
+        }
     }
 
     /// The words for a feed per minute and per revolution.
@@ -186,10 +214,7 @@ impl<'m> Rewriter<'m> {
     /// A line that puts back what was in force, after a feed per minute among feeds per
     /// revolution.
     fn back_to_revolutions(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
-        if !self.complete {
-            out.extend_from_slice(&self.line_end);
-            self.complete = true;
-        }
+        self.complete_line(out);
         let [_, per_revolution] = self.feed_modes();
         let mut words = String::new();
         if let Some(digit) = view.after.motion.digit() {
@@ -300,7 +325,7 @@ impl<'m> Rewriter<'m> {
         if let Some(digit) = wanted.digit() {
             let style = Style::of(view.text, view.block);
             let mut text = vec![style.letter(b'G'), digit];
-            if let Some(first) = view.block.words.first() {
+            if let Some(first) = first_word(view) {
                 text.extend(style.spaced.then_some(b' '));
                 self.edits.push(Edit::insert(first.span.start, text));
             } else {
@@ -407,7 +432,7 @@ impl<'m> Rewriter<'m> {
     /// Lets a block end at rest: by a word in it, or by a line before it.
     fn exact_stop(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
         if let Some(number) = self.machine.controller.language.exact_stop_word {
-            let Some(first) = view.block.words.first() else {
+            let Some(first) = first_word(view) else {
                 return;
             };
             let style = Style::of(view.text, view.block);
@@ -440,5 +465,27 @@ impl<'m> Rewriter<'m> {
         out.extend_from_slice(words.as_bytes());
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;
+    }
+}
+
+/// The first word of a block that stays in it.
+fn first_word<'v>(view: &BlockView<'v>) -> Option<&'v Word> {
+    let mut words = view.block.words.iter();
+    words.find(|word| Some(word.span) != view.facts.stop_word)
+}
+
+/// A word with the blanks that go with it.
+fn without(word: Span, view: &BlockView<'_>) -> Span {
+    let first = view.block.words.first().map(|first| first.span);
+    if first != Some(word) {
+        return with_blanks(view.text, word);
+    }
+    let behind = view.text.get(word.end as usize..).unwrap_or_default();
+    let blanks = behind
+        .iter()
+        .take_while(|byte| matches!(byte, b' ' | b'\t'));
+    Span {
+        end: word.end + blanks.count() as u32,
+        ..word
     }
 }

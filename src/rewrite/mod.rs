@@ -13,6 +13,7 @@
 
 mod beforehand;
 mod block;
+mod contour;
 mod knob_line;
 mod number;
 mod single;
@@ -21,5 +22,6 @@ mod turned;
 
 pub use beforehand::Return;
 pub use block::{BlockView, PieceWords, Rewriter};
+pub use contour::contour_as_comment;
 pub use single::{CycleBlock, Singles};
 pub use state::Mark;

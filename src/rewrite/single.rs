@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Machine};
+use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
@@ -20,6 +20,11 @@ use crate::units::SECONDS_PER_MINUTE;
 const PLAIN: [u16; 7] = [730, 810, 820, 830, 850, 860, 890];
 /// Turning cycles along a contour of `LinuxCNC`, times ten.
 const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
+/// Those of Fanuc's lathes, times ten: roughing, grooving, and cycles of four moves, which
+/// are G90 and G94 in system A.
+const LATHE: [u16; 7] = [710, 720, 730, 740, 750, BOX, FACE];
+const BOX: u16 = 770;
+const FACE: u16 = 790;
 /// Words that belong to a cycle alone.
 const CYCLE_LETTERS: &[u8] = b"XYZABCUVWIJKRQPLDE";
 
@@ -51,9 +56,9 @@ pub struct Singles<'m> {
 }
 
 /// What has been written of a block so far.
-struct Lines<'a> {
-    out: Vec<u8>,
-    line_end: &'a [u8],
+pub(super) struct Lines<'a> {
+    pub(super) out: Vec<u8>,
+    pub(super) line_end: &'a [u8],
     at: AxisValues,
     /// The last motion word that was written.
     motion: Option<Motion>,
@@ -85,9 +90,7 @@ impl<'m> Singles<'m> {
         of: &CycleBlock<'_>,
         place: impl Fn(&AxisValues) -> AxisValues,
     ) -> Result<Vec<u8>, &'static str> {
-        if !PLAIN.contains(&of.number) && !TURNING.contains(&of.number) {
-            return Err("it taps, or stops for the operator");
-        }
+        self.may_write_out(of.number)?;
         let mut lines = Lines::new(of, &place);
         let feed_mm_s = lines.feed_mm_s;
         self.first_line(of, &mut lines)?;
@@ -110,13 +113,26 @@ impl<'m> Singles<'m> {
         Ok(lines.finish(of.text))
     }
 
+    /// Whether the moves of a cycle may stand as single blocks.
+    fn may_write_out(&self, number: u16) -> Result<(), &'static str> {
+        let lathe = self.language.dialect.lathe.is_some();
+        match number {
+            _ if lathe && LATHE.contains(&number) => Ok(()),
+            _ if PLAIN.contains(&number) || TURNING.contains(&number) => Ok(()),
+            _ => Err("it taps, or stops for the operator"),
+        }
+    }
+
     /// Puts the motion word in force that holds after the cycle.
     fn restore_motion(
         &self,
         of: &CycleBlock<'_>,
         lines: &mut Lines<'_>,
     ) -> Result<(), &'static str> {
+        let lathe = self.language.dialect.lathe.is_some();
         let after = match of.modal.motion {
+            // The next block that moves has a motion word of the same group.
+            Motion::Special(_) if lathe => return Ok(()),
             // On a Fanuc the end of the cycle puts no motion word of another group back.
             Motion::Special(_) if self.language.family == Family::Iso => of.motion_before,
             Motion::Special(_) => return Ok(()),
@@ -147,7 +163,7 @@ impl<'m> Singles<'m> {
         returns_to_r: bool,
         place: impl Fn(&AxisValues) -> AxisValues,
     ) -> Result<Vec<u8>, &'static str> {
-        if TURNING.contains(&of.number) {
+        if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
             return Err("all its moves follow from each other");
         }
         let repeats = |word: &Word| matches!(word.letter, b'K' | b'L') && word.value != 1.0;
@@ -191,7 +207,7 @@ impl<'m> Singles<'m> {
     /// Whether a block returns to R only because an earlier block says so.
     fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
         let says = |word: &Word| word.letter == b'G' && [98.0, 99.0].contains(&word.value);
-        let iso = self.language.family == Family::Iso;
+        let iso = self.language.family == Family::Iso && self.language.dialect.lathe.is_none();
         iso && returns_to_r && !of.block.words.iter().any(says)
     }
 
@@ -208,10 +224,15 @@ impl<'m> Singles<'m> {
     }
 
     /// The block without the words of the cycle, and a comment that names it.
-    fn first_line(&self, of: &CycleBlock<'_>, lines: &mut Lines<'_>) -> Result<(), &'static str> {
+    pub(super) fn first_line(
+        &self,
+        of: &CycleBlock<'_>,
+        lines: &mut Lines<'_>,
+    ) -> Result<(), &'static str> {
         let (text, _) = split_line_end(of.text);
         let mut edits: Vec<Edit> = Vec::new();
-        let iso = self.language.family == Family::Iso;
+        // On lathes it is the feed per revolution.
+        let iso = self.language.family == Family::Iso && self.language.dialect.lathe.is_none();
         for word in &of.block.words {
             // G99 stands in the block of a cycle alone.
             let returns = iso && word.letter == b'G' && word.value == 99.0;
@@ -234,9 +255,18 @@ impl<'m> Singles<'m> {
         {
             lines.out.push(b' ');
         }
-        let name = f64::from(of.number) / 10.0;
+        let name = f64::from(self.name(of.number)) / 10.0;
         lines.push(&format!("(G{name} written out)"));
         Ok(())
+    }
+
+    /// The number of a cycle as programs have it, times ten.
+    fn name(&self, number: u16) -> u16 {
+        match number {
+            BOX if self.language.dialect.lathe == Some(Lathe::A) => 900,
+            FACE if self.language.dialect.lathe == Some(Lathe::A) => 940,
+            _ => number,
+        }
     }
 
     fn one_move(
@@ -303,7 +333,9 @@ impl<'m> Singles<'m> {
         if words.len() == word.len() {
             return Ok(());
         }
-        if mv.kind != MoveKind::Rapid && lines.feed_mm_s != Some(mv.feed_mm_s) {
+        // On a lathe all moves of a cycle have the F in force.
+        let lathe = self.language.dialect.lathe.is_some();
+        if mv.kind != MoveKind::Rapid && !lathe && lines.feed_mm_s != Some(mv.feed_mm_s) {
             let feed = mv.feed_mm_s * SECONDS_PER_MINUTE / of.modal.mm_per_unit;
             let _ = write!(words, " F{}", decimal(rounded(feed), true));
             lines.feed_mm_s = Some(mv.feed_mm_s);
@@ -337,7 +369,7 @@ impl<'m> Singles<'m> {
 }
 
 impl<'a> Lines<'a> {
-    fn new(of: &CycleBlock<'a>, place: impl Fn(&AxisValues) -> AxisValues) -> Self {
+    pub(super) fn new(of: &CycleBlock<'a>, place: impl Fn(&AxisValues) -> AxisValues) -> Self {
         let (_, line_end) = split_line_end(of.text);
         let mut moves = of.steps.iter().filter_map(as_move);
         let start = moves.next().map(|mv| place(&mv.start));
@@ -354,14 +386,14 @@ impl<'a> Lines<'a> {
     }
 
     /// The lines; the last one has a line end if the block `text` has one.
-    fn finish(mut self, text: &[u8]) -> Vec<u8> {
+    pub(super) fn finish(mut self, text: &[u8]) -> Vec<u8> {
         if split_line_end(text).1.is_empty() {
             self.out.truncate(self.out.len() - self.line_end.len());
         }
         self.out
     }
 
-    fn push(&mut self, words: &str) {
+    pub(super) fn push(&mut self, words: &str) {
         self.out.extend_from_slice(words.as_bytes());
         self.out.extend_from_slice(self.line_end);
     }

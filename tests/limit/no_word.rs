@@ -41,16 +41,49 @@ fn blocks_before_the_first_motion_word_get_theirs() {
     assert_eq!(shop.get("same.mpf"), "X1\nY1\nM30\n");
 }
 
-/// A line of a loop would meet another word the second time.
+/// In a loop each of them gets its own word, which is right in each of its runs: one that
+/// fits as it is runs at its own speed, and one that stands at the slowest of all.
 #[test]
-fn not_in_a_loop() {
+fn in_loops() {
     let shop = shop();
+    let program = "R1=0\nX0\nAGAIN: X=400*R1 Y=300*R1\nZ=10*R1\nR1=R1+1\nIF R1<3 GOTOB AGAIN\n\
+                   G1 X0 F500\nM30\n";
+    shop.put("a.mpf", program);
+    let (code, _, errors) = shop.run("limit a.mpf --allow feed -o out.mpf");
+    assert_eq!(code, 0, "{errors}");
+    insta::assert_snapshot!(shop.get("out.mpf"), @r"
+    R1=0
+    G1 X0 F30000
+    AGAIN: G1 X=400*R1 Y=300*R1 F32359
+    G1 Z=10*R1 F30000
+    R1=R1+1
+    IF R1<3 GOTOB AGAIN
+    G1 X0 F500
+    M30
+    ");
+    // None is touched where all fits.
     shop.put(
-        "a.mpf",
-        "R1=0\nAGAIN: X=400*R1 Y=300*R1\nR1=R1+1\nIF R1<3 GOTOB AGAIN\nM30\n",
+        "b.mpf",
+        "R1=0\nAGAIN: X=R1\nR1=R1+1\nIF R1<3 GOTOB AGAIN\nM30\n",
     );
-    let (code, _, errors) = shop.run("limit a.mpf -o out.mpf");
-    assert_eq!(code, 1, "{errors}");
-    let reason = "no motion word is in force that could be put back";
-    assert!(errors.contains(reason), "{errors}");
+    let (code, _, errors) = shop.run("limit b.mpf -o same.mpf");
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(shop.get("same.mpf"), shop.get("b.mpf"));
+}
+
+/// A line that meets another word the second time, or takes none, keeps all from getting
+/// theirs.
+#[test]
+fn not_where_one_cannot() {
+    let shop = shop();
+    let refused = |program: &str| {
+        shop.put("a.mpf", program);
+        let (code, _, errors) = shop.run("limit a.mpf --allow feed -o out.mpf");
+        assert_eq!(code, 1, "{errors}");
+        let reason = "no motion word is in force that could be put back";
+        assert!(errors.contains(reason), "{errors}");
+        assert!(!shop.has("out.mpf"));
+    };
+    refused("R1=0\nX400 Y300\nAGAIN: X=R1\nG0 Y=R1\nR1=R1+1\nIF R1<3 GOTOB AGAIN\nM30\n");
+    refused("R1=0\nX400 Y300\nY10 M6\nAGAIN: R1=R1+1\nIF R1<3 GOTOB AGAIN\nX0\nM30\n");
 }

@@ -6,11 +6,9 @@ use super::corner::Circle;
 use super::words::Nose;
 use crate::interpret::code::GCode;
 use crate::interpret::execute::{Control, Run};
+use crate::interpret::tools::OFFSETS_OF_T;
 use crate::machine::Family;
 use crate::source::Span;
-
-/// Numbers of offsets that T has in its last two digits on lathes.
-const OFFSETS_OF_T: u32 = 100;
 
 /// What is in force for the compensation that comes next.
 #[derive(Debug, Clone, Copy, Default)]

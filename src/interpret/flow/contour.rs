@@ -79,6 +79,7 @@ impl Flow {
                 break;
             }
         }
+        contour.lines = Some([first.line as u64 + 1, place.line as u64]);
         if contour.cycle != ContourCycle::Finish {
             self.next = place;
         }

@@ -258,12 +258,11 @@ impl Control<'_> {
     }
 
     /// G74 and G75 ("Reference point approach", "Fixed point approach"): the
-    /// points are data of the machine, taken as its zero.
+    /// points are data of the machine. Those of G74 may be in the machine file, all
+    /// others are taken as its zero.
     fn siemens_reference(&mut self, number: u16, state: &mut Siemens, run: &mut Run<'_, '_>) {
         run.facts.reference = true;
         let span = run.whole();
-        let message = "the reference and fixed points of G74 and G75 are taken as machine zero";
-        run.report.note_once("reference-point", message, span);
         let mut named = AxisSet::default();
         run.words.axes().for_each(|(axis, _)| named.insert(axis));
         run.words.unused &= !AXIS_LETTERS;
@@ -276,7 +275,8 @@ impl Control<'_> {
         }
         let mut target = self.target_at(state, &[]);
         for axis in named.iter() {
-            if self.machine.axes[axis].is_none() {
+            let data = self.machine.axes[axis].as_ref();
+            if data.is_none() {
                 let message = format!(
                     "the machine has no {} axis",
                     ALL_AXES[axis].letter() as char
@@ -286,12 +286,24 @@ impl Control<'_> {
                     .help("choose a machine with it, or describe it in the machine file");
                 return;
             }
-            target.machine[axis] = 0.0;
+            let known = data.and_then(|data| data.reference_mm);
+            let point_mm = known.filter(|_| number == 740);
+            if point_mm.is_none() {
+                let message =
+                    "the reference and fixed points of G74 and G75 are taken as machine zero";
+                run.report.note_once("reference-point", message, span);
+            }
+            target.machine[axis] = point_mm.unwrap_or(0.0);
             state.turns[axis] = 0.0;
         }
         target.named = named;
         target.unknown = AxisSet(named.0 & self.position.unknown.0);
+        let rapid_factor = self.knobs.rapid_factor;
+        if number == 740 {
+            self.knobs.rapid_factor *= self.return_factor(&target.machine, named, target.unknown);
+        }
         self.siemens_go(state, run, MoveKind::Rapid, &target, None);
+        self.knobs.rapid_factor = rapid_factor;
     }
 }
 

@@ -33,6 +33,19 @@ pub(crate) struct Contour {
     pub(super) allowance: [f64; 2],
     /// Its first block names X and Z: stock removal of type II.
     pub(crate) two_axes: bool,
+    /// First and last line, from 1, as soon as it has been read.
+    pub(crate) lines: Option<[u64; 2]>,
+}
+
+impl Contour {
+    /// Why it is not known how the control goes about it in detail.
+    pub(crate) fn guessed(&self) -> Option<&'static str> {
+        let rough = matches!(self.cycle, ContourCycle::Rough { .. });
+        (rough && self.two_axes).then_some(
+            "the first block of the contour names X and Z (type II): how the tool goes from \
+             pass to pass is a matter of the control's parameters",
+        )
+    }
 }
 
 /// The cycles.
@@ -99,6 +112,7 @@ impl Control<'_> {
             cycle,
             allowance,
             two_axes: false,
+            lines: None,
         })));
     }
 

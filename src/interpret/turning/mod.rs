@@ -30,7 +30,10 @@ const X: usize = 0;
 const Z: usize = 2;
 
 /// Why no word of such a block is changed.
-const FIXED: &str = "it is part of a turning cycle";
+pub(crate) const FIXED: &str = "it is part of a turning cycle";
+/// Why it is not known how a cycle goes in detail.
+const BY_PARAMETER: &str = "its return, escape or chamfer is a parameter of the control: give it \
+                            in the program (R)";
 
 /// What turning cycles keep from block to block.
 #[derive(Debug, Default)]
@@ -70,7 +73,10 @@ impl Control<'_> {
                 self.special.active = 0;
                 self.long_thread(run);
             }
-            BOX | THREAD_BOX | FACE => self.single_cycle(number, run),
+            BOX | THREAD_BOX | FACE => {
+                run.facts.cycle = true;
+                self.single_cycle(number, run);
+            }
             _ => self.drill(number, run),
         }
     }
@@ -83,6 +89,8 @@ impl Control<'_> {
         if !self.turning_axes_fit(run) {
             return;
         }
+        // A block that only gives values for the next one moves nothing.
+        run.facts.cycle = true;
         match number {
             740 | 750 => self.groove(number, run),
             760 => self.thread_cycle_of_lathe(run),
@@ -182,6 +190,7 @@ fn note_parameter(run: &mut Run<'_, '_>) {
     let whole = run.whole();
     let message = "what the program does not give of a turning cycle (return, escape, \
                    chamfer) is a parameter of the control: taken as 0";
+    run.facts.guessed = Some(BY_PARAMETER);
     run.report.note_once("cycle-parameter", message, whole);
 }
 

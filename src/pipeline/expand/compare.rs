@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::Cursor;
 
-use crate::interpret::{ActionKind, Arc, Corner, Move, MoveKind, Step};
+use crate::interpret::{ActionKind, Arc, Corner, FeedMode, Move, MoveKind, Step};
 use crate::machine::Machine;
 use crate::pipeline::front::Front;
 use crate::pipeline::{Failure, Options};
@@ -12,6 +12,8 @@ use crate::pipeline::{Failure, Options};
 const ROUNDING_MM: f64 = 2e-5;
 /// Rounding of other figures, as a share.
 const ROUNDING: f64 = 1e-9;
+/// The same for a feed that depends on the rounded place.
+const ROUNDING_TURNED: f64 = 1e-6;
 
 /// The line of `written` in which it first does something else than `original`; the line
 /// after its last where it does less.
@@ -102,12 +104,21 @@ fn same_move(a: &Move, b: &Move) -> bool {
         && a.unknown_start == b.unknown_start
         && same_arc(a.arc.as_ref(), b.arc.as_ref())
         && near(a.dwell_s, b.dwell_s)
-        && (a.kind == MoveKind::Rapid || near(a.feed_mm_s, b.feed_mm_s))
+        && (a.kind == MoveKind::Rapid || same_feed(a, b))
         && a.feed_mode == b.feed_mode
         && a.accel_mm_s2 == b.accel_mm_s2
         && a.path_accel_mm_s2 == b.path_accel_mm_s2
         && a.rapid_factor == b.rapid_factor
         && a.loads == b.loads
+}
+
+/// Under constant surface speed a feed per revolution depends on the place.
+fn same_feed(a: &Move, b: &Move) -> bool {
+    let share = match a.feed_mode {
+        FeedMode::PerRevolution => ROUNDING_TURNED,
+        _ => ROUNDING,
+    };
+    a.feed_mm_s == b.feed_mm_s || (a.feed_mm_s - b.feed_mm_s).abs() <= share * a.feed_mm_s
 }
 
 fn same_arc(a: Option<&Arc>, b: Option<&Arc>) -> bool {

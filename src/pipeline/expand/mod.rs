@@ -9,6 +9,7 @@
 mod compare;
 mod returns;
 mod trace;
+mod turning;
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -18,6 +19,7 @@ use super::{Failure, Options};
 pub(super) use trace::Traced;
 
 use crate::diagnostic::Diagnostic;
+use crate::interpret::Step;
 use crate::machine::{Family, Machine};
 use crate::rewrite::{CycleBlock, Singles};
 use crate::source::{Span, lines, split_line_end};
@@ -199,7 +201,10 @@ impl Notes {
 fn survey(program: &[u8], machine: &Machine, paths: &[Options]) -> Result<Vec<Series>, Failure> {
     let language = &machine.controller.language;
     let mut all: Vec<Series> = Vec::new();
-    if matches!(language.family, Family::Rs274 | Family::Iso) {
+    if matches!(
+        language.family,
+        Family::Rs274 | Family::Iso | Family::Siemens
+    ) {
         for options in paths {
             survey_path(program, machine, options, &mut all)?;
         }
@@ -215,6 +220,7 @@ fn survey_path(
     all: &mut Vec<Series>,
 ) -> Result<(), Failure> {
     let singles = Singles::new(machine);
+    let lathe = machine.controller.language.dialect.lathe.is_some();
     let mut front = Front::new(Cursor::new(program), machine, options);
     let mut open: Option<Series> = None;
     let mut before = returns::Before::of(front.interpreter().modal());
@@ -225,19 +231,38 @@ fn survey_path(
                 close(&mut open, all);
             }
             if facts.reference || facts.machine_coordinates {
-                close(&mut returns::series(&line, &before), all);
+                close(&mut returns::series(&line, &before, machine), all);
             }
             before = returns::Before::of(interpreter.modal());
             continue;
         }
         before = returns::Before::of(interpreter.modal());
+        let (text, number) = line.key;
+        let fixed = if text != 0 {
+            Some("it stands in the file of a subprogram")
+        } else if line.block.delete_level > 0 || facts.checksum || facts.computed_feed {
+            Some("its block may be skipped, or is worked out by the program")
+        } else {
+            None
+        };
+        if lathe && let Some(word) = turning::word(line.block) {
+            close(&mut open, all);
+            // One that only gives values for the next cycle moves nothing, and stays.
+            if line.steps.iter().any(Step::moves_axes) {
+                let series = turning::series(&line, word, fixed, program, &singles);
+                close(&mut Some(series), all);
+            }
+            continue;
+        }
         // A block that says all of a cycle depends on none before it.
         let has = |letter| line.block.words.iter().any(|word| word.letter == letter);
-        if facts.motion_word.is_some() && has(b'R') && has(b'Z') {
+        if !lathe && facts.motion_word.is_some() && has(b'R') && has(b'Z') {
             close(&mut open, all);
         }
         let series = open.get_or_insert_default();
-        let (text, number) = line.key;
+        if lathe {
+            series.stays = turning::STAYS;
+        }
         let turning = turning_word(line.block).filter(|_| !interpreter.in_cycle());
         let cycle = CycleBlock {
             text: line.text,
@@ -250,13 +275,8 @@ fn survey_path(
             modal: interpreter.modal(),
             motion_before: interpreter.motion_before_cycle(),
         };
-        let fixed = if text != 0 {
-            Some("it stands in the file of a subprogram")
-        } else if line.block.delete_level > 0 || facts.checksum || facts.computed_feed {
-            Some("its block may be skipped, or is worked out by the program")
-        } else {
-            None
-        };
+        let turned = || turning::stays(&line, interpreter.cycle()).filter(|_| lathe);
+        let fixed = fixed.or_else(turned);
         if let Some(why) = fixed {
             series.refuse(number, why);
             continue;

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use super::{Lines, Series};
 use crate::interpret::{Modal, Motion, Step};
-use crate::machine::AxisSet;
+use crate::machine::{AxisKind, AxisSet, Family, Lathe, Machine};
 use crate::pipeline::front::Line;
 use crate::rewrite::Return;
+use crate::syntax::Block;
 
 /// What is said where such a block stays as it is.
 const STAYS: &str = "the way to the reference point is not gone by a feed";
@@ -28,7 +29,8 @@ impl Before {
 }
 
 /// What such a block becomes.
-pub(super) fn series(line: &Line<'_, '_>, before: &Before) -> Option<Series> {
+pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) -> Option<Series> {
+    let language = &machine.controller.language;
     let mut moving = AxisSet::default();
     for step in &*line.steps {
         if let Step::Move(mv) = step {
@@ -46,6 +48,8 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before) -> Option<Series> {
         Err("its block may be skipped")
     } else if facts.compensated {
         Err("it runs under cutter compensation")
+    } else if facts.reference && !is_known(moving, line.block, machine) {
+        Err("where it leads is not known: give reference_mm of the axes in the machine file")
     } else if let Some(why) = line.interpreter.unsure_of_places(moving) {
         Err(why)
     } else {
@@ -57,8 +61,13 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before) -> Option<Series> {
             absolute_before: before.absolute,
             modal: line.interpreter.modal(),
             in_machine: facts.machine_coordinates,
+            increments: language.dialect.lathe == Some(Lathe::A),
         };
-        block.write(|place| line.interpreter.place_in_program(place))
+        if language.family == Family::Siemens {
+            write_in_machine(&block, moving, machine)
+        } else {
+            block.write(|place| line.interpreter.place_in_program(place))
+        }
     };
     let lines: Lines = match written {
         Ok(bytes) => Ok(BTreeMap::from([(number, bytes)])),
@@ -71,4 +80,33 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before) -> Option<Series> {
         placed: lines,
         ..Series::default()
     })
+}
+
+/// Whether the machine file says where a reference point is: that of G28 and G74 alone, but
+/// `LinuxCNC` keeps both of its own among its parameters.
+fn is_known(moving: AxisSet, block: &Block, machine: &Machine) -> bool {
+    let other = |value: f64| value == 30.0 || value == 75.0;
+    let mut words = block.words.iter();
+    let first = !words.any(|word| word.letter == b'G' && other(word.value));
+    let known = |axis: usize| {
+        let data = machine.axes[axis].as_ref();
+        data.is_some_and(|data| data.reference_mm.is_some())
+    };
+    machine.controller.language.family == Family::Rs274 || first && moving.iter().all(known)
+}
+
+/// The way to the reference point of SINUMERIK.
+fn write_in_machine(
+    block: &Return<'_>,
+    moving: AxisSet,
+    machine: &Machine,
+) -> Result<Vec<u8>, &'static str> {
+    let linear = |axis: usize| {
+        let data = machine.axes[axis].as_ref();
+        data.is_some_and(|data| data.kind == AxisKind::Linear)
+    };
+    if !moving.iter().all(linear) {
+        return Err("it turns a rotary axis");
+    }
+    block.write_in_machine(block.modal.mm_per_unit)
 }

@@ -1,4 +1,4 @@
-//! Blocks before any motion word, where an earlier one was written as a feed.
+//! Blocks before any motion word, where another one was written as a feed.
 
 use std::io::{Read, Seek, Write};
 
@@ -16,6 +16,11 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         if !entry.facts.no_motion_word || !(as_feed || self.rewriter.feeds_from_here()) {
             return change;
         }
+        self.own_feed(entry, change)
+    }
+
+    /// A block as a feed at its own speed, or lower where `change` says so.
+    pub(super) fn own_feed(&self, entry: &Entry, change: Option<Change>) -> Option<Change> {
         let rapids = entry.its_moves().enumerate().zip(&entry.decided);
         let own = rapids.filter(|((_, mv), _)| mv.kind == MoveKind::Rapid);
         let mut forced = own.fold(change, |change, ((step, mv), (assessment, _))| {

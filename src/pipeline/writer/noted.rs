@@ -18,7 +18,15 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
                 self.unsplit.stays(mv, SEVERAL_RUNS, entry.text_of(mv));
             }
         }
+        let own = if entry.facts.no_motion_word {
+            self.own_feed(entry, change)
+        } else {
+            None
+        };
         let Some(table) = &mut self.table else { return };
+        if let Some(own) = own {
+            table.offer_word(self.machine, entry.key, entry, own);
+        }
         if !table.decide(self.machine, entry.key, entry, change) {
             return;
         }

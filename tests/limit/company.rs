@@ -1,0 +1,183 @@
+//! Blocks that select a tool or end the program move too: their motion is changed, and
+//! whoever looks at the state where the program stops finds the original's.
+
+use insta::assert_snapshot;
+
+use crate::shop::Shop;
+
+fn shop(controller: &str, power_w: f64) -> Shop {
+    let rest = "[path]\nrapid = \"linear\"";
+    Shop::mill(controller, &format!("peak_power_w = {power_w}"), rest, "")
+}
+
+#[track_caller]
+fn limited(shop: &Shop, program: &str) -> String {
+    shop.put("a.nc", program);
+    let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
+    assert_eq!(code, 0, "{errors}");
+    shop.get("out.nc")
+}
+
+#[test]
+fn tools_stops_and_ends() {
+    let program = "G21 G90 G54\nG0 X400 Y300 T3 M8\nX0 Y50 Z40 M0 (LOOK)\nM1 G0 X300\n\
+                   G1 Z30 F400\nG0 X0 Y300 M9 M30";
+    assert_snapshot!(limited(&shop("fanuc", 520.0), program), @r"
+    G21 G90 G54
+    G4 P1
+    G9 G1 X400 Y300 T3 M8 F22651
+    G0
+    G9 G1 X0 Y50 Z40 F23555 (LOOK)
+    G0
+    M0
+    G9 G1 X300 F28799
+    G0
+    M1
+    G1 Z30 F400
+    G4 P1
+    G9 G1 X0 Y300 M9 F21868
+    G0 F400
+    M30
+    ");
+    assert_snapshot!(limited(&shop("linuxcnc", 520.0), program), @r"
+    G21 G90 G54
+    G4 P0
+    G1 X400 Y300 T3 M8 F37500
+    G4 P0
+    G0
+    X0 Y50 Z40 M0 (LOOK)
+    M1 G0 X300
+    G1 Z30 F400
+    G4 P0
+    G1 X0 Y300 M9 F37940
+    G4 P0
+    G0 F400
+    M30
+    ");
+    // Of a feed alone F changes.
+    let program = "G1 X400 F40000 M1\nX0 Y10\nG0 T2 Y300\nM2\n";
+    assert_snapshot!(limited(&shop("linuxcnc", 300.0), program), @r"
+    G1 X400 F13714
+    F40000
+    M1
+    X0 Y10 F13662
+    F40000
+    G4 P0
+    G1 T2 Y300 F23999
+    G4 P0
+    G0 F40000
+    M2
+    ");
+}
+
+#[test]
+fn with_blocks_that_may_be_skipped() {
+    let program = "G21 G90\nG0 X10\n/G0 X400 Y300 M1\nG0 X20 Y0\nM30\n";
+    assert_snapshot!(limited(&shop("haas", 520.0), program), @r"
+    G21 G90
+    G0 X10
+    /G4 P1
+    /G9 G1 X400 Y300 F22469
+    /G0
+    /M1
+    G4 P1
+    G9 G1 X20 Y0 F22278
+    G0
+    M30
+    ");
+}
+
+#[test]
+fn sinumerik() {
+    let program = "G17 G90 G94 G64\nT1 D1 G0 X400 Y300\nM3 S1000 M8 G0 X200 Y10\n\
+                   SUPA G0 X0 Y300 Z300 D0\nG153 X400 Y10\nG0 X10 Y300 M0\nY0 M30\n";
+    assert_snapshot!(limited(&shop("siemens", 520.0), program), @r"
+    G17 G90 G94 G64
+    T1 D1 G1 X400 Y300 F9113.9
+    M3 S1000 M8 G1 X200 Y10 F12138
+    SUPA G1 X0 Y300 Z300 D0 F3892.9
+    G153 X400 Y10 F11894
+    G0
+    G1 X10 Y300 F12000
+    G0
+    M0
+    G1 Y0 F19170
+    G0
+    M30
+    ");
+}
+
+#[test]
+fn what_stays() {
+    let refused = |controller: &str, program: &str, reason: &str| {
+        let shop = shop(controller, 520.0);
+        shop.put("a.nc", program);
+        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
+        assert_eq!(code, 1, "{errors}");
+        assert!(errors.contains(reason), "{errors}");
+    };
+    // What M6 runs may look at the state.
+    refused(
+        "fanuc",
+        "G21 G90\nG0 X400 Y300 T1 M6\nM30\n",
+        "it stops, changes the tool or ends the program",
+    );
+    // Two words at which the program stops.
+    refused(
+        "fanuc",
+        "G21 G90\nG0 X400 Y300 M1 M30\n",
+        "it stops, changes the tool or ends the program",
+    );
+    // Nothing may come between blocks under compensation.
+    refused(
+        "fanuc",
+        "G21 G90\nG0 X5\nG41 D1 G1 X10 F500\nX400 Y300 F30000 M1\nY0 F500\nG40 X0\nM30\n",
+        "it is under cutter compensation",
+    );
+}
+
+/// The way to the reference point of SINUMERIK in coordinates of the machine, whatever the
+/// frames are; not while a tool is in force.
+#[test]
+fn reference_point_of_sinumerik() {
+    let known = "[path]\nrapid = \"linear\"";
+    let shop = Shop::mill("siemens", "peak_power_w = 700", known, "reference_mm = 300");
+    let program = "G17 G90 G94 G54\nG0 X10\nG1 X20 Y10 F500\nG74 X1=0 Y1=0\nX310\nM30\n";
+    assert_snapshot!(limited(&shop, program), @r"
+    G17 G90 G94 G54
+    G1 X10 F20571
+    G1 X20 Y10 F500
+    SUPA G1 X=AC(300.) Y=AC(300.) F28595
+    G1
+    G74 X1=0 Y1=0
+    X310 F500
+    M30
+    ");
+    let refused = |shop: &Shop, program: &str, why: &str| {
+        shop.put("a.nc", program);
+        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.mpf");
+        assert_eq!(code, 1, "{errors}");
+        assert!(errors.contains(why), "{errors}");
+    };
+    let tool = program.replace("G0 X10", "T1 D1 G0 X10");
+    refused(
+        &shop,
+        &tool,
+        "the length of the tool is in force: write D0 before it",
+    );
+    limited(&shop, &tool.replace("G74", "D0\nG74"));
+    let fixed = program.replace("G74", "G75");
+    refused(&shop, &fixed, "where it leads is not known");
+    let none = program.replace("G0 X10\nG1 X20 Y10 F500\n", "");
+    refused(
+        &shop,
+        &none,
+        "the motion word before it is neither G0 nor G1",
+    );
+    let switches = program.replace("G74", "M9 G74");
+    refused(&shop, &switches, "it switches something too");
+    // Slowly enough, it fits as it is.
+    let slow = "reference_mm = 300\nreference_mm_min = 3000";
+    let shop = Shop::mill("siemens", "peak_power_w = 700", known, slow);
+    assert_eq!(limited(&shop, program), program);
+}
