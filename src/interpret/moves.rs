@@ -142,6 +142,8 @@ pub struct Stray {
     pub direction: f64,
     /// The share by which the controller may exceed the axes' accelerations.
     pub accel: f64,
+    /// The move is a chord of it: the controller does not stop at its ends.
+    pub in_chords: bool,
 }
 
 /// From this distance of directions on a path is far from the move.
@@ -154,13 +156,14 @@ impl Stray {
     pub const NONE: Self = Self {
         direction: 0.0,
         accel: 0.0,
+        in_chords: false,
     };
 
     /// Whether the path is so far from this one that the move is bounded and not planned.
     #[must_use]
     #[inline]
     pub fn is_far(self) -> bool {
-        self.direction > FAR_DIRECTION || self.accel > FAR_ACCEL
+        self.in_chords || self.direction > FAR_DIRECTION || self.accel > FAR_ACCEL
     }
 
     /// Whether the path is another one.

@@ -49,6 +49,7 @@ pub(super) fn of_arc(arc: &Arc, start: &AxisValues, end: &AxisValues) -> Stray {
     Stray {
         direction: 2.0 * libm::sin(0.5 * turned) + (1.0 + libm::tan(climbs)) * (climbs - least),
         accel: curvature(outer) / curvature(inner) * (outer / inner) - 1.0,
+        in_chords: false,
     }
 }
 

@@ -131,6 +131,7 @@ impl Control<'_> {
         let stray = Stray {
             direction: 2.0 * libm::sin(0.25 * arc.sweep_rad.abs() / chords) + own.direction,
             accel: own.accel,
+            in_chords: true,
         };
         let from = self.position.at;
         let before = run.steps.len();

@@ -8,38 +8,19 @@
 
 use super::axis::Side;
 use super::demand::Demand;
-use super::model::PowerModel;
-use crate::interpret::Move;
+use super::model::{ConverterPower, PowerModel};
+use crate::interpret::{Move, Stray};
+use crate::machine::AxisValues;
 
 impl PowerModel {
     /// A demand with what the controller's own path may add to it, at speeds up to
     /// `top_speed_mm_s` along the path.
     #[cold]
     pub(super) fn with_stray(&self, demand: Demand, mv: &Move, top_speed_mm_s: f64) -> Demand {
-        let (d, alpha) = (mv.stray.direction, mv.stray.accel);
-        let force_share = 2.0 * d + alpha;
         let mut strayed = demand;
         for (index, converter) in self.converters.iter().enumerate() {
-            let mut more_w = 0.0;
-            for axis in converter
-                .axes
-                .iter()
-                .filter(|axis| mv.moving.contains(*axis))
-            {
-                let power = &self.axes[axis];
-                let v = top_speed_mm_s * power.si_per_unit;
-                let accel = mv.accel_mm_s2[axis] * (1.0 + alpha) * power.si_per_unit;
-                let factors = [
-                    power.accel_factor(Side::Motor, true),
-                    power.accel_factor(Side::Regen, false),
-                ];
-                let force = power.mass * accel * factors[0].max(factors[1])
-                    + power.viscous_most() * v
-                    + power.coulomb_most()
-                    + power.gravity.abs();
-                more_w += (d + force_share) * v * force * power.inverse_efficiency;
-                more_w += 2.0 * force_share * (1.0 + force_share) * power.copper * force * force;
-            }
+            let moves = |axis| mv.moving.contains(axis);
+            let more_w = self.stray_w(converter, mv.stray, &mv.accel_mm_s2, top_speed_mm_s, moves);
             strayed.load_ratio = strayed
                 .load_ratio
                 .max(demand.load_ratio + more_w / self.least_limit_w(index));
@@ -52,9 +33,86 @@ impl PowerModel {
         strayed
     }
 
+    /// What a converter may give or take more over the axes that move, W.
+    fn stray_w(
+        &self,
+        converter: &ConverterPower,
+        stray: Stray,
+        accel_mm_s2: &AxisValues,
+        top_speed_mm_s: f64,
+        moves: impl Fn(usize) -> bool,
+    ) -> f64 {
+        let (d, alpha) = (stray.direction, stray.accel);
+        let force_share = 2.0 * d + alpha;
+        let mut more_w = 0.0;
+        for axis in converter.axes.iter().filter(|axis| moves(*axis)) {
+            let power = &self.axes[axis];
+            let v = top_speed_mm_s * power.si_per_unit;
+            let accel = accel_mm_s2[axis] * (1.0 + alpha) * power.si_per_unit;
+            let factors = [
+                power.accel_factor(Side::Motor, true),
+                power.accel_factor(Side::Regen, false),
+            ];
+            let force = power.mass * accel * factors[0].max(factors[1])
+                + power.viscous_most() * v
+                + power.coulomb_most()
+                + power.gravity.abs();
+            more_w += (d + force_share) * v * force * power.inverse_efficiency;
+            more_w += 2.0 * force_share * (1.0 + force_share) * power.copper * force * force;
+        }
+        more_w
+    }
+
     /// The lower of a converter's limits, drawn or fed back, W.
     fn least_limit_w(&self, converter: usize) -> f64 {
         let regen_w = self.regen_limit_w(converter).unwrap_or(f64::INFINITY);
         self.limit_w(converter).min(regen_w)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::{AXES, Machine};
+
+    const AXIS: &str = "schema = 1\nname = \"t\"\ncontroller = \"linuxcnc\"\n[converter]\n\
+                        peak_power_w = 1e6\n[axes.X]\nrapid_mm_min = 60000\naccel_mm_s2 = 2000\n\
+                        mass_kg = 300\ncoulomb_n = 200\nviscous_n_s_m = 300\ngravity_n = 80\n\
+                        efficiency = 0.8\ncopper_w_n2 = 1e-4\n";
+
+    /// Directions and accelerations that differ by as much as is said: no axis draws or
+    /// feeds back more beyond the other path than is added.
+    #[test]
+    fn what_is_added_covers_the_difference() {
+        let (machine, _) = Machine::from_toml("t.toml", AXIS).unwrap();
+        let model = PowerModel::new(&machine);
+        let power = &model.axes[0];
+        let at = |speed_mm_s: f64, a: f64| {
+            let v = speed_mm_s * 1e-3;
+            let sign = if v == 0.0 { 0.0 } else { v.signum() };
+            power.electrical(v, power.force(Side::Motor, v, a, sign))
+        };
+        for (direction, accel) in [(0.01, 0.02), (0.05, 0.0), (0.1, 0.2)] {
+            let stray = Stray {
+                direction,
+                accel,
+                in_chords: false,
+            };
+            for top_mm_s in [1.0, 100.0, 900.0] {
+                let limits = [2000.0; AXES];
+                let added = model.stray_w(&model.converters[0], stray, &limits, top_mm_s, |axis| {
+                    axis == 0
+                });
+                for case in 0..84 {
+                    let u = f64::from(case / 4) / 10.0 - 1.0;
+                    let more = if case % 2 == 0 { direction } else { -direction };
+                    let a = if case % 4 < 2 { 2.0 } else { -2.0 };
+                    let own = at(u * top_mm_s, a);
+                    let changed = a * (1.0 + 2.0 * direction + accel);
+                    let other = at((u + more).clamp(-1.0, 1.0) * top_mm_s, changed);
+                    assert!((other - own).abs() <= added, "{own} {other} {added}");
+                }
+            }
+        }
     }
 }

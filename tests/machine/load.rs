@@ -135,10 +135,23 @@ fn defaults() {
 }
 
 #[test]
-fn independent_rapids_are_not_written_as_feeds() {
-    let machine = machine(&with("[path]\nrapid = \"independent\""));
+fn independent_rapids_and_clearance() {
+    let machine = machine(&with(
+        "[path]\nrapid = \"independent\"\nclearance = { X = 50, B = 5 }\nmax_feed_mm_min = 6000",
+    ));
     assert_eq!(machine.path.rapid, RapidPath::Independent);
-    assert_eq!(machine.controller.rapid_knob, RapidKnob::None);
+    // A rapid of one axis is a line anyway.
+    assert_eq!(machine.controller.rapid_knob, RapidKnob::G1);
+    assert_eq!(machine.path.max_feed_mm_s, 100.0);
+    let clear = |x: [f64; 2], b: f64| {
+        let [mut start, mut end] = [[0.0; 10]; 2];
+        [start[0], end[0]] = x;
+        [start[4], end[4]] = [b; 2];
+        machine.path.is_clear(machine.axis_set, &start, &end)
+    };
+    assert!(clear([50.0, 400.0], 5.0));
+    assert!(!clear([400.0, 49.9], 5.0) && !clear([50.0, 50.0], 4.9));
+    assert!(!clear([f64::NAN, 60.0], 5.0));
 }
 
 #[test]
