@@ -166,8 +166,8 @@ impl Path {
             let Some(clearance_mm) = clearance_mm else {
                 continue;
             };
-            let lowest_mm = start[axis].min(end[axis]);
-            if !(lowest_mm >= *clearance_mm) {
+            // A place that is not known is not clear.
+            if ![start[axis], end[axis]].iter().all(|at| at >= clearance_mm) {
                 return false;
             }
             clear = true;

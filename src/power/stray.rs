@@ -4,7 +4,8 @@
 //! With unit vectors of direction that are at most d apart, and accelerations that are at
 //! most α larger, the speed of an axis differs by up to d·v, and its acceleration by up to
 //! (2d + α)·â. So its power differs by no more than `(3d + α)·v·(m·â·k + b·v + Fc + |Fg|)/η`,
-//! and what is lost in copper by no more than `2·(2d + α)·(1 + 2d + α)` of R·F².
+//! and where the axis turns round elsewhere, its force by up to 2·Fc more: what is lost in
+//! copper differs by no more than `R·(2·F̂ + ΔF)·ΔF`, `ΔF = (2d + α)·F̂ + 2·Fc`.
 
 use super::axis::Side;
 use super::demand::Demand;
@@ -58,7 +59,8 @@ impl PowerModel {
                 + power.coulomb_most()
                 + power.gravity.abs();
             more_w += (d + force_share) * v * force * power.inverse_efficiency;
-            more_w += 2.0 * force_share * (1.0 + force_share) * power.copper * force * force;
+            let change = force_share * force + 2.0 * power.coulomb_most();
+            more_w += power.copper * (2.0 * force + change) * change;
         }
         more_w
     }

@@ -26,7 +26,8 @@ fn a_rapid_of_one_axis_is_a_line() {
     // 30000 mm/min by (400 − 100)/437.5.
     assert_eq!(
         text,
-        "G21 G90\nG9 G1 X400. F20571\nG9 Y300.\nY310. F500\nG4 P1\nG9 Z50. F20571\nG0 F500\nM30\n"
+        "G21 G90\nG4 P1\nG9 G1 X400. F20571\nG9 Y300.\nG1 Y310. F500\nG4 P1\nG9 G1 Z50. F20571\n\
+         G0 F500\nM30\n"
     );
 }
 
