@@ -95,8 +95,11 @@ proptest! {
             let (mut peak, mut regen) = (f64::MIN, 0.0_f64);
             let n = 4000;
             let d = row.duration_s;
-            for i in 0..=n {
-                let t = d * f64::from(i) / f64::from(n);
+            // Runs may end at the instant at which an axis begins to brake.
+            let mut times: Vec<f64> = (0..=n).map(|i| d * f64::from(i) / f64::from(n)).collect();
+            let end = ramp.duration_s() - since;
+            times.extend([top, d - top, end - 1e-9, end].map(|t| t.clamp(0.0, d)));
+            for t in times {
                 let s = power.electrical_w(ramp.at(since + t).0);
                 // Both sides of a switching instant.
                 let mut axes = vec![];
