@@ -308,7 +308,9 @@ fn gross_w(machine: &Machine, speed_mm_s: f64) -> f64 {
     .sum()
 }
 
-/// Peaks within 1e-6 above the samples and never below them.
+/// Peaks within 1e-6 above the samples and never below them. Where the terms cancel each
+/// other the search for an upper bound may end with its second tolerance, a hundred times
+/// the first: 1e-8 of the terms.
 fn peaks_agree(found: f64, sampled: f64, scale: f64) -> Result<(), TestCaseError> {
     prop_assert!(
         found >= sampled * (1.0 - 1e-12) - 1e-12 * scale,
@@ -316,7 +318,7 @@ fn peaks_agree(found: f64, sampled: f64, scale: f64) -> Result<(), TestCaseError
     );
     let above = found - sampled.max(0.0);
     prop_assert!(
-        above <= 1e-6 * sampled.abs() + 1e-9 * scale,
+        above <= 1e-6 * sampled.abs() + 1e-8 * scale,
         "{found} is too high, sampled {sampled}"
     );
     Ok(())
