@@ -98,6 +98,26 @@ pub(super) fn with_digit(number: &[u8], digit: u8) -> Vec<u8> {
     text
 }
 
+/// A coordinate as it is written, finer than any control takes.
+pub(super) fn rounded(value: f64) -> f64 {
+    let rounded = (value * DECIMALS).round() / DECIMALS;
+    // No -0.
+    if rounded == 0.0 { 0.0 } else { rounded }
+}
+
+/// A word with the blanks before it.
+pub(super) fn with_blanks(text: &[u8], word: Span) -> Span {
+    let before = text.get(..word.start as usize).unwrap_or_default();
+    let blanks = before
+        .iter()
+        .rev()
+        .take_while(|byte| matches!(byte, b' ' | b'\t'));
+    Span {
+        start: word.start - blanks.count() as u32,
+        end: word.end,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,25 +150,5 @@ mod tests {
         };
         assert_eq!(feed_again(&feed, 1.0), "1000.");
         assert_eq!(feed_again(&feed, 25.4), "39.3700787401");
-    }
-}
-
-/// A coordinate as it is written, finer than any control takes.
-pub(super) fn rounded(value: f64) -> f64 {
-    let rounded = (value * DECIMALS).round() / DECIMALS;
-    // No -0.
-    if rounded == 0.0 { 0.0 } else { rounded }
-}
-
-/// A word with the blanks before it.
-pub(super) fn with_blanks(text: &[u8], word: Span) -> Span {
-    let before = text.get(..word.start as usize).unwrap_or_default();
-    let blanks = before
-        .iter()
-        .rev()
-        .take_while(|byte| matches!(byte, b' ' | b'\t'));
-    Span {
-        start: word.start - blanks.count() as u32,
-        end: word.end,
     }
 }

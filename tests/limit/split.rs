@@ -1,5 +1,7 @@
 //! Blocks in several pieces of one line, with stepped accelerations.
 
+use std::fmt::Write as _;
+
 use super::{EXACT_STOP, RIG, Rig, Run};
 use crate::rows::Rows;
 use gwatt::machine::{Machine, PathMode};
@@ -208,13 +210,14 @@ fn any_line(random: &mut Random) -> (String, String, Reference) {
         let efficiency = [1.0, 0.85, 0.7][random.between(0.0, 2.999) as usize];
         top = f64::min(top, rapid / share);
         accel = f64::min(accel, own / share);
-        text += &format!(
+        let _ = write!(
+            text,
             "[axes.{letter}]\nrapid_mm_min = {:?}\naccel_mm_s2 = {:?}\nmass_kg = {mass:?}\n\
              coulomb_n = {friction:?}\nefficiency = {efficiency:?}\n",
             rapid * 6e4,
             own * 1e3
         );
-        block += &format!(" {letter}{delta}");
+        let _ = write!(block, " {letter}{delta}");
         axes.push(Axis {
             share,
             mass_kg: mass,

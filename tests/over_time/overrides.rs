@@ -212,6 +212,10 @@ struct Found {
 }
 
 /// Looks at so many programs, each at `overrides` random settings.
+#[allow(
+    clippy::too_many_lines,
+    reason = "one program after the other, step by step"
+)]
 fn sweep(seed: u64, programs: usize, overrides: usize) -> Found {
     let mut dice = Dice(seed);
     let mut found = Found::default();

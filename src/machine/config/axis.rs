@@ -146,6 +146,32 @@ impl Builder {
                 ),
             ],
         );
+        let (reference_mm_s, reference_mm) = self.reference(findings, table);
+        warn_unused_lead(findings, table);
+        let (rapid, accel, mass) = (rapid?, accel?, mass?);
+        plausible::linear(findings, table, &accel, &mass);
+        Some(Axis {
+            rapid_mm_s: rapid.value,
+            reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
+            reference_mm,
+            accel_mm_s2: accel.value,
+            jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
+            mass_kg: mass.value,
+            coulomb_n,
+            viscous_n_s_m,
+            gravity_n,
+            copper_w_n2,
+            si_per_unit: M_PER_MM,
+            ..self.blank()
+        })
+    }
+
+    /// Speed on the way to the reference point, mm/s, and its place, mm.
+    fn reference(
+        &self,
+        findings: &mut Findings<'_>,
+        table: &AxisTable,
+    ) -> (Option<f64>, Option<f64>) {
         let reference_mm_s = self.quantities.given(
             findings,
             [
@@ -168,23 +194,7 @@ impl Builder {
                 form("home_mm", table.home_mm.as_ref(), 1.0),
             ],
         );
-        warn_unused_lead(findings, table);
-        let (rapid, accel, mass) = (rapid?, accel?, mass?);
-        plausible::linear(findings, table, &accel, &mass);
-        Some(Axis {
-            rapid_mm_s: rapid.value,
-            reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
-            reference_mm,
-            accel_mm_s2: accel.value,
-            jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
-            mass_kg: mass.value,
-            coulomb_n,
-            viscous_n_s_m,
-            gravity_n,
-            copper_w_n2,
-            si_per_unit: M_PER_MM,
-            ..self.blank()
-        })
+        (reference_mm_s, reference_mm)
     }
 
     fn rotary(&self, findings: &mut Findings<'_>, table: &AxisTable) -> Option<Axis> {
