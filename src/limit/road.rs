@@ -20,7 +20,7 @@ pub(super) const MOST: f64 = 1.0 - 1e-5;
 /// What the drives' response takes where it is modelled, as a share of the limit.
 const RESPONSE: f64 = 4e-4;
 /// How much longer stretches are, and for how much less of the limit, where finer ones did
-/// not fit beside the block's neighbours.
+/// not fit next to the block's neighbours.
 const LONGER: f64 = 3.0;
 const LESS: f64 = 5e-3;
 /// Halvings in the search for an acceleration and for the top speed.
@@ -261,7 +261,7 @@ impl<'a> Road<'a> {
         self.close(&up.tops_mm_s, &down.tops_mm_s)
     }
 
-    /// Stretches for the stages, of which the last before the top and the first behind it
+    /// Stretches for the stages, of which the last before the top and the first after it
     /// meet at the speed that the way leaves.
     fn close(&self, up: &[f64], down: &[f64]) -> Result<Way, &'static str> {
         let [start_mm_s, end_mm_s] = self.ends_mm_s;

@@ -17,7 +17,7 @@ use crate::machine::{AxisValues, PathMode};
 use crate::plan::{is_independent, plan};
 use crate::power::{Assessment, Certificate, plans_lines};
 
-/// How often pieces are tried beside the block's neighbours, each time coarser ones.
+/// How often pieces are tried next to the block's neighbours, each time coarser ones.
 pub(super) const SPLIT_TRIES: u8 = 2;
 /// What pieces must bring in, as a share of the time.
 const GAIN: f64 = 1e-3;

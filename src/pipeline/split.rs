@@ -22,7 +22,7 @@ use crate::syntax::Word;
 /// takes, so that the pieces have one direction.
 const DECIMALS: f64 = 1e6;
 const DECIMALS_INCH: f64 = 1e7;
-/// How far a place may lie beside the line for that, mm.
+/// How far a place may lie off the line for that, mm.
 pub(super) const BESIDE_MM: f64 = 3e-6;
 /// Why blocks stay one that the limiter has not tried to divide.
 pub(super) const BLENDED: &str =

@@ -103,7 +103,7 @@ impl Outline {
         }
     }
 
-    /// Where a subprogram, or a main program (`main`), begins behind its header.
+    /// Where a subprogram, or a main program (`main`), begins after its header.
     pub(super) fn program(&self, name: &str, main: bool) -> Option<usize> {
         let mut programs = self.programs.iter();
         let found = programs

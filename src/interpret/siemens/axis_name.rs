@@ -49,7 +49,7 @@ impl Reading<'_, '_, '_> {
         Some(letter)
     }
 
-    /// `AXNAME("X")`, behind its name: the axis that a text names.
+    /// `AXNAME("X")`, after its name: the axis that a text names.
     pub(super) fn axis_of_text(&mut self, start: usize) -> Outcome<Val> {
         self.cursor.expect(b'(')?;
         let name = self.text()?;
