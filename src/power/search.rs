@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 2e-7;
 /// against its terms.
 const SCALE_SHARE: f64 = 1e-4;
 /// Samples in one attempt; then the tolerance grows.
-const BUDGET: u32 = 1500;
+const BUDGET: u32 = 6000;
 /// Growth of the tolerance from one attempt to the next.
 const RELAX: f64 = 100.0;
 /// Attempts.

@@ -225,8 +225,9 @@ fn any_print() -> impl Strategy<Value = Vec<String>> {
 }
 
 proptest! {
-    // The same programs each time: one in a thousand others has an arc that brakes for a slower
-    // line, of which the planner counts 5 % more at lower overrides than is counted without it.
+    // The same programs each time: of others one was found in which an arc before a slower line
+    // gets a bound over lower overrides that is 5 % higher without gliding (4.93 W, where no
+    // single override draws more than 4.68 W).
     #![proptest_config(ProptestConfig {
         rng_seed: RngSeed::Fixed(226),
         ..ProptestConfig::default()
