@@ -11,6 +11,7 @@ mod lathe;
 mod lines;
 mod no_word;
 mod obstacles;
+mod outputs;
 mod partial;
 mod random;
 mod reader;

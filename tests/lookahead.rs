@@ -8,6 +8,7 @@ mod linuxcnc;
 mod measured;
 mod overrides;
 mod profile;
+mod limited;
 mod recorded;
 mod recorder;
 mod rotary;

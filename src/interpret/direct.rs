@@ -197,6 +197,7 @@ impl Control<'_> {
             && self.corners.is_none()
             && self.special.left.is_none()
             && self.debts.is_empty()
+            && self.knobs.pending.is_none()
             && self.callee.is_none()
             && self.transfer.is_none()
     }

@@ -15,6 +15,8 @@ pub struct KnobState {
     pub path_accel_mm_s2: [f64; 3],
     /// Share of the rapid speed.
     pub rapid_factor: f64,
+    /// A knob that is set and does not act yet, with its value.
+    pub(super) pending: Option<(usize, f64)>,
 }
 
 impl KnobState {
@@ -28,6 +30,7 @@ impl KnobState {
             rapid_accel_mm_s2: accel,
             path_accel_mm_s2: [f64::INFINITY; 3],
             rapid_factor: 1.0,
+            pending: None,
         }
     }
 

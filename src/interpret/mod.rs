@@ -34,6 +34,7 @@ mod named_parameters;
 mod offsets;
 mod operator;
 mod osp;
+mod output_knob;
 mod parameter_file;
 mod parameters;
 mod pocket;

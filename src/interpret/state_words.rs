@@ -91,6 +91,7 @@ impl Control<'_> {
                 run.act(ActionKind::ToolChange, f64::from(number) / 10.0);
                 return true;
             }
+            660..=680 if self.output_knob(number, span, run) => return true,
             620..=680 => self.input_output(number, span, run),
             _ => self.saving(number, span, run),
         }

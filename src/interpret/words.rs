@@ -116,10 +116,9 @@ impl Words {
                 b'G' | b'M' => {
                     let number = code_number(word.value);
                     let knob = number.and_then(|number| {
-                        controller
-                            .knobs
-                            .iter()
-                            .position(|knob| knob.code == (word.letter, number))
+                        controller.knobs.iter().position(|knob| {
+                            knob.code == (word.letter, number) && knob.output().is_none()
+                        })
                     });
                     if let Some(knob) = knob {
                         let assigned = words

@@ -15,6 +15,9 @@ pub struct Permit {
     pub as_feed: bool,
     /// Such a feed may run in exact stop, in place of dwells before and after it.
     pub exact_stop: bool,
+    /// The axes stand before and after it, or may be made to by exact stop: a knob may be
+    /// turned for which they have to.
+    pub stands: bool,
     /// Why the block may not be written as several; `None`: it may.
     pub unsplit: Option<&'static str>,
     /// Why not, for a person; empty when all is permitted.
@@ -50,8 +53,8 @@ pub struct Change {
     pub feed: Option<f64>,
     /// The rapid is written as a feed.
     pub as_feed: bool,
-    /// It ends at rest since it runs in exact stop; otherwise a dwell follows where one is
-    /// needed.
+    /// It ends at rest since it runs in exact stop; otherwise a dwell follows a rapid that is
+    /// written as a feed where one is needed.
     pub exact_stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
@@ -108,7 +111,10 @@ impl Change {
         Self {
             feed: either(self.feed, other.feed, lower),
             as_feed: self.as_feed || other.as_feed,
-            exact_stop: self.exact_stop && other.exact_stop,
+            // Where a knob stops the axes it is exact stop that leaves the move whole.
+            exact_stop: self.exact_stop && other.exact_stop
+                || self.accel.filter(|_| self.exact_stop).is_some()
+                || other.accel.filter(|_| other.exact_stop).is_some(),
             rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
                 (a.0, a.1.min(b.1))
             }),
@@ -132,9 +138,9 @@ impl Change {
         if self.as_feed {
             changed.kind = MoveKind::Feed;
             changed.accel_mm_s2 = permit.feed_accel_mm_s2;
-            if self.exact_stop {
-                changed.path_mode = PathMode::ExactStop;
-            }
+        }
+        if self.exact_stop {
+            changed.path_mode = PathMode::ExactStop;
         }
         if let Some(feed) = self.feed {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);

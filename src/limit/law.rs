@@ -51,6 +51,7 @@ pub(super) fn preset(
                 .knob_values(knob, &accel, case.permit)
                 .ok_or_else(|| no_lever("acceleration"))?;
             change.accel = Some((knob, values));
+            change.exact_stop |= solver.halts(case, knob);
         }
     }
     Ok(change)

@@ -79,11 +79,15 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     if !permit.edit {
         return Levers::default();
     }
+    let acts = |index: &usize| {
+        let knob = machine.controller.knobs.get(*index);
+        knob.is_some_and(|knob| permit.stands || !knob.stands())
+    };
     if mv.kind != MoveKind::Rapid {
         let speed = (how.allowed.feed && permit.feed_word).then_some(SpeedLever::FeedWord);
         return Levers {
             speed,
-            accel: accel_knob(machine, KnobTarget::FeedAccel),
+            accel: accel_knob(machine, KnobTarget::FeedAccel).filter(acts),
         };
     }
     let speed = match rapid_knob(machine) {
@@ -91,10 +95,14 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         None => rapid_as_feed(machine, how, mv, permit).then_some(SpeedLever::AsFeed),
     };
     // A rapid written as a feed is under the knobs of feeds, which differ.
-    let accel = accel_knob(machine, KnobTarget::RapidAccel);
+    let accel = accel_knob(machine, KnobTarget::RapidAccel).filter(acts);
+    let both = |index: &usize| {
+        let knob = machine.controller.knobs.get(*index);
+        knob.is_some_and(|knob| knob.stands() && knob.target == KnobTarget::Accel)
+    };
     Levers {
         speed,
-        accel: accel.filter(|_| speed != Some(SpeedLever::AsFeed)),
+        accel: accel.filter(|index| speed != Some(SpeedLever::AsFeed) || both(index)),
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn best_pair(
     let time = |change: &Change| {
         let changed = change.apply(solver.machine, case.mv, case.permit);
         if solver.load(case, &changed) <= 1.0 + 1e-9 {
-            plan(solver.machine, &changed, solver.largest).duration_s
+            plan(solver.machine, &changed, solver.largest).duration_s + solver.stands_s(change)
         } else {
             f64::INFINITY
         }
@@ -80,9 +80,17 @@ pub(super) fn best_pair(
         .min_by(|a, b| time(a).total_cmp(&time(b)));
     let both = pair(f64::midpoint(low, high));
     match (best_single, both) {
-        (Some(single), Some(both)) if time(&both) < time(&single) * (1.0 - 1e-6) => Some(both),
-        (Some(single), _) => Some(single),
-        (None, both) => both,
+        (Some(single), Some(both)) => {
+            // A rapid stays one where a feed gains next to nothing.
+            let gain = if both.as_feed && !single.as_feed {
+                1e-3
+            } else {
+                1e-6
+            };
+            let sooner = time(&both) < time(&single) * (1.0 - gain);
+            Some(if sooner { both } else { single })
+        }
+        (single, both) => single.or(both),
     }
 }
 

@@ -224,7 +224,7 @@ impl<'m> Solver<'m> {
         let Case { mv, permit, .. } = case;
         let mut trial = Change {
             as_feed: lever == SpeedLever::AsFeed,
-            exact_stop: lever == SpeedLever::AsFeed && case.exact_stop,
+            exact_stop: lever == SpeedLever::AsFeed && case.exact_stop || with.exact_stop,
             ..*with
         };
         let base = trial.apply(self.machine, mv, permit);
@@ -308,6 +308,10 @@ impl<'m> Solver<'m> {
 
     /// The highest acceleration that fits, on top of what `with` changes.
     pub(super) fn accel(&self, case: Case<'_>, knob: usize, with: &Change) -> Option<Change> {
+        let with = &Change {
+            exact_stop: with.exact_stop || self.halts(case, knob),
+            ..*with
+        };
         let base = with.apply(self.machine, case.mv, case.permit);
         let mut moved = base.clone();
         let mut load_at = |factor: f64| {
@@ -336,6 +340,7 @@ impl<'m> Solver<'m> {
         let rounded = self.knob_values(knob, &values, case.permit)?;
         Some(Change {
             accel: Some((knob, rounded)),
+            exact_stop: with.exact_stop || self.halts(case, knob),
             ..*with
         })
     }
@@ -361,6 +366,14 @@ impl<'m> Solver<'m> {
             if values[axis] < data.min || values[axis] <= 0.0 {
                 return None;
             }
+        }
+        if data.output().is_some() {
+            // One value for all axes, whatever their rounding.
+            let axes = || self.machine.axis_set.iter();
+            let least = axes()
+                .map(|axis| values[axis])
+                .fold(f64::INFINITY, f64::min);
+            axes().for_each(|axis| values[axis] = least);
         }
         Some(values)
     }

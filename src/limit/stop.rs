@@ -4,7 +4,7 @@ use super::change::Change;
 use super::lever::Obstacle;
 use super::solver::{Case, Solver};
 use crate::interpret::{Corner, Move, MoveKind};
-use crate::machine::{CornerRule, PathMode, RapidJoint};
+use crate::machine::{CornerRule, Knob, PathMode, RapidJoint};
 use crate::plan::plan;
 
 /// The share of its time between dwells in which a feed must run in exact stop to be
@@ -13,11 +13,29 @@ const SOONER: f64 = 0.999;
 
 impl Solver<'_> {
     /// Whether a rapid became a feed that begins and ends at rest, since feeds
-    /// would be blended otherwise than rapids.
+    /// would be blended otherwise than rapids, or runs in exact stop while a knob is turned
+    /// for which the axes stand.
     pub(super) fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
+        let halts =
+            changed.path_mode == PathMode::ExactStop && rapid.path_mode != PathMode::ExactStop;
         self.machine.controller.planner.rapid_joint != RapidJoint::All
             && rapid.kind == MoveKind::Rapid
-            && changed.kind != MoveKind::Rapid
+            && (changed.kind != MoveKind::Rapid || halts)
+    }
+
+    /// Whether a change of acceleration needs exact stop: next to a stop that the knob
+    /// makes, `LinuxCNC` leaves a blended move only half of its acceleration.
+    pub(super) fn halts(&self, case: Case<'_>, knob: usize) -> bool {
+        let knob = self.machine.controller.knobs.get(knob);
+        knob.is_some_and(Knob::stands) && case.mv.path_mode == PathMode::LookAhead
+    }
+
+    /// How long the axes stand for a change and for what takes it back, s.
+    pub(super) fn stands_s(&self, change: &Change) -> f64 {
+        let knob = change
+            .accel
+            .and_then(|(knob, _)| self.machine.controller.knobs.get(knob));
+        knob.map_or(0.0, |knob| 2.0 * knob.change_s)
     }
 
     /// Such a feed as it runs where the dwells that make the stops leave it only half
@@ -51,19 +69,25 @@ impl Solver<'_> {
         if !case.permit.exact_stop || !self.gets_stops(case.mv, &changed) {
             return Ok(between_dwells);
         }
-        let Some(halved) = self.halved(case.mv, &changed) else {
+        let halved = self.halved(case.mv, &changed);
+        if halved.is_none() && between_dwells.accel.is_none() {
             return Ok(Change {
                 exact_stop: changed.path_mode == PathMode::LookAhead,
                 ..between_dwells
             });
-        };
+        }
         let exact = Case {
             exact_stop: true,
             ..case
         };
-        let time_s = |mv: &Move| plan(self.machine, mv, self.largest).duration_s;
+        let time_s = |mv: &Move, change: &Change| {
+            plan(self.machine, mv, self.largest).duration_s + self.stands_s(change)
+        };
+        let between_s = time_s(halved.as_ref().unwrap_or(&changed), &between_dwells);
         Ok(match solve(exact) {
-            Ok(change) if time_s(&self.changed(case, &change)) < SOONER * time_s(&halved) => change,
+            Ok(change) if time_s(&self.changed(case, &change), &change) < SOONER * between_s => {
+                change
+            }
             _ => between_dwells,
         })
     }

@@ -76,7 +76,14 @@ fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, c
     }
     let found: Vec<Levers> = window
         .iter()
-        .map(|member| levers(solver.machine, solver.how, member.mv, &member.permit))
+        .map(|member| {
+            // Here moves run into each other: no knob for which the axes stand.
+            let permit = Permit {
+                stands: false,
+                ..member.permit
+            };
+            levers(solver.machine, solver.how, member.mv, &permit)
+        })
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());

@@ -21,6 +21,8 @@ pub struct Controller {
     pub queue: Queue,
     /// Words that limit speed or acceleration, best first.
     pub knobs: Vec<Knob>,
+    /// Words that do so only where the machine file says what is wired to them.
+    pub wired: Vec<Knob>,
     /// How the speed of a rapid can be lowered without such a word.
     pub rapid_knob: RapidKnob,
 }
@@ -333,6 +335,27 @@ pub struct Knob {
     pub verified: bool,
     /// It acts between two moves that run into each other, without a stop.
     pub between_moves: bool,
+    /// The line after it, for which the axes stand; before that it does not act.
+    pub wait: Option<String>,
+    /// How long the axes stand for a change of it, s.
+    pub change_s: f64,
+}
+
+impl Knob {
+    /// Whether the axes stand while it is turned.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.wait.is_some()
+    }
+
+    /// The analog output that it sets.
+    #[must_use]
+    pub fn output(&self) -> Option<u16> {
+        match self.argument {
+            KnobArgument::Output(number) => Some(number),
+            _ => None,
+        }
+    }
 }
 
 /// What a knob acts on.
@@ -357,6 +380,8 @@ pub enum KnobArgument {
     Axes,
     /// One value behind any of these letters, the path's limit (`M204 P500 T500`).
     Path(Vec<u8>),
+    /// The number of an analog output, and a value for all axes (`M68 E0 Q0.5`).
+    Output(u16),
 }
 
 /// Unit of a knob's value.
@@ -364,6 +389,8 @@ pub enum KnobArgument {
 pub enum KnobUnit {
     /// Percent of the machine's limit; 100 takes it back.
     Percent,
+    /// A share of the machine's limit; 1 takes it back.
+    Share,
     /// Program units per s² (mm/s², or inch/s² after G20); the machine's own
     /// limit takes it back.
     PerSecondSquared,
@@ -376,6 +403,7 @@ impl KnobUnit {
     pub fn accel_mm_s2(self, axis: &Axis, value: f64, mm_per_unit: f64) -> f64 {
         match self {
             Self::Percent => axis.accel_mm_s2 * value / 100.0,
+            Self::Share => axis.accel_mm_s2 * value,
             Self::PerSecondSquared => value * unit_of(axis, mm_per_unit),
         }
     }
@@ -385,6 +413,7 @@ impl KnobUnit {
     pub fn value(self, axis: &Axis, accel_mm_s2: f64, mm_per_unit: f64) -> f64 {
         match self {
             Self::Percent => accel_mm_s2 / axis.accel_mm_s2 * 100.0,
+            Self::Share => accel_mm_s2 / axis.accel_mm_s2,
             Self::PerSecondSquared => accel_mm_s2 / unit_of(axis, mm_per_unit),
         }
     }

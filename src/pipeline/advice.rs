@@ -75,6 +75,7 @@ impl<'m> Adviser<'m> {
             feed_word: per_minute,
             as_feed: per_minute || apart,
             exact_stop: false,
+            stands: mv.path_mode == crate::machine::PathMode::ExactStop,
             unsplit: None,
             reason: "",
             reason_help: "",

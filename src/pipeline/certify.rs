@@ -17,7 +17,7 @@ use compare::compare;
 use pieces::{Found, Pieces};
 
 use super::batch::Batch;
-use super::expected::{Expected, Originals, added_mode, added_stop, different};
+use super::expected::{Expected, Originals, Stops, added_mode, added_stop, different};
 use super::tally::Tally;
 use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
@@ -64,8 +64,8 @@ pub(super) struct Verdict<'m, 'r> {
     /// lowered with it.
     before: Option<Place>,
     deepen_next: bool,
-    /// How long the dwells last that are put in for stops, s.
-    stop_s: f64,
+    /// The dwells that may be put in.
+    stops: Stops,
     /// Rows of the spindle in the written program that no row of the original
     /// has met yet.
     spindle: VecDeque<Assessment>,
@@ -304,7 +304,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         Self {
             model: PowerModel::new(machine),
             tally: Tally::new(machine, options, rows),
-            stop_s: machine.controller.language.shortest_dwell().1,
+            stops: Stops::of(machine),
             originals: Originals::default(),
             pieces: Pieces::default(),
             done: 0,
@@ -387,7 +387,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             return;
         }
         let original = self.originals.get(self.done).map(|original| &*original);
-        if matches!(step, Step::Move(mv) if added_stop(mv, original, self.stop_s)) {
+        if matches!(step, Step::Move(mv) if added_stop(mv, original, &self.stops)) {
             return;
         }
         if matches!(step, Step::Action(action) if added_mode(action, original)) {
@@ -431,8 +431,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         self.pass_to_move();
         let original = self.originals.get(self.judged).map(|original| &*original);
-        if added_stop(mv, original, self.stop_s) {
-            return;
+        if added_stop(mv, original, &self.stops) {
+            return self.tally.wait(after);
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             let place = (original.text, original.line);

@@ -3,7 +3,7 @@
 use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
-use crate::machine::{CornerRule, Machine, PathMode, Spindle, SpindleWait};
+use crate::machine::{CornerRule, Knob, Machine, PathMode, Spindle, SpindleWait};
 use crate::power::lowest_share;
 
 /// How the spindle counts.
@@ -149,6 +149,13 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         percent(limits.margin)
     ));
     conditions.extend(assumptions(machine));
+    let outputs = machine.controller.knobs.iter().filter_map(Knob::output);
+    conditions.extend(outputs.map(|number| {
+        format!(
+            "analog output {number} sets the share of all accelerations (M68 E{number}), and is 1 \
+             or was never set before the program"
+        )
+    }));
     conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),

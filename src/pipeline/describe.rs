@@ -86,9 +86,13 @@ pub(super) fn describe(
                 .min_by(|a, b| values[*a].total_cmp(&values[*b]))
         {
             let own = machine.axes[axis].map_or(1.0, |data| data.accel_mm_s2);
-            let percent = machine.controller.knobs.get(*knob).map(|knob| knob.unit)
-                == Some(KnobUnit::Percent);
-            row.value_before = Some(mv.accel_mm_s2[axis] * if percent { 100.0 / own } else { 1.0 });
+            let unit = machine.controller.knobs.get(*knob).map(|knob| knob.unit);
+            let scale = match unit {
+                Some(KnobUnit::Percent) => 100.0 / own,
+                Some(KnobUnit::Share) => 1.0 / own,
+                _ => 1.0,
+            };
+            row.value_before = Some(mv.accel_mm_s2[axis] * scale);
             row.value_after = Some(values[axis]);
         }
     }

@@ -242,11 +242,14 @@ impl Entry {
             .knobs
             .as_ref()
             .map_or(mv.accel_mm_s2, |knobs| knobs.feed_accel_mm_s2);
+        let may_stop = self.between_stops(machine) && self.may_stop_exactly(machine);
+        let blended_rapid = mv.kind == MoveKind::Rapid && mv.path_mode == PathMode::LookAhead;
         Permit {
             edit: reasons[0].is_none(),
             feed_word: reasons[..2] == [None, None],
             as_feed: reasons == [None; 3],
-            exact_stop: self.between_stops(machine) && self.may_stop_exactly(machine),
+            exact_stop: may_stop,
+            stands: !facts.compensated && (stops || blended_rapid && may_stop),
             unsplit: self.unsplit(mv),
             reason: reason_text,
             reason_help,

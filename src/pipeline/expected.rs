@@ -3,7 +3,7 @@
 use super::Row;
 use super::split::Line;
 use crate::interpret::{Action, ActionKind, Arc, Corner, Move, MoveKind};
-use crate::machine::{AxisSet, AxisValues, PathMode};
+use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
 use crate::power::Assessment;
 
 /// What the original does, in order.
@@ -41,6 +41,8 @@ pub(super) struct ExpectedMove {
     /// Its block has been changed; a rapid was written as a feed.
     pub(super) changed: bool,
     pub(super) as_feed: bool,
+    /// It was given exact stop.
+    pub(super) exact_stop: bool,
     /// It does not fit and could not be helped; the reason has been given.
     pub(super) hopeless: bool,
     /// The written program runs its line in pieces.
@@ -68,6 +70,7 @@ impl ExpectedMove {
             accel_mm_s2: assessment.accel_mm_s2,
             changed: false,
             as_feed: false,
+            exact_stop: false,
             hopeless: false,
             split: None,
             row: None,
@@ -103,12 +106,34 @@ impl Originals {
     }
 }
 
-/// Whether a move is the shortest dwell, `stop_s`, that the original does not have: it
-/// only makes the axes stop.
-pub(super) fn added_stop(mv: &Move, original: Option<&Expected>, stop_s: f64) -> bool {
-    let is_stop = |kind, dwell_s: f64| kind == MoveKind::Dwell && dwell_s == stop_s;
+/// How long the dwells last that may be put in, s: the shortest one, which only makes the
+/// axes stop, and what turning a knob takes for which they stand.
+#[derive(Debug, Clone)]
+pub(super) struct Stops {
+    shortest_s: f64,
+    knobs_s: Vec<f64>,
+}
+
+impl Stops {
+    pub(super) fn of(machine: &Machine) -> Self {
+        let knobs = machine.controller.knobs.iter();
+        Self {
+            shortest_s: machine.controller.language.shortest_dwell().1,
+            knobs_s: knobs
+                .filter(|knob| knob.stands())
+                .map(|knob| knob.change_s)
+                .collect(),
+        }
+    }
+}
+
+/// Whether a move is one of these dwells that the original does not have.
+pub(super) fn added_stop(mv: &Move, original: Option<&Expected>, stops: &Stops) -> bool {
+    let is_stop = |kind, dwell_s: f64| {
+        kind == MoveKind::Dwell && (dwell_s == stops.shortest_s || stops.knobs_s.contains(&dwell_s))
+    };
     is_stop(mv.kind, mv.dwell_s)
-        && !matches!(original, Some(Expected::Move(mv)) if is_stop(mv.kind, mv.dwell_s))
+        && !matches!(original, Some(Expected::Move(its)) if its.kind == mv.kind && its.dwell_s == mv.dwell_s)
 }
 
 /// Whether an action sets a path mode that the original does not set here: each move is
@@ -133,10 +158,13 @@ pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static s
         "another arc"
     } else if original.dwell_s != mv.dwell_s {
         "another dwell"
-    } else if !original.as_feed && original.corner != mv.corner && mv.moves_axes() {
+    } else if !(original.as_feed || original.exact_stop)
+        && original.corner != mv.corner
+        && mv.moves_axes()
+    {
         "other corners"
     } else if original.path_mode != mv.path_mode
-        && !(original.as_feed && mv.path_mode == PathMode::ExactStop)
+        && !((original.as_feed || original.exact_stop) && mv.path_mode == PathMode::ExactStop)
     {
         "another path mode"
     } else if original.loads != mv.loads {

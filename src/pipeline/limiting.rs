@@ -9,7 +9,7 @@ use std::thread;
 use super::batch::Batch;
 use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
-use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
+use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand, in_fixed_blocks};
 use super::front::read_whole;
 use super::lower::lower_further;
 use super::over_time::OverTime;
@@ -22,7 +22,7 @@ use super::{
     Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
 };
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
+use crate::limit::{Depths, Law, Limiter};
 use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
 use crate::power::PowerModel;
 
@@ -129,13 +129,23 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     };
     let mut ways = BTreeMap::new();
     let mut last: Option<LimitSummary> = None;
-    for way in [Way::Placed, Way::WrittenOut] {
+    // Next to a cycle that was written out another may draw more than it did.
+    for way in [
+        Way::Placed,
+        Way::WrittenOut,
+        Way::WrittenOut,
+        Way::WrittenOut,
+    ] {
         let refused = last.as_ref().unwrap_or(&first);
         if refused.certified || way == Way::WrittenOut && !how.allowed.expand {
             break;
         }
         let all = refused.reasons.len() >= Summary::KEPT;
+        let asked = ways.clone();
         ways.extend(refused.reasons.iter().map(|reason| (reason.line, way)));
+        if ways == asked {
+            break;
+        }
         let wanted = |line| {
             if all {
                 Some(way)
@@ -172,14 +182,6 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         },
         None => first,
     })
-}
-
-/// Whether blocks that may not be changed, as those of canned cycles and returns to the
-/// reference point, are among the reasons.
-fn in_fixed_blocks(summary: &LimitSummary) -> bool {
-    let mut reasons = summary.reasons.iter();
-    summary.reasons.len() >= Summary::KEPT
-        || reasons.any(|it| [UNTOUCHABLE, NO_KNOB].contains(&it.rule))
 }
 
 /// Limits a program as it stands, for all `paths` through it.

@@ -130,6 +130,12 @@ impl<'m, 'r> Tally<'m, 'r> {
         }
     }
 
+    /// Adds a dwell that was put in: its time, and what the machine draws meanwhile.
+    pub(super) fn wait(&mut self, assessment: &Assessment) {
+        self.summary.duration_s += assessment.duration_s;
+        self.energy_j += assessment.demand.energy_j;
+    }
+
     /// Adds a move to the figures, without a row and without advice.
     pub(super) fn add(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
         self.count(mv, mv.line, assessment, text, String::new);

@@ -395,6 +395,7 @@ impl<'m, 'p> Original<'m, 'p> {
         Expected::Move(ExpectedMove {
             changed: change.is_some(),
             as_feed: change.is_some_and(|change| change.as_feed),
+            exact_stop: change.is_some_and(|change| change.exact_stop),
             hopeless,
             row,
             ..ExpectedMove::of(mv, assessment)

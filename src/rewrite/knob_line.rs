@@ -5,7 +5,7 @@ use crate::machine::{ALL_AXES, AxisValues, Knob, KnobArgument, Machine};
 
 /// The words that give a knob these values for the machine's axes; `None` when
 /// its form cannot say it.
-pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String> {
+fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String> {
     let knob = machine.controller.knobs.get(index)?;
     let mut axes = machine.axis_set.iter();
     let first = values[axes.next()?];
@@ -27,8 +27,20 @@ pub(super) fn words(machine: &Machine, index: usize, values: &AxisValues) -> Opt
             }
             Some(text)
         }
-        KnobArgument::Path(_) => None,
+        KnobArgument::Output(number) if uniform => Some(format!(
+            "{} E{number} Q{}",
+            code(knob),
+            decimal(first, false)
+        )),
+        KnobArgument::Output(_) | KnobArgument::Path(_) => None,
     }
+}
+
+/// The lines that do so: one, or two where the axes wait until it acts.
+pub(super) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
+    let mut lines = vec![words(machine, index, values)?];
+    lines.extend(machine.controller.knobs.get(index)?.wait.clone());
+    Some(lines)
 }
 
 /// The word of a knob, such as `G131`.

@@ -64,8 +64,8 @@ impl<'m> Turned<'m> {
             if self.knobs.contains(&(knob, values)) {
                 continue;
             }
-            if let Some(words) = knob_line::words(self.machine, knob, &values) {
-                lines.push(words);
+            if let Some(words) = knob_line::lines(self.machine, knob, &values) {
+                lines.extend(words);
                 self.knobs.retain(|(turned, _)| *turned != knob);
                 self.knobs.push((knob, values));
             }
@@ -80,7 +80,8 @@ impl<'m> Turned<'m> {
         lines.extend(
             superfluous
                 .into_iter()
-                .filter_map(|knob| self.restore_one(knob, in_force)),
+                .filter_map(|knob| self.restore_one(knob, in_force))
+                .flatten(),
         );
         lines
     }
@@ -89,7 +90,7 @@ impl<'m> Turned<'m> {
     pub(super) fn restore(&mut self, in_force: InForce<'_>) -> Vec<String> {
         let mut lines = Vec::new();
         while let Some((knob, _)) = self.knobs.last().copied() {
-            lines.extend(self.restore_one(knob, in_force));
+            lines.extend(self.restore_one(knob, in_force).into_iter().flatten());
         }
         lines
     }
@@ -104,8 +105,8 @@ impl<'m> Turned<'m> {
         })
     }
 
-    /// A line that gives a knob the value of the original.
-    fn restore_one(&mut self, knob: usize, in_force: InForce<'_>) -> Option<String> {
+    /// Lines that give a knob the value of the original.
+    fn restore_one(&mut self, knob: usize, in_force: InForce<'_>) -> Option<Vec<String>> {
         self.knobs.retain(|(turned, _)| *turned != knob);
         let state = in_force.knobs?;
         let data = self.machine.controller.knobs.get(knob)?;
@@ -123,7 +124,7 @@ impl<'m> Turned<'m> {
                 _ => data.unit.value(own, accel, in_force.mm_per_unit),
             });
         }
-        knob_line::words(self.machine, knob, &values)
+        knob_line::lines(self.machine, knob, &values)
     }
 }
 

@@ -305,3 +305,30 @@ fn random_cycles_are_made_to_fit() {
 fn many_random_cycles_are_made_to_fit() {
     random_cycles(250);
 }
+
+/// Where the first cycle is written out its last rapid is a line of its own, from rest to
+/// rest, and so is the first of the second: that one draws more than before, and is written
+/// out as well.
+#[test]
+fn a_cycle_next_to_one_that_is_written_out_may_follow() {
+    let program = "G17 G99 G90 G21 F250\nG0 X0 Y0 Z50\nG81 X25 Y50 Z12 R75\n\
+                   G81 X25 Y75 Z100 R125\nM2\n";
+    let shop = shop("linuxcnc", 1000.0);
+    for power_w in [1000, 1100, 1150, 1200, 1250] {
+        let mut machine = format!(
+            "schema = 1\nname = \"mill\"\ncontroller = \"linuxcnc\"\n[converter]\n\
+             peak_power_w = {power_w}\n[limits]\nmargin = 0\n"
+        );
+        for (letter, mass, friction) in [("X", 600, 500), ("Y", 700, 500), ("Z", 500, 700)] {
+            let _ = write!(
+                machine,
+                "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 4000\nmass_kg = {mass}\n\
+                 coulomb_n = {friction}\n"
+            );
+        }
+        shop.put("mill.toml", &machine);
+        let text = limited(&shop, program, "feed,expand");
+        same_moves(&shop, &text);
+        assert!(text.contains("(G81 written out)"), "{power_w} W: {text}");
+    }
+}

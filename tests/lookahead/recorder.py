@@ -101,6 +101,7 @@ command.teleop_enable(0)
 command.wait_complete()
 command.home(-1)
 wait(lambda: all(status.homed[: status.joints]))
+halcmd("-i", "recorder.ini", "-f", "further.hal")
 for program, recording in jobs:
     try:
         run(program, recording)

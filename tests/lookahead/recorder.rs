@@ -84,11 +84,22 @@ fn hal(axes: usize) -> String {
 
 /// Speeds of the axes in each millisecond of each program; nothing where it failed.
 pub fn record(axes: &[AxisLimits], programs: &[String], speedup: u32) -> Vec<Vec<Vec<f64>>> {
+    record_with(axes, programs, speedup, "")
+}
+
+/// The same with further lines of HAL, once all pins exist.
+pub fn record_with(
+    axes: &[AxisLimits],
+    programs: &[String],
+    speedup: u32,
+    further: &str,
+) -> Vec<Vec<Vec<f64>>> {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let write = |name: &str, text: &str| std::fs::write(at(name), text).expect("a file");
     write("recorder.ini", &configuration(axes));
     write("recorder.hal", &hal(axes.len()));
+    write("further.hal", further);
     write("recorder.py", include_str!("recorder.py"));
     write("kept.var", "");
     write("tools.tbl", "T1 P1 D6 Z10\n");

@@ -16,7 +16,7 @@ const PROGRAMS: usize = 50;
 const WAIT_S: f64 = 0.03;
 
 /// Numbers between 0 and 1, the same in each run.
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
@@ -36,15 +36,15 @@ impl Random {
 }
 
 /// An axis with all that its power follows from.
-struct Any {
-    limits: AxisLimits,
+pub struct Any {
+    pub limits: AxisLimits,
     mass: f64,
     friction: f64,
     weight: f64,
 }
 
 impl Any {
-    fn new(letter: char, random: &mut Random) -> Self {
+    pub fn new(letter: char, random: &mut Random) -> Self {
         let rotary = "ABC".contains(letter);
         let weighs = "ZW".contains(letter);
         Self {
@@ -69,7 +69,7 @@ impl Any {
         }
     }
 
-    fn table(&self) -> String {
+    pub fn table(&self) -> String {
         let Self {
             limits: (letter, [speed, accel]),
             mass,
@@ -132,7 +132,7 @@ fn word(random: &mut Random) -> &'static str {
     }
 }
 
-fn program(axes: &[Any], random: &mut Random) -> String {
+pub fn program(axes: &[Any], random: &mut Random) -> String {
     let modes = [
         "G64",
         "G64 P0.05",
@@ -207,7 +207,7 @@ fn program(axes: &[Any], random: &mut Random) -> String {
 }
 
 /// Time in motion and largest power of a recording.
-fn recorded(axes: &[Any], rows: &[Vec<f64>]) -> Option<(f64, f64)> {
+pub fn recorded(axes: &[Any], rows: &[Vec<f64>]) -> Option<(f64, f64)> {
     let moves = |row: &Vec<f64>| row.iter().any(|speed| speed.abs() > 1e-9);
     let (first, last) = (rows.iter().position(moves)?, rows.iter().rposition(moves)?);
     let power_w = |at: &[Vec<f64>]| {

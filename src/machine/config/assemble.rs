@@ -6,8 +6,8 @@ use super::machine_file::{
 };
 use super::value::{At, Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, offsets, own_language, plausible, preset, response, servo,
-    spindle, tool, word,
+    axis, converter, drive_curve, offsets, outputs, own_language, plausible, preset, response,
+    servo, spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidPath};
@@ -28,6 +28,9 @@ pub(crate) fn machine(
     let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
     if let Some(table) = &file.language {
         own_language::take(findings, table, &mut controller.language);
+    }
+    if let Some(table) = &file.outputs {
+        outputs::take(findings, table, &mut controller);
     }
     let errors = file
         .limits

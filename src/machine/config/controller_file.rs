@@ -303,7 +303,9 @@ pub(crate) struct KnobTable {
     /// What it acts on.
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
-    /// What stands behind it: `= value`, a value per axis, or the path's value.
+    /// What stands behind it: `= value`, a value per axis, the path's value, or the number of
+    /// an analog output and its value, which counts where [outputs] of the machine file says
+    /// that it is wired.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
     /// Letters of the value, for `argument = "path"`.
@@ -322,6 +324,9 @@ pub(crate) struct KnobTable {
     /// Whether it acts between two moves that run into each other, without a stop, so
     /// that a block may be written as several of one line; default false.
     pub(crate) between_moves: Option<bool>,
+    /// A line after the word, for which the axes stand and before which it does not act;
+    /// default: it acts by itself.
+    pub(crate) wait: Option<String>,
 }
 
 /// What a knob acts on.
@@ -341,6 +346,7 @@ pub(crate) enum ArgumentName {
     Assign,
     Axes,
     Path,
+    Output,
 }
 
 /// Unit of a knob's value.
@@ -348,5 +354,6 @@ pub(crate) enum ArgumentName {
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum UnitName {
     Percent,
+    Share,
     PerSecondSquared,
 }

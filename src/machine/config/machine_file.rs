@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::controller_file::{CompensationTable, DistanceName, PointName};
 use super::offsets::OffsetsTable;
+use super::outputs::OutputsTable;
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, ResponseTime, Share,
@@ -37,6 +38,8 @@ pub(crate) struct MachineFile {
     pub(crate) language: Option<At<OwnLanguageTable>>,
     /// Work offsets that the control keeps, by the words that select them.
     pub(crate) offsets: Option<At<OffsetsTable>>,
+    /// Analog outputs of the control that act on the motion.
+    pub(crate) outputs: Option<At<OutputsTable>>,
     /// The axes by letter; at least one.
     #[schemars(required)]
     pub(crate) axes: Option<At<PerAxis<At<AxisTable>>>>,

@@ -17,6 +17,7 @@ mod load;
 mod look_ahead;
 mod machine_file;
 mod offsets;
+mod outputs;
 mod own_language;
 mod plausible;
 mod preset;

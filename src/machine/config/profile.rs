@@ -31,6 +31,7 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
         .flatten()
         .filter_map(|table| knob(findings, table))
         .collect();
+    let (wired, knobs) = knobs.into_iter().partition(|knob| knob.output().is_some());
     let planner_table = &file.planner.as_ref()?.value;
     Some(Controller {
         name: file.name.as_ref()?.value.clone(),
@@ -42,6 +43,7 @@ pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> 
         planner: planner(findings, planner_table)?,
         queue: queue(findings, planner_table),
         knobs,
+        wired,
         rapid_knob: rapid_knob(findings, planner_table),
     })
 }
@@ -310,12 +312,15 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         argument,
         unit: match knob.unit? {
             UnitName::Percent => KnobUnit::Percent,
+            UnitName::Share => KnobUnit::Share,
             UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
         },
         step: knob.step.as_ref()?.value,
         min: knob.min.as_ref()?.value,
         verified: knob.verified.unwrap_or(false),
         between_moves: knob.between_moves.unwrap_or(false),
+        wait: knob.wait.clone(),
+        change_s: 0.0,
     })
 }
 
@@ -330,6 +335,8 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
     Some(match argument.value {
         ArgumentName::Assign => KnobArgument::Assign,
         ArgumentName::Axes => KnobArgument::Axes,
+        // Which one, the machine file says.
+        ArgumentName::Output => KnobArgument::Output(0),
         ArgumentName::Path => {
             let mut list = Vec::new();
             for text in knob.letters.iter().flat_map(|letters| &letters.value) {

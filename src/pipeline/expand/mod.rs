@@ -15,11 +15,12 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use super::front::Front;
-use super::{Failure, Options};
+use super::{Failure, LimitSummary, Options, Summary};
 pub(super) use trace::Traced;
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Step;
+use crate::limit::{NO_KNOB, UNTOUCHABLE};
 use crate::machine::{Family, Machine};
 use crate::rewrite::{CycleBlock, Singles};
 use crate::source::{Span, lines, split_line_end};
@@ -86,6 +87,14 @@ impl Default for Series {
             held: BTreeMap::new(),
         }
     }
+}
+
+/// Whether blocks that may not be changed, as those of canned cycles and returns to the
+/// reference point, are among the reasons.
+pub(super) fn in_fixed_blocks(summary: &LimitSummary) -> bool {
+    let mut reasons = summary.reasons.iter();
+    summary.reasons.len() >= Summary::KEPT
+        || reasons.any(|it| [UNTOUCHABLE, NO_KNOB].contains(&it.rule))
 }
 
 /// Writes cycles in another way where `way` asks for that of one of their lines; it holds

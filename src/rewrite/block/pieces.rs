@@ -56,6 +56,8 @@ impl Rewriter<'_> {
         };
         for line in self.turned.turn(change, acted, in_force) {
             self.insert_line(&line, out);
+            let knobs = &self.machine.controller.knobs;
+            self.stopped |= knobs.iter().any(|knob| knob.wait.as_ref() == Some(&line));
         }
     }
 
