@@ -29,6 +29,8 @@ spec.loader.exec_module(fit_rate)
 CALL = re.compile(r"^\s*\d+\s+N(?:\.+|\d*)\s*([A-Za-z_0-9]+)\((.*)\)\s*$")
 MOVES = {"STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED", "NURBS_FEED", "STRAIGHT_PROBE", "RIGID_TAP"}
 OFFSETS = {"SET_G5X_OFFSET", "SET_G92_OFFSET", "SET_XY_ROTATION", "USE_TOOL_LENGTH_OFFSET"}
+# Moves that obey F.
+FED = {"STRAIGHT_FEED", "ARC_FEED", "NURBS_FEED", "STRAIGHT_PROBE"}
 # What says nothing of the motion, or only how it is run.
 PASSED = {"COMMENT", "MESSAGE", "SET_FEED_RATE", "SET_FEED_MODE", "SET_MOTION_CONTROL_MODE", "SET_NAIVECAM_TOLERANCE",
           "SELECT_PLANE", "USE_LENGTH_UNITS"}
@@ -122,7 +124,7 @@ def difference(before, after):
             if far or any(abs(a - b) > TOLERANCE for a, b in zip(*values)):
                 return f"call {place}: {was[:2]} became {now[:2]}"
         if was[0] in MOVES:
-            if not turned and was[0] != "STRAIGHT_TRAVERSE" and now[2] > was[2] * (1.0 + 1e-6) + 1e-4:
+            if was[0] in FED and not turned and now[2] > was[2] * (1.0 + 1e-6) + 1e-4:
                 return f"call {place}: the feed of {was[:2]} went up from {was[2]} to {now[2]}"
             # A line that ends at rest is the same in every mode.
             stops = "EXACT_STOP" in now[3] or now[6] and was[0] != "ARC_FEED"

@@ -128,6 +128,7 @@ fn controller() -> Controller {
             look_ahead: None,
         },
         knobs: Vec::new(),
+        wired: Vec::new(),
         rapid_knob: RapidKnob::None,
     }
 }

@@ -112,9 +112,9 @@ fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
     limit_expanded(input, machine, paths, how, output, rows, first)
 }
 
-/// Writes canned cycles in another way: first the ways to their holes stand by
-/// themselves, then, where that is not enough and permitted, all their moves do. What
-/// came of the program as it stands is `first`.
+/// Writes canned cycles in another way: first the ways to their holes stand by themselves,
+/// then, where that is not enough and permitted, all their moves do, and those of cycles that
+/// draw more next to them. What came of the program as it stands is `first`.
 fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
     machine: &Machine,
@@ -129,7 +129,6 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     };
     let mut ways = BTreeMap::new();
     let mut last: Option<LimitSummary> = None;
-    // Next to a cycle that was written out another may draw more than it did.
     for way in [
         Way::Placed,
         Way::WrittenOut,
