@@ -108,13 +108,12 @@ impl Change {
     #[must_use]
     pub fn lower(&self, other: &Self) -> Self {
         let lower = |a: f64, b: f64| a.min(b);
+        let whole = |change: &Self| change.exact_stop && change.accel.is_some();
         Self {
             feed: either(self.feed, other.feed, lower),
             as_feed: self.as_feed || other.as_feed,
             // Where a knob stops the axes it is exact stop that leaves the move whole.
-            exact_stop: self.exact_stop && other.exact_stop
-                || self.accel.filter(|_| self.exact_stop).is_some()
-                || other.accel.filter(|_| other.exact_stop).is_some(),
+            exact_stop: self.exact_stop && other.exact_stop || whole(self) || whole(other),
             rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
                 (a.0, a.1.min(b.1))
             }),

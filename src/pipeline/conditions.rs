@@ -99,6 +99,17 @@ fn ways_conditions(paths: &[Options]) -> impl Iterator<Item = String> {
     [Some(blocks.to_owned()), probes].into_iter().flatten()
 }
 
+/// Which outputs act on the motion.
+fn output_conditions(machine: &Machine) -> impl Iterator<Item = String> {
+    let outputs = machine.controller.knobs.iter().filter_map(Knob::output);
+    outputs.map(|number| {
+        format!(
+            "analog output {number} sets the share of all accelerations (M68 E{number}), and is 1 \
+             or was never set before the program"
+        )
+    })
+}
+
 /// What the figures rest on, in plain sentences; `paths` are the ways through the program.
 pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary) -> Vec<String> {
     let Some(options) = paths.first() else {
@@ -149,13 +160,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         percent(limits.margin)
     ));
     conditions.extend(assumptions(machine));
-    let outputs = machine.controller.knobs.iter().filter_map(Knob::output);
-    conditions.extend(outputs.map(|number| {
-        format!(
-            "analog output {number} sets the share of all accelerations (M68 E{number}), and is 1 \
-             or was never set before the program"
-        )
-    }));
+    conditions.extend(output_conditions(machine));
     conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),

@@ -304,8 +304,7 @@ pub(crate) struct KnobTable {
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
     /// What stands behind it: `= value`, a value per axis, the path's value, or the number of
-    /// an analog output and its value, which counts where [outputs] of the machine file says
-    /// that it is wired.
+    /// an analog output ([outputs] of the machine file) with its value.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
     /// Letters of the value, for `argument = "path"`.
