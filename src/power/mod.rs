@@ -46,6 +46,7 @@ mod sample;
 mod search;
 mod slower;
 mod overlap;
+mod overlap_lower;
 mod spindle;
 mod spindle_state;
 mod spindle_trace;
