@@ -37,7 +37,7 @@ impl Control<'_> {
                 GCode::LatheCycle(number) => return self.lathe_cycle(number, span, run),
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
-                GCode::RestoreOffset => self.position.restore_offset(),
+                GCode::RestoreOffset => self.restore_offset(span, run),
                 GCode::SaveReference => self.save_reference(number, span, run),
                 GCode::DataSetting => return self.data_setting(span, run),
                 GCode::LocalOffset => return self.local_offset(span, run),

@@ -146,7 +146,7 @@ impl Position {
             Start::At(at) => (at, AxisSet::default()),
             Start::Unknown => ([0.0; AXES], AxisSet((1 << AXES) - 1)),
         };
-        let offsets = Offsets::new(machine, reading.parameters.as_deref());
+        let offsets = Offsets::new(machine, reading);
         Self {
             at,
             unknown,
@@ -216,10 +216,5 @@ impl Position {
     /// G92.1 (`forget`) and G92.2.
     pub(super) fn clear_offset(&mut self, forget: bool) {
         self.change(|offsets| offsets.clear_g92(forget));
-    }
-
-    /// G92.3.
-    pub(super) fn restore_offset(&mut self) {
-        self.change(Offsets::restore_g92);
     }
 }

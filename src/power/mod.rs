@@ -11,6 +11,7 @@
 mod assess;
 mod assessment;
 mod ahead;
+mod alone;
 mod arc;
 mod arc_energy;
 mod arc_piece;
