@@ -254,6 +254,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         let spare = self.spare.pop();
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        let line_files = line.files;
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         if self.limiter.splits() && self.table.is_none() {
             entry.keep_places(line.interpreter);
@@ -262,6 +263,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.may_skip |=
             entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
         if let Some(table) = &self.table {
+            self.tally.learn_files(line_files);
+            self.reasons.learn_files(line_files);
             entry.skips = table.skips;
             // A line that runs again would meet another motion word.
             let without = entry.facts.no_motion_word && !table.may_get_word();
@@ -483,8 +486,13 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
-            self.reasons
-                .push(0, "edit", message, "change the block by hand", &entry.text);
+            self.reasons.push(
+                (0, 0),
+                "edit",
+                message,
+                "change the block by hand",
+                &entry.text,
+            );
             self.batch.bytes.extend_from_slice(&entry.text);
         }
         self.batch.end_block(start, &mut entry);
