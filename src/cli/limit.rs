@@ -93,7 +93,7 @@ pub fn allowed(list: &[Allow]) -> Allowed {
 /// See [`pipeline::Strategy`].
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Strategy {
-    /// The machine's presets for combinations of axes
+    /// The machine's presets for combinations of axes, where a move does not fit
     Preset,
     /// Speed alone
     Speed,
@@ -110,7 +110,7 @@ pub enum Strategy {
 pub enum Law {
     /// Solved for the real block
     Exact,
-    /// The square of limit/peak on nominal values, for comparison
+    /// The square of limit/peak on nominal values where a move does not fit, for comparison
     Patent,
 }
 

@@ -198,7 +198,12 @@ pub fn set_text(set: &SetSummary, delivered: bool) -> String {
     if !delivered {
         return "nothing is written: the programs are certified together, or none is\n".to_owned();
     }
-    let mut text = "files of this certificate:\n".to_owned();
+    let heading = if set.certified() {
+        "files of this certificate:\n"
+    } else {
+        "files that are written without a certificate:\n"
+    };
+    let mut text = heading.to_owned();
     for file in &set.files {
         let what = match file.edited_lines {
             0 => "as it was".to_owned(),

@@ -377,15 +377,15 @@ fn with_partial_files_are_written_that_do_not_fit_yet() {
 fn cycles_of_a_program_are_written_out_next_to_calls() {
     let shop = shop("iso");
     let drilled = "G21 G90 G94\nG0 X1000. Y0. Z10.\nG81 X0. Z-5. R1. F200\nY1000.\nG80\n";
-    shop.put("drill.nc", format!("{drilled}M30\n"));
-    shop.put("call.nc", format!("{drilled}G0 X1000.\nM98 P100\nM30\n"));
-    let alone = shop.run(&["limit", "drill.nc", "-m", "rig.toml", "-o", "alone.nc"]);
-    assert_eq!(alone.code, 0, "{}", alone.stderr);
-    fits(&shop, &["call.nc"]);
-    let (alone, called) = (shop.get("alone.nc"), shop.get("fit/call.nc"));
-    let holes = alone.strip_suffix("M30\n").unwrap();
-    assert!(called.starts_with(holes), "{called}");
-    assert_eq!(shop.get("fit/O0100.nc"), HOME_OF_BOTH);
+    shop.put("drill.nc", format!("{drilled}G0 X1000.\nM98 P100\nM30\n"));
+    fits(&shop, &["drill.nc"]);
+    // The way to each hole stands before the cycle.
+    let holes = "G0\nG1 X0. F24000\nG0\nG81 X0. Z-5. R1. F200\nG1 Y1000. F24000\nG0 F200\n\
+                 G81 Y1000. R1. Z-5.\nG80\n";
+    let written = shop.get("fit/drill.nc");
+    assert!(written.contains(holes), "{written}");
+    let home = HOME_OF_BOTH.replace("G0\n", "G0 F200\n");
+    assert_eq!(shop.get("fit/O0100.nc"), home);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::Trouble;
+use super::{Flow, Place, Trouble};
 use crate::interpret::position::Reading;
 use crate::interpret::shelf::Shelf;
 use crate::interpret::transfer::Label;
@@ -200,6 +200,18 @@ impl Library {
         self.loaded.push(shown);
         self.paths.push(path.to_owned());
         self.numbers.push(number);
+    }
+}
+
+impl Flow {
+    /// Where the files that were read so far lie.
+    pub(crate) fn paths(&self) -> &[PathBuf] {
+        self.library.paths()
+    }
+
+    /// The number of a text, by which moves and reports know it.
+    pub(crate) fn number(&self, place: Place) -> u16 {
+        self.library.number(place.text)
     }
 }
 

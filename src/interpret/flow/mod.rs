@@ -15,7 +15,6 @@ mod siemens;
 mod text;
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 use self::library::Library;
 pub use self::limits::Limits;
@@ -212,16 +211,6 @@ impl Flow {
     /// Names of the files of subprograms, by number from 1 on.
     pub(crate) fn files(&self) -> &[String] {
         self.library.names()
-    }
-
-    /// Where the files that were read so far lie.
-    pub(crate) fn paths(&self) -> &[PathBuf] {
-        self.library.paths()
-    }
-
-    /// The number of a text, by which moves and reports know it.
-    pub(crate) fn number(&self, place: Place) -> u16 {
-        self.library.number(place.text)
     }
 
     /// Lines of the program itself.

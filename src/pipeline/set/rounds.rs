@@ -243,7 +243,26 @@ impl<'a> Job<'a> {
             }
             programs.push(summary);
         }
+        share_reasons(&mut programs);
         Ok(programs)
+    }
+}
+
+/// Why a line of a shared file cannot be helped is found in the first of its runs: it is the
+/// reason of all programs that run it.
+fn share_reasons(programs: &mut [LimitSummary]) {
+    let all = programs.iter().flat_map(|it| &it.reasons);
+    let shared: Vec<_> = all.filter(|it| it.file.is_some()).cloned().collect();
+    for program in programs.iter_mut().filter(|it| !it.certified) {
+        for reason in &shared {
+            let unfit = &program.after.unfit;
+            let runs = unfit
+                .iter()
+                .any(|it| Some(&it.file) == reason.file.as_ref() && it.line == reason.line);
+            if runs && !program.reasons.contains(reason) {
+                program.reasons.push(reason.clone());
+            }
+        }
     }
 }
 
