@@ -14,6 +14,7 @@ Examples:
   gwatt limit part.ngc -m vmc --dry-run      show the edit as a diff
   gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
   gwatt limit - -m vmc < part.ngc > fit.ngc
+  gwatt limit a.nc b.nc -m vmc --with-subprograms -o fit    with O-numbers and macros
 
 Nothing is written unless the result is certified: it is read, planned and
 evaluated again, and every move fits.";
@@ -22,17 +23,23 @@ evaluated again, and every move fits.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct LimitArgs {
-    /// The program, or - for standard input
-    pub program: PathBuf,
+    /// The program, or - for standard input; several with --with-subprograms
+    #[arg(required = true, value_name = "PROGRAM")]
+    pub programs: Vec<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub machine: MachineArgs,
-    /// Write the program here [default: standard output]
+    /// Write the program here [default: standard output]; with --with-subprograms, the
+    /// files into this folder
     #[arg(short, long, value_name = "OUT", conflicts_with = "in_place")]
     pub output: Option<PathBuf>,
     /// Replace the program, and keep it as PROGRAM.bak
     #[arg(long)]
     pub in_place: bool,
+    /// Write the files of subprograms that the programs call as well, all certified
+    /// together: a subprogram of several programs gets what is right for all of them
+    #[arg(long)]
+    pub with_subprograms: bool,
     /// Write no program; print what would change as a unified diff
     #[arg(long)]
     pub dry_run: bool,
@@ -86,7 +93,7 @@ pub fn allowed(list: &[Allow]) -> Allowed {
 /// See [`pipeline::Strategy`].
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Strategy {
-    /// The machine's presets for combinations of axes
+    /// The machine's presets for combinations of axes, where a move does not fit
     Preset,
     /// Speed alone
     Speed,
@@ -103,7 +110,7 @@ pub enum Strategy {
 pub enum Law {
     /// Solved for the real block
     Exact,
-    /// The square of limit/peak on nominal values, for comparison
+    /// The square of limit/peak on nominal values where a move does not fit, for comparison
     Patent,
 }
 

@@ -92,6 +92,8 @@ impl Setup {
                     repeated_moves: reading.max_moves,
                     idle_lines: reading.max_idle_lines,
                 },
+                shelf: None,
+                text: 0,
             },
             certificate: None,
             once: reading.once,

@@ -169,7 +169,7 @@ impl<'m> Interpreter<'m> {
             moved: false,
             has_program_number: false,
             run: 1,
-            text: 0,
+            text: reading.text,
             parameters: Parameters::new(machine.controller.language.family),
             traces: Traces::default(),
             transfer: None,

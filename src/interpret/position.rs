@@ -12,6 +12,7 @@ use super::frame::Frame;
 use super::given::GivenVariable;
 use super::offsets::Offsets;
 use super::parameter_file::ParameterFile;
+use super::shelf::Shelf;
 use super::tool_table::ToolTable;
 use crate::machine::{AXES, AxisSet, AxisValues, Machine};
 
@@ -108,6 +109,10 @@ pub struct Reading {
     pub sub_paths: Arc<[PathBuf]>,
     /// Where repetition stops.
     pub limits: Limits,
+    /// Files that stand for those on the disk, where several are read together.
+    pub shelf: Option<Arc<Shelf>>,
+    /// The program's own number among them.
+    pub text: u16,
 }
 
 impl Default for Reading {
@@ -121,6 +126,8 @@ impl Default for Reading {
             probe: None,
             sub_paths: Arc::default(),
             limits: Limits::default(),
+            shelf: None,
+            text: 0,
         }
     }
 }

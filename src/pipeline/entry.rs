@@ -2,7 +2,7 @@
 
 use super::front::Line;
 use super::split::Places;
-use super::table::LineKey;
+use super::table::{IN_A_FILE, LineKey};
 use crate::interpret::{
     CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step, TURNING_CYCLE,
 };
@@ -227,6 +227,10 @@ impl Entry {
                 "the way is gone by a feed before it where the places are known: reference_mm of \
                  the axes, the work offset ([offsets] or --parameters) and the tool's length \
                  (--tool-table); or give the speed of the return, reference_mm_min"
+            }
+            IN_A_FILE => {
+                "--with-subprograms writes the files of subprograms too, certified together with \
+                 all programs that are given"
             }
             PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
                 "program G98 (feed per minute) and F in it before the rapid"

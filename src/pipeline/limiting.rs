@@ -7,23 +7,19 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 use super::batch::Batch;
-use super::certify::{Certified, Certifier, Reasons};
-use super::conditions::conditions;
+use super::certify::{Certified, Certifier};
+use super::conclusion::{check_strategy, conclude, holds_one_way};
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
 use super::front::read_whole;
 use super::lower::lower_further;
-use super::over_time::OverTime;
 use super::relay::no_thread;
-use super::split::impossible;
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
 use super::writer::{Writer, Written};
-use super::{
-    Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
-};
+use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
-use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
+use crate::limit::{Depths, Limiter, NO_KNOB, UNTOUCHABLE};
+use crate::machine::Machine;
 use crate::power::PowerModel;
 
 /// Pieces that may wait for the certifier.
@@ -78,18 +74,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     };
     let errors = |found: &&Diagnostic| found.severity == Severity::Error;
     if let Some(found) = otherwise.iter().find(errors).filter(|_| as_asked.certified) {
-        let message = format!(
-            "this holds only for the blocks with / that are skipped or executed as --block-delete \
-             says; otherwise {}",
-            found.message
-        );
-        let warning = Diagnostic {
-            severity: Severity::Warning,
-            rule: "holds-one-way",
-            message,
-            help: None,
-            ..found.clone()
-        };
+        let warning = holds_one_way(found.clone());
         as_asked.before.notes.push(warning);
     }
     Ok(as_asked)
@@ -135,7 +120,8 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             break;
         }
         let all = refused.reasons.len() >= Summary::KEPT;
-        ways.extend(refused.reasons.iter().map(|reason| (reason.line, way)));
+        let reasons = refused.reasons.iter().filter(|it| it.file.is_none());
+        ways.extend(reasons.map(|reason| (reason.line, way)));
         let wanted = |line| {
             if all {
                 Some(way)
@@ -176,7 +162,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
 
 /// Whether blocks that may not be changed, as those of canned cycles and returns to the
 /// reference point, are among the reasons.
-fn in_fixed_blocks(summary: &LimitSummary) -> bool {
+pub(super) fn in_fixed_blocks(summary: &LimitSummary) -> bool {
     let mut reasons = summary.reasons.iter();
     summary.reasons.len() >= Summary::KEPT
         || reasons.any(|it| [UNTOUCHABLE, NO_KNOB].contains(&it.rule))
@@ -239,7 +225,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
 }
 
 /// Why there is no further round.
-fn last_round(depths: &Depths) -> Diagnostic {
+pub(super) fn last_round(depths: &Depths) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
         "last-round",
@@ -280,15 +266,14 @@ impl Job<'_> {
         let whole = Whole {
             machine,
             target,
-            rungs,
-            paths,
             how,
-            depths: &depths,
         };
+        let source = (paths, &depths, rungs);
         let [options] = paths else {
             return whole.limit(
                 input,
                 output,
+                source,
                 rows.as_mut().map(|rows| as_sink(&mut **rows)),
             );
         };
@@ -322,6 +307,7 @@ impl Job<'_> {
         whole.limit(
             input,
             output,
+            source,
             rows.as_mut().map(|rows| as_sink(&mut **rows)),
         )
     }
@@ -339,7 +325,7 @@ fn restart(
     }
 }
 
-fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
+pub(super) fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
     rows
 }
 
@@ -396,104 +382,4 @@ fn send(
     sender
         .send(full)
         .map_err(|_| Failure::Output(std::io::ErrorKind::BrokenPipe.into()))
-}
-
-fn conclude(
-    machine: &Machine,
-    target: &Machine,
-    paths: &[Options],
-    how: LimitOptions,
-    written: Written,
-    certified: Certified,
-) -> LimitSummary {
-    let Written {
-        mut before,
-        edited_lines,
-        mut reasons,
-        may_skip,
-    } = written;
-    let Certified {
-        summary: mut after,
-        reasons: found,
-        deeper: _,
-    } = certified;
-    if target != machine {
-        // What cannot reach the lower limit keeps the machine's own, or else the
-        // figures show it.
-        reasons = Reasons::default();
-    }
-    reasons.extend(found);
-    let missed = after.over_time.iter().filter(|it| !it.rating.fits());
-    for reason in missed.map(OverTime::reason) {
-        reasons.count += 1;
-        reasons.list.push(reason);
-    }
-    let slower = reasons.only_power();
-    reasons.list.sort_by_key(|reason| reason.line);
-    reasons.list.truncate(Summary::KEPT);
-    for summary in [&mut before, &mut after] {
-        summary.conditions = conditions(machine, paths, summary);
-    }
-    if before
-        .notes
-        .iter()
-        .any(|note| note.rule == "no-motion-word")
-    {
-        let taken = "blocks before the first motion word are taken for rapids (G0)";
-        after.conditions.push(taken.to_owned());
-    }
-    let rooms = machine.path.clearance_mm.iter().zip(ALL_AXES);
-    let rooms: Vec<String> = rooms
-        .filter_map(|(room, axis)| Some(format!("{} {}", char::from(axis.letter()), (*room)?)))
-        .collect();
-    let each_for_itself = machine.path.rapid == RapidPath::Independent;
-    if how.allowed.straighten && each_for_itself && !rooms.is_empty() {
-        after.conditions.push(format!(
-            "rapids of several axes may run along lines beyond the clearance ({}, machine \
-             coordinates)",
-            rooms.join(", ")
-        ));
-    }
-    let certified = reasons.count == 0 && after.fits();
-    LimitSummary {
-        before,
-        after,
-        edited_lines,
-        may_skip,
-        certified,
-        slower,
-        reasons: reasons.list,
-    }
-}
-
-/// A strategy that needs a word which the controller lacks is refused.
-fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
-    let accel = machine.controller.knobs.iter().any(|knob| {
-        knob.verified
-            && knob.target != KnobTarget::RapidSpeed
-            && !matches!(knob.argument, KnobArgument::Path(_))
-    });
-    let name = &machine.controller.name;
-    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
-    match how.strategy {
-        Strategy::Accel if !accel => unsuitable(format!(
-            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
-        )),
-        Strategy::Preset if machine.presets.is_empty() => {
-            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
-        }
-        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
-            unsuitable(format!(
-                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
-            ))
-        }
-        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
-            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
-        }
-        Strategy::Split => match impossible(machine) {
-            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
-            None => Ok(()),
-        },
-        _ => Ok(()),
-    }
 }

@@ -1,7 +1,7 @@
 //! What is known and decided about the lines of a program that has calls or
 //! loops: a line gets one change, which must suit each of its runs.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use super::entry::Entry;
 use crate::interpret::{Corner, Facts, FeedMode, KnobState, MoveKind};
@@ -9,6 +9,10 @@ use crate::limit::Change;
 use crate::machine::Machine;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
+
+/// Why a line of a subprogram's file is not changed.
+pub(super) const IN_A_FILE: &str =
+    "it stands in a file of subprograms, which other programs may call";
 
 /// A line: which text it stands in (0 is the program itself, others are files of
 /// subprograms), and its number from 1.
@@ -20,6 +24,10 @@ pub(super) struct Table {
     lines: HashMap<LineKey, Entered>,
     /// See [`Table::new`].
     pub(super) skips: bool,
+    /// Files of subprograms are written too: their lines may change.
+    with_files: bool,
+    /// How many of the texts are programs themselves; those are the first.
+    programs: u16,
     /// A block before any motion word cannot have one: then none gets one.
     without_word: bool,
 }
@@ -71,7 +79,19 @@ impl Table {
         Self {
             lines: HashMap::new(),
             skips,
+            with_files: false,
+            programs: 1,
             without_word: false,
+        }
+    }
+
+    /// The same for several programs and the files of subprograms that they call, which are
+    /// written as well.
+    pub(super) fn with_files(self, programs: u16) -> Self {
+        Self {
+            with_files: true,
+            programs,
+            ..self
         }
     }
 
@@ -120,9 +140,10 @@ impl Table {
 
     /// All runs are seen.
     pub(super) fn settle(&mut self) {
+        let programs = self.programs;
         let fixed = |(key, entered): (&LineKey, &Entered)| {
             entered.sight.no_motion_word
-                && (key.0 > 0 || !entered.unanimous || entered.sight.fixed.is_some())
+                && (key.0 >= programs || !entered.unanimous || entered.sight.fixed.is_some())
         };
         self.without_word |= self.lines.iter().any(fixed);
     }
@@ -135,8 +156,8 @@ impl Table {
 
     /// Why a line of the program may not be changed.
     pub(super) fn fixed(&self, line: LineKey) -> Option<&'static str> {
-        if line.0 > 0 {
-            return Some("it stands in a file of subprograms, which other programs may call");
+        if line.0 > 0 && !self.with_files {
+            return Some(IN_A_FILE);
         }
         let unanimous = self
             .lines
@@ -192,17 +213,17 @@ impl Table {
         }
     }
 
-    /// Where one line before any motion word is written as a feed, all of them are: G1 is
-    /// in force for whichever comes next.
+    /// Where one line of a program before any motion word is written as a feed, all of them
+    /// are: G1 is in force for whichever comes next.
     pub(super) fn spread_word(&mut self, machine: &Machine) {
-        let feeds = |entered: &Entered| {
-            let decision = entered.decision.as_deref();
-            decision.is_some_and(|it| it.facts.no_motion_word && it.change.as_feed)
+        let feeds = |(key, entered): (&LineKey, &Entered)| {
+            let decision = entered.decision.as_deref()?;
+            let feeds = decision.facts.no_motion_word && decision.change.as_feed;
+            feeds.then_some(key.0)
         };
-        if !self.lines.values().any(feeds) {
-            return;
-        }
-        for entered in self.lines.values_mut() {
+        let texts: BTreeSet<u16> = self.lines.iter().filter_map(feeds).collect();
+        let lines = self.lines.iter_mut();
+        for (_, entered) in lines.filter(|(key, _)| texts.contains(&key.0)) {
             let Some(mut own) = entered.own_word.take() else {
                 continue;
             };

@@ -26,9 +26,6 @@ use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 
-/// Why a block before any motion word is not changed where one of them cannot have its own.
-const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
-
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.
 const BATCH_BYTES: usize = 8 * 1024;
@@ -254,6 +251,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         let spare = self.spare.pop();
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        let line_files = line.files;
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         if self.limiter.splits() && self.table.is_none() {
             entry.keep_places(line.interpreter);
@@ -262,13 +260,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.may_skip |=
             entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
         if let Some(table) = &self.table {
-            entry.skips = table.skips;
-            // A line that runs again would meet another motion word.
-            let without = entry.facts.no_motion_word && !table.may_get_word();
-            let without = without.then_some(NO_MOTION_WORD);
-            let fixed = entry.facts.fixed.or(without);
-            entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
-            entry.one_corner = table.one_corner(entry.key);
+            self.tally.learn_files(line_files);
+            self.reasons.learn_files(line_files);
+            table.tell(&mut entry);
         }
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
@@ -483,8 +477,13 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
-            self.reasons
-                .push(0, "edit", message, "change the block by hand", &entry.text);
+            self.reasons.push(
+                (0, 0),
+                "edit",
+                message,
+                "change the block by hand",
+                &entry.text,
+            );
             self.batch.bytes.extend_from_slice(&entry.text);
         }
         self.batch.end_block(start, &mut entry);

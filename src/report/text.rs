@@ -9,7 +9,7 @@ use super::over_time::over_time_text;
 use super::quantity::{duration, percent, power, three_digits};
 use crate::diagnostic::{Severity, excerpt};
 use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
-use crate::pipeline::{Certificate, Failure, LimitSummary, Summary, Unfit};
+use crate::pipeline::{Certificate, Failure, LimitSummary, SetSummary, Summary, Unfit};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What `check` says of one program: one line where it fits.
@@ -190,6 +190,33 @@ pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) ->
         worst(after),
         over_time_text(after)
     )
+}
+
+/// Which files a set of programs consists of, and what was changed in each.
+#[must_use]
+pub fn set_text(set: &SetSummary, delivered: bool) -> String {
+    if !delivered {
+        return "nothing is written: the programs are certified together, or none is\n".to_owned();
+    }
+    let heading = if set.certified() {
+        "files of this certificate:\n"
+    } else {
+        "files that are written without a certificate:\n"
+    };
+    let mut text = heading.to_owned();
+    for file in &set.files {
+        let what = match file.edited_lines {
+            0 => "as it was".to_owned(),
+            count => format!("{} changed", lines(count)),
+        };
+        let _ = writeln!(text, "  {}: {what}", file.name);
+    }
+    if set.files.len() > set.programs.len() {
+        text.push_str(
+            "other programs that call these files are not looked at: give them together\n",
+        );
+    }
+    text
 }
 
 fn lines(count: u64) -> String {

@@ -6,6 +6,23 @@ use super::Writer;
 use crate::limit::Change;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::split::SEVERAL_RUNS;
+use crate::pipeline::table::Table;
+
+/// Why a block before any motion word is not changed where one of them cannot have its own.
+const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
+
+impl Table {
+    /// Gives a block what all runs of its line are known to meet.
+    pub(super) fn tell(&self, entry: &mut Entry) {
+        entry.skips = self.skips;
+        // A line that runs again would meet another motion word.
+        let without = entry.facts.no_motion_word && !self.may_get_word();
+        let without = without.then_some(NO_MOTION_WORD);
+        let fixed = entry.facts.fixed.or(without);
+        entry.facts.fixed = fixed.or_else(|| self.fixed(entry.key));
+        entry.one_corner = self.one_corner(entry.key);
+    }
+}
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Keeps what was decided for a run of a line.

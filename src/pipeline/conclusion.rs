@@ -1,0 +1,130 @@
+//! What limiting a program comes to, and what is refused before it begins.
+
+use super::certify::{Certified, Reasons};
+use super::conditions::conditions;
+use super::over_time::OverTime;
+use super::split::impossible;
+use super::writer::Written;
+use super::{Failure, LimitOptions, LimitSummary, Options, Strategy, Summary};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::limit::Law;
+use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
+
+/// The figures of both programs and the reasons of both halves as one.
+pub(super) fn conclude(
+    machine: &Machine,
+    target: &Machine,
+    paths: &[Options],
+    how: LimitOptions,
+    written: Written,
+    certified: Certified,
+) -> LimitSummary {
+    let Written {
+        mut before,
+        edited_lines,
+        mut reasons,
+        may_skip,
+    } = written;
+    let Certified {
+        summary: mut after,
+        reasons: found,
+        deeper: _,
+    } = certified;
+    if target != machine {
+        // What cannot reach the lower limit keeps the machine's own, or else the
+        // figures show it.
+        reasons = Reasons::default();
+    }
+    reasons.extend(found);
+    let missed = after.over_time.iter().filter(|it| !it.rating.fits());
+    for reason in missed.map(OverTime::reason) {
+        reasons.count += 1;
+        reasons.list.push(reason);
+    }
+    let slower = reasons.only_power();
+    reasons
+        .list
+        .sort_by(|a, b| (&a.file, a.line).cmp(&(&b.file, b.line)));
+    reasons.list.truncate(Summary::KEPT);
+    for summary in [&mut before, &mut after] {
+        summary.conditions = conditions(machine, paths, summary);
+    }
+    if before
+        .notes
+        .iter()
+        .any(|note| note.rule == "no-motion-word")
+    {
+        let taken = "blocks before the first motion word are taken for rapids (G0)";
+        after.conditions.push(taken.to_owned());
+    }
+    let rooms = machine.path.clearance_mm.iter().zip(ALL_AXES);
+    let rooms: Vec<String> = rooms
+        .filter_map(|(room, axis)| Some(format!("{} {}", char::from(axis.letter()), (*room)?)))
+        .collect();
+    let each_for_itself = machine.path.rapid == RapidPath::Independent;
+    if how.allowed.straighten && each_for_itself && !rooms.is_empty() {
+        after.conditions.push(format!(
+            "rapids of several axes may run along lines beyond the clearance ({}, machine \
+             coordinates)",
+            rooms.join(", ")
+        ));
+    }
+    let certified = reasons.count == 0 && after.fits();
+    LimitSummary {
+        before,
+        after,
+        edited_lines,
+        may_skip,
+        certified,
+        slower,
+        reasons: reasons.list,
+    }
+}
+
+/// A strategy that needs a word which the controller lacks is refused.
+pub(super) fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
+    let accel = machine.controller.knobs.iter().any(|knob| {
+        knob.verified
+            && knob.target != KnobTarget::RapidSpeed
+            && !matches!(knob.argument, KnobArgument::Path(_))
+    });
+    let name = &machine.controller.name;
+    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
+    match how.strategy {
+        Strategy::Accel if !accel => unsuitable(format!(
+            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
+        )),
+        Strategy::Preset if machine.presets.is_empty() => {
+            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
+        }
+        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
+            unsuitable(format!(
+                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
+            ))
+        }
+        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
+            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
+        }
+        Strategy::Split => match impossible(machine) {
+            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
+            None => Ok(()),
+        },
+        _ => Ok(()),
+    }
+}
+
+/// That something is right only as the switches of block delete are set.
+pub(super) fn holds_one_way(found: Diagnostic) -> Diagnostic {
+    let message = format!(
+        "this holds only for the blocks with / that are skipped or executed as --block-delete \
+         says; otherwise {}",
+        found.message
+    );
+    Diagnostic {
+        severity: Severity::Warning,
+        rule: "holds-one-way",
+        message,
+        help: None,
+        ..found
+    }
+}
