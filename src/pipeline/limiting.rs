@@ -1,6 +1,7 @@
 //! A program that fits: analysed, changed, written, and handed to the
 //! certifier piece by piece, so that nothing of it is held for long.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -11,19 +12,19 @@ use super::certify::{Certified, Certifier, Reasons};
 use super::conditions::conditions;
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
 use super::front::read_whole;
-use super::lower::lower_further;
+use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
 use super::over_time::OverTime;
+use super::pause::limit_waiting;
 use super::relay::no_thread;
-use super::split::impossible;
+use super::stops;
+use super::strategy::check_strategy;
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
-use super::writer::{Writer, Written};
-use super::{
-    Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
-};
+use super::writer::{Plan, Writer, Written};
+use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
-use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
+use crate::limit::{Depths, Limiter, NO_KNOB, UNTOUCHABLE};
+use crate::machine::{ALL_AXES, Machine, RapidPath};
 use crate::power::PowerModel;
 
 /// Pieces that may wait for the certifier.
@@ -101,11 +102,22 @@ fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
     machine: &Machine,
     paths: &[Options],
-    how: LimitOptions,
+    asked: LimitOptions,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    let mut how = asked;
+    let mut first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    if how.allowed.stop && stops::in_the_way(&first) {
+        how.allowed.stop = false;
+        input.rewind().map_err(Failure::Input)?;
+        restart(&mut output, rows)?;
+        first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    }
+    first
+        .before
+        .notes
+        .extend(stops::without_word(machine, asked));
     if first.certified || !in_fixed_blocks(&first) {
         return Ok(first);
     }
@@ -191,7 +203,8 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let mut attempt = |target: &Machine, again: bool| {
+    let places = Cell::new(Vec::new());
+    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
@@ -207,8 +220,10 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 paths,
                 how,
                 depths: depths.clone(),
+                plan,
             };
-            let (written, mut certified) = job.run(&mut input, &mut output, rows)?;
+            let (mut written, mut certified) = job.run(&mut input, &mut output, rows)?;
+            places.set(std::mem::take(&mut written.places));
             if certified.deeper.is_empty() {
                 // What the bound over all overrides leaves open is looked at in further
                 // runs, which write the same.
@@ -230,19 +245,26 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             restart(&mut output, rows)?;
         }
     };
-    let first = attempt(machine, false)?;
+    let stands = how.allowed.pause.then_some(Plan::NEVER);
+    let first = attempt(machine, stands, false)?;
+    if missed_narrowly(&first) {
+        return aim_lower(machine, first, &mut |target| attempt(target, None, true));
+    }
     let in_time = first.after.over_time.iter().all(|it| it.rating.fits());
     if first.certified || in_time || first.after.unfit_count > 0 {
         return Ok(first);
     }
-    lower_further(machine, first, &mut |target| attempt(target, true))
+    if !how.allowed.pause {
+        return lower_further(machine, first, &mut |target| attempt(target, None, true));
+    }
+    limit_waiting(machine, first, &places.take(), &mut attempt)
 }
 
 /// Why there is no further round.
 fn last_round(depths: &Depths) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
-        "last-round",
+        LAST_ROUND,
         format!("blocks exceed the limit beside others that were lowered, after {rounds} rounds"),
     )
     .help("another strategy, or --allow feed, may help")
@@ -259,6 +281,8 @@ struct Job<'a> {
     paths: &'a [Options],
     how: LimitOptions,
     depths: Depths,
+    /// Where the program waits, if it may.
+    plan: Option<Plan>,
 }
 
 impl Job<'_> {
@@ -276,6 +300,7 @@ impl Job<'_> {
             paths,
             how,
             depths,
+            plan,
         } = self;
         let whole = Whole {
             machine,
@@ -305,7 +330,8 @@ impl Job<'_> {
             &mut output,
             None,
             PowerModel::new(machine),
-        );
+        )
+        .pausing(plan);
         let streamed = if options.threads > 1 {
             side_by_side(writer, certifier)?
         } else {
@@ -411,6 +437,8 @@ fn conclude(
         edited_lines,
         mut reasons,
         may_skip,
+        places: _,
+        pauses,
     } = written;
     let Certified {
         summary: mut after,
@@ -460,40 +488,9 @@ fn conclude(
         after,
         edited_lines,
         may_skip,
+        pauses,
         certified,
         slower,
         reasons: reasons.list,
-    }
-}
-
-/// A strategy that needs a word which the controller lacks is refused.
-fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
-    let accel = machine.controller.knobs.iter().any(|knob| {
-        knob.verified
-            && knob.target != KnobTarget::RapidSpeed
-            && !matches!(knob.argument, KnobArgument::Path(_))
-    });
-    let name = &machine.controller.name;
-    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
-    match how.strategy {
-        Strategy::Accel if !accel => unsuitable(format!(
-            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
-        )),
-        Strategy::Preset if machine.presets.is_empty() => {
-            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
-        }
-        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
-            unsuitable(format!(
-                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
-            ))
-        }
-        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
-            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
-        }
-        Strategy::Split => match impossible(machine) {
-            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
-            None => Ok(()),
-        },
-        _ => Ok(()),
     }
 }

@@ -122,11 +122,30 @@ struct LimitTail<'a> {
     lines: Vec<LineFigures<'a>>,
     edited_lines: u64,
     certified: bool,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pauses: Vec<PauseRecord>,
     reasons: Vec<Finding<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time: Vec<OverTimeRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time_after: Vec<OverTimeRecord<'a>>,
+}
+
+/// A dwell that the original does not have.
+#[derive(Serialize)]
+struct PauseRecord {
+    line: u64,
+    seconds: Figure,
+}
+
+impl PauseRecord {
+    fn list(summary: &LimitSummary) -> Vec<Self> {
+        let pauses = summary.pauses.iter().map(|pause| Self {
+            line: pause.line,
+            seconds: Figure(pause.seconds),
+        });
+        pauses.collect()
+    }
 }
 
 /// Writes what `report` found; `blocks` are the rows that [`JsonRows`] wrote.
@@ -175,6 +194,7 @@ pub fn limit_json(
         lines: LineFigures::list(&summary.before),
         edited_lines: summary.edited_lines,
         certified: summary.certified,
+        pauses: PauseRecord::list(summary),
         reasons: summary.reasons.iter().map(Finding::from).collect(),
         over_time: OverTimeRecord::list(&summary.before),
         over_time_after: OverTimeRecord::list(&summary.after),
