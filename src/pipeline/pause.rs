@@ -29,12 +29,16 @@ pub struct Pause {
     pub seconds: f64,
 }
 
+/// Limits the program once: the machine whose limits are aimed at, where it waits, and
+/// whether something was written before.
+type Attempt<'a> = dyn FnMut(&Machine, Option<Plan>, bool) -> Result<LimitSummary, Failure> + 'a;
+
 /// Tries dwells as well as lower peaks, and takes what costs less.
 pub(super) fn limit_waiting(
     machine: &Machine,
     first: LimitSummary,
     places: &[u64],
-    attempt: &mut dyn FnMut(&Machine, Option<Plan>, bool) -> Result<LimitSummary, Failure>,
+    attempt: &mut Attempt<'_>,
 ) -> Result<LimitSummary, Failure> {
     let waiting = shortest(&first, places, &mut |plan| {
         attempt(machine, Some(plan), true)
