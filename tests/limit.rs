@@ -6,6 +6,7 @@ mod company;
 mod cycles;
 mod figures;
 mod flow_through;
+mod halts;
 mod knobs;
 mod lathe;
 mod lines;
@@ -19,6 +20,7 @@ mod rewriting;
 mod rows;
 mod split;
 mod stops;
+mod waits;
 mod ways;
 mod whole;
 

@@ -79,6 +79,12 @@ pub enum Allow {
     /// Rapids of axes that move each for itself may become lines where the machine file's
     /// `clearance` leaves room
     Straighten,
+    /// Exact stops (the control's word for one block) may be put between feeds that it
+    /// would blend; the workpiece may show them
+    Stop,
+    /// The program may wait (G4) between rapids and before tool changes where a limit over
+    /// time is missed
+    Pause,
 }
 
 /// What a list of `--allow` allows.
@@ -87,6 +93,8 @@ pub fn allowed(list: &[Allow]) -> Allowed {
         feed: list.contains(&Allow::Feed),
         expand: list.contains(&Allow::Expand),
         straighten: list.contains(&Allow::Straighten),
+        stop: list.contains(&Allow::Stop),
+        pause: list.contains(&Allow::Pause),
     }
 }
 

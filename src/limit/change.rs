@@ -15,6 +15,9 @@ pub struct Permit {
     pub as_feed: bool,
     /// Such a feed may run in exact stop, in place of dwells before and after it.
     pub exact_stop: bool,
+    /// A word in the block can let it end at rest where the control would blend it with
+    /// the next one.
+    pub stop_word: bool,
     /// Why the block may not be written as several; `None`: it may.
     pub unsplit: Option<&'static str>,
     /// Why not, for a person; empty when all is permitted.
@@ -53,6 +56,9 @@ pub struct Change {
     /// It ends at rest since it runs in exact stop; otherwise a dwell follows where one is
     /// needed.
     pub exact_stop: bool,
+    /// The control's word for an exact stop in one block ends it at rest, where it would
+    /// be blended with the next one.
+    pub stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
     /// The knob for acceleration, and its value for each axis, in its unit.
@@ -65,6 +71,7 @@ impl Change {
         feed: None,
         as_feed: false,
         exact_stop: false,
+        stop: false,
         rapid_percent: None,
         accel: None,
     };
@@ -109,6 +116,8 @@ impl Change {
             feed: either(self.feed, other.feed, lower),
             as_feed: self.as_feed || other.as_feed,
             exact_stop: self.exact_stop && other.exact_stop,
+            // A stop that one run needs harms no other.
+            stop: self.stop || other.stop,
             rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
                 (a.0, a.1.min(b.1))
             }),
@@ -135,6 +144,9 @@ impl Change {
             if self.exact_stop {
                 changed.path_mode = PathMode::ExactStop;
             }
+        }
+        if self.stop {
+            changed.path_mode = PathMode::ExactStop;
         }
         if let Some(feed) = self.feed {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);

@@ -7,6 +7,7 @@
 mod by_axis;
 mod change;
 mod depth;
+mod halt;
 mod law;
 mod lever;
 mod limiter;

@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 use arrayvec::ArrayVec;
 
 use super::change::{Change, Permit, feed_word};
+use super::halt;
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::{Slot, Waiting};
@@ -20,21 +21,22 @@ use crate::machine::{AXES, AxisValues};
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
 
 /// A move of a window.
-struct Member<'a> {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Member<'a> {
     /// Of its slot.
-    index: usize,
-    mv: &'a Move,
-    permit: Permit,
+    pub(super) index: usize,
+    pub(super) mv: &'a Move,
+    pub(super) permit: Permit,
 }
 
 impl Member<'_> {
     /// The move with its change.
-    fn changed<'s>(&'s self, slots: &'s VecDeque<Slot>) -> &'s Move {
+    pub(super) fn changed<'s>(&'s self, slots: &'s VecDeque<Slot>) -> &'s Move {
         slots[self.index].changed.as_deref().unwrap_or(self.mv)
     }
 
     /// The move with its change, for the solver.
-    fn case<'s>(&'s self, slots: &'s VecDeque<Slot>) -> Case<'s> {
+    pub(super) fn case<'s>(&'s self, slots: &'s VecDeque<Slot>) -> Case<'s> {
         Case {
             mv: self.mv,
             assessment: &slots[self.index].assessment,
@@ -66,11 +68,22 @@ pub(super) fn settle<'a>(
             Some(Member { index, mv, permit })
         })
         .collect();
+    if !solver.how.allowed.stop {
+        return lower(solver, slots, &window, center);
+    }
+    let before = window.iter().map(|member| slots[member.index].clone());
+    let before = before.collect();
     lower(solver, slots, &window, center);
+    halt::consider(solver, slots, &window, center, &before);
 }
 
 /// Lowers a window if it does not fit.
-fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, center: usize) {
+pub(super) fn lower(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    window: &Window<'_>,
+    center: usize,
+) {
     if load(solver, slots, window) <= 1.0 + 1e-9 {
         return;
     }
@@ -121,7 +134,12 @@ fn by_law(
 }
 
 /// Changes a move.
-fn put(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, member: &Member<'_>, change: Change) {
+pub(super) fn put(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    member: &Member<'_>,
+    change: Change,
+) {
     let slot = &mut slots[member.index];
     slot.changed = Some(Box::new(change.apply(
         solver.machine,
@@ -132,13 +150,13 @@ fn put(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, member: &Member<'_>, cha
 }
 
 /// What a move gets so far.
-fn change(slots: &VecDeque<Slot>, member: &Member<'_>) -> Change {
+pub(super) fn change(slots: &VecDeque<Slot>, member: &Member<'_>) -> Change {
     let change = slots[member.index].outcome.change.as_deref();
     change.copied().unwrap_or(Change::NONE)
 }
 
 /// A move and the neighbours that it is joined to.
-type Window<'a> = ArrayVec<Member<'a>, 3>;
+pub(super) type Window<'a> = ArrayVec<Member<'a>, 3>;
 
 /// Indices of the window around `center`, across moves of no length.
 fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {

@@ -120,6 +120,31 @@ pub struct Dialect {
 }
 
 impl Language {
+    /// The word for exact stop in one block, such as `G9`.
+    #[must_use]
+    pub fn stop_word(&self) -> Option<String> {
+        let number = self.exact_stop_word?;
+        Some(format!("G{}", f64::from(number) / 10.0))
+    }
+
+    /// A dwell as a block, and how long it lasts, s: at least `wanted_s`, in tenths of a
+    /// second.
+    #[must_use]
+    pub fn dwell_block(&self, wanted_s: f64) -> Option<(String, f64)> {
+        let (letter, unit_s) = *self.dwell.first()?;
+        let tenths = (wanted_s * 10.0 - 1e-9).ceil().max(1.0);
+        // In tenths of the unit it is the decimal number that will be read.
+        let value = (tenths / (unit_s * 10.0) * 1e6).round() / 1e6;
+        // Numbers without a point may be in another unit.
+        let point = if self.dialect.adapts() && value.fract() == 0.0 {
+            "."
+        } else {
+            ""
+        };
+        let words = format!("G4 {}{value}{point}", char::from(letter));
+        Some((words, value * unit_s))
+    }
+
     /// The shortest dwell as a block, and how long it lasts, s. Where the letter counts
     /// whole units, one of them, since it is not known that a dwell of no time stops.
     #[must_use]

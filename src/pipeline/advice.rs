@@ -75,6 +75,7 @@ impl<'m> Adviser<'m> {
             feed_word: per_minute,
             as_feed: per_minute || apart,
             exact_stop: false,
+            stop_word: false,
             unsplit: None,
             reason: "",
             reason_help: "",

@@ -118,7 +118,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
     pub(super) fn take(&mut self, batch: &mut Batch) -> Result<(), Failure> {
         self.verdict.refill(&mut batch.expected);
         let mut rest = batch.bytes.as_slice();
-        let mut moves = batch.moves.iter_mut();
+        let mut moves = batch.moves.iter();
         let mut stances = batch.stances.drain(..);
         for block in &batch.blocks {
             let Some((text, behind)) = rest.split_at_checked(block.length) else {
@@ -170,19 +170,19 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 ..
             } = self;
             interpreter.execute(*line, text, block, steps, facts, diagnostics);
-            for step in &*steps {
+            for step in steps.iter_mut() {
                 let mut text = text;
                 if let Step::Move(mv) = step
                     && mv.line != *line
                 {
                     text = interpreter.held_text(mv).unwrap_or(text);
                 }
-                verdict.compare_step(step, text);
+                verdict.take_step(step, text);
                 assessor.want = verdict.tally.want();
                 let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
                     verdict.judge(mv, after, text);
                 };
-                match step {
+                match &*step {
                     Step::Move(mv) => assessor.push(mv, text, &mut sink),
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
@@ -194,12 +194,11 @@ impl<'m, 'r> Certifier<'m, 'r> {
 
     /// Judges the move of a plain block that stands in both programs, in the
     /// same state: read again, it would be the same move.
-    fn repeat(&mut self, mv: &mut Move, text: &[u8]) {
+    fn repeat(&mut self, mv: &Move, text: &[u8]) {
         let Self {
             assessor, verdict, ..
         } = self;
         self.line += 1;
-        mv.line = self.line;
         self.behind = true;
         verdict.pass_spindle();
         verdict.done += 1;
@@ -314,8 +313,25 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.judged = 0;
     }
 
+    /// Compares a step with the original's next one, and gives it that one's line: what is
+    /// found counts for the program that was read.
+    pub(super) fn take_step(&mut self, step: &mut Step, text: &[u8]) {
+        self.pass_spindle();
+        let line = match self.originals.get(self.done) {
+            Some(Expected::Move(original)) => Some(original.line),
+            Some(Expected::Action(original)) => Some(original.line),
+            Some(Expected::Spindle(..)) | None => None,
+        };
+        self.compare_step(step, text);
+        match (step, line) {
+            (Step::Move(mv), Some(line)) => mv.line = line,
+            (Step::Action(action), Some(line)) => action.line = line,
+            (_, None) => {}
+        }
+    }
+
     /// (b): the step must be the original's next one.
-    pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
+    fn compare_step(&mut self, step: &Step, text: &[u8]) {
         self.pass_spindle();
         if step.is_feed_note() {
             return;
@@ -396,13 +412,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
             row.duration_after_s = Some(after.duration_s);
             self.tally.write(row);
         }
-        // What is found counts for the line of the program that was read.
-        let line = match self.originals.get(self.judged) {
-            Some(Expected::Move(original)) => original.line,
-            _ => mv.line,
-        };
         self.judged += 1;
-        self.tally.add_of(line, mv, after, text);
+        self.tally.add(mv, after, text);
     }
 }
 

@@ -24,6 +24,8 @@ pub(super) fn conclude(
         edited_lines,
         mut reasons,
         may_skip,
+        places: _,
+        pauses,
     } = written;
     let Certified {
         summary: mut after,
@@ -75,6 +77,7 @@ pub(super) fn conclude(
         after,
         edited_lines,
         may_skip,
+        pauses,
         certified,
         slower,
         reasons: reasons.list,

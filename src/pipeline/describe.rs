@@ -64,6 +64,7 @@ pub(super) fn describe(
         (true, false) if change.rapid_percent.is_some() => "lower rapid speed",
         (true, false) => "lower feed",
         (false, true) => "lower acceleration",
+        (false, false) if change.stop => "exact stop",
         (false, false) => "",
     };
     let mut names = Vec::new();
@@ -91,6 +92,9 @@ pub(super) fn describe(
             row.value_before = Some(mv.accel_mm_s2[axis] * if percent { 100.0 / own } else { 1.0 });
             row.value_after = Some(values[axis]);
         }
+    }
+    if change.stop {
+        names.extend(machine.controller.language.stop_word());
     }
     row.knob = names.join(" ");
 }

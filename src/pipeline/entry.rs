@@ -251,6 +251,11 @@ impl Entry {
             feed_word: reasons[..2] == [None, None],
             as_feed: reasons == [None; 3],
             exact_stop: self.between_stops(machine) && self.may_stop_exactly(machine),
+            stop_word: reasons[0].is_none()
+                && self.moves == 1
+                && !self.block.words.is_empty()
+                && language.exact_stop_word.is_some()
+                && self.may_stop_exactly(machine),
             unsplit: self.unsplit(mv),
             reason: reason_text,
             reason_help,

@@ -41,6 +41,8 @@ pub(super) struct ExpectedMove {
     /// Its block has been changed; a rapid was written as a feed.
     pub(super) changed: bool,
     pub(super) as_feed: bool,
+    /// A word was put in it that lets it end at rest.
+    pub(super) stops: bool,
     /// It does not fit and could not be helped; the reason has been given.
     pub(super) hopeless: bool,
     /// The written program runs its line in pieces.
@@ -53,6 +55,15 @@ impl ExpectedMove {
     /// A move that must not change.
     pub(super) fn of(mv: &Move, assessment: &Assessment) -> Self {
         Self {
+            speed_mm_s: assessment.speed_mm_s,
+            accel_mm_s2: assessment.accel_mm_s2,
+            ..Self::standing(mv)
+        }
+    }
+
+    /// The same for one without speed, as a dwell.
+    pub(super) fn standing(mv: &Move) -> Self {
+        Self {
             line: mv.line,
             text: mv.text,
             kind: mv.kind,
@@ -64,10 +75,11 @@ impl ExpectedMove {
             loads: mv.loads,
             dwell_s: mv.dwell_s,
             axis_accel_mm_s2: mv.accel_mm_s2,
-            speed_mm_s: assessment.speed_mm_s,
-            accel_mm_s2: assessment.accel_mm_s2,
+            speed_mm_s: 0.0,
+            accel_mm_s2: 0.0,
             changed: false,
             as_feed: false,
+            stops: false,
             hopeless: false,
             split: None,
             row: None,
@@ -123,6 +135,7 @@ pub(super) fn added_mode(action: &Action, original: Option<&Expected>) -> bool {
 pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
     let same_kind = original.kind == mv.kind
         || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
+    let stops = (original.as_feed || original.stops) && mv.path_mode == PathMode::ExactStop;
     let message = if !same_kind {
         "another kind of move"
     } else if original.end != mv.end {
@@ -133,11 +146,9 @@ pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static s
         "another arc"
     } else if original.dwell_s != mv.dwell_s {
         "another dwell"
-    } else if !original.as_feed && original.corner != mv.corner && mv.moves_axes() {
+    } else if !original.as_feed && !stops && original.corner != mv.corner && mv.moves_axes() {
         "other corners"
-    } else if original.path_mode != mv.path_mode
-        && !(original.as_feed && mv.path_mode == PathMode::ExactStop)
-    {
+    } else if original.path_mode != mv.path_mode && !stops {
         "another path mode"
     } else if original.loads != mv.loads {
         "other switched loads"

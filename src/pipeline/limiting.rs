@@ -1,6 +1,7 @@
 //! A program that fits: analysed, changed, written, and handed to the
 //! certifier piece by piece, so that nothing of it is held for long.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -11,11 +12,13 @@ use super::certify::{Certified, Certifier};
 use super::conclusion::{check_strategy, conclude, holds_one_way};
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand};
 use super::front::read_whole;
-use super::lower::lower_further;
+use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::pause::limit_waiting;
 use super::relay::no_thread;
+use super::stops;
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
-use super::writer::{Writer, Written};
+use super::writer::{Plan, Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::limit::{Depths, Limiter, NO_KNOB, UNTOUCHABLE};
@@ -86,11 +89,22 @@ fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
     machine: &Machine,
     paths: &[Options],
-    how: LimitOptions,
+    asked: LimitOptions,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    let mut how = asked;
+    let mut first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    if how.allowed.stop && stops::in_the_way(&first) {
+        how.allowed.stop = false;
+        input.rewind().map_err(Failure::Input)?;
+        restart(&mut output, rows)?;
+        first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    }
+    first
+        .before
+        .notes
+        .extend(stops::without_word(machine, asked));
     if first.certified || !in_fixed_blocks(&first) {
         return Ok(first);
     }
@@ -177,7 +191,8 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let mut attempt = |target: &Machine, again: bool| {
+    let places = Cell::new(Vec::new());
+    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
@@ -193,8 +208,10 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 paths,
                 how,
                 depths: depths.clone(),
+                plan,
             };
-            let (written, mut certified) = job.run(&mut input, &mut output, rows)?;
+            let (mut written, mut certified) = job.run(&mut input, &mut output, rows)?;
+            places.set(std::mem::take(&mut written.places));
             if certified.deeper.is_empty() {
                 // What the bound over all overrides leaves open is looked at in further
                 // runs, which write the same.
@@ -216,19 +233,26 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             restart(&mut output, rows)?;
         }
     };
-    let first = attempt(machine, false)?;
+    let stands = how.allowed.pause.then_some(Plan::NEVER);
+    let first = attempt(machine, stands, false)?;
+    if missed_narrowly(&first) {
+        return aim_lower(machine, first, &mut |target| attempt(target, None, true));
+    }
     let in_time = first.after.over_time.iter().all(|it| it.rating.fits());
     if first.certified || in_time || first.after.unfit_count > 0 {
         return Ok(first);
     }
-    lower_further(machine, first, &mut |target| attempt(target, true))
+    if !how.allowed.pause {
+        return lower_further(machine, first, &mut |target| attempt(target, None, true));
+    }
+    limit_waiting(machine, first, &places.take(), &mut attempt)
 }
 
 /// Why there is no further round.
 pub(super) fn last_round(depths: &Depths) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
-        "last-round",
+        LAST_ROUND,
         format!("blocks exceed the limit beside others that were lowered, after {rounds} rounds"),
     )
     .help("another strategy, or --allow feed, may help")
@@ -245,6 +269,8 @@ struct Job<'a> {
     paths: &'a [Options],
     how: LimitOptions,
     depths: Depths,
+    /// Where the program waits, if it may.
+    plan: Option<Plan>,
 }
 
 impl Job<'_> {
@@ -262,6 +288,7 @@ impl Job<'_> {
             paths,
             how,
             depths,
+            plan,
         } = self;
         let whole = Whole {
             machine,
@@ -290,7 +317,8 @@ impl Job<'_> {
             &mut output,
             None,
             PowerModel::new(machine),
-        );
+        )
+        .pausing(plan);
         let streamed = if options.threads > 1 {
             side_by_side(writer, certifier)?
         } else {

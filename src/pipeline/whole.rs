@@ -179,6 +179,8 @@ impl Decided {
             edited_lines,
             reasons: self.reasons,
             may_skip: self.may_skip,
+            places: Vec::new(),
+            pauses: Vec::new(),
         })
     }
 }
@@ -439,6 +441,7 @@ impl<'m, 'p> Original<'m, 'p> {
         Expected::Move(ExpectedMove {
             changed: change.is_some(),
             as_feed: change.is_some_and(|change| change.as_feed),
+            stops: change.is_some_and(|change| change.stop),
             hopeless,
             row,
             ..ExpectedMove::of(mv, assessment)
@@ -467,18 +470,24 @@ fn certify(
                 break;
             };
             verdict.learn_files(line.files);
-            for step in &*line.steps {
-                verdict.compare_step(step, line.text);
+            let mut steps = std::mem::take(line.steps);
+            for step in &mut steps {
+                let text = match step {
+                    Step::Move(mv) => line.text_of(mv),
+                    Step::Action(_) => line.text,
+                };
+                verdict.take_step(step, text);
                 assessor.want = verdict.want();
                 let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
                     verdict.judge(mv, after, text);
                 };
-                match step {
-                    Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
+                match &*step {
+                    Step::Move(mv) => assessor.push(mv, text, &mut sink),
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
-            let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
+            let moved = line.facts.turns_knob || steps.iter().any(Step::moves_axes);
+            *line.steps = steps;
             assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
         verdict.check()?;

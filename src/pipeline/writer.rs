@@ -4,6 +4,7 @@
 mod expect;
 mod forced;
 mod noted;
+mod waiting;
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
@@ -14,6 +15,7 @@ use super::certify::Reasons;
 use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
+use super::pause::Pause;
 use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
 use super::table::Table;
@@ -25,6 +27,8 @@ use crate::limit::{Change, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
+pub(super) use waiting::Plan;
+use waiting::Waits;
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.
@@ -37,6 +41,10 @@ pub(super) struct Written {
     pub(super) reasons: Reasons,
     /// Some of its blocks may be skipped.
     pub(super) may_skip: bool,
+    /// Lines before which the program may wait.
+    pub(super) places: Vec<u64>,
+    /// Where it waits now.
+    pub(super) pauses: Vec<Pause>,
 }
 
 /// Analyses, changes and writes.
@@ -78,6 +86,7 @@ pub(super) struct Writer<'m, R, W> {
     start_s: f64,
     spindle: SpindleRows,
     may_skip: bool,
+    waits: Waits,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -125,6 +134,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             start_s: 0.0,
             spindle: SpindleRows::default(),
             may_skip: false,
+            waits: Waits::default(),
             table,
         }
     }
@@ -165,19 +175,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.conclude().map(|(written, _)| Some(written))
     }
 
-    /// Reads the whole program and decides for its lines, without writing.
-    pub(super) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
-        if self.exact {
-            self.tally.keep_lines();
-        }
-        while self.read_block()? {
-            self.write_ready();
-        }
-        self.finish_moves();
-        self.write_decided();
-        self.conclude()
-    }
-
     /// The figures of the original, and what was decided.
     fn conclude(mut self) -> Result<(Written, Table), Failure> {
         let lines = self.front.lines;
@@ -193,6 +190,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             edited_lines: self.rewriter.edited_lines,
             reasons: self.reasons,
             may_skip: self.may_skip,
+            places: self.waits.places,
+            pauses: self.waits.pauses,
         };
         Ok((written, self.table.unwrap_or_default()))
     }
@@ -218,6 +217,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             && self.entries.is_empty()
             && !self.exact
             && self.table.is_none()
+            && self.waits.plan.is_none()
             && let [Step::Move(mv)] = line.steps.as_slice()
             && !self.assessor.waits(mv)
         {
@@ -460,6 +460,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             return self.spare.push(entry);
         }
         let pieces = entry.pieces(self.machine);
+        let start = self.batch.bytes.len();
+        self.wait_before(&entry);
         let view = BlockView {
             text: &entry.text,
             block: &entry.block,
@@ -474,7 +476,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             stops: entry.needs_stops(self.machine, change.as_ref()),
             rests: entry.rests(self.machine, change.as_ref()),
         };
-        let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
             self.reasons.push(

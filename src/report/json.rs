@@ -124,6 +124,8 @@ struct LimitTail<'a> {
     lines: Vec<LineFigures<'a>>,
     edited_lines: u64,
     certified: bool,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pauses: Vec<PauseRecord>,
     reasons: Vec<Finding<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time: Vec<OverTimeRecord<'a>>,
@@ -171,6 +173,23 @@ struct SetHead<'a> {
 #[derive(Serialize)]
 struct SetTail<'a> {
     files: Vec<WrittenFile<'a>>,
+}
+
+/// A dwell that the original does not have.
+#[derive(Serialize)]
+struct PauseRecord {
+    line: u64,
+    seconds: Figure,
+}
+
+impl PauseRecord {
+    fn list(summary: &LimitSummary) -> Vec<Self> {
+        let pauses = summary.pauses.iter().map(|pause| Self {
+            line: pause.line,
+            seconds: Figure(pause.seconds),
+        });
+        pauses.collect()
+    }
 }
 
 /// Writes what `report` found; `blocks` are the rows that [`JsonRows`] wrote.
@@ -257,6 +276,7 @@ fn limited<'a>(
         lines: LineFigures::list(&summary.before),
         edited_lines: summary.edited_lines,
         certified: summary.certified,
+        pauses: PauseRecord::list(summary),
         reasons: summary.reasons.iter().map(Finding::from).collect(),
         over_time: OverTimeRecord::list(&summary.before),
         over_time_after: OverTimeRecord::list(&summary.after),

@@ -12,6 +12,9 @@ use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
 use crate::pipeline::{Certificate, Failure, LimitSummary, SetSummary, Summary, Unfit};
 use crate::units::SECONDS_PER_MINUTE;
 
+/// Pauses that are named one by one.
+const PAUSES_SHOWN: usize = 20;
+
 /// What `check` says of one program: one line where it fits.
 #[must_use]
 pub fn check_text(checked: &Checked, machine: &Machine) -> String {
@@ -167,12 +170,37 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
         )
     };
     text.push_str(&over_time_text(after));
+    text.push_str(&pauses_text(summary));
     if let Some(certificate) = after.certificate {
         let _ = writeln!(text, "certificate: {}", certificate.name());
     }
     for condition in &after.conditions {
         let _ = writeln!(text, "  {condition}");
     }
+    text
+}
+
+/// Where the written program waits though the original does not; nothing where it does not.
+fn pauses_text(summary: &LimitSummary) -> String {
+    let pauses = &summary.pauses;
+    if pauses.is_empty() {
+        return String::new();
+    }
+    let sum_s: f64 = pauses.iter().map(|pause| pause.seconds).sum();
+    let mut text = format!("waits for {} in all (G4), before", duration(sum_s));
+    for (place, pause) in pauses.iter().take(PAUSES_SHOWN).enumerate() {
+        let comma = if place > 0 { "," } else { "" };
+        let _ = write!(
+            text,
+            "{comma} line {} for {}",
+            pause.line,
+            duration(pause.seconds)
+        );
+    }
+    if pauses.len() > PAUSES_SHOWN {
+        let _ = write!(text, " and {} more", pauses.len() - PAUSES_SHOWN);
+    }
+    text.push('\n');
     text
 }
 

@@ -155,7 +155,7 @@ impl<'m> Rewriter<'m> {
         if let Some(word) = stop {
             self.edits.push(Edit::replace(without(word, view), ""));
         }
-        if view.change.exact_stop {
+        if view.change.exact_stop || view.change.stop {
             self.exact_stop(view, out);
         }
         self.motion_word(view);
@@ -451,6 +451,14 @@ impl<'m> Rewriter<'m> {
         if let Some(words) = self.blend_words.take() {
             self.insert_line(&words, out);
         }
+    }
+
+    /// A line between two blocks at which the axes stand, such as a dwell.
+    pub fn put_between(&mut self, words: &str, out: &mut Vec<u8>) {
+        self.complete_line(out);
+        self.blend_again(out);
+        self.insert_line(words, out);
+        self.stopped = true;
     }
 
     fn insert_stop(&mut self, out: &mut Vec<u8>) {

@@ -255,7 +255,7 @@ fn lines_that_cannot_suit_all_callers_are_refused() {
 #[test]
 fn blocks_that_keep_their_words_keep_them_in_files_too() {
     let shop = shop("iso");
-    let mut refused = |sub: &str, arguments: &[&str], code, message: &str| {
+    let refused = |sub: &str, arguments: &[&str], code, message: &str| {
         shop.put("O0100.nc", sub);
         stays(&shop, &[&["one.nc"], arguments].concat(), code, message);
     };

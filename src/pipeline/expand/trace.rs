@@ -13,6 +13,9 @@ impl Expanded {
         for reason in summary.reasons.iter_mut().filter(|it| it.file.is_none()) {
             here(&mut reason.line);
         }
+        for pause in &mut summary.pauses {
+            here(&mut pause.line);
+        }
         summary.edited_lines += self.blocks as u64;
         let after = &mut summary.after;
         here(&mut after.peak_line);
@@ -20,6 +23,11 @@ impl Expanded {
         for unfit in after.unfit.iter_mut().chain(&mut after.worst) {
             if unfit.file.is_empty() {
                 here(&mut unfit.line);
+            }
+        }
+        for found in &mut after.over_time {
+            if found.file.is_empty() {
+                here(&mut found.rating.line);
             }
         }
         for line in &mut after.by_line {

@@ -2,8 +2,9 @@
 
 use std::io::{Read, Seek, Write};
 
-use super::Writer;
+use super::{Writer, Written};
 use crate::limit::Change;
+use crate::pipeline::Failure;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::split::SEVERAL_RUNS;
 use crate::pipeline::table::Table;
@@ -25,6 +26,19 @@ impl Table {
 }
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+    /// Reads the whole program and decides for its lines, without writing.
+    pub(in crate::pipeline) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
+        if self.exact {
+            self.tally.keep_lines();
+        }
+        while self.read_block()? {
+            self.write_ready();
+        }
+        self.finish_moves();
+        self.write_decided();
+        self.conclude()
+    }
+
     /// Keeps what was decided for a run of a line.
     pub(super) fn note(&mut self, entry: &Entry, change: Option<Change>) {
         self.spindle.clear();
