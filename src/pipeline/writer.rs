@@ -27,9 +27,6 @@ use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
 
-/// Why a block before any motion word is not changed where one of them cannot have its own.
-const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
-
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.
 const BATCH_BYTES: usize = 8 * 1024;
@@ -266,16 +263,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.mm_per_unit = entry.mark.mm_per_unit;
         self.may_skip |=
             entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
-        if let Some(table) = &self.table {
-            entry.skips = table.skips;
-            // A line that runs again would meet another motion word.
-            let without = entry.facts.no_motion_word && !table.may_get_word();
-            let without = without.then_some(NO_MOTION_WORD);
-            let fixed = entry.facts.fixed.or(without);
-            entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
-            entry.one_corner = table.one_corner(entry.key);
-            entry.without_feed = !table.may_get_feed();
-        }
+        self.take_from_table(&mut entry);
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {

@@ -82,7 +82,7 @@ fn it_is_asked_for() {
     ];
     refused(&shop(""), program, "--allow feed", &unknown);
     let not_allowed = ["cutting feeds are not changed without permission"];
-    refused(&shop(KNOWN), program, "", &not_allowed);
+    refused(&shop(KNOWN), program, "--strategy speed", &not_allowed);
     // A line that meets an F the second time keeps all from getting one.
     let differs = "R1=1\nG1 X-400 Y-300\nAGAIN: X=400*R1 Y=300*R1\nY=R1 F500\nR1=R1-1\n\
                    IF R1>=0 GOTOB AGAIN\nM30\n";

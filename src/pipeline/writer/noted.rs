@@ -7,7 +7,24 @@ use crate::limit::Change;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::split::SEVERAL_RUNS;
 
+/// Why a block before any motion word is not changed where one of them cannot have its own.
+const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
+
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+    /// What is known of all runs of a block's line.
+    pub(super) fn take_from_table(&self, entry: &mut Entry) {
+        if let Some(table) = &self.table {
+            entry.skips = table.skips;
+            // A line that runs again would meet another motion word.
+            let without = entry.facts.no_motion_word && !table.may_get_word();
+            let without = without.then_some(NO_MOTION_WORD);
+            let fixed = entry.facts.fixed.or(without);
+            entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
+            entry.one_corner = table.one_corner(entry.key);
+            entry.without_feed = !table.may_get_feed();
+        }
+    }
+
     /// Keeps what was decided for a run of a line.
     pub(super) fn note(&mut self, entry: &Entry, change: Option<Change>) {
         self.spindle.clear();
