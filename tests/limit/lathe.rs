@@ -431,7 +431,7 @@ fn drilling() {
         "(G85 written out)",
         "G4 P500\nG1 Z2. F160.",
         "(G87 written out)",
-        "G1 X20.\n",
+        "G1 X20.",
     ] {
         assert!(text.contains(lines), "{lines}\n{text}");
     }
