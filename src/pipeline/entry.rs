@@ -178,19 +178,11 @@ impl Entry {
         // What forbids any edit, what forbids an F, what forbids G1 for G0.
         let skips = self.skips || !machine.controller.language.block_delete;
         let edit = self.keeps_its_words(skips);
+        let no_feed = self.cannot_get_feed(machine, mv);
         let feed = [
             (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
-            (
-                self.lacks_feed()
-                    && machine.controller.language.power_on_feed_mm_s == f64::INFINITY,
-                UNKNOWN_FEED,
-            ),
-            (self.without_feed && self.lacks_feed(), NO_FEED),
-            (
-                self.mark.feed.is_none() && mv.kind != MoveKind::Rapid && !self.lacks_feed(),
-                "no F is in force that could be put back",
-            ),
+            (no_feed.is_some(), no_feed.unwrap_or_default()),
             (facts.computed_feed, "its feed is worked out by the program"),
             (
                 self.feed_mode == FeedMode::InverseTime,
@@ -333,6 +325,20 @@ impl Entry {
     fn sets_feed_mode(&self) -> bool {
         let mut words = self.block.words.iter();
         words.any(|word| word.letter == b'G' && (93.0..=99.0).contains(&word.value))
+    }
+
+    /// Why a move for which no F is in force cannot have one.
+    fn cannot_get_feed(&self, machine: &Machine, mv: &Move) -> Option<&'static str> {
+        if self.mark.feed.is_some() || mv.kind == MoveKind::Rapid {
+            return None;
+        }
+        if !self.lacks_feed() {
+            return Some("no F is in force that could be put back");
+        }
+        if machine.controller.language.power_on_feed_mm_s == f64::INFINITY {
+            return Some(UNKNOWN_FEED);
+        }
+        self.without_feed.then_some(NO_FEED)
     }
 
     /// Whether its moves obey F, but none is in force: neither its own nor an earlier one.
