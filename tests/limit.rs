@@ -5,6 +5,7 @@ mod blends;
 mod company;
 mod cycles;
 mod figures;
+mod first_feed;
 mod flow_through;
 mod halts;
 mod knobs;

@@ -255,6 +255,8 @@ pub enum ActionKind {
     Stop,
     /// M2, M30.
     End,
+    /// The firmware waits until the axes stand, as it does between the moves of homing.
+    Rest,
     /// Another M word.
     Other,
     /// G61, G61.1, G64 (value 61, 61.1, 64).

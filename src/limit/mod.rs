@@ -7,6 +7,7 @@
 mod by_axis;
 mod change;
 mod depth;
+mod first_feed;
 mod halt;
 mod law;
 mod lever;
@@ -25,6 +26,7 @@ mod window;
 
 pub use change::{Change, Permit};
 pub use depth::{Depths, Place};
+pub use first_feed::FirstFeed;
 pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Allowed, Law, LimitOptions, Strategy};

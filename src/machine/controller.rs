@@ -39,6 +39,9 @@ pub struct Language {
     /// The words that `G4` takes, with the seconds in one unit of each; if a
     /// block has several, the last in this list wins (Marlin: S over P).
     pub dwell: Vec<(u8, f64)>,
+    /// The F in force at power-on, mm/s; infinite where none is known. An earlier program may
+    /// have left another one.
+    pub power_on_feed_mm_s: f64,
     /// `true`: G0 is in force at power-on; else no motion word is.
     pub rapid_at_power_on: bool,
     /// `true`: O words as FluidNC has them: a label may serve several branches and
@@ -77,6 +80,8 @@ pub struct Language {
     /// Whether G73 to G89 are the canned cycles of a milling control, with G98
     /// and G99 for the level that they return to.
     pub mill_cycles: bool,
+    /// G83 and G87 of a lathe come out to R after each peck; else a parameter says whether.
+    pub pecks_return_to_r: bool,
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,

@@ -19,7 +19,7 @@ use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, Options, RowSink, Summary};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::{Depths, Limiter};
-use crate::machine::Machine;
+use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Rewriter};
 use crate::source::lines;
@@ -120,6 +120,7 @@ impl Whole<'_> {
             all.push(decided);
         }
         table.spread_word(machine);
+        table.spread_feed();
         Ok((all, table))
     }
 
@@ -193,8 +194,9 @@ fn survey(
     table: &mut Table,
 ) -> Result<(), Failure> {
     let mut front = Front::new(Cursor::new(program), machine, options);
-    let modal = front.interpreter().modal();
-    let (mut mode, mut mm_per_unit) = (modal.path_mode, modal.mm_per_unit);
+    // The axes stand before the first move.
+    let mut mode = PathMode::ExactStop;
+    let mut mm_per_unit = front.interpreter().modal().mm_per_unit;
     let mut entry: Option<Entry> = None;
     while let Some(mut line) = front.next_line()? {
         let entry = entry.get_or_insert_with(|| Entry::new(&line));

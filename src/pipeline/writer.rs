@@ -2,6 +2,7 @@
 //! decided, are written with their changes, and go to the certifier in pieces.
 
 mod expect;
+mod first_feed;
 mod forced;
 mod noted;
 mod waiting;
@@ -23,7 +24,7 @@ use super::tally::Tally;
 use super::watching::watching;
 use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Outcome};
+use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
@@ -84,6 +85,8 @@ pub(super) struct Writer<'m, R, W> {
     model: PowerModel,
     /// Time of the original so far, s.
     start_s: f64,
+    /// The lowest F that stands where none was in force.
+    first_feed: Option<FirstFeed>,
     spindle: SpindleRows,
     may_skip: bool,
     waits: Waits,
@@ -110,7 +113,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             machine,
             mark: Mark::of(front.interpreter().modal()),
             knobs: knobs(machine, front.interpreter().knobs()),
-            mode: front.interpreter().modal().path_mode,
+            // The axes stand before the first move.
+            mode: PathMode::ExactStop,
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
@@ -132,6 +136,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             exact,
             model,
             start_s: 0.0,
+            first_feed: None,
             spindle: SpindleRows::default(),
             may_skip: false,
             waits: Waits::default(),
@@ -459,6 +464,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.note(&entry, change);
             return self.spare.push(entry);
         }
+        let change = self.with_first_feed(&entry, change);
         let pieces = entry.pieces(self.machine);
         let start = self.batch.bytes.len();
         self.wait_before(&entry);

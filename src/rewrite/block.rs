@@ -410,7 +410,8 @@ impl<'m> Rewriter<'m> {
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute {
             // A printer reads no line without a command.
-            if words.is_empty() && self.machine.controller.language.family == Family::Marlin {
+            let printer = self.machine.controller.language.family == Family::Marlin;
+            if words.is_empty() && printer && feed.is_some() {
                 let digit = original.motion.digit();
                 words.extend(digit.map(|digit| format!("G{}", digit as char)));
             }

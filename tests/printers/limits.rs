@@ -3,6 +3,7 @@
 use insta::assert_snapshot;
 
 use super::*;
+use crate::shop::Shop;
 
 /// Marlin M203 in mm/s, RepRapFirmware M203 in mm/min: lower caps the move,
 /// higher lifts the machine's limit.
@@ -95,4 +96,29 @@ fn raised_limits_raise_the_peak() {
     .expect("accepted")
     .peak_w;
     assert!(arc > 2.0, "{arc}");
+}
+
+/// Between the moves of homing the axes stand: each axis draws
+/// (200 kg · 3 m/s² + 100 N) · 0.05 m/s / 0.8 = 43.75 W beside 100 W, with those that home
+/// together, whatever comes before and after.
+#[test]
+fn moves_of_homing_do_not_blend() {
+    let axis = "reference_mm = 0\nreference_mm_min = 3000";
+    for (controller, together) in [("marlin", 2.0), ("klipper", 1.0), ("reprap", 3.0)] {
+        let shop = Shop::mill(controller, "peak_power_w = 5000", "", axis);
+        shop.put("a.gcode", "G1 Z5 F600\nG28\nG1 X10 F600\n");
+        let (code, out, errors) = shop.run("check a.gcode --format json");
+        assert_eq!(code, 0, "{errors}");
+        let found: serde_json::Value = serde_json::from_str(&out).unwrap();
+        let peak_w = found[0]["peak_w"].as_f64().unwrap();
+        let expected = 100.0 + 43.75 * together;
+        assert!((peak_w - expected).abs() < 1e-6, "{controller} {peak_w}");
+    }
+    // Friction takes 100 N · 0.05 m/s / 0.8 = 6.25 W of each; the rest a lower acceleration
+    // leaves.
+    let shop = Shop::mill("marlin", "peak_power_w = 120", "", axis);
+    shop.put("a.gcode", "G28\nG1 X10 F600\n");
+    let (code, _, errors) = shop.run("limit a.gcode -o out.gcode");
+    assert_eq!(code, 0, "{errors}");
+    assert!(shop.get("out.gcode").starts_with("M201 "), "{errors}");
 }

@@ -85,6 +85,9 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// Whether G83 and G87 of a lathe come out to R after each peck; default: a parameter
+    /// of the control says so.
+    pub(crate) pecks_return_to_r: Option<bool>,
     /// How far an arc's end may always be off its circle, in mm: in a program in mm, and
     /// in one in inches; where it is at most 0.1 % of the radius, a hundred times as far.
     /// Default 0.005 and 0.0127, and 0.5 at most.
@@ -104,6 +107,9 @@ pub(crate) struct LanguageTable {
     /// Whether M words from M10 on that are not known move no axis, which is
     /// then said once; default false: they are refused.
     pub(crate) other_m: Option<bool>,
+    /// The F in force at power-on, in mm/min: where the first moves come before any F, none
+    /// above it is written for them. Default: none is known.
+    pub(crate) power_on_feed_mm_min: Option<Positive>,
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.

@@ -17,6 +17,7 @@ use crate::machine::controller::{
     RapidKnob, RapidPath, SpindleWait,
 };
 use crate::machine::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
+use crate::units::SECONDS_PER_MINUTE;
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
 /// the result is not to be used.
@@ -62,6 +63,10 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         name: String::new(),
         family,
         dwell,
+        power_on_feed_mm_s: table
+            .power_on_feed_mm_min
+            .as_ref()
+            .map_or(f64::INFINITY, |it| it.value / SECONDS_PER_MINUTE),
         rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
         loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
@@ -83,6 +88,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         compensation: table.cutter_compensation.as_ref().and_then(compensation),
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
+        pecks_return_to_r: table.pecks_return_to_r.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         arc_tolerance_mm: table
             .arc_tolerance_mm

@@ -22,6 +22,7 @@ impl Table {
         let fixed = entry.facts.fixed.or(without);
         entry.facts.fixed = fixed.or_else(|| self.fixed(entry.key));
         entry.one_corner = self.one_corner(entry.key);
+        entry.without_feed = !self.may_get_feed();
     }
 }
 
@@ -54,9 +55,18 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         } else {
             None
         };
+        let lacks_feed = entry.lacks_feed();
+        let first_feed = if lacks_feed {
+            self.first_feed_with(entry, change)
+        } else {
+            None
+        };
         let Some(table) = &mut self.table else { return };
         if let Some(own) = own {
             table.offer_word(self.machine, entry.key, entry, own);
+        }
+        if lacks_feed {
+            table.offer_feed(self.machine, entry.key, entry, first_feed);
         }
         if !table.decide(self.machine, entry.key, entry, change) {
             return;
