@@ -7,6 +7,7 @@ mod cycles;
 mod figures;
 mod flow_through;
 mod knobs;
+mod klipper;
 mod lathe;
 mod lines;
 mod no_word;

@@ -72,6 +72,9 @@ pub enum Allow {
     /// Rapids of axes that move each for itself may become lines where the machine file's
     /// `clearance` leaves room
     Straighten,
+    /// Words may be written that no document confirms (`verified = false` in the controller
+    /// profile)
+    Unverified,
 }
 
 /// What a list of `--allow` allows.
@@ -80,6 +83,7 @@ pub fn allowed(list: &[Allow]) -> Allowed {
         feed: list.contains(&Allow::Feed),
         expand: list.contains(&Allow::Expand),
         straighten: list.contains(&Allow::Straighten),
+        unverified: list.contains(&Allow::Unverified),
     }
 }
 

@@ -46,6 +46,9 @@ pub struct Allowed {
     /// Rapids of axes that move each for itself may become lines, inside the machine's
     /// clearance.
     pub straighten: bool,
+    /// Words may be written that no document confirms (`verified = false` in the
+    /// controller profile).
+    pub unverified: bool,
 }
 
 impl Allowed {
@@ -54,5 +57,6 @@ impl Allowed {
         feed: false,
         expand: false,
         straighten: false,
+        unverified: false,
     };
 }

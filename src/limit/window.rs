@@ -76,7 +76,14 @@ fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, c
     }
     let found: Vec<Levers> = window
         .iter()
-        .map(|member| levers(solver.machine, solver.how, member.mv, &member.permit))
+        .map(|member| {
+            let mut found = levers(solver.machine, solver.how, member.mv, &member.permit);
+            // The bound knows of limits of the axes alone.
+            found.accel = found
+                .accel
+                .filter(|knob| solver.along_path(*knob, member.mv).is_none());
+            found
+        })
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());
@@ -155,7 +162,7 @@ fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
 fn speed_lever(levers: Levers) -> Option<SpeedLever> {
     levers
         .speed
-        .filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_)))
+        .filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_) | SpeedLever::Cap(_)))
 }
 
 /// Largest speeds and accelerations over a window.

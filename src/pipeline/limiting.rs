@@ -14,16 +14,14 @@ use super::front::read_whole;
 use super::lower::lower_further;
 use super::over_time::OverTime;
 use super::relay::no_thread;
-use super::split::impossible;
+use super::strategy::{check_strategy, unconfirmed};
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
 use super::writer::{Writer, Written};
-use super::{
-    Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
-};
+use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Law, Limiter, NO_KNOB, UNTOUCHABLE};
-use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
+use crate::limit::{Depths, Limiter, NO_KNOB, UNTOUCHABLE};
+use crate::machine::{ALL_AXES, Machine, RapidPath};
 use crate::power::PowerModel;
 
 /// Pieces that may wait for the certifier.
@@ -45,6 +43,19 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut output: W,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
+    let unconfirmed = unconfirmed(machine);
+    if how.allowed.unverified && !unconfirmed.is_empty() {
+        // From here on they are words like all others.
+        let mut trusting = machine.clone();
+        for knob in &mut trusting.controller.knobs {
+            knob.verified = true;
+        }
+        let mut summary = limit(input, &trusting, options, how, output, rows)?;
+        let message = format!("--allow unverified: no document confirms {unconfirmed}");
+        let note = Diagnostic::note("unverified", message);
+        summary.before.notes.push(note);
+        return Ok(summary);
+    }
     check_strategy(machine, how)?;
     let paths = if has_ways(options) {
         let paths = ways(&mut input, machine, options, false)?;
@@ -463,37 +474,5 @@ fn conclude(
         certified,
         slower,
         reasons: reasons.list,
-    }
-}
-
-/// A strategy that needs a word which the controller lacks is refused.
-fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
-    let accel = machine.controller.knobs.iter().any(|knob| {
-        knob.verified
-            && knob.target != KnobTarget::RapidSpeed
-            && !matches!(knob.argument, KnobArgument::Path(_))
-    });
-    let name = &machine.controller.name;
-    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
-    match how.strategy {
-        Strategy::Accel if !accel => unsuitable(format!(
-            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
-        )),
-        Strategy::Preset if machine.presets.is_empty() => {
-            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
-        }
-        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
-            unsuitable(format!(
-                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
-            ))
-        }
-        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
-            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
-        }
-        Strategy::Split => match impossible(machine) {
-            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
-            None => Ok(()),
-        },
-        _ => Ok(()),
     }
 }

@@ -28,6 +28,7 @@ pub mod size;
 mod spindle;
 mod spindle_rows;
 mod split;
+mod strategy;
 mod summary;
 mod table;
 mod tally;

@@ -411,8 +411,12 @@ impl<'m> Rewriter<'m> {
         if self.written.feed != feed && original.per_minute {
             // A printer reads no line without a command.
             if words.is_empty() && self.machine.controller.language.family == Family::Marlin {
-                let digit = original.motion.digit();
+                // An arc it reads only with its centre: a line takes its place.
+                let arc = !matches!(original.motion, Motion::Rapid | Motion::Linear);
+                let motion = if arc { Motion::Linear } else { original.motion };
+                let digit = motion.digit();
                 words.extend(digit.map(|digit| format!("G{}", digit as char)));
+                self.written.motion = motion;
             }
             words.extend(
                 original
