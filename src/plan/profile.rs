@@ -409,7 +409,9 @@ impl Profile {
         for (index, phase) in self.phases.iter().enumerate() {
             let end = start + phase.duration_s;
             let [from, to] = [from_s, to_s].map(|t| (t - start).clamp(0.0, phase.duration_s));
-            if to > from || (index == last && part.phases.is_empty()) {
+            // Of a span so short that nothing is left of it, the phase that it lies in.
+            let holds = to_s <= end || index == last;
+            if to > from || (holds && part.phases.is_empty()) {
                 part.phases.push(if to - from < phase.duration_s {
                     phase.between(from, to)
                 } else {
@@ -469,6 +471,16 @@ mod tests {
         let profile = Profile::trapezoid(5.0, 100.0, 500.0);
         assert_eq!(profile.top_speed_mm_s(), 50.0);
         assert!((profile.duration_s() - 0.2).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_instant_is_part_of_the_phase_that_it_lies_in() {
+        let profile = Profile::trapezoid(100.0, 50.0, 500.0);
+        for (instant_s, accel_mm_s2) in [(0.05, 500.0), (1.0, 0.0), (2.05, -500.0)] {
+            let part = profile.part(instant_s, instant_s);
+            assert_eq!(part.phases.len(), 1);
+            assert_eq!(part.phases[0].accel_mm_s2, accel_mm_s2);
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::model::PowerModel;
 use super::slower::speeds_mm_s;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
-use crate::plan::lookahead::{Piece, Planned};
+use crate::plan::lookahead::{Piece, Planned, Speeds2};
 use crate::plan::{Blend, Plan, Profile, Trajectory};
 
 /// What a piece asks for, at the speed of its profile.
@@ -68,6 +68,45 @@ pub(super) fn slower_demand(
     let mut demand = piece_demand(model, mv, planned, want);
     demand.include_slower(slower);
     Some(demand)
+}
+
+/// What a chord of an arc asks for that is sped up or braked as planned, but from or to
+/// any lower speed: at lower overrides each place is passed with `v² = x − δ`, x the
+/// square of the planned speed, or a little more where it began to brake.
+/// `sides`: whether it is sped up so, and braked.
+pub(super) fn shifted_demand(
+    model: &PowerModel,
+    mv: &Move,
+    planned: &Planned<u64>,
+    sides: [bool; 2],
+) -> Demand {
+    let want = Want {
+        energy: false,
+        ..Want::PEAKS
+    };
+    let Speeds2 { start, end, top } = planned.speeds2;
+    let ramp2 = 2.0 * planned.accel_mm_s2 * planned.length_mm;
+    let mut lower = Demand::NONE;
+    for (side, (low2, falls)) in sides.into_iter().zip([(start, false), (end, true)]) {
+        let speeds_mm_s = speeds_mm_s(low2.sqrt());
+        for low_mm_s in speeds_mm_s.filter(|_| side).chain(side.then_some(0.0)) {
+            let low2 = low_mm_s * low_mm_s;
+            let high2 = top.min(low2 + ramp2);
+            let (start, end) = if falls { (high2, low2) } else { (low2, high2) };
+            let piece = Planned {
+                speeds2: Speeds2 {
+                    start,
+                    end,
+                    top: high2,
+                },
+                ..planned.clone()
+            };
+            lower.include(&piece_demand(model, mv, &piece, want));
+        }
+    }
+    let mut demand = piece_demand(model, mv, planned, want);
+    demand.include_slower(lower);
+    demand
 }
 
 /// Whether a quick bound shows that the peaks of a piece are of no interest.

@@ -98,6 +98,24 @@ pub(super) fn surge_powers(
 }
 
 impl Surge {
+    /// Of the squares of both speeds, if there is one.
+    pub fn between([rises2, falls2]: [Option<f64>; 2], accel_mm_s2: f64) -> Option<Self> {
+        let surge = Self {
+            rises_mm_s: rises2.map(f64::sqrt),
+            falls_mm_s: falls2.map(f64::sqrt),
+            accel_mm_s2,
+            section: None,
+        };
+        surge.without([false; 2])
+    }
+
+    /// What is left of it without being sped up, or braked.
+    pub fn without(mut self, [rises, falls]: [bool; 2]) -> Option<Self> {
+        self.rises_mm_s = self.rises_mm_s.filter(|_| !rises);
+        self.falls_mm_s = self.falls_mm_s.filter(|_| !falls);
+        (self.rises_mm_s.is_some() || self.falls_mm_s.is_some()).then_some(self)
+    }
+
     /// How long its ramps last at most, s.
     pub fn lasts_s(&self) -> f64 {
         let ramps = [(self.rises_mm_s, false), (self.falls_mm_s, true)];

@@ -6,7 +6,6 @@ use gwatt::plan::SpindleDrive;
 use gwatt::plan::period::{Motion, Ramp};
 use gwatt::power::SpindlePower;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::{machine, rows};
 
@@ -33,11 +32,8 @@ fn step() -> impl proptest::strategy::Strategy<Value = Step> {
 }
 
 proptest! {
-    // The same programs each time: of some thousands of others one was found whose peak
-    // counts the end of a run together with a later braking of an axis, 3 % too high.
     #![proptest_config(ProptestConfig {
         cases: 64,
-        rng_seed: RngSeed::Fixed(64),
         ..ProptestConfig::default()
     })]
 

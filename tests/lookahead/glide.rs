@@ -7,7 +7,6 @@ use gwatt::machine::{CornerRule, Machine, builtin_controller};
 use gwatt::power::{Assessment, Assessor, Want};
 use gwatt::syntax::{Block, scan_line};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::machine;
 
@@ -225,14 +224,6 @@ fn any_print() -> impl Strategy<Value = Vec<String>> {
 }
 
 proptest! {
-    // The same programs each time: of others one was found in which an arc before a slower line
-    // gets a bound over lower overrides that is 5 % higher without gliding (4.93 W, where no
-    // single override draws more than 4.68 W).
-    #![proptest_config(ProptestConfig {
-        rng_seed: RngSeed::Fixed(226),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn prints_come_out_alike(
         lines in prop::collection::vec(any_print(), 1..25),

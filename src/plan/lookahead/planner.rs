@@ -273,24 +273,27 @@ impl<T: Copy> PathPlanner<T> {
             || (self.look_ahead.chords.as_ref()).is_none_or(|rule| rule.is_followed(element))
     }
 
-    /// Adds an element.
+    /// Adds an element. Of one that is run as chords it gives Σ 2·a·L over them,
+    /// mm²/s²: how far the square of the speed can fall on it.
     #[inline]
-    pub fn push(&mut self, element: &Element<T>) {
+    pub fn push(&mut self, element: &Element<T>) -> Option<f64> {
         let limited = self.limited(element);
         let element = limited.as_ref().unwrap_or(element);
         if let Rule::LinuxCnc(rule) = &mut self.rule {
             rule.push(element, &mut self.window);
-            return;
+            return None;
         }
-        let chords = self.look_ahead.chords.as_ref();
-        match chords.and_then(|rule| Chords::of(rule, element)) {
-            Some(mut chords) => {
-                while let Some(at) = chords.advance() {
-                    self.push_corner(&chords.chord, at);
-                }
-            }
-            None => self.push_corner(element, [0.0, element.length_mm]),
+        let rule = self.look_ahead.chords.as_ref();
+        let Some(mut chords) = rule.and_then(|rule| Chords::of(rule, element)) else {
+            self.push_corner(element, [0.0, element.length_mm]);
+            return None;
+        };
+        let mut ramp2 = 0.0;
+        while let Some(at) = chords.advance() {
+            ramp2 += 2.0 * chords.chord.accel_mm_s2 * chords.chord.length_mm;
+            self.push_corner(&chords.chord, at);
         }
+        Some(ramp2)
     }
 
     /// The element under the rules' own limit and the drives', where they are lower.

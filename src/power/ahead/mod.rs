@@ -197,7 +197,12 @@ impl Ahead {
         self.driven |= self.largest.element.is_driven();
         // The planner holds it back, even if it ends at rest.
         self.at_rest = false;
-        self.largest.planner.push(&self.largest.element);
+        let chords2 = self.largest.planner.push(&self.largest.element);
+        if let (Some(surges), Some(chords2)) = (&mut self.surges, chords2)
+            && let Some(open) = self.open.back_mut()
+        {
+            surges.run_chords(&mut open.pace, chords2);
+        }
         if let Some(side) = &mut self.nominal {
             side.planner.push(&side.element);
         }

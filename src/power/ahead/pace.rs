@@ -18,8 +18,8 @@
 //! * what starts at a joint, or at rest, does the same at the largest overrides, and
 //!   goes on for longer;
 //! * what starts at an element j does so only if its F is lower, `F_j < F_i`, and
-//!   within `2·ΔA < C_i·(1 − F_j²/F_i²)`, with no joint between them that is passed
-//!   at less than 2·ΔA; unless j is a rapid and i a feed, or the other way: these have
+//!   within `2·ΔA < x·(1 − F_j²/F_i²)`, x that of the largest overrides at the edge of i
+//!   (`o²·F_j² + 2·ΔA` is neither above `o²·F_i²` nor above x); unless j is a rapid and i a feed, or the other way: these have
 //!   knobs of their own;
 //! * at the largest overrides i speeds up there as well, to a higher x, if its F is
 //!   its cap: `o²·(F_i² − F_j²)` grows with o. It does not where r is the cap, or
@@ -46,8 +46,6 @@ pub(super) struct Pace {
     pub asked2: f64,
     /// The same as far as axes and curvature permit it.
     pub cap2: f64,
-    /// What is surely not exceeded: the chords of an arc know nothing of its curvature.
-    pub most2: f64,
     /// Σ 2·a·L of the elements before it, and its own, at least.
     pub before2: f64,
     /// See `before2`.
@@ -75,14 +73,19 @@ impl Course {
     pub fn ramps(&self) -> [bool; 2] {
         [self.start2, self.end2].map(|end2| {
             self.plain
-                && self.top2 > end2 * (1.0 + ROUNDING)
+                && self.is_ramp_from(end2)
                 && (self.brief_mm_s <= 0.0 || self.top2.sqrt() - end2.sqrt() > self.brief_mm_s)
         })
     }
 
+    /// Whether it runs faster than at one of its ends.
+    pub fn is_ramp_from(&self, end2: f64) -> bool {
+        self.top2 > end2 * (1.0 + ROUNDING)
+    }
+
     /// Whether it ends slower than it runs.
     pub fn brakes(&self) -> bool {
-        self.top2 > self.end2 * (1.0 + ROUNDING)
+        self.is_ramp_from(self.end2)
     }
 }
 
@@ -117,11 +120,9 @@ impl Pace {
             }
             // Of an endless F any other is a share of nothing.
             let share = 1.0 - slower.asked2 / self.asked2;
-            if distance2 >= self.most2 * share {
+            if distance2 >= edge2 * share {
                 return None;
             }
-        } else if distance2 >= self.most2 {
-            return None;
         }
         Some(slower.asked2 + distance2)
     }

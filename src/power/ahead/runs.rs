@@ -44,6 +44,11 @@ impl Runs {
         self.sum2 += pace.own2;
     }
 
+    /// The last element comes to more Σ 2·a·L than was known.
+    pub fn lengthen(&mut self, more2: f64) {
+        self.sum2 += more2;
+    }
+
     /// Forgets what is before an element.
     #[inline]
     pub fn forget(&mut self, first: u64) {
@@ -63,21 +68,22 @@ impl Runs {
         self.runs.len() == 1 && self.runs.iter().all(|run| run.slow.rapid == rapid)
     }
 
-    /// The speed, squared, from which a piece of an element may have to brake for
-    /// those behind it, where it need not at the largest overrides.
+    /// The speed, squared, from which a piece of an element, which ends at `on2` (Σ 2·a·L
+    /// from the element's start), may have to brake for the elements after it, where it
+    /// need not at the largest overrides.
     #[inline]
-    pub fn falls2(&self, number: u64, pace: &Pace, course: &Course) -> Option<f64> {
+    pub fn falls2(&self, number: u64, pace: &Pace, course: &Course, on2: f64) -> Option<f64> {
         let last = self.runs.back()?;
         let [_, falls] = course.ramps();
         if falls || last.first <= number {
             return None;
         }
-        self.behind(number, pace, course)
+        self.behind(number, pace, course, on2)
     }
 
-    fn behind(&self, number: u64, pace: &Pace, course: &Course) -> Option<f64> {
+    fn behind(&self, number: u64, pace: &Pace, course: &Course, on2: f64) -> Option<f64> {
         let (end2, kept) = (course.end2, pace.keeps(course.end2));
-        let behind2 = pace.before2 + pace.own2;
+        let behind2 = pace.before2 + on2;
         let mut found: Option<f64> = None;
         let behind = self.runs.iter().filter(|run| run.first > number);
         for (looked, run) in behind.enumerate() {

@@ -10,7 +10,7 @@ use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
-use crate::power::piece::{piece_demand, slower_demand};
+use crate::power::piece::{piece_demand, shifted_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
 
 /// What is known of the path before and behind a piece.
@@ -27,6 +27,8 @@ pub(super) struct Surges {
     ramp_share: f64,
     path_accel_mm_s2: f64,
     runs_chords: bool,
+    /// The move whose chords come, and Σ 2·a·L of those that have come.
+    chords: (u64, f64),
 }
 
 impl Surges {
@@ -43,6 +45,7 @@ impl Surges {
             ramp_share,
             path_accel_mm_s2: rules.path_accel_mm_s2,
             runs_chords: rules.chords.is_some(),
+            chords: (u64::MAX, 0.0),
         }
     }
 
@@ -62,16 +65,30 @@ impl Surges {
             rapid: element.rapid,
             asked2,
             cap2,
-            most2: if self.runs_chords && element.curve.is_some() {
-                asked2
-            } else {
-                cap2
-            },
             before2: 0.0,
             own2: 2.0 * self.ramp_share * accel * element.length_mm,
         };
         self.runs.push(number, &mut pace);
         pace
+    }
+
+    /// The last element is run as chords, which come to this Σ 2·a·L.
+    pub fn run_chords(&mut self, pace: &mut Pace, chords2: f64) {
+        self.runs.lengthen(chords2 - pace.own2);
+        pace.own2 = chords2;
+    }
+
+    /// Takes the next piece of a move with its 2·a·L; gives how far on the move it ends,
+    /// as Σ 2·a·L. Only chords are known one by one.
+    fn advance(&mut self, number: u64, pace: &Pace, ramp2: f64, is_chord: bool) -> f64 {
+        if !is_chord {
+            return pace.own2;
+        }
+        if self.chords.0 != number {
+            self.chords = (number, 0.0);
+        }
+        self.chords.1 += ramp2;
+        self.chords.1
     }
 
     /// The machine without losses in copper.
@@ -157,18 +174,19 @@ impl Ahead {
         // From a lower speed a ramp lasts longer, unless all speeds fall together.
         let longer = !open.pace.is_asked() || !surges.are_one(open.pace.rapid, course.top2);
         surges.runs.forget(planned.first);
-        let mut surge = if let Some(section) = &planned.section {
+        let mut shifted = [false; 2];
+        let surge = if let Some(section) = &planned.section {
             surges.free(section, planned)
         } else {
             let rises2 = surges.past.pass(&open.pace, &course);
-            let falls2 = surges.runs.falls2(planned.tag, &open.pace, &course);
-            let either = rises2.is_some() || falls2.is_some();
-            either.then(|| Surge {
-                rises_mm_s: rises2.map(f64::sqrt),
-                falls_mm_s: falls2.map(f64::sqrt),
-                accel_mm_s2: planned.accel_mm_s2,
-                section: None,
-            })
+            let is_chord = surges.runs_chords && open.mv.arc.is_some();
+            let on2 = surges.advance(planned.tag, &open.pace, course.ramp2, is_chord);
+            let falls2 = surges.runs.falls2(planned.tag, &open.pace, &course, on2);
+            if is_chord {
+                shifted = [(rises2, course.start2), (falls2, course.end2)]
+                    .map(|(reached2, low2)| reached2.is_some() && course.is_ramp_from(low2));
+            }
+            Surge::between([rises2, falls2], planned.accel_mm_s2)
         };
         if let Some(surge) = surge
             && matches!(planned.piece, Piece::Along { .. })
@@ -196,6 +214,17 @@ impl Ahead {
             }
         }
         let open = self.open.get(planned.tag)?;
+        let shift = (shifted != [false; 2]).then(|| {
+            let mut demand = shifted_demand(model, &open.mv, planned, shifted);
+            if model.has_copper(&open.mv)
+                && let Some(surges) = self.surges.as_mut()
+            {
+                let lossless = surges.lossless(model);
+                demand.include(&shifted_demand(lossless, &open.mv, planned, shifted));
+            }
+            demand
+        });
+        let mut surge = surge.and_then(|surge| surge.without(shifted));
         // Slower, friction takes less of what is fed back.
         if straight && course.brakes() && model.has_viscous(&open.mv) {
             let slowed = surge.get_or_insert(Surge {
@@ -207,7 +236,7 @@ impl Ahead {
             slowed.falls_mm_s = Some(slowed.falls_mm_s.unwrap_or(0.0).max(top_mm_s));
         }
         let surged = surge.and_then(|surge| self.surged(model, planned, &surge, straight));
-        [turned, slower, surged]
+        [turned, slower, shift, surged]
             .into_iter()
             .flatten()
             .reduce(|mut all, one| {
