@@ -135,6 +135,19 @@ impl Change {
         *self == Self::NONE
     }
 
+    /// How corners and hills of a move are taken.
+    #[must_use]
+    pub fn corner(&self, machine: &Machine, mv: &Move) -> Corner {
+        match (mv.corner, Square::of(machine)) {
+            (corner, _) if self.cruise.is_none() => corner,
+            (Corner::Square(square), _) | (_, Some(square)) => Corner::Square(Square {
+                cruise_ratio: 0.0,
+                ..square
+            }),
+            (corner, None) => corner,
+        }
+    }
+
     /// The move as the controller will run it, computed as the interpreter
     /// does from the words that will be written.
     #[must_use]
@@ -150,15 +163,7 @@ impl Change {
         if let Some(feed) = self.feed {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);
         }
-        if self.cruise.is_some() {
-            changed.corner = match (changed.corner, Square::of(machine)) {
-                (Corner::Square(square), _) | (_, Some(square)) => Corner::Square(Square {
-                    cruise_ratio: 0.0,
-                    ..square
-                }),
-                (corner, None) => corner,
-            };
-        }
+        changed.corner = self.corner(machine, mv);
         if let Some((_, percent)) = self.rapid_percent {
             changed.rapid_factor = percent / 100.0;
         }

@@ -72,7 +72,7 @@ fn refused(machine: &Machine, how: LimitOptions, program: &str) -> String {
 /// has 1000 mm/s² at 200 mm/s too, which is 2 W.
 #[test]
 fn acceleration_is_lowered_along_the_path_and_put_back() {
-    let machine = machine(1.0, "");
+    let machine = machine(1.001, "");
     let (text, summary) = fits(
         &machine,
         how(Strategy::Accel, false),
@@ -168,6 +168,34 @@ fn unlike_axes_keep_their_words() {
         found,
         "the block may not be changed: no F is in force that could be put back"
     );
+}
+
+/// Lines that must stay as they are get no word before them either: one with a checksum and
+/// number, one whose feed a percentage scales, one that sets limits itself, and moves that
+/// only the firmware knows.
+#[test]
+fn lines_that_stay_as_they_are() {
+    let machine = machine(1.0, "");
+    let sum = "N1 G1 X100 F12000".bytes().fold(0, |sum, byte| sum ^ byte);
+    for (program, reason) in [
+        (
+            format!("N1 G1 X100 F12000*{sum}\n"),
+            "it carries a checksum",
+        ),
+        (
+            "M220 S90\nG1 X100 F12000\n".to_owned(),
+            "M220 scales its feed",
+        ),
+        (
+            "PROBE\n".to_owned(),
+            "it stops, changes the tool or ends the program",
+        ),
+    ] {
+        for strategy in [Strategy::Accel, Strategy::Optimal, Strategy::Split] {
+            let found = refused(&machine, how(strategy, true), &program);
+            assert!(found.contains(reason), "{program}: {found}");
+        }
+    }
 }
 
 /// A long block in pieces: without the share of hills that is cruised, which comes back.

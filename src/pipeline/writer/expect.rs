@@ -63,6 +63,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             self.batch.expected.push(Expected::Move(ExpectedMove {
                 changed: change.is_some(),
                 as_feed: change.is_some_and(|change| change.as_feed),
+                corner: change.map_or(mv.corner, |change| change.corner(self.machine, mv)),
                 hopeless,
                 split: split.map(|split| Box::new(Line::of(mv, split))),
                 row,
