@@ -61,8 +61,8 @@ pub struct Change {
     pub accel: Option<(usize, AxisValues)>,
     /// The same for the largest speed.
     pub speed: Option<(usize, AxisValues)>,
-    /// The knob by which hills of speed need no cruise, and 0.
-    pub cruise: Option<(usize, AxisValues)>,
+    /// The knob by which hills of speed need no cruise; its value is 0.
+    pub cruise: Option<usize>,
 }
 
 impl Change {

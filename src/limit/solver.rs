@@ -340,12 +340,11 @@ impl<'m> Solver<'m> {
         factor: f64,
         with: &Change,
     ) -> Option<Change> {
-        let rounded = match self.along_path(knob, case.mv) {
-            Some(accel) => self.path_values(knob, accel * factor)?,
-            None => {
-                let values = case.mv.accel_mm_s2.map(|accel| accel * factor);
-                self.knob_values(knob, &values, case.permit)?
-            }
+        let rounded = if let Some(accel) = self.along_path(knob, case.mv) {
+            self.path_values(knob, accel * factor)?
+        } else {
+            let values = case.mv.accel_mm_s2.map(|accel| accel * factor);
+            self.knob_values(knob, &values, case.permit)?
         };
         Some(Change {
             accel: Some((knob, rounded)),

@@ -13,7 +13,7 @@ use super::road::{MOST, NO_FIT, Road, SHORTEST_MM};
 use super::solver::{Case, Ends, Solver};
 use super::steps;
 use crate::interpret::{Corner, Move, MoveKind};
-use crate::machine::{AXES, AxisValues, Knob, KnobTarget, LookAhead, PathMode};
+use crate::machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
 use crate::plan::{is_independent, plan};
 use crate::power::{Assessment, Certificate, plans_lines};
 
@@ -34,7 +34,7 @@ pub struct Split {
     /// In their order, at least two.
     pub pieces: Vec<Piece>,
     /// The knob by which their hills need no cruise, where they would otherwise.
-    pub cruise: Option<(usize, AxisValues)>,
+    pub cruise: Option<usize>,
 }
 
 /// A piece of a line.
@@ -102,15 +102,15 @@ impl Solver<'_> {
         })
     }
 
-    /// The knob that takes the cruise off hills, with its value, where they have one.
-    fn cruise_knob(&self, mv: &Move) -> Option<(usize, AxisValues)> {
+    /// The knob that takes the cruise off hills, where they have one.
+    fn cruise_knob(&self, mv: &Move) -> Option<usize> {
         let controller = &self.machine.controller;
         let rules = controller.planner.look_ahead?;
         let suits = |knob: &Knob| {
             knob.verified && knob.between_moves && knob.target == KnobTarget::CruiseRatio
         };
         let index = controller.knobs.iter().position(suits)?;
-        (cruise_ratio(mv, &rules) > 0.0).then_some((index, [0.0; AXES]))
+        (cruise_ratio(mv, &rules) > 0.0).then_some(index)
     }
 
     fn road<'a>(&'a self, case: Case<'a>, levers: Levers) -> Result<Road<'a>, &'static str> {

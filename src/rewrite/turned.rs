@@ -52,13 +52,14 @@ impl<'m> Turned<'m> {
         in_force: InForce<'_>,
     ) -> Vec<String> {
         let mut lines = Vec::new();
-        let none = [change.accel, change.speed, change.cruise] == [None; 3]
+        let none = [change.accel, change.speed] == [None; 2]
+            && change.cruise.is_none()
             && change.rapid_percent.is_none();
         if none && self.knobs.is_empty() {
             return lines;
         }
-        let mut wanted: [Option<(usize, AxisValues)>; 4] =
-            [change.accel, change.speed, change.cruise, None];
+        let mut wanted: [Option<(usize, AxisValues)>; 4] = [change.accel, change.speed, None, None];
+        wanted[2] = change.cruise.map(|knob| (knob, [0.0; AXES]));
         if let Some((knob, percent)) = change.rapid_percent {
             wanted[3] = Some((knob, [percent; AXES]));
         }
