@@ -9,6 +9,7 @@ mod first_feed;
 mod flow_through;
 mod halts;
 mod knobs;
+mod klipper;
 mod lathe;
 mod lines;
 mod no_word;

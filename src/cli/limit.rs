@@ -85,6 +85,9 @@ pub enum Allow {
     /// The program may wait (G4) between rapids and before tool changes where a limit over
     /// time is missed
     Pause,
+    /// Words may be written that no document confirms (`verified = false` in the controller
+    /// profile)
+    Unverified,
 }
 
 /// What a list of `--allow` allows.
@@ -95,6 +98,7 @@ pub fn allowed(list: &[Allow]) -> Allowed {
         straighten: list.contains(&Allow::Straighten),
         stop: list.contains(&Allow::Stop),
         pause: list.contains(&Allow::Pause),
+        unverified: list.contains(&Allow::Unverified),
     }
 }
 

@@ -119,7 +119,7 @@ impl Words {
                         controller
                             .knobs
                             .iter()
-                            .position(|knob| knob.code == (word.letter, number))
+                            .position(|knob| knob.code == Some((word.letter, number)))
                     });
                     if let Some(knob) = knob {
                         let assigned = words

@@ -4,6 +4,7 @@
 //! Output: for each move, in order, the [`Change`] that makes it fit, or why
 //! there is none. The limiter never sees text.
 
+mod along;
 mod by_axis;
 mod change;
 mod depth;

@@ -51,6 +51,9 @@ pub struct Allowed {
     /// The program may wait between rapids and before tool changes, where a limit over
     /// time is missed otherwise.
     pub pause: bool,
+    /// Words may be written that no document confirms (`verified = false` in the
+    /// controller profile).
+    pub unverified: bool,
 }
 
 impl Allowed {
@@ -61,5 +64,6 @@ impl Allowed {
         straighten: false,
         stop: false,
         pause: false,
+        unverified: false,
     };
 }

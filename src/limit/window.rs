@@ -89,7 +89,14 @@ pub(super) fn lower(
     }
     let found: Vec<Levers> = window
         .iter()
-        .map(|member| levers(solver.machine, solver.how, member.mv, &member.permit))
+        .map(|member| {
+            let mut found = levers(solver.machine, solver.how, member.mv, &member.permit);
+            // The bound knows of limits of the axes alone.
+            found.accel = found
+                .accel
+                .filter(|knob| solver.along_path(*knob, member.mv).is_none());
+            found
+        })
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());
@@ -169,7 +176,7 @@ fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
     window
 }
 
-/// Blended moves are lowered by F, also a rapid written as a feed.
+/// Blended moves are lowered by F or by a word for the largest speed, also a rapid written as a feed.
 fn speed_lever(levers: Levers) -> Option<SpeedLever> {
     levers
         .speed
@@ -306,7 +313,7 @@ fn scale(bound: &SpeedBound, factor: f64) -> SpeedBound {
     }
 }
 
-/// Sets the F of one move to a share of the speed that it has now.
+/// Sets the F of one move, or its largest speed, to a share of the speed that it has now.
 fn lower_feed(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
@@ -315,20 +322,35 @@ fn lower_feed(
     factor: f64,
 ) -> bool {
     let changed = member.changed(slots);
-    let speed_mm_s = if changed.unknown_start.is_empty() {
+    let speed_mm_s = if let SpeedLever::Cap(_) = lever
+        && !changed.unknown_start.is_empty()
+    {
+        solver.fastest_axis(changed)
+    } else if changed.unknown_start.is_empty() {
         blended_speed(solver.machine, changed, solver.largest)
     } else {
         changed.feed_mm_s.min(1e6) * solver.largest.feed
     };
     let speed_mm_s = speed_mm_s * factor / solver.largest.feed;
-    let feed = feed_word(solver.machine, member.mv, &member.permit, speed_mm_s);
-    if !(feed > 0.0 && feed.is_finite()) {
-        return false;
-    }
-    let change = Change {
-        feed: Some(feed),
-        as_feed: lever == SpeedLever::AsFeed,
-        ..change(slots, member)
+    let before = change(slots, member);
+    let change = if let SpeedLever::Cap(knob) = lever {
+        let Some(values) = solver.cap_values(member.case(slots), knob, speed_mm_s) else {
+            return false;
+        };
+        Change {
+            speed: Some((knob, values)),
+            ..before
+        }
+    } else {
+        let feed = feed_word(solver.machine, member.mv, &member.permit, speed_mm_s);
+        if !(feed > 0.0 && feed.is_finite()) {
+            return false;
+        }
+        Change {
+            feed: Some(feed),
+            as_feed: lever == SpeedLever::AsFeed,
+            ..before
+        }
     };
     if let Err(obstacle) = solver.respect_floor(member.case(slots), &change) {
         slots[member.index].outcome.obstacle = Some(Box::new(obstacle));

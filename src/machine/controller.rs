@@ -5,6 +5,7 @@ use super::axis::{Axis, AxisKind};
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
 use super::queue::Queue;
+use crate::units::SECONDS_PER_MINUTE;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -347,8 +348,11 @@ impl Controller {
 /// A word that limits speed or acceleration until it is taken back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Knob {
-    /// Letter and number × 10 of the word, such as `(b'G', 1310)`.
-    pub code: (u8, u16),
+    /// Letter and number × 10 of the word, such as `(b'G', 1310)`; `None` where it is none
+    /// of a letter and a number.
+    pub code: Option<(u8, u16)>,
+    /// The word as it is written, such as `G131` or `SET_VELOCITY_LIMIT ACCEL=`.
+    pub name: String,
     /// What it acts on.
     pub target: KnobTarget,
     /// What stands behind the word.
@@ -376,6 +380,10 @@ pub enum KnobTarget {
     Accel,
     /// Speed of rapids.
     RapidSpeed,
+    /// Speed of all moves.
+    Speed,
+    /// Share of each hill of speed that is cruised at least.
+    CruiseRatio,
 }
 
 /// What stands behind a knob's word.
@@ -387,6 +395,22 @@ pub enum KnobArgument {
     Axes,
     /// One value behind any of these letters, the path's limit (`M204 P500 T500`).
     Path(Vec<u8>),
+    /// One value right behind the word, the limit along the path of all moves that the
+    /// extruder does not make alone (`SET_VELOCITY_LIMIT ACCEL=500`).
+    Value,
+}
+
+impl Knob {
+    /// Whether it may be written to lower an acceleration.
+    #[must_use]
+    pub fn lowers_accel(&self) -> bool {
+        self.verified
+            && matches!(
+                self.target,
+                KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel
+            )
+            && !matches!(self.argument, KnobArgument::Path(_))
+    }
 }
 
 /// Unit of a knob's value.
@@ -397,6 +421,12 @@ pub enum KnobUnit {
     /// Program units per s² (mm/s², or inch/s² after G20); the machine's own
     /// limit takes it back.
     PerSecondSquared,
+    /// Program units per s, of a speed.
+    PerSecond,
+    /// Program units per minute, of a speed.
+    PerMinute,
+    /// A share, 0 to 1.
+    Share,
 }
 
 impl KnobUnit {
@@ -406,7 +436,27 @@ impl KnobUnit {
     pub fn accel_mm_s2(self, axis: &Axis, value: f64, mm_per_unit: f64) -> f64 {
         match self {
             Self::Percent => axis.accel_mm_s2 * value / 100.0,
-            Self::PerSecondSquared => value * unit_of(axis, mm_per_unit),
+            _ => value * unit_of(axis, mm_per_unit),
+        }
+    }
+
+    /// The speed of an axis, mm/s (degrees/s), that a value means.
+    #[must_use]
+    pub fn speed_mm_s(self, axis: &Axis, value: f64, mm_per_unit: f64) -> f64 {
+        match self {
+            Self::Percent => axis.rapid_mm_s * value / 100.0,
+            Self::PerMinute => value * unit_of(axis, mm_per_unit) / SECONDS_PER_MINUTE,
+            _ => value * unit_of(axis, mm_per_unit),
+        }
+    }
+
+    /// The value that means a speed of an axis.
+    #[must_use]
+    pub fn speed_value(self, axis: &Axis, speed_mm_s: f64, mm_per_unit: f64) -> f64 {
+        match self {
+            Self::Percent => speed_mm_s / axis.rapid_mm_s * 100.0,
+            Self::PerMinute => speed_mm_s * SECONDS_PER_MINUTE / unit_of(axis, mm_per_unit),
+            _ => speed_mm_s / unit_of(axis, mm_per_unit),
         }
     }
 
@@ -415,7 +465,7 @@ impl KnobUnit {
     pub fn value(self, axis: &Axis, accel_mm_s2: f64, mm_per_unit: f64) -> f64 {
         match self {
             Self::Percent => accel_mm_s2 / axis.accel_mm_s2 * 100.0,
-            Self::PerSecondSquared => accel_mm_s2 / unit_of(axis, mm_per_unit),
+            _ => accel_mm_s2 / unit_of(axis, mm_per_unit),
         }
     }
 }

@@ -1,14 +1,12 @@
-//! What limiting a program comes to, and what is refused before it begins.
+//! What limiting a program comes to.
 
 use super::certify::{Certified, Reasons};
 use super::conditions::conditions;
 use super::over_time::OverTime;
-use super::split::impossible;
 use super::writer::Written;
-use super::{Failure, LimitOptions, LimitSummary, Options, Strategy, Summary};
+use super::{LimitOptions, LimitSummary, Options, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::Law;
-use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
+use crate::machine::{ALL_AXES, Machine, RapidPath};
 
 /// The figures of both programs and the reasons of both halves as one.
 pub(super) fn conclude(
@@ -81,38 +79,6 @@ pub(super) fn conclude(
         certified,
         slower,
         reasons: reasons.list,
-    }
-}
-
-/// A strategy that needs a word which the controller lacks is refused.
-pub(super) fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
-    let accel = machine.controller.knobs.iter().any(|knob| {
-        knob.verified
-            && knob.target != KnobTarget::RapidSpeed
-            && !matches!(knob.argument, KnobArgument::Path(_))
-    });
-    let name = &machine.controller.name;
-    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
-    match how.strategy {
-        Strategy::Accel if !accel => unsuitable(format!(
-            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
-        )),
-        Strategy::Preset if machine.presets.is_empty() => {
-            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
-        }
-        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
-            unsuitable(format!(
-                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
-            ))
-        }
-        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
-            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
-        }
-        Strategy::Split => match impossible(machine) {
-            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
-            None => Ok(()),
-        },
-        _ => Ok(()),
     }
 }
 

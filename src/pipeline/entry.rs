@@ -4,10 +4,10 @@ use super::front::Line;
 use super::split::Places;
 use super::table::{IN_A_FILE, LineKey};
 use crate::interpret::{
-    CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step, TURNING_CYCLE,
+    CYCLE, Facts, FeedMode, KnobState, Motion, Move, MoveKind, Stance, Step, TURNING_CYCLE,
 };
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
+use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
@@ -271,6 +271,7 @@ impl Entry {
             mm_per_unit: facts.feed_mm_per_unit,
             knob_mm_per_unit: self.mm_per_unit_before,
             feed_before: self.feed_before(),
+            positions: facts.homes || positions(machine, self.mark.motion, mv),
             feed_accel_mm_s2,
         }
     }
@@ -373,6 +374,14 @@ pub(super) fn rests(machine: &Machine, mv: &Move) -> bool {
     machine.controller.planner.rapid_joint != RapidJoint::All
         && mv.kind == MoveKind::Rapid
         && mv.length_mm > 0.0
+}
+
+/// Whether a move that obeys F is a rapid by its motion word, and prints nothing.
+pub(super) fn positions(machine: &Machine, motion: Motion, mv: &Move) -> bool {
+    machine.controller.language.rapid_uses_feed
+        && motion == Motion::Rapid
+        && mv.kind == MoveKind::Feed
+        && !mv.moving.contains(AxisId::E as usize)
 }
 
 /// Whether the mode of the feed is a matter of its own: with others it also switches

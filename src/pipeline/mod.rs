@@ -32,6 +32,7 @@ mod spindle;
 mod spindle_rows;
 mod split;
 mod stops;
+mod strategy;
 mod summary;
 mod table;
 mod tally;

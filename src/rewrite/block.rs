@@ -412,8 +412,12 @@ impl<'m> Rewriter<'m> {
             // A printer reads no line without a command.
             let printer = self.machine.controller.language.family == Family::Marlin;
             if words.is_empty() && printer && feed.is_some() {
-                let digit = original.motion.digit();
+                // An arc it reads only with its centre: a line takes its place.
+                let arc = !matches!(original.motion, Motion::Rapid | Motion::Linear);
+                let motion = if arc { Motion::Linear } else { original.motion };
+                let digit = motion.digit();
                 words.extend(digit.map(|digit| format!("G{}", digit as char)));
+                self.written.motion = motion;
             }
             words.extend(
                 original

@@ -57,7 +57,7 @@ fn a_knob_is_read() {
     assert_eq!(findings(&with(KNOB)), "");
     let (controller, _) = Controller::from_toml(&with(KNOB)).unwrap();
     assert_eq!(controller.knobs.len(), 1);
-    assert_eq!(controller.knobs[0].code, (b'G', 1310));
+    assert_eq!(controller.knobs[0].code, Some((b'G', 1310)));
     assert!(
         !controller.knobs[0].verified,
         "only on request unless the file says otherwise"
@@ -191,7 +191,7 @@ fn knob_incomplete() {
     line 19, error machine-missing: `target` is missing in `knob` / What it acts on
       | [[knob]]
       | ^^^^^^^^
-    line 19, error machine-missing: `argument` is missing in `knob` / What stands behind it: `= value`, a value per axis, or the path's value
+    line 19, error machine-missing: `argument` is missing in `knob` / What stands behind it: `= value`, a value per axis, the path's value behind a letter, or right behind the word
       | [[knob]]
       | ^^^^^^^^
     line 19, error machine-missing: `unit` is missing in `knob` / Unit of the value
@@ -243,5 +243,30 @@ fn the_word_for_exact_stop_is_a_g_word() {
     assert!(
         errors.contains("\"M9\" is not a G word / such as \"G9\""),
         "{errors}"
+    );
+}
+
+/// What is written must be read back, in its unit.
+#[test]
+fn knobs_with_a_value() {
+    let knob = |word: &str, target: &str, unit: &str| {
+        with(&format!(
+            "[[knob]]\nword = \"{word}\"\ntarget = \"{target}\"\nargument = \"value\"\n\
+             unit = \"{unit}\"\nstep = 1\nmin = 1\n"
+        ))
+    };
+    let accel = "SET_VELOCITY_LIMIT ACCEL=";
+    assert_eq!(findings(&knob(accel, "accel", "per-second-squared")), "");
+    let found = findings(&knob("SET_SPEED V=", "speed", "per-second"));
+    assert!(
+        found.contains("\"SET_SPEED V=\" with argument = \"value\" is not read back"),
+        "{found}"
+    );
+    let found = findings(&knob(accel, "speed", "per-second"));
+    assert!(found.contains("is not read back"), "{found}");
+    let found = findings(&knob(accel, "accel", "per-minute"));
+    assert!(
+        found.contains("`unit` does not go with `target`"),
+        "{found}"
     );
 }

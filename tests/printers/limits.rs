@@ -15,7 +15,7 @@ fn speed_limits_of_axes() {
     4 feed X30.000>0.000 v20.000
     ");
     assert_snapshot!(reprap("M203 X1200\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
-    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000");
+    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000 a1000");
     // Marlin M205 S: no move that extrudes is slower.
     assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"
     2 feed X0.000>1.000 E0.000>1.000 v20.000
@@ -61,7 +61,7 @@ fn klipper_velocity_limits() {
     5 feed X30.000>0.000 v300.000 a3000 raised 3.00
     7 feed Y40.000>0.000 v10.000 a100 raised 3.00
     9 feed Y0.000>1.000 v10.000 a100 raised 3.00
-    11 feed Y1.000>0.000 v10.000
+    11 feed Y1.000>0.000 v10.000 a1000
     ");
     assert_snapshot!(klipper("SET_VELOCITY_LIMIT ACCEL={a}\n"), @"printer-value: this value is out of range");
 }

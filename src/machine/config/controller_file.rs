@@ -303,13 +303,15 @@ pub(crate) enum RapidKnobName {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct KnobTable {
-    /// The word, such as `G131`.
+    /// The word, such as `G131`; with `argument = "value"` all that stands before the
+    /// value, such as `SET_VELOCITY_LIMIT ACCEL=`.
     #[schemars(required)]
     pub(crate) word: Option<At<String>>,
     /// What it acts on.
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
-    /// What stands behind it: `= value`, a value per axis, or the path's value.
+    /// What stands behind it: `= value`, a value per axis, the path's value behind a
+    /// letter, or right behind the word.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
     /// Letters of the value, for `argument = "path"`.
@@ -338,6 +340,8 @@ pub(crate) enum TargetName {
     RapidAccel,
     Accel,
     RapidSpeed,
+    Speed,
+    CruiseRatio,
 }
 
 /// What stands behind a knob's word.
@@ -347,6 +351,7 @@ pub(crate) enum ArgumentName {
     Assign,
     Axes,
     Path,
+    Value,
 }
 
 /// Unit of a knob's value.
@@ -355,4 +360,7 @@ pub(crate) enum ArgumentName {
 pub(crate) enum UnitName {
     Percent,
     PerSecondSquared,
+    PerSecond,
+    PerMinute,
+    Share,
 }

@@ -295,29 +295,80 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
 
 fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     let knob = &table.value;
-    let code = knob.word.as_ref().and_then(|text| {
+    let target = match knob.target? {
+        TargetName::FeedAccel => KnobTarget::FeedAccel,
+        TargetName::RapidAccel => KnobTarget::RapidAccel,
+        TargetName::Accel => KnobTarget::Accel,
+        TargetName::RapidSpeed => KnobTarget::RapidSpeed,
+        TargetName::Speed => KnobTarget::Speed,
+        TargetName::CruiseRatio => KnobTarget::CruiseRatio,
+    };
+    let unit = match knob.unit? {
+        UnitName::Percent => KnobUnit::Percent,
+        UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
+        UnitName::PerSecond => KnobUnit::PerSecond,
+        UnitName::PerMinute => KnobUnit::PerMinute,
+        UnitName::Share => KnobUnit::Share,
+    };
+    let suits = match target {
+        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
+            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
+        }
+        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
+        KnobTarget::Speed => {
+            matches!(
+                unit,
+                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
+            )
+        }
+        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
+    };
+    if !suits {
+        let message = "`unit` does not go with `target`";
+        let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
+                    \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
+                    cruise-ratio is a \"share\"";
+        findings.error("machine-kind", &table.span, message, Some(help.to_owned()));
+    }
+    let argument = argument(findings, knob)?;
+    let text = knob.word.as_ref()?;
+    let code = if argument == KnobArgument::Value {
+        let read = match target {
+            KnobTarget::Accel => Some("SET_VELOCITY_LIMIT ACCEL="),
+            KnobTarget::Speed => Some("SET_VELOCITY_LIMIT VELOCITY="),
+            KnobTarget::CruiseRatio => Some("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO="),
+            KnobTarget::FeedAccel | KnobTarget::RapidAccel | KnobTarget::RapidSpeed => None,
+        };
+        if read != Some(text.value.as_str()) || unit == KnobUnit::Percent {
+            let message = format!(
+                "\"{}\" with argument = \"value\" is not read back",
+                text.value
+            );
+            let help = "\"SET_VELOCITY_LIMIT ACCEL=\" in mm/s² with target = \"accel\", \
+                        \"SET_VELOCITY_LIMIT VELOCITY=\" in mm/s with target = \"speed\", or \
+                        \"SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=\" with target = \"cruise-ratio\"";
+            findings.error("machine-word", &text.span, message, Some(help.to_owned()));
+            return None;
+        }
+        None
+    } else {
         let code = word::code(&text.value);
         if code.is_none() {
             let message = format!("\"{}\" is not a program word", text.value);
             let help = Some("a letter and a number, such as \"G131\"".to_owned());
             findings.error("machine-word", &text.span, message, help);
         }
-        code
-    });
-    let argument = argument(findings, knob)?;
+        Some(code?)
+    };
     Some(Knob {
-        code: code?,
-        target: match knob.target? {
-            TargetName::FeedAccel => KnobTarget::FeedAccel,
-            TargetName::RapidAccel => KnobTarget::RapidAccel,
-            TargetName::Accel => KnobTarget::Accel,
-            TargetName::RapidSpeed => KnobTarget::RapidSpeed,
+        code,
+        name: match code {
+            Some((letter, number)) => format!("{}{}", letter as char, f64::from(number) / 10.0),
+            None => text.value.clone(),
         },
+        target,
         argument,
-        unit: match knob.unit? {
-            UnitName::Percent => KnobUnit::Percent,
-            UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
-        },
+        unit,
         step: knob.step.as_ref()?.value,
         min: knob.min.as_ref()?.value,
         verified: knob.verified.unwrap_or(false),
@@ -336,6 +387,7 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
     Some(match argument.value {
         ArgumentName::Assign => KnobArgument::Assign,
         ArgumentName::Axes => KnobArgument::Axes,
+        ArgumentName::Value => KnobArgument::Value,
         ArgumentName::Path => {
             let mut list = Vec::new();
             for text in knob.letters.iter().flat_map(|letters| &letters.value) {

@@ -10,7 +10,8 @@ mod rows;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::conclusion::{check_strategy, holds_one_way};
+use super::conclusion::holds_one_way;
+use super::strategy::{check_strategy, trusting};
 use super::ways::{has_ways, ways};
 use super::{Failure, LimitOptions, LimitSummary, Options, RestartRows};
 use crate::diagnostic::Severity;
@@ -108,7 +109,18 @@ pub fn limit_set(
     how: LimitOptions,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<SetSummary, SetFailure> {
+    if let Some((machine, note)) = trusting(machine, how) {
+        let mut summary = limit_set(programs, &machine, how, rows)?;
+        if let Some(first) = summary.programs.first_mut() {
+            first.before.notes.push(note);
+        }
+        return Ok(summary);
+    }
     check_strategy(machine, how)?;
+    if how.allowed.pause {
+        let message = "--allow pause does not go with --with-subprograms";
+        return Err(Failure::Unsuitable(message.to_owned()).into());
+    }
     let mut asked = Vec::with_capacity(programs.len());
     for (place, program) in programs.iter().enumerate() {
         asked.push(if has_ways(&program.options) {
