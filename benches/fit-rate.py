@@ -12,6 +12,7 @@ others are not, by the rules that refuse them.
 import argparse
 import collections
 import concurrent.futures
+import hashlib
 import json
 import pathlib
 import subprocess
@@ -42,6 +43,8 @@ def machine(profile, peak_w):
         axes, rotary, rest = MILL, ROTARY, "[path]\nrapid = \"linear\"\n"
     text = f'schema = 1\nname = "fit rate"\ncontroller = "{profile}"\n{rest}'
     text += f"[converter]\npeak_power_w = {peak_w!r}\n[limits]\nmargin = 0.0\n"
+    if profile == "siemens":
+        text += "[language]\npower_on_feed_mm_min = 1000\n"
     if profile in MILLS:
         text += "[offsets]\n" + OFFSETS
     if profile in LATHES:
@@ -57,6 +60,11 @@ def machine(profile, peak_w):
     return text
 
 
+def half(file):
+    """"tune" or "rest", by the file's name: what is worked on and what is looked at once."""
+    return "tune" if hashlib.sha256(file.name.encode()).digest()[0] % 2 == 0 else "rest"
+
+
 def run(arguments, seconds):
     try:
         found = subprocess.run(arguments, capture_output=True, timeout=seconds, check=False)
@@ -65,23 +73,46 @@ def run(arguments, seconds):
     return found.returncode, found.stdout.decode("latin1"), found.stderr.decode("latin1")
 
 
+def common(profile, program, folder):
+    """The arguments that all commands get; the machine file has no limit yet."""
+    file = folder / "machine.toml"
+    file.write_text(machine(profile, 1e9))
+    arguments = ["-m", str(file), "--sub-path", str(program.resolve().parent)]
+    if profile in MILLS | LATHES:
+        tools = folder / "tools.tbl"
+        tools.write_text(TOOLS)
+        arguments += ["--tool-table", str(tools)]
+    return arguments
+
+
+def peak(gwatt, program, arguments, seconds):
+    """The largest peak of a program, W; `None` and why where it cannot be read."""
+    code, out, errors = run([gwatt, "check", str(program), *arguments, "--format", "json"], seconds)
+    if code != 0:
+        return None, errors
+    found = json.loads(out)
+    return found[0].get("peak_w") or 0.0, ""
+
+
+def programs(folders, which):
+    """(profile, file) of all programs of PROFILE=FOLDER, or of one half of them."""
+    found = []
+    for pair in folders:
+        profile, folder = pair.split("=", 1)
+        files = [file for file in sorted(pathlib.Path(folder).rglob("*")) if file.is_file()]
+        found += [(profile, file) for file in files if which in (None, half(file))]
+    return found
+
+
 def judge(gwatt, profile, program, shares, options, seconds):
     """By share: "certified", "fits", "unread", or the rules that refuse it."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         file = folder / "machine.toml"
-        file.write_text(machine(profile, 1e9))
-        common = ["-m", str(file), "--sub-path", str(program.resolve().parent)]
-        if profile in MILLS | LATHES:
-            tools = folder / "tools.tbl"
-            tools.write_text(TOOLS)
-            common += ["--tool-table", str(tools)]
-        code, out, _ = run([gwatt, "check", str(program), *common, "--format", "json"], seconds)
-        if code != 0:
+        arguments = common(profile, program, folder)
+        peak_w, _ = peak(gwatt, program, arguments, seconds)
+        if peak_w is None:
             return {share: "unread" for share in shares}
-        found = json.loads(out)
-        found = found[0] if isinstance(found, list) else found
-        peak_w = found.get("peak_w") or 0.0
         results = {}
         for share in shares:
             if peak_w <= 0.0:
@@ -89,7 +120,7 @@ def judge(gwatt, profile, program, shares, options, seconds):
                 continue
             file.write_text(machine(profile, share * peak_w))
             written = folder / "written"
-            code, _, errors = run([gwatt, "limit", str(program), *common, *options, "-o", str(written)], seconds)
+            code, _, errors = run([gwatt, "limit", str(program), *arguments, *options, "-o", str(written)], seconds)
             if code == 0:
                 results[share] = "certified"
             else:
@@ -106,15 +137,12 @@ def main():
     parser.add_argument("--shares", default="0.6,0.8")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--half", choices=("tune", "rest"), help="only this half of each folder")
     parser.add_argument("--list", action="store_true", help="name every program that is refused")
     given = parser.parse_args()
     shares = [float(share) for share in given.shares.split(",")]
     options = ["--allow", given.allow] if given.allow else []
-    jobs = []
-    for pair in given.folders:
-        profile, folder = pair.split("=", 1)
-        files = [file for file in sorted(pathlib.Path(folder).rglob("*")) if file.is_file()]
-        jobs += [(profile, file) for file in files]
+    jobs = programs(given.folders, given.half)
     work = lambda job: (job, judge(given.gwatt, job[0], job[1], shares, options, given.seconds))
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         results = list(pool.map(work, jobs))

@@ -134,11 +134,13 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         feed_word: true,
         as_feed: false,
         exact_stop: false,
+        stop_word: false,
         unsplit: None,
         reason: "",
         reason_help: "",
         mm_per_unit: 1.0,
         knob_mm_per_unit: 1.0,
+        positions: false,
         feed_before: None,
         feed_accel_mm_s2: mv.accel_mm_s2,
     };

@@ -1,5 +1,6 @@
 //! The spindle on the same bus as the axes.
 
+mod lower;
 mod over_time;
 mod random;
 mod series;

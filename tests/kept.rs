@@ -111,8 +111,98 @@ fn what_is_worked_out_from_an_unknown_value_is_unknown() {
     );
 }
 
+/// "Parameters" of LinuxCNC: offsets and the points of G28 and G30 outlast a program,
+/// and so do the last probe's result, that of M66 and the tool in the spindle.
+#[test]
+fn linuxcnc_parameters_are_unknown_until_the_program_sets_them() {
+    let decides =
+        |parameter: &str| format!("o1 if [{parameter} GT 7]\nG0 X9\no1 endif\nG0 X1\nM2\n");
+    for number in [5161, 5181, 5210, 5211, 5221, 5230, 5241, 5390] {
+        refused("linuxcnc", &decides(&format!("#{number}")), HELD);
+        let told = format!("--set #{number}=1");
+        fits("linuxcnc", &decides(&format!("#{number}")), &told);
+    }
+    fits("linuxcnc", &decides("#5221"), "--parameters kept.var");
+    // What G10, G92, G28.1 and assignments have set is known, that of other axes is not.
+    for (sets, number) in [
+        ("G10 L2 P1 X3", 5221),
+        ("G92 X2", 5211),
+        ("G92.1", 5213),
+        ("G28.1", 5163),
+        ("#5242=3", 5242),
+    ] {
+        fits(
+            "linuxcnc",
+            &format!("{sets}\n{}", decides(&format!("#{number}"))),
+            "",
+        );
+    }
+    for (sets, number) in [("G10 L2 P1 X3", 5222), ("G92 X2", 5212), ("G92.2", 5211)] {
+        refused(
+            "linuxcnc",
+            &format!("{sets}\n{}", decides(&format!("#{number}"))),
+            HELD,
+        );
+    }
+    let before = "the result of probing, which is not known";
+    refused("linuxcnc", &decides("#5070"), before);
+    refused("linuxcnc", &decides("#5061"), before);
+    fits("linuxcnc", &decides("#5070"), "--probe both");
+    fits("linuxcnc", &decides("#5061"), "--set #5061=2");
+    refused("linuxcnc", &decides("#5399"), "an input (M66)");
+    for tool in [
+        "#5400",
+        "#5401",
+        "#5410",
+        "#<_current_tool>",
+        "#<_selected_tool>",
+    ] {
+        refused("linuxcnc", &decides(tool), "the tool at the start");
+    }
+    fits("linuxcnc", &decides("#5400"), "--set #5400=3");
+    fits("linuxcnc", &decides("#<_current_tool>"), "--set #5400=3");
+    fits("linuxcnc", &format!("T3 M6\n{}", decides("#5400")), "");
+    refused(
+        "linuxcnc",
+        "#<_current_tool>=3\nG0 X1\nM2\n",
+        "it can only be read",
+    );
+    refused(
+        "fanuc",
+        "IF[#4120 EQ 3]GOTO 5\nG0 X9.\nN5 M30\n",
+        "the tool at the start",
+    );
+    fits(
+        "fanuc",
+        "T3\nIF[#4120 EQ 3]GOTO 5\nG0 X9.\nN5 G0 X1.\nM30\n",
+        "",
+    );
+    fits(
+        "fanuc",
+        "IF[#4120 EQ 3]GOTO 5\nG0 X9.\nN5 G0 X1.\nM30\n",
+        "--set #4120=3",
+    );
+}
+
+/// Offsets that are given are in force, and G92.3 says that it restores nothing known.
+#[test]
+fn offsets_that_are_given_count() {
+    let shop = Shop::mill("iso", "peak_power_w = 1e6\nregen_power_w = 1e6", "", "");
+    shop.put("a.nc", "G53 G0 X0\nG0 X[#5221]\nM2\n");
+    let (code, out, told) = shop.run("moves a.nc --dialect linuxcnc --set #5221=10");
+    assert_eq!(code, 0, "{told}");
+    let last = out.lines().last().unwrap();
+    assert!(last.contains(r#""end":{"X":20,"#), "{last}");
+    let (code, told) = check("linuxcnc", "G0 X1\nG92.3\nG0 X2\nM2\n", "");
+    assert!(code == 0 && told.contains("note[no-offsets]"), "{told}");
+    let (code, told) = check("linuxcnc", "G92 X1 Y0 Z0\nG92.3\nG0 X2\nM2\n", "");
+    assert!(code == 0 && !told.contains("no-offsets"), "{told}");
+}
+
 #[test]
 fn a_variable_that_a_control_does_not_have_is_not_given() {
+    let (code, told) = check("linuxcnc", "G0 X1\nM2\n", "--set #5420=2");
+    assert!(code == 2 && told.contains("has no such variable"), "{told}");
     let (code, told) = check("fanuc", "G0 X1.\nM30\n", "--set R1=2");
     assert!(
         code == 2 && told.contains("--set R1=2: `fanuc` has no such variable"),
@@ -155,8 +245,13 @@ fn what_depends_on_a_probe_is_refused() {
         "G38.2 Z-20 F50\nG1 Z#5063\nM2\n",
         "#5063 depends on the result",
     );
-    // Before the first probe it is 0.
-    fits("linuxcnc", "G0 X#5070\nM2\n", "");
+    // Before the first probe it is that of another program.
+    refused(
+        "linuxcnc",
+        "G0 X#5070\nM2\n",
+        "#5070 depends on the result of probing",
+    );
+    fits("linuxcnc", "G0 X#5070\nM2\n", "--probe miss");
     let moves = |options: &str| check("linuxcnc", found, options).1;
     assert!(moves("--probe hit --format json").contains("robust"));
     let missed = moves("--probe miss --format json");

@@ -68,6 +68,7 @@ pub(crate) fn line(to: [f64; 3], feed_mm_s: f64, accel_mm_s2: f64, joint: Joint)
         start,
         end: start,
         curve: None,
+        square: None,
         joint,
     }
 }

@@ -33,6 +33,7 @@ mod shop;
 mod size;
 mod side_by_side;
 mod identify;
+mod independent;
 mod tune;
 mod contour;
 mod limit;

@@ -29,14 +29,15 @@ fn compare(seed: u64, blocks: usize) {
     let mut all = Compared::default();
     let (mut shown, mut differing) = (Vec::new(), 0);
     while all.blocks < blocks {
-        let mut random = Random::new(seed + all.blocks as u64);
+        let seed = seed + all.blocks as u64;
+        let mut random = Random::new(seed);
         let machine = machines::any(&mut random);
         let program = programs::any(&mut random, &machine, BLOCKS);
         all.program(&machine.toml, &program);
         if !all.wrong.is_empty() {
             differing += all.wrong.len();
             let wrong = std::mem::take(&mut all.wrong);
-            println!("{}: {}", seed + all.blocks as u64, wrong.join("; "));
+            println!("{seed}: {}", wrong.join("; "));
             if shown.len() < 4 {
                 shown.push(format!("{}\n{program}\n{}", machine.toml, wrong.join("\n")));
             }

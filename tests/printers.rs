@@ -183,9 +183,9 @@ fn homing_starts_anywhere() {
     5 feed from anywhere Z v10.000
     ");
     assert_snapshot!(klipper("G28\n"), @r"
-    1 feed from anywhere X v10.000
-    1 feed from anywhere Y v10.000
-    1 feed from anywhere Z v10.000
+    1 feed from anywhere X v10.000 a1000
+    1 feed from anywhere Y v10.000 a1000
+    1 feed from anywhere Z v10.000 a1000
     ");
     assert_snapshot!(reprap("G28\n"), @"1 feed from anywhere XYZ v10.000");
     // Without a homing speed and place: full speed, and the next move too.
@@ -271,10 +271,10 @@ fn klipper_states() {
         "G1 X10 E5 F600\nSAVE_GCODE_STATE NAME=a\nG91\nM83\nG1 X5 E2 F1200\n\
          RESTORE_GCODE_STATE NAME=a MOVE=1 MOVE_SPEED=7\nG1 X11 E6\n"
     ), @r"
-    1 feed X0.000>10.000 E0.000>5.000 v10.000
-    5 feed X10.000>15.000 E5.000>7.000 v20.000
-    6 feed X15.000>10.000 v7.000
-    7 feed X10.000>11.000 E7.000>8.000 v10.000
+    1 feed X0.000>10.000 E0.000>5.000 v10.000 a1000
+    5 feed X10.000>15.000 E5.000>7.000 v20.000 a1000
+    6 feed X15.000>10.000 v7.000 a1000
+    7 feed X10.000>11.000 E7.000>8.000 v10.000 a1000
     ");
     assert_snapshot!(klipper("RESTORE_GCODE_STATE NAME=b\n"), @"no-such-state: a state that was not saved");
     // RepRapFirmware, M120 and M121: modes and feed.
@@ -316,8 +316,8 @@ fn heaters_and_fans() {
         "SET_HEATER_TEMPERATURE HEATER=heater_bed TARGET=60\nSET_FAN_SPEED FAN=aux SPEED=0.5\n\
          G1 X1 F60\nTURN_OFF_HEATERS\nSET_FAN_SPEED FAN=aux SPEED=0\nG1 X2\n"
     ), @r"
-    3 feed X0.000>1.000 v1.000 loads 110
-    6 feed X1.000>2.000 v1.000 loads 100
+    3 feed X0.000>1.000 v1.000 a1000 loads 110
+    6 feed X1.000>2.000 v1.000 a1000 loads 100
     ");
     let bare = load(
         "schema = 1\nname = \"t\"\ncontroller = \"marlin\"\n[converter]\npeak_power_w = 1e5\n\

@@ -14,6 +14,7 @@ Examples:
   gwatt limit part.ngc -m vmc --dry-run      show the edit as a diff
   gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
   gwatt limit - -m vmc < part.ngc > fit.ngc
+  gwatt limit a.nc b.nc -m vmc --with-subprograms -o fit    with O-numbers and macros
 
 Nothing is written unless the result is certified: it is read, planned and
 evaluated again, and every move fits.";
@@ -22,17 +23,23 @@ evaluated again, and every move fits.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct LimitArgs {
-    /// The program, or - for standard input
-    pub program: PathBuf,
+    /// The program, or - for standard input; several with --with-subprograms
+    #[arg(required = true, value_name = "PROGRAM")]
+    pub programs: Vec<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub machine: MachineArgs,
-    /// Write the program here [default: standard output]
+    /// Write the program here [default: standard output]; with --with-subprograms, the
+    /// files into this folder
     #[arg(short, long, value_name = "OUT", conflicts_with = "in_place")]
     pub output: Option<PathBuf>,
     /// Replace the program, and keep it as PROGRAM.bak
     #[arg(long)]
     pub in_place: bool,
+    /// Write the files of subprograms that the programs call as well, all certified
+    /// together: a subprogram of several programs gets what is right for all of them
+    #[arg(long)]
+    pub with_subprograms: bool,
     /// Write no program; print what would change as a unified diff
     #[arg(long)]
     pub dry_run: bool,
@@ -72,6 +79,15 @@ pub enum Allow {
     /// Rapids of axes that move each for itself may become lines where the machine file's
     /// `clearance` leaves room
     Straighten,
+    /// Exact stops (the control's word for one block) may be put between feeds that it
+    /// would blend; the workpiece may show them
+    Stop,
+    /// The program may wait (G4) between rapids and before tool changes where a limit over
+    /// time is missed
+    Pause,
+    /// Words may be written that no document confirms (`verified = false` in the controller
+    /// profile)
+    Unverified,
 }
 
 /// What a list of `--allow` allows.
@@ -80,13 +96,16 @@ pub fn allowed(list: &[Allow]) -> Allowed {
         feed: list.contains(&Allow::Feed),
         expand: list.contains(&Allow::Expand),
         straighten: list.contains(&Allow::Straighten),
+        stop: list.contains(&Allow::Stop),
+        pause: list.contains(&Allow::Pause),
+        unverified: list.contains(&Allow::Unverified),
     }
 }
 
 /// See [`pipeline::Strategy`].
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Strategy {
-    /// The machine's presets for combinations of axes
+    /// The machine's presets for combinations of axes, where a move does not fit
     Preset,
     /// Speed alone
     Speed,
@@ -103,7 +122,7 @@ pub enum Strategy {
 pub enum Law {
     /// Solved for the real block
     Exact,
-    /// The square of limit/peak on nominal values, for comparison
+    /// The square of limit/peak on nominal values where a move does not fit, for comparison
     Patent,
 }
 

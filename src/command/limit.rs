@@ -5,13 +5,14 @@ use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::slice;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use gwatt::pipeline::{self, LimitOptions, LimitSummary};
 use gwatt::report::{Verdict, limit_json, limit_text, partial_text, unified_diff};
 
 use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::Program;
+use super::limit_set;
 use super::output::{Spool, Target, back_up, print};
 use super::rows::Rows;
 use super::setup::{Setup, machine_file};
@@ -23,14 +24,20 @@ const SPOOL_BYTES: usize = 1 << 16;
 
 /// Writes a program that fits.
 pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
-    let mut program = Program::new(&args.program);
+    if args.with_subprograms {
+        return limit_set::run(args, terminal);
+    }
+    let [path] = args.programs.as_slice() else {
+        bail!("one program at a time: --with-subprograms limits several together");
+    };
+    let mut program = Program::new(path);
     ensure!(
         !args.in_place || program.path().is_some(),
         "standard input cannot be changed in place: use -o"
     );
     // A pipe cannot be kept as a copy and replaced, and waits for ever.
     ensure!(
-        !args.in_place || args.program.is_file() || !args.program.exists(),
+        !args.in_place || path.is_file() || !path.exists(),
         "only a file can be changed in place: use -o"
     );
     refuse_all_clashes(args, &program)?;
@@ -39,7 +46,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     setup.options.certificate = args.certificate.map(Into::into);
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
-    let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args)?.spool()?);
+    let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args, path)?.spool()?);
 
     let done = (|| {
         if args.dry_run {
@@ -70,7 +77,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     Ok(Verdict::of(summary.certified))
 }
 
-fn options(args: &LimitArgs) -> LimitOptions {
+pub(super) fn options(args: &LimitArgs) -> LimitOptions {
     LimitOptions {
         strategy: args.strategy.into(),
         law: args.law.into(),
@@ -95,10 +102,10 @@ fn refuse_all_clashes(args: &LimitArgs, program: &Program) -> Result<()> {
 }
 
 /// Where the program goes. A diff needs only a spool.
-fn target(args: &LimitArgs) -> Result<Target> {
+fn target(args: &LimitArgs, program: &Path) -> Result<Target> {
     match &args.output {
         _ if args.dry_run => Ok(Target::Stdout),
-        _ if args.in_place => Target::new(&args.program),
+        _ if args.in_place => Target::new(program),
         Some(path) => Target::new(path),
         None => Ok(Target::Stdout),
     }
@@ -128,13 +135,13 @@ fn deliver(
             unified_diff(&program.name, program.bytes(), old, new, out)
         });
     }
-    if !args.in_place {
+    let Some(path) = program.path().filter(|_| args.in_place) else {
         return spool.deliver();
-    }
+    };
     if summary.edited_lines == 0 {
         return Ok(());
     }
-    let backup = replace(&args.program, spool)?;
+    let backup = replace(path, spool)?;
     terminal.note(format_args!(
         "the program as it was is {}",
         backup.display()

@@ -20,11 +20,13 @@ mod clash;
 mod input;
 mod interrupt;
 mod into;
+mod limit_set;
 mod output;
 mod rows;
 mod series;
 mod setup;
 mod terminal;
+mod together;
 
 pub use output::print;
 pub use terminal::{Shown, Terminal};

@@ -54,7 +54,10 @@ impl Setup {
     pub fn of(name: &str, reading: &ProgramArgs, terminal: Terminal) -> Result<Self> {
         let mut machine = load_machine(name, terminal)?;
         let auto = reading.dialect.as_deref() == Some(AUTO);
-        if let Some(dialect) = reading.dialect.as_ref().filter(|_| !auto) {
+        // The machine's own dialect is kept as its file says it.
+        let own = machine.controller.language.name.as_str();
+        let asked = reading.dialect.as_deref();
+        if let Some(dialect) = asked.filter(|dialect| !auto && *dialect != own) {
             machine.controller.language = language(dialect)?;
         }
         for folder in &reading.sub_path {
@@ -92,6 +95,8 @@ impl Setup {
                     repeated_moves: reading.max_moves,
                     idle_lines: reading.max_idle_lines,
                 },
+                shelf: None,
+                text: 0,
             },
             certificate: None,
             once: reading.once,

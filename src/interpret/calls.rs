@@ -17,9 +17,9 @@ impl Interpreter<'_> {
 
     /// A line of a program that is held whole begins: which run of it, and in
     /// which text it stands.
-    pub(crate) fn begin_line(&mut self, run: u32, text: usize) {
+    pub(crate) fn begin_line(&mut self, run: u32, text: u16) {
         self.control.run = run;
-        self.control.text = text as u16;
+        self.control.text = text;
     }
 
     /// A subprogram begins, with these variables of its own.

@@ -122,8 +122,12 @@ impl Control<'_> {
             }
         }
         self.position.change(|offsets| {
+            let before = offsets.origin_of(system);
             for (axis, value) in origin.into_iter().enumerate() {
-                offsets.set_origin_of(system, axis, value);
+                // What is not named stays what it was, known or not.
+                if value != before[axis] || words.iter().any(|word| word.0 == axis) {
+                    offsets.set_origin_of(system, axis, value);
+                }
             }
             if let Some(angle) = angle {
                 offsets.set_rotation_of(system, angle);

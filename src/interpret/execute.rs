@@ -60,7 +60,7 @@ pub(super) struct Control<'m> {
     pub(super) saved: Vec<Option<Box<Saved>>>,
     /// What is known of the last probe; M66 has asked.
     pub(super) probe: Probe,
-    pub(super) input_unknown: bool,
+    pub(super) input: Option<f64>,
     /// What a restored state still has to do and to say.
     pub(super) debts: Vec<(ActionKind, f64)>,
     pub(super) lost: Option<&'static str>,
@@ -151,7 +151,7 @@ impl<'m> Interpreter<'m> {
             switches: Switches::default(),
             saved: vec![None],
             probe: Probe::new(reading.probe),
-            input_unknown: false,
+            input: None,
             debts: Vec::new(),
             lost: None,
             bent: false,
@@ -169,7 +169,7 @@ impl<'m> Interpreter<'m> {
             moved: false,
             has_program_number: false,
             run: 1,
-            text: 0,
+            text: reading.text,
             parameters: Parameters::new(machine.controller.language.family),
             traces: Traces::default(),
             transfer: None,

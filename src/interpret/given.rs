@@ -11,6 +11,9 @@ use crate::machine::{Family, Language};
 /// Largest number of a variable, and of an R parameter.
 const NUMBER_MAX: u32 = 999_999;
 
+/// The number of T in force (B-63944EN, "Modal Information").
+const TOOL_OF_FANUC: u32 = 4120;
+
 /// A variable and its value before the program runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GivenVariable {
@@ -91,11 +94,21 @@ impl FromStr for GivenVariable {
 }
 
 impl GivenVariable {
-    /// Whether a language has such a variable.
+    /// A numbered one: its number and value.
+    pub(super) fn number(&self) -> Option<(u32, f64)> {
+        match self.name {
+            Given::Number(number) => Some((number, self.value)),
+            _ => None,
+        }
+    }
+
+    /// Whether a language has such a variable, and keeps it.
     #[must_use]
     pub fn suits(&self, language: &Language) -> bool {
         let numbered = matches!(language.family, Family::Rs274 | Family::Iso);
         match &self.name {
+            // The place of --start, and what follows from the tool.
+            Given::Number(5401..=5413 | 5420..=5428) if language.family == Family::Rs274 => false,
             Given::Number(_) => numbered && !language.dialect.osp,
             Given::Named(_) => language.family == Family::Rs274,
             Given::R(_) => language.family == Family::Siemens,
@@ -109,6 +122,14 @@ impl Control<'_> {
     pub(super) fn give(&mut self, given: &GivenVariable) {
         let value = given.value;
         match &given.name {
+            Given::Number(number) if self.is_system_parameter(*number) => {
+                self.give_system_parameter(*number, value);
+            }
+            Given::Number(TOOL_OF_FANUC)
+                if self.machine.controller.language.family == Family::Iso =>
+            {
+                self.tools.give(value);
+            }
             // There are fewer than a program may keep.
             Given::Number(number) => {
                 let _ = self.parameters.set(&Name::Number(*number), Ok(Some(value)));

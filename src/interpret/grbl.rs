@@ -79,6 +79,8 @@ impl Control<'_> {
         run.facts.fixed = Some("it homes the axes");
         let all = self.machine.axis_set;
         let end = self.position.at;
+        // grbl takes $H only while it is idle, and goes on once the axes stand.
+        run.act(ActionKind::Rest, 0.0);
         self.go_at(run, MoveKind::Feed, &end, all, None, Some(speed_mm_s));
         for axis in all.iter() {
             let reference_mm = self.machine.axes[axis]
@@ -93,6 +95,6 @@ impl Control<'_> {
                 run.report.note_once("home", message, whole);
             }
         }
-        run.act(ActionKind::Other, 0.0);
+        run.act(ActionKind::Rest, 0.0);
     }
 }

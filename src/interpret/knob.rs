@@ -1,7 +1,7 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
 use super::moves::MoveKind;
-use crate::machine::{AXES, AxisValues, Knob, KnobTarget, Machine};
+use crate::machine::{AXES, AxisValues, CornerRule, Knob, KnobTarget, Machine};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,37 @@ pub struct KnobState {
     pub rapid_factor: f64,
     /// A knob that is set and does not act yet, with its value.
     pub(super) pending: Option<(usize, f64)>,
+    /// Largest speed along the path of moves that the extruder does not make alone, mm/s
+    /// (Klipper's VELOCITY); infinite where the machine's own limits hold.
+    pub path_speed_mm_s: f64,
+    /// Largest speed of each axis, mm/s (M203); infinite where the machine's own holds.
+    pub speed_mm_s: AxisValues,
+    /// How the look-ahead planner takes corners and hills; `None`: as the profile says.
+    pub square: Option<Square>,
+}
+
+/// What Klipper's `SET_VELOCITY_LIMIT` sets for its look-ahead.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Square {
+    /// Speed at a corner of 90 degrees, mm/s.
+    pub corner_mm_s: f64,
+    /// Share of each hill of speed that is cruised at least.
+    pub cruise_ratio: f64,
+}
+
+impl Square {
+    /// What the profile says; `None` where it has another rule for corners.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Option<Self> {
+        let rules = machine.controller.planner.look_ahead?;
+        let CornerRule::SquareCorner { velocity_mm_s, .. } = rules.corner else {
+            return None;
+        };
+        Some(Self {
+            corner_mm_s: velocity_mm_s,
+            cruise_ratio: rules.min_cruise_ratio,
+        })
+    }
 }
 
 impl KnobState {
@@ -28,10 +59,46 @@ impl KnobState {
         Self {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
-            path_accel_mm_s2: [f64::INFINITY; 3],
+            path_accel_mm_s2: [
+                own_path_accel(machine),
+                own_path_accel(machine),
+                f64::INFINITY,
+            ],
             rapid_factor: 1.0,
             pending: None,
+            path_speed_mm_s: f64::INFINITY,
+            speed_mm_s: [f64::INFINITY; AXES],
+            square: None,
         }
+    }
+
+    /// Sets the limit of acceleration along the path of moves that the extruder does not
+    /// make alone (Klipper's `max_accel`): X and Y have no other.
+    pub(super) fn limit_path_accel(&mut self, machine: &Machine, accel_mm_s2: f64) {
+        self.path_accel_mm_s2[..2].fill(accel_mm_s2);
+        for limits in [&mut self.feed_accel_mm_s2, &mut self.rapid_accel_mm_s2] {
+            raise_to_path(machine, limits, accel_mm_s2);
+        }
+    }
+
+    /// Sets the largest speed along the path, mm/s; the machine's own takes it back.
+    pub(super) fn limit_path_speed(&mut self, machine: &Machine, speed_mm_s: f64) {
+        let own = own_path_speed(machine).is_some_and(|own| same(own, speed_mm_s));
+        self.path_speed_mm_s = if own { f64::INFINITY } else { speed_mm_s };
+    }
+
+    /// Sets the largest speed of an axis, mm/s; the machine's own takes it back.
+    pub(super) fn limit_axis_speed(&mut self, machine: &Machine, axis: usize, speed_mm_s: f64) {
+        let Some(data) = &machine.axes[axis] else {
+            return;
+        };
+        let own = same(data.rapid_mm_s, speed_mm_s);
+        self.speed_mm_s[axis] = if own { f64::INFINITY } else { speed_mm_s };
+    }
+
+    /// Whether a speed is limited otherwise than by the machine.
+    pub(super) fn limits_speed(&self) -> bool {
+        self.path_speed_mm_s.is_finite() || self.speed_mm_s.iter().any(|cap| cap.is_finite())
     }
 
     /// Acceleration limits of moves of this kind, mm/s².
@@ -64,11 +131,23 @@ impl KnobState {
         value: f64,
         mm_per_unit: f64,
     ) {
+        if knob.target == KnobTarget::CruiseRatio {
+            return;
+        }
         if knob.target == KnobTarget::RapidSpeed {
             self.rapid_factor = value / 100.0;
             return;
         }
         let which = axis.map_or(0..AXES, |axis| axis..axis + 1);
+        if knob.target == KnobTarget::Speed {
+            for axis in which {
+                if let Some(data) = &machine.axes[axis] {
+                    let speed_mm_s = knob.unit.speed_mm_s(data, value, mm_per_unit);
+                    self.limit_axis_speed(machine, axis, speed_mm_s);
+                }
+            }
+            return;
+        }
         for axis in which {
             let Some(data) = &machine.axes[axis] else {
                 continue;
@@ -80,6 +159,56 @@ impl KnobState {
             if knob.target != KnobTarget::FeedAccel {
                 self.rapid_accel_mm_s2[axis] = accel;
             }
+        }
+    }
+}
+
+/// X and Y, which Klipper's limits along the path are those of.
+const XY: [usize; 2] = [0, 1];
+/// X, Y and Z: no faster than the path, whatever its direction.
+const XYZ: [usize; 3] = [0, 1, 2];
+/// What a limit that is read back may differ from the machine's own by, as a share.
+const ROUNDING: f64 = 1e-9;
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a
+}
+
+/// The one value that X and Y share, where the firmware has no other for them.
+fn shared(machine: &Machine, value: impl Fn(&crate::machine::Axis) -> f64) -> Option<f64> {
+    if !machine.controller.language.printer.velocity_limit {
+        return None;
+    }
+    let [x, y] = XY.map(|axis| machine.axes[axis].as_ref().map(&value));
+    x.filter(|_| x == y)
+}
+
+/// The acceleration along the path that holds without a word, mm/s²: Klipper's
+/// `max_accel`, which the machine file gives for X and Y; infinite where they differ.
+fn own_path_accel(machine: &Machine) -> f64 {
+    shared(machine, |axis| axis.accel_mm_s2).unwrap_or(f64::INFINITY)
+}
+
+/// The same of the speed, mm/s.
+pub(crate) fn own_path_speed(machine: &Machine) -> Option<f64> {
+    shared(machine, |axis| axis.rapid_mm_s)
+}
+
+/// Limits of X and Y under a limit along the path: they have no other, so that one above
+/// the machine file's is theirs.
+pub(crate) fn raise_to_path(machine: &Machine, limits: &mut AxisValues, path_mm_s2: f64) {
+    for axis in XY {
+        if let Some(data) = &machine.axes[axis] {
+            limits[axis] = data.accel_mm_s2.max(path_mm_s2);
+        }
+    }
+}
+
+/// Limits of axes whose direction is not known: none accelerates harder than the path.
+pub(crate) fn hold_to_path(machine: &Machine, limits: &mut AxisValues, path_mm_s2: f64) {
+    if machine.controller.language.printer.velocity_limit {
+        for axis in XYZ {
+            limits[axis] = limits[axis].min(path_mm_s2);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Words by which a program itself limits acceleration or rapid speed.
 
 use super::execute::{Control, Run};
-use crate::machine::KnobArgument;
+use crate::machine::{KnobArgument, KnobTarget};
 
 impl Control<'_> {
     /// Words by which the program itself limits acceleration or rapid speed.
@@ -41,8 +41,11 @@ impl Control<'_> {
                 }
                 _ => {}
             }
+            if knob.target == KnobTarget::Speed {
+                self.settle();
+            }
             if !turned || !fine {
-                let code = format!("{}{}", knob.code.0 as char, f64::from(knob.code.1) / 10.0);
+                let code = &knob.name;
                 run.report
                     .error(
                         "knob-value",

@@ -2,6 +2,7 @@
 
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
+use super::knob::hold_to_path;
 use super::moves::{Arc, FeedMode, Move, MoveKind, Step, Stray};
 use super::printer::Course;
 use super::report::Report;
@@ -37,7 +38,7 @@ impl Control<'_> {
                 GCode::LatheCycle(number) => return self.lathe_cycle(number, span, run),
                 GCode::SetOffset => return self.set_offset(span, run),
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
-                GCode::RestoreOffset => self.position.restore_offset(),
+                GCode::RestoreOffset => self.restore_offset(span, run),
                 GCode::SaveReference => self.save_reference(number, span, run),
                 GCode::DataSetting => return self.data_setting(span, run),
                 GCode::LocalOffset => return self.local_offset(span, run),
@@ -260,11 +261,18 @@ impl Control<'_> {
                 } else {
                     0.0
                 },
+                unknown: !unknown_start.is_empty(),
             };
-            if given_mm_s.is_none() {
-                feed_mm_s = self.printer_feed(run, &course, feed_mm_s);
-            }
-            rapid_factor = self.printer_speed_factor(&course);
+            feed_mm_s = match given_mm_s {
+                None => self.printer_feed(run, &course, feed_mm_s),
+                Some(_) => self.capped(&course, feed_mm_s),
+            };
+            rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
+        }
+        let path_accel_mm_s2 = self.path_accel(AxisSet(moving.0 | unknown_start.0));
+        let mut accel_mm_s2 = *self.knobs.accel(kind);
+        if !unknown_start.is_empty() {
+            hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
         }
         let stray = match &arc {
             Some(arc) => stray::of_arc(arc, &self.position.at, end),
@@ -285,8 +293,8 @@ impl Control<'_> {
             length_mm,
             feed_mm_s,
             feed_mode: self.modal.feed_mode,
-            accel_mm_s2: *self.knobs.accel(kind),
-            path_accel_mm_s2: self.path_accel(moving),
+            accel_mm_s2,
+            path_accel_mm_s2,
             rapid_factor,
             dwell_s: 0.0,
             loads: self.loads,

@@ -1,5 +1,6 @@
 //! What a program does: moves and actions, in machine coordinates.
 
+use super::knob::Square;
 use crate::machine::{AxisSet, AxisValues, PathMode};
 
 /// What a program block does, in the order in which it does it.
@@ -196,6 +197,8 @@ pub enum Corner {
         /// Q of `LinuxCNC`, within which lines are put together, mm; 0: none are.
         join_mm: f64,
     },
+    /// Rounded by limits that the program has set.
+    Square(Square),
 }
 
 impl Default for Corner {
@@ -255,6 +258,8 @@ pub enum ActionKind {
     Stop,
     /// M2, M30.
     End,
+    /// The firmware waits until the axes stand, as it does between the moves of homing.
+    Rest,
     /// Another M word.
     Other,
     /// G61, G61.1, G64 (value 61, 61.1, 64).

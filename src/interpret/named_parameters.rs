@@ -77,8 +77,8 @@ impl Control<'_> {
             "feed_hold" => flag(self.switches.feed_hold),
             "feed" => Some(modal.feed.map_or(0.0, |feed| self.feed_in_unit(&feed))),
             "rpm" => Some(modal.spindle_rpm),
-            "current_tool" => Some(f64::from(self.tools.loaded)),
-            "selected_tool" => Some(f64::from(self.tools.selected)),
+            "current_tool" => self.tools.loaded_known().map(f64::from),
+            "selected_tool" => self.tools.selected_known().map(f64::from),
             _ => self.named_place(name),
         }
     }

@@ -7,14 +7,17 @@
 
 use std::collections::BTreeMap;
 
+use super::Reading;
 use super::frame::{Affine, Frame};
+use super::given::GivenVariable;
 use super::parameter_file::ParameterFile;
-use crate::machine::{AXES, AxisId, AxisKind, AxisSet, AxisValues, Machine};
+use crate::machine::{AXES, AxisId, AxisKind, AxisSet, AxisValues, Family, Machine};
 use crate::units::MM_PER_INCH;
 
 /// First and last of the parameters that are kept.
 pub(super) const FIRST: u32 = 5161;
 pub(super) const LAST: u32 = 5390;
+const COUNT: usize = (LAST - FIRST + 1) as usize;
 /// First parameters of the points of G28 and G30.
 pub(super) const REFERENCE: [u32; 2] = [5161, 5181];
 /// Whether G92 is in force, and its first offset.
@@ -33,7 +36,9 @@ pub(super) const FURTHER_MAX: u16 = 300;
 /// All that stands between a program coordinate and a machine coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Offsets {
-    stored: Box<[f64; (LAST - FIRST + 1) as usize]>,
+    stored: Box<[f64; COUNT]>,
+    /// Which of them are known, and not taken as 0.
+    told: [bool; COUNT],
     further: BTreeMap<u16, AxisValues>,
     /// Millimetres in the machine's own unit.
     native_mm: f64,
@@ -63,7 +68,8 @@ fn first_of(system: u16) -> u32 {
 }
 
 impl Offsets {
-    pub(super) fn new(machine: &Machine, parameters: Option<&ParameterFile>) -> Self {
+    pub(super) fn new(machine: &Machine, reading: &Reading) -> Self {
+        let parameters = reading.parameters.as_deref();
         let linear = (0..AXES).filter(|&axis| {
             // Axes that the machine lacks are what their letters usually are.
             let rotary = [AxisId::A, AxisId::B, AxisId::C]
@@ -75,7 +81,8 @@ impl Offsets {
         linear.for_each(|axis| set.insert(axis));
         let metric = machine.controller.language.metric;
         let mut offsets = Self {
-            stored: Box::new([0.0; (LAST - FIRST + 1) as usize]),
+            stored: Box::new([0.0; COUNT]),
+            told: [parameters.is_some(); COUNT],
             further: BTreeMap::new(),
             native_mm: if metric { 1.0 } else { MM_PER_INCH },
             linear: set,
@@ -101,6 +108,12 @@ impl Offsets {
         for (number, value) in parameters.into_iter().flat_map(ParameterFile::iter) {
             offsets.set_stored(number, value);
         }
+        let rs274 = machine.controller.language.family == Family::Rs274;
+        for (number, value) in reading.given.iter().filter_map(GivenVariable::number) {
+            if rs274 {
+                offsets.set_stored(number, value);
+            }
+        }
         if (offsets.stored(G92_ON)).is_some_and(|on| on != 0.0) {
             offsets.g92 = offsets.axes_from(G92);
         }
@@ -120,18 +133,22 @@ impl Offsets {
         self.stored.get(index as usize).copied()
     }
 
+    /// The same where it is known, and not only taken as 0.
+    pub(super) fn told(&self, number: u32) -> Option<f64> {
+        let index = number.checked_sub(FIRST)?;
+        let told = self.told.get(index as usize).copied()?;
+        told.then(|| self.stored(number)).flatten()
+    }
+
     /// Stores a parameter; false if it is none of those kept here.
     pub(super) fn set_stored(&mut self, number: u32, value: f64) -> bool {
-        let slot = number
-            .checked_sub(FIRST)
-            .and_then(|index| self.stored.get_mut(index as usize));
-        match slot {
-            Some(slot) => {
-                *slot = value;
-                true
-            }
-            None => false,
-        }
+        let index = number.wrapping_sub(FIRST) as usize;
+        let (Some(slot), Some(told)) = (self.stored.get_mut(index), self.told.get_mut(index))
+        else {
+            return false;
+        };
+        (*slot, *told) = (value, true);
+        true
     }
 
     /// Millimetres (degrees) in the machine's unit of an axis.
@@ -226,10 +243,14 @@ impl Offsets {
     pub(super) fn set_g92(&mut self, axis: usize, value_mm: f64) {
         self.g92[axis] = value_mm;
         self.set_stored(G92_ON, 1.0);
+        // The other axes store what was in force, which need not be known.
+        let told = self.told;
         let values = self.g92;
         for (axis, value) in values.into_iter().enumerate() {
             self.store_axis(G92, axis, value);
         }
+        self.told = told;
+        self.store_axis(G92, axis, value_mm);
     }
 
     /// G92.1 (`forget`) and G92.2.
@@ -239,6 +260,11 @@ impl Offsets {
         for axis in 0..PARAMETER_AXES * usize::from(forget) {
             self.store_axis(G92, axis, 0.0);
         }
+    }
+
+    /// Whether it is known what G92 has stored for an axis.
+    pub(super) fn is_g92_told(&self, axis: usize) -> bool {
+        axis >= PARAMETER_AXES || self.told(G92 + axis as u32).is_some()
     }
 
     /// G92.3.

@@ -5,12 +5,18 @@ use super::execute::{Control, Run};
 use super::moves::Step;
 use crate::source::Span;
 
+/// What is said where moves are held back meanwhile, and what helps.
+const COMPENSATED: (&str, &str) = (
+    "the acceleration changes under cutter compensation",
+    "set it before G41 or G42, or after G40 and the move after that",
+);
+
 impl Control<'_> {
     /// M66 to M68 of such an output; false where it is another one, and the word means what
     /// it always does.
     pub(super) fn output_knob(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) -> bool {
         if number == 660 {
-            return self.let_output_act(run);
+            return self.let_output_act(span, run);
         }
         let knobs = &self.machine.controller.knobs;
         let wanted = run.words.word(b'E', run.block).map(|word| word.value);
@@ -30,10 +36,7 @@ impl Control<'_> {
                 "write M68, and M66 P0 L0 after it",
             ))
         } else if self.compensation.is_some() {
-            Some((
-                "the acceleration changes under cutter compensation",
-                "set it before G41 or G42, or after G40 and the move after that",
-            ))
+            Some(COMPENSATED)
         } else if !value.is_some_and(|value| value > 0.0 && value <= 1.0) {
             Some((
                 "the share of the acceleration is not from above 0 to 1",
@@ -51,7 +54,7 @@ impl Control<'_> {
     }
 
     /// M66 after M68: the axes have stopped, and what it sets acts from here on.
-    fn let_output_act(&mut self, run: &mut Run<'_, '_>) -> bool {
+    fn let_output_act(&mut self, span: Span, run: &mut Run<'_, '_>) -> bool {
         let Some((which, value)) = self.knobs.pending.take() else {
             return false;
         };
@@ -62,7 +65,12 @@ impl Control<'_> {
             run.words.take(letter);
         }
         run.facts.turns_knob = true;
-        self.input_unknown = true;
+        self.input = None;
+        if self.compensation.is_some() {
+            let (message, help) = COMPENSATED;
+            run.report.error("knob-value", message, span).help(help);
+            return true;
+        }
         self.knobs
             .turn(self.machine, knob, None, value, self.modal.mm_per_unit);
         self.dwell(run, knob.change_s);

@@ -12,7 +12,7 @@
 use std::collections::HashMap;
 
 use super::execute::Control;
-use super::expression::{Held, KEPT, Name, PROBED, Read, Value, Variables};
+use super::expression::{Held, KEPT, Name, PROBED, Read, TOOL, Value, Variables};
 use super::moves::FeedMode;
 use super::parameter_file::ParameterFile;
 use crate::machine::{Family, Lathe};
@@ -172,6 +172,11 @@ impl Parameters {
     }
 }
 
+/// Predefined names that are not known before the program has a T.
+fn is_tool(name: &str) -> bool {
+    matches!(name, "_current_tool" | "_selected_tool")
+}
+
 impl Variables for Control<'_> {
     fn numbered(&self, number: u32) -> Read {
         if let Some(held) = self.parameters.local(number) {
@@ -188,7 +193,9 @@ impl Variables for Control<'_> {
         }
         match number {
             5061..=5070 => Read::Unknown(PROBED),
+            5161..=5390 => Read::Unknown(KEPT),
             5399 => Read::Unknown("an input (M66)"),
+            5400..=5413 if self.tools.loaded_known().is_none() => Read::Unknown(TOOL),
             5400..=5413 => Read::Unknown("the tool, without a tool table"),
             5420..=5428 => Read::Unknown("the start position"),
             0 | 5602.. => Read::Missing,
@@ -213,6 +220,9 @@ impl Variables for Control<'_> {
         }
         if let Some(value) = self.named_parameter(name) {
             return Read::Value(Some(value));
+        }
+        if is_tool(name) {
+            return Read::Unknown(TOOL);
         }
         if name.starts_with("_hal[") || name.starts_with("_ini[") {
             return Read::Unknown("the machine's configuration");
@@ -249,7 +259,8 @@ impl Control<'_> {
             _ if self.is_common(number) => return Read::Value(None),
             0 | 100..=199 | 500..=999 => return Read::Value(None),
             4001..=4021 => self.modal_code(number),
-            4120 => Some(f64::from(self.tools.selected)),
+            4120 if self.tools.selected_known().is_none() => return Read::Unknown(TOOL),
+            4120 => self.tools.selected_known().map(f64::from),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
             5001..=5009 => self.place(axis(5001)),
@@ -329,7 +340,7 @@ impl Control<'_> {
             Name::Number(number @ 1000..) if !(3000..4000).contains(number) => {
                 return Err("it belongs to the control, and may change offsets");
             }
-            Name::Text(name) if self.named_parameter(name).is_some() => {
+            Name::Text(name) if self.named_parameter(name).is_some() || is_tool(name) => {
                 return Err("it can only be read");
             }
             _ => {}

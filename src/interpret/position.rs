@@ -12,6 +12,7 @@ use super::frame::Frame;
 use super::given::GivenVariable;
 use super::offsets::Offsets;
 use super::parameter_file::ParameterFile;
+use super::shelf::Shelf;
 use super::tool_table::ToolTable;
 use crate::machine::{AXES, AxisSet, AxisValues, Machine};
 
@@ -108,6 +109,10 @@ pub struct Reading {
     pub sub_paths: Arc<[PathBuf]>,
     /// Where repetition stops.
     pub limits: Limits,
+    /// Files that stand for those on the disk, where several are read together.
+    pub shelf: Option<Arc<Shelf>>,
+    /// The program's own number among them.
+    pub text: u16,
 }
 
 impl Default for Reading {
@@ -121,6 +126,8 @@ impl Default for Reading {
             probe: None,
             sub_paths: Arc::default(),
             limits: Limits::default(),
+            shelf: None,
+            text: 0,
         }
     }
 }
@@ -146,7 +153,7 @@ impl Position {
             Start::At(at) => (at, AxisSet::default()),
             Start::Unknown => ([0.0; AXES], AxisSet((1 << AXES) - 1)),
         };
-        let offsets = Offsets::new(machine, reading.parameters.as_deref());
+        let offsets = Offsets::new(machine, reading);
         Self {
             at,
             unknown,
@@ -216,10 +223,5 @@ impl Position {
     /// G92.1 (`forget`) and G92.2.
     pub(super) fn clear_offset(&mut self, forget: bool) {
         self.change(|offsets| offsets.clear_g92(forget));
-    }
-
-    /// G92.3.
-    pub(super) fn restore_offset(&mut self) {
-        self.change(Offsets::restore_g92);
     }
 }

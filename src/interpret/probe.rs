@@ -37,9 +37,16 @@ pub(super) struct Probe {
 impl Probe {
     /// Before the first probe, with what probes are taken to find.
     pub(super) fn new(taken: Option<ProbeResult>) -> Self {
+        // Those of the probe before, in another program.
+        let mut values = [None; VALUES];
+        values[VALUES - 1] = match taken {
+            Some(ProbeResult::Hit) => Some(1.0),
+            Some(ProbeResult::Miss) => Some(0.0),
+            _ => None,
+        };
         Self {
             taken,
-            values: [Some(0.0); VALUES],
+            values,
             answer: Cell::new(None),
             answers: Cell::new(0),
             known_before: AxisSet::default(),

@@ -9,12 +9,14 @@
 use super::data_setting::out_of_range;
 use super::execute::{Control, Run};
 use super::frame::{Affine, SPACE, sin_cos_deg};
-use super::offsets::{FURTHER, FURTHER_MAX};
+use super::offsets::{FURTHER, FURTHER_MAX, Offsets};
 use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family};
 use crate::source::Span;
 
 /// Coordinates that differ by less are the same (mm, degrees).
 const SAME_MM: f64 = 1e-9;
+
+const NO_OFFSETS: &str = "without a parameter file all work offsets are taken as 0";
 
 /// What the program has turned, scaled or mirrored.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -437,10 +439,18 @@ impl Control<'_> {
         let zero = before.origin_of(system) == [0.0; AXES] && before.rotation_of(system) == 0.0;
         self.position.change(|offsets| offsets.select(system));
         if system > 1 && zero && !self.position.offsets().is_known() {
-            let message = "without a parameter file all work offsets are taken as 0";
-            run.report.note_once("no-offsets", message, span);
+            run.report.note_once("no-offsets", NO_OFFSETS, span);
         }
         self.note_bent();
+    }
+
+    /// G92.3: what G92 has stored, in this program or before.
+    pub(super) fn restore_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
+        let offsets = self.position.offsets();
+        if (0..AXES).any(|axis| self.machine.axes[axis].is_some() && !offsets.is_g92_told(axis)) {
+            run.report.note_once("no-offsets", NO_OFFSETS, span);
+        }
+        self.position.change(Offsets::restore_g92);
     }
 
     /// Fanuc forbids new coordinate systems while the program is turned.

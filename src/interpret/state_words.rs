@@ -144,7 +144,7 @@ impl Control<'_> {
                 for letter in [b'L', b'Q'] {
                     run.words.take(letter);
                 }
-                self.input_unknown = true;
+                self.input = None;
                 if self.is_on_way_back() {
                     let message = "M66 between G40 and the move that takes the tool back: \
                                    where that begins, LinuxCNC and its rs274 do not agree";

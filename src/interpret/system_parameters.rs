@@ -42,8 +42,8 @@ impl Control<'_> {
         let after = |first: u32| (number - first) as usize;
         match number {
             PROBE_FIRST..=PROBE_LAST => self.probe.value(after(PROBE_FIRST)),
-            FIRST..=LAST => self.position.offsets().stored(number),
-            INPUT => (!self.input_unknown).then_some(0.0),
+            FIRST..=LAST => self.position.offsets().told(number),
+            INPUT => self.input,
             TOOL_FIRST..=TOOL_LAST => self.tool_parameter(after(TOOL_FIRST)),
             _ => self.place(after(PLACE_FIRST)),
         }
@@ -66,6 +66,19 @@ impl Control<'_> {
                 .position
                 .change(|offsets| offsets.set_stored(number, value)),
             _ => false,
+        }
+    }
+
+    /// Takes over one that was given before the program runs; offsets are in
+    /// [`Offsets`](super::offsets::Offsets) already.
+    pub(super) fn give_system_parameter(&mut self, number: u32, value: f64) {
+        match number {
+            PROBE_FIRST..=PROBE_LAST => {
+                self.probe.set((number - PROBE_FIRST) as usize, value);
+            }
+            INPUT => self.input = Some(value),
+            TOOL_FIRST => self.tools.give(value),
+            _ => {}
         }
     }
 
@@ -97,7 +110,7 @@ impl Control<'_> {
     }
 
     fn tool_parameter(&self, index: usize) -> Option<f64> {
-        let number = self.tools.loaded;
+        let number = self.tools.loaded_known()?;
         if index == 0 {
             return Some(f64::from(number));
         }

@@ -41,6 +41,9 @@ pub(super) struct Tools {
     /// T, and what M6 or M61 has loaded; 0: none.
     pub(super) selected: u32,
     pub(super) loaded: u32,
+    /// Whether the program, or who runs it, has said which these are.
+    selected_told: bool,
+    loaded_told: bool,
     /// A length in force was taken as 0, since nothing is known of the tool.
     pub(super) length_guessed: bool,
     /// The number of G43 in force (Fanuc: H alone changes it).
@@ -58,6 +61,29 @@ impl Tools {
     /// True without a tool table: nothing can be said of a tool.
     pub(super) fn unknown(&self) -> bool {
         self.table.is_none()
+    }
+
+    /// The number of T, once there was one.
+    pub(super) fn selected_known(&self) -> Option<u32> {
+        self.selected_told.then_some(self.selected)
+    }
+
+    /// The number of the tool in the spindle, once a change has said it.
+    pub(super) fn loaded_known(&self) -> Option<u32> {
+        self.loaded_told.then_some(self.loaded)
+    }
+
+    /// T.
+    fn select(&mut self, number: u32) {
+        self.selected = number;
+        self.selected_told = true;
+    }
+
+    /// The tool that is in the spindle, and in T, as the program begins.
+    pub(super) fn give(&mut self, number: f64) {
+        self.select(number as u32);
+        self.loaded = self.selected;
+        self.loaded_told = true;
     }
 
     /// A tool, lengths in the machine's unit; tool 0 is none and has no length.
@@ -90,9 +116,9 @@ impl Control<'_> {
                 unknown_tool(number, span, run);
                 return;
             }
-            self.tools.selected = number;
+            self.tools.select(number);
         } else if number >= 0.0 && number <= f64::from(u32::MAX) {
-            self.tools.selected = number as u32;
+            self.tools.select(number as u32);
             if self.dialect().lathe.is_some() && self.osp.is_none() {
                 self.offset_of_lathe(run);
             }
@@ -127,6 +153,7 @@ impl Control<'_> {
         self.forget_way_back();
         if number == 60 {
             self.tools.loaded = self.tools.selected;
+            self.tools.loaded_told = self.tools.selected_told;
             return;
         }
         let Some(value) = run.words.take(b'Q') else {
@@ -144,6 +171,7 @@ impl Control<'_> {
             return;
         }
         self.tools.loaded = tool;
+        self.tools.loaded_told = true;
     }
 
     /// G43 and its kin: the axes stay, the program coordinates change.

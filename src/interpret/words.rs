@@ -117,7 +117,7 @@ impl Words {
                     let number = code_number(word.value);
                     let knob = number.and_then(|number| {
                         controller.knobs.iter().position(|knob| {
-                            knob.code == (word.letter, number) && knob.output().is_none()
+                            knob.code == Some((word.letter, number)) && knob.output().is_none()
                         })
                     });
                     if let Some(knob) = knob {

@@ -1,7 +1,7 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisKind, AxisValues, Machine, PathMode};
+use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
+use crate::machine::{AxisKind, AxisSet, AxisValues, Knob, KnobArgument, Machine, PathMode};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.
@@ -18,6 +18,9 @@ pub struct Permit {
     /// The axes stand before and after it, or may be made to by exact stop: a knob may be
     /// turned for which they have to.
     pub stands: bool,
+    /// A word in the block can let it end at rest where the control would blend it with
+    /// the next one.
+    pub stop_word: bool,
     /// Why the block may not be written as several; `None`: it may.
     pub unsplit: Option<&'static str>,
     /// Why not, for a person; empty when all is permitted.
@@ -30,6 +33,8 @@ pub struct Permit {
     pub knob_mm_per_unit: f64,
     /// The F in force in program units, if there is one.
     pub feed_before: Option<f64>,
+    /// It does not cut: it homes the axes, or is a rapid that obeys F.
+    pub positions: bool,
     /// Acceleration limits of feed moves in force, for a rapid that is written
     /// as one, mm/s².
     pub feed_accel_mm_s2: AxisValues,
@@ -56,10 +61,17 @@ pub struct Change {
     /// It ends at rest since it runs in exact stop; otherwise a dwell follows a rapid that is
     /// written as a feed where one is needed.
     pub exact_stop: bool,
+    /// The control's word for an exact stop in one block ends it at rest, where it would
+    /// be blended with the next one.
+    pub stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
     /// The knob for acceleration, and its value for each axis, in its unit.
     pub accel: Option<(usize, AxisValues)>,
+    /// The same for the largest speed.
+    pub speed: Option<(usize, AxisValues)>,
+    /// The knob by which hills of speed need no cruise; its value is 0.
+    pub cruise: Option<usize>,
 }
 
 impl Change {
@@ -68,8 +80,11 @@ impl Change {
         feed: None,
         as_feed: false,
         exact_stop: false,
+        stop: false,
         rapid_percent: None,
         accel: None,
+        speed: None,
+        cruise: None,
     };
 
     /// A rapid of no length as a feed.
@@ -109,17 +124,22 @@ impl Change {
     pub fn lower(&self, other: &Self) -> Self {
         let lower = |a: f64, b: f64| a.min(b);
         let whole = |change: &Self| change.exact_stop && change.accel.is_some();
+        let by_axis = |a: (usize, AxisValues), b: (usize, AxisValues)| {
+            (a.0, std::array::from_fn(|axis| a.1[axis].min(b.1[axis])))
+        };
         Self {
             feed: either(self.feed, other.feed, lower),
             as_feed: self.as_feed || other.as_feed,
             // Where a knob stops the axes it is exact stop that leaves the move whole.
             exact_stop: self.exact_stop && other.exact_stop || whole(self) || whole(other),
+            // A stop that one run needs harms no other.
+            stop: self.stop || other.stop,
             rapid_percent: either(self.rapid_percent, other.rapid_percent, |a, b| {
                 (a.0, a.1.min(b.1))
             }),
-            accel: either(self.accel, other.accel, |a, b| {
-                (a.0, std::array::from_fn(|axis| a.1[axis].min(b.1[axis])))
-            }),
+            accel: either(self.accel, other.accel, by_axis),
+            speed: either(self.speed, other.speed, by_axis),
+            cruise: self.cruise.filter(|_| other.cruise.is_some()),
         }
     }
 
@@ -127,6 +147,19 @@ impl Change {
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
+    }
+
+    /// How corners and hills of a move are taken.
+    #[must_use]
+    pub fn corner(&self, machine: &Machine, mv: &Move) -> Corner {
+        match (mv.corner, Square::of(machine)) {
+            (corner, _) if self.cruise.is_none() => corner,
+            (Corner::Square(square), _) | (_, Some(square)) => Corner::Square(Square {
+                cruise_ratio: 0.0,
+                ..square
+            }),
+            (corner, None) => corner,
+        }
     }
 
     /// The move as the controller will run it, computed as the interpreter
@@ -141,15 +174,23 @@ impl Change {
         if self.exact_stop {
             changed.path_mode = PathMode::ExactStop;
         }
+        if self.stop {
+            changed.path_mode = PathMode::ExactStop;
+        }
         if let Some(feed) = self.feed {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);
         }
+        changed.corner = self.corner(machine, mv);
         if let Some((_, percent)) = self.rapid_percent {
             changed.rapid_factor = percent / 100.0;
         }
         if let Some((knob, values)) = self.accel
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
+            if knob.argument == KnobArgument::Value {
+                limit_path_accel(machine, &mut changed, values[0]);
+                return under_cap(machine, changed, self.speed, permit);
+            }
             for axis in machine.axis_set.iter() {
                 if let Some(data) = &machine.axes[axis] {
                     changed.accel_mm_s2[axis] =
@@ -158,8 +199,60 @@ impl Change {
                 }
             }
         }
-        changed
+        under_cap(machine, changed, self.speed, permit)
     }
+}
+
+/// A move under a knob for the largest speed.
+fn under_cap(
+    machine: &Machine,
+    mut mv: Move,
+    cap: Option<(usize, AxisValues)>,
+    permit: &Permit,
+) -> Move {
+    if let Some((knob, values)) = cap
+        && let Some(knob) = machine.controller.knobs.get(knob)
+    {
+        let speed_mm_s = capped_mm_s(machine, &mv, knob, &values, permit);
+        mv.feed_mm_s = mv.feed_mm_s.min(speed_mm_s);
+    }
+    mv
+}
+
+/// Sets a limit of acceleration along the path, as the interpreter does.
+pub(super) fn limit_path_accel(machine: &Machine, mv: &mut Move, accel_mm_s2: f64) {
+    mv.path_accel_mm_s2 = accel_mm_s2;
+    raise_to_path(machine, &mut mv.accel_mm_s2, accel_mm_s2);
+    if !mv.unknown_start.is_empty() {
+        hold_to_path(machine, &mut mv.accel_mm_s2, accel_mm_s2);
+    }
+}
+
+/// The speed along the path, mm/s, that the values of a knob leave.
+fn capped_mm_s(
+    machine: &Machine,
+    mv: &Move,
+    knob: &Knob,
+    values: &AxisValues,
+    permit: &Permit,
+) -> f64 {
+    if knob.argument == KnobArgument::Value {
+        return values[0];
+    }
+    let commanded = AxisSet(mv.moving.0 | mv.unknown_start.0);
+    let speeds = commanded.iter().filter_map(|axis| {
+        let data = machine.axes[axis].as_ref()?;
+        let unit = permit.knob_mm_per_unit;
+        Some((axis, knob.unit.speed_mm_s(data, values[axis], unit)))
+    });
+    if !mv.unknown_start.is_empty() {
+        return speeds.fold(0.0, |largest, (_, speed)| speed.max(largest));
+    }
+    let along = speeds.filter_map(|(axis, speed)| {
+        let way_mm = (mv.end[axis] - mv.start[axis]).abs();
+        (way_mm > 0.0).then(|| speed * mv.length_mm / way_mm)
+    });
+    along.fold(f64::INFINITY, f64::min)
 }
 
 /// One of two values, or both put together.
@@ -186,7 +279,7 @@ pub(super) fn feed_word(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_
 /// Millimetres, or degrees, in the unit of length that F speaks of.
 pub(super) fn feed_unit(machine: &Machine, mv: &Move, permit: &Permit) -> f64 {
     let commanded = mv.moving.0 | mv.unknown_start.0;
-    let linear = crate::machine::AxisSet(commanded)
+    let linear = AxisSet(commanded)
         .iter()
         .any(|axis| machine.axes[axis].is_some_and(|data| data.kind == AxisKind::Linear));
     if linear { permit.mm_per_unit } else { 1.0 }

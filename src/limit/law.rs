@@ -47,9 +47,12 @@ pub(super) fn preset(
             accel[axis] = accel[axis].min(preset.accel_mm_s2[axis]);
         }
         if accel != case.mv.accel_mm_s2 {
-            let values = solver
-                .knob_values(knob, &accel, case.permit)
-                .ok_or_else(|| no_lever("acceleration"))?;
+            let least = axes.iter().map(|axis| accel[axis]);
+            let values = match solver.along_path(knob, case.mv) {
+                Some(own) => solver.path_values(knob, least.fold(own, f64::min)),
+                None => solver.knob_values(knob, &accel, case.permit),
+            };
+            let values = values.ok_or_else(|| no_lever("acceleration"))?;
             change.accel = Some((knob, values));
             change.exact_stop |= solver.halts(case, knob);
         }
@@ -117,6 +120,12 @@ fn scale_speed(
         } else {
             Err(no_lever("speed"))
         };
+    }
+    if let SpeedLever::Cap(knob) = lever {
+        let speed_mm_s = case.assessment.speed_mm_s * share;
+        let values = solver.cap_values(case, knob, speed_mm_s);
+        change.speed = values.map(|values| (knob, values));
+        return values.map(|_| ()).ok_or_else(|| no_lever("speed"));
     }
     change.as_feed = lever == SpeedLever::AsFeed;
     change.exact_stop = change.as_feed && case.exact_stop;

@@ -2,7 +2,7 @@
 
 use super::change::Permit;
 use super::options::LimitOptions;
-use crate::interpret::{Move, MoveKind};
+use crate::interpret::{Move, MoveKind, own_path_speed};
 use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
 
 /// The rule of a refusal for a block that may not be changed.
@@ -20,6 +20,8 @@ pub(super) enum SpeedLever {
     AsFeed,
     /// A percentage of the rapid speed: index of the knob.
     RapidPercent(usize),
+    /// The largest speed: index of the knob.
+    Cap(usize),
 }
 
 /// The levers of one move.
@@ -58,9 +60,7 @@ impl Obstacle {
 /// The first verified knob with this target (or `Accel`), in whatever form.
 pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize> {
     let suits = |knob: &Knob| {
-        knob.verified
-            && (knob.target == target || knob.target == KnobTarget::Accel)
-            && !matches!(knob.argument, KnobArgument::Path(_))
+        knob.lowers_accel() && (knob.target == target || knob.target == KnobTarget::Accel)
     };
     machine.controller.knobs.iter().position(suits)
 }
@@ -74,6 +74,37 @@ fn rapid_knob(machine: &Machine) -> Option<usize> {
         .position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
 }
 
+/// The knob for the largest speed that acts on a move, where it can be put back.
+pub(super) fn speed_knob(machine: &Machine, mv: &Move) -> Option<usize> {
+    let spares = machine.controller.language.printer.path_accel_spares;
+    let suits = |knob: &Knob| {
+        let acts = match knob.argument {
+            KnobArgument::Value => {
+                (mv.moving.0 | mv.unknown_start.0) & !spares.0 != 0
+                    && own_path_speed(machine).is_some()
+            }
+            KnobArgument::Axes => mv.arc.is_none(),
+            KnobArgument::Assign | KnobArgument::Path(_) | KnobArgument::Output(_) => false,
+        };
+        knob.verified && knob.target == KnobTarget::Speed && acts
+    };
+    let moves = matches!(mv.kind, MoveKind::Feed | MoveKind::Arc);
+    moves
+        .then(|| machine.controller.knobs.iter().position(suits))
+        .flatten()
+}
+
+/// The knob for acceleration that acts on a move: one along the path where there is such
+/// a limit that could be put back.
+fn accel_lever(machine: &Machine, mv: &Move, target: KnobTarget) -> Option<usize> {
+    accel_knob(machine, target).filter(|index| {
+        let knob = machine.controller.knobs.get(*index);
+        knob.is_some_and(|knob| {
+            knob.argument != KnobArgument::Value || mv.path_accel_mm_s2.is_finite()
+        })
+    })
+}
+
 /// What may be used to bring `mv` down.
 pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &Permit) -> Levers {
     if !permit.edit {
@@ -84,10 +115,14 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         knob.is_some_and(|knob| permit.stands || !knob.stands())
     };
     if mv.kind != MoveKind::Rapid {
-        let speed = (how.allowed.feed && permit.feed_word).then_some(SpeedLever::FeedWord);
+        let speed = if permit.feed_word {
+            Some(SpeedLever::FeedWord)
+        } else {
+            speed_knob(machine, mv).map(SpeedLever::Cap)
+        };
         return Levers {
-            speed,
-            accel: accel_knob(machine, KnobTarget::FeedAccel).filter(acts),
+            speed: speed.filter(|_| how.allowed.feed || permit.positions),
+            accel: accel_lever(machine, mv, KnobTarget::FeedAccel).filter(acts),
         };
     }
     let speed = match rapid_knob(machine) {
@@ -95,7 +130,7 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         None => rapid_as_feed(machine, how, mv, permit).then_some(SpeedLever::AsFeed),
     };
     // A rapid written as a feed is under the knobs of feeds, which differ.
-    let accel = accel_knob(machine, KnobTarget::RapidAccel).filter(acts);
+    let accel = accel_lever(machine, mv, KnobTarget::RapidAccel).filter(acts);
     let both = |index: &usize| {
         let knob = machine.controller.knobs.get(*index);
         knob.is_some_and(|knob| knob.stands() && knob.target == KnobTarget::Accel)

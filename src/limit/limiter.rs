@@ -235,6 +235,7 @@ impl<'m> Limiter<'m> {
                     let last = split.pieces.last().and_then(|piece| piece.accel);
                     let change = Change {
                         accel: last,
+                        cruise: split.cruise,
                         ..Change::NONE
                     };
                     outcome.change = Some(Box::new(change));

@@ -4,9 +4,12 @@
 //! Output: for each move, in order, the [`Change`] that makes it fit, or why
 //! there is none. The limiter never sees text.
 
+mod along;
 mod by_axis;
 mod change;
 mod depth;
+mod first_feed;
+mod halt;
 mod law;
 mod lever;
 mod limiter;
@@ -24,6 +27,7 @@ mod window;
 
 pub use change::{Change, Permit};
 pub use depth::{Depths, Place};
+pub use first_feed::FirstFeed;
 pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Allowed, Law, LimitOptions, Strategy};

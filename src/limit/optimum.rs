@@ -44,8 +44,9 @@ pub(super) fn best_pair(
 
     let by_accel = solver.accel(case, accel, &none);
     let mut low = by_accel
-        .and_then(|change| share(case, solver, &change))
-        .unwrap_or(LOWEST);
+        .and_then(|change| solver.accel_share(case, accel, &change))
+        .unwrap_or(LOWEST)
+        .clamp(LOWEST, 1.0);
     let mut high = 1.0;
     if case.mv.arc.is_some() {
         let at = |step: u32| low + (high - low) * f64::from(step) / f64::from(ARC_STEPS);
@@ -92,11 +93,4 @@ pub(super) fn best_pair(
         }
         (single, both) => single.or(both),
     }
-}
-
-/// The share of the acceleration in force that a change leaves.
-fn share(case: Case<'_>, solver: &Solver<'_>, change: &Change) -> Option<f64> {
-    let changed = change.apply(solver.machine, case.mv, case.permit);
-    let axis = case.mv.moving.iter().next()?;
-    Some((changed.accel_mm_s2[axis] / case.mv.accel_mm_s2[axis]).clamp(LOWEST, 1.0))
 }

@@ -46,6 +46,14 @@ pub struct Allowed {
     /// Rapids of axes that move each for itself may become lines, inside the machine's
     /// clearance.
     pub straighten: bool,
+    /// Exact stops may be put between feeds that the control may blend.
+    pub stop: bool,
+    /// The program may wait between rapids and before tool changes, where a limit over
+    /// time is missed otherwise.
+    pub pause: bool,
+    /// Words may be written that no document confirms (`verified = false` in the
+    /// controller profile).
+    pub unverified: bool,
 }
 
 impl Allowed {
@@ -54,5 +62,8 @@ impl Allowed {
         feed: false,
         expand: false,
         straighten: false,
+        stop: false,
+        pause: false,
+        unverified: false,
     };
 }

@@ -1,7 +1,7 @@
 //! Why a move cannot be lowered, and what would permit it.
 
 use super::change::Change;
-use super::lever::{NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE};
+use super::lever::{NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
 use super::options::{Allowed, LimitOptions};
 use super::solver::{Case, Solver};
 use crate::interpret::MoveKind;
@@ -13,7 +13,8 @@ const BY_HAND: &str = "change it by hand";
 impl Solver<'_> {
     pub(super) fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
         let Case { mv, permit, .. } = case;
-        if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word {
+        let capped = speed_knob(self.machine, mv);
+        if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word && capped.is_none() {
             return Obstacle::new(
                 UNTOUCHABLE,
                 format!("the block may not be changed: {}", permit.reason),
@@ -21,11 +22,11 @@ impl Solver<'_> {
             );
         }
         if mv.kind != MoveKind::Rapid {
-            let help = match self
-                .allowing_feeds()
-                .speed(case, SpeedLever::FeedWord, &Change::default())
-                .and_then(|it| it.feed)
-            {
+            let by_f = permit.feed_word.then(|| {
+                self.allowing_feeds()
+                    .speed(case, SpeedLever::FeedWord, &Change::default())
+            });
+            let help = match by_f.flatten().and_then(|it| it.feed) {
                 Some(feed) => format!("it fits at F{feed}: --allow feed permits that"),
                 None => "--allow feed permits lower feeds".to_owned(),
             };

@@ -4,6 +4,7 @@
 //! fit, begun and ended as the move is. Stages up and stages down (`stages`) meet at the
 //! speed that the length of the way leaves, or with a cruise between them.
 
+use super::along::straight_accel_mm_s2;
 use super::change::Change;
 use super::solver::{Case, Solver};
 use super::stages::{Stages, Terms, stages};
@@ -73,7 +74,7 @@ pub(super) struct Road<'a> {
     /// Speeds at its ends and its largest, mm/s.
     ends_mm_s: [f64; 2],
     pub(super) top_mm_s: f64,
-    /// Acceleration along the path that is in force, and what the axes alone permit.
+    /// Acceleration along the path that is in force, and what the knob acts on of it.
     accel_mm_s2: f64,
     axes_accel_mm_s2: f64,
     /// The load that is aimed at.
@@ -95,10 +96,8 @@ impl<'a> Road<'a> {
             shortest_s = shortest_s.max(machine.path.response_time_s);
             aim -= RESPONSE;
         }
-        let axes_accel_mm_s2 = mv.moving.iter().map(|axis| {
-            let change = (mv.end[axis] - mv.start[axis]).abs();
-            mv.accel_mm_s2[axis] * mv.length_mm / change
-        });
+        let axes_accel_mm_s2 = straight_accel_mm_s2(mv);
+        let own_mm_s2 = solver.along_path(knob, mv).unwrap_or(axes_accel_mm_s2);
         Self {
             solver,
             case,
@@ -106,7 +105,7 @@ impl<'a> Road<'a> {
             ends_mm_s: assessment.ends2.map(f64::sqrt),
             top_mm_s: planned.speed_limit_mm_s,
             accel_mm_s2: planned.accel_mm_s2,
-            axes_accel_mm_s2: axes_accel_mm_s2.fold(f64::INFINITY, f64::min),
+            axes_accel_mm_s2: own_mm_s2,
             aim,
             shortest_s,
         }

@@ -1,6 +1,8 @@
 //! One move by itself: the change that makes it fit.
 
-use super::change::{Change, Permit, feed_unit, feed_word, round_feed_down, round_to_step};
+use super::change::{
+    Change, Permit, feed_unit, feed_word, limit_path_accel, round_feed_down, round_to_step,
+};
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::optimum;
@@ -9,13 +11,13 @@ use super::refusal::too_much;
 use super::root::largest;
 use super::steps;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, Machine};
+use crate::machine::{AXES, AxisValues, Machine};
 use crate::plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// How often a rounded value is lowered by one more step before giving up.
-const RETRIES: u32 = 3;
+pub(super) const RETRIES: u32 = 3;
 
 /// Solves moves one by one.
 #[derive(Debug)]
@@ -240,6 +242,7 @@ impl<'m> Solver<'m> {
             SpeedLever::RapidPercent(_) => base.rapid_factor * 100.0,
             // What its neighbours may carry it up to, however short it is.
             _ if self.is_open(case, &base) => blended_speed(self.machine, &base, self.largest),
+            SpeedLever::Cap(_) if !mv.unknown_start.is_empty() => self.fastest_axis(&base),
             _ if mv.unknown_start.is_empty() => {
                 plan(self.machine, &base, self.largest).top_speed_mm_s
             }
@@ -262,6 +265,7 @@ impl<'m> Solver<'m> {
                 trial.rapid_percent = (percent > 0.0).then_some((knob, percent));
                 trial.rapid_percent?;
             }
+            SpeedLever::Cap(knob) => trial.speed = Some(self.cap(case, &trial, knob, value)?),
             _ => trial.feed = Some(self.feed_number(case, &trial, value)?),
         }
         Some(trial)
@@ -314,8 +318,12 @@ impl<'m> Solver<'m> {
         };
         let base = with.apply(self.machine, case.mv, case.permit);
         let mut moved = base.clone();
+        let along_mm_s2 = self.along_path(knob, &base);
         let mut load_at = |factor: f64| {
-            moved.accel_mm_s2 = base.accel_mm_s2.map(|accel| accel * factor);
+            match along_mm_s2 {
+                Some(accel) => limit_path_accel(self.machine, &mut moved, accel * factor),
+                None => moved.accel_mm_s2 = base.accel_mm_s2.map(|accel| accel * factor),
+            }
             self.load(case, &moved)
         };
         let load_top = load_at(1.0);
@@ -336,8 +344,12 @@ impl<'m> Solver<'m> {
         factor: f64,
         with: &Change,
     ) -> Option<Change> {
-        let values: AxisValues = std::array::from_fn(|axis| factor * case.mv.accel_mm_s2[axis]);
-        let rounded = self.knob_values(knob, &values, case.permit)?;
+        let rounded = if let Some(accel) = self.along_path(knob, case.mv) {
+            self.path_values(knob, accel * factor)?
+        } else {
+            let values = case.mv.accel_mm_s2.map(|accel| accel * factor);
+            self.knob_values(knob, &values, case.permit)?
+        };
         Some(Change {
             accel: Some((knob, rounded)),
             exact_stop: with.exact_stop || self.halts(case, knob),
@@ -353,7 +365,7 @@ impl<'m> Solver<'m> {
         permit: &Permit,
     ) -> Option<AxisValues> {
         let data = self.machine.controller.knobs.get(knob)?;
-        let mut values = [0.0; crate::machine::AXES];
+        let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
             let Some(own) = &self.machine.axes[axis] else {
                 continue;
@@ -412,14 +424,19 @@ impl<'m> Solver<'m> {
     }
 
     pub(super) fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {
-        let Some(feed) = change.feed.filter(|_| case.mv.kind != MoveKind::Rapid) else {
+        let per_minute = SECONDS_PER_MINUTE / feed_unit(self.machine, case.mv, case.permit);
+        let capped = change.speed.map(|_| {
+            let changed = change.apply(self.machine, case.mv, case.permit);
+            changed.feed_mm_s * per_minute
+        });
+        let cuts = case.mv.kind != MoveKind::Rapid && !case.permit.positions;
+        let Some(feed) = change.feed.or(capped).filter(|_| cuts) else {
             return Ok(());
         };
         let limits = &self.machine.limits;
         let floor_mm_s = limits
             .min_feed_mm_s
             .max(limits.min_feed_ratio * case.assessment.speed_mm_s);
-        let per_minute = SECONDS_PER_MINUTE / feed_unit(self.machine, case.mv, case.permit);
         let floor = floor_mm_s * per_minute;
         if feed >= floor * (1.0 - 1e-12) {
             return Ok(());

@@ -12,8 +12,8 @@ use super::lever::{Levers, levers};
 use super::road::{MOST, NO_FIT, Road, SHORTEST_MM};
 use super::solver::{Case, Ends, Solver};
 use super::steps;
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisValues, PathMode};
+use crate::interpret::{Corner, Move, MoveKind};
+use crate::machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
 use crate::plan::{is_independent, plan};
 use crate::power::{Assessment, Certificate, plans_lines};
 
@@ -33,6 +33,8 @@ const BESIDE: &str = "beside its neighbours the pieces would exceed the limit";
 pub struct Split {
     /// In their order, at least two.
     pub pieces: Vec<Piece>,
+    /// The knob by which their hills need no cruise, where they would otherwise.
+    pub cruise: Option<usize>,
 }
 
 /// A piece of a line.
@@ -96,7 +98,19 @@ impl Solver<'_> {
         });
         Ok(Split {
             pieces: pieces.collect(),
+            cruise: self.cruise_knob(mv),
         })
+    }
+
+    /// The knob that takes the cruise off hills, where they have one.
+    fn cruise_knob(&self, mv: &Move) -> Option<usize> {
+        let controller = &self.machine.controller;
+        let rules = controller.planner.look_ahead?;
+        let suits = |knob: &Knob| {
+            knob.verified && knob.between_moves && knob.target == KnobTarget::CruiseRatio
+        };
+        let index = controller.knobs.iter().position(suits)?;
+        (cruise_ratio(mv, &rules) > 0.0).then_some(index)
     }
 
     fn road<'a>(&'a self, case: Case<'a>, levers: Levers) -> Result<Road<'a>, &'static str> {
@@ -109,11 +123,19 @@ impl Solver<'_> {
         };
         let knob = levers.accel.filter(acts).filter(|_| straight);
         let rules = controller.planner.look_ahead;
+        let planned = plan(self.machine, mv, self.largest);
         let flows = mv.path_mode == PathMode::LookAhead
             && assessment.certificate == Certificate::Planned
             && assessment.ends2.iter().all(|end2| end2.is_finite())
             && match rules {
-                Some(rules) => assessment.ahead && rules.min_cruise_ratio == 0.0,
+                // What is reached without a cruise is no faster than what was.
+                Some(rules) => {
+                    assessment.ahead
+                        && (cruise_ratio(mv, &rules) == 0.0
+                            || self.cruise_knob(mv).is_some()
+                                && assessment.top_speed_mm_s
+                                    >= planned.speed_limit_mm_s * (1.0 - 1e-9))
+                }
                 // Between two stops, since nothing is known of corners.
                 None => {
                     !assessment.blended
@@ -137,7 +159,14 @@ impl Solver<'_> {
         if steps::load(self, case, mv).is_some() || assessment.loads.steps > MOST {
             return Err(NO_FIT);
         }
-        let planned = plan(self.machine, mv, self.largest);
         Ok(Road::new(self, case, knob, &planned))
+    }
+}
+
+/// The share of each hill of speed that is cruised at least.
+fn cruise_ratio(mv: &Move, rules: &LookAhead) -> f64 {
+    match mv.corner {
+        Corner::Square(square) => square.cruise_ratio,
+        _ => rules.min_cruise_ratio,
     }
 }

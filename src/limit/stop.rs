@@ -16,8 +16,10 @@ impl Solver<'_> {
     /// would be blended otherwise than rapids, or runs in exact stop while a knob is turned
     /// for which the axes stand.
     pub(super) fn gets_stops(&self, rapid: &Move, changed: &Move) -> bool {
-        let halts =
-            changed.path_mode == PathMode::ExactStop && rapid.path_mode != PathMode::ExactStop;
+        // A word for an exact stop that is written for its own sake stops its end alone.
+        let halts = changed.path_mode == PathMode::ExactStop
+            && rapid.path_mode != PathMode::ExactStop
+            && self.machine.controller.knobs.iter().any(Knob::stands);
         self.machine.controller.planner.rapid_joint != RapidJoint::All
             && rapid.kind == MoveKind::Rapid
             && (changed.kind != MoveKind::Rapid || halts)

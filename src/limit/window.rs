@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 use arrayvec::ArrayVec;
 
 use super::change::{Change, Permit, feed_word};
+use super::halt;
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::{Slot, Waiting};
@@ -20,21 +21,22 @@ use crate::machine::{AXES, AxisValues};
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
 
 /// A move of a window.
-struct Member<'a> {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Member<'a> {
     /// Of its slot.
-    index: usize,
-    mv: &'a Move,
-    permit: Permit,
+    pub(super) index: usize,
+    pub(super) mv: &'a Move,
+    pub(super) permit: Permit,
 }
 
 impl Member<'_> {
     /// The move with its change.
-    fn changed<'s>(&'s self, slots: &'s VecDeque<Slot>) -> &'s Move {
+    pub(super) fn changed<'s>(&'s self, slots: &'s VecDeque<Slot>) -> &'s Move {
         slots[self.index].changed.as_deref().unwrap_or(self.mv)
     }
 
     /// The move with its change, for the solver.
-    fn case<'s>(&'s self, slots: &'s VecDeque<Slot>) -> Case<'s> {
+    pub(super) fn case<'s>(&'s self, slots: &'s VecDeque<Slot>) -> Case<'s> {
         Case {
             mv: self.mv,
             assessment: &slots[self.index].assessment,
@@ -66,11 +68,22 @@ pub(super) fn settle<'a>(
             Some(Member { index, mv, permit })
         })
         .collect();
+    if !solver.how.allowed.stop {
+        return lower(solver, slots, &window, center);
+    }
+    let before = window.iter().map(|member| slots[member.index].clone());
+    let before = before.collect();
     lower(solver, slots, &window, center);
+    halt::consider(solver, slots, &window, center, &before);
 }
 
 /// Lowers a window if it does not fit.
-fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, center: usize) {
+pub(super) fn lower(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    window: &Window<'_>,
+    center: usize,
+) {
     if load(solver, slots, window) <= 1.0 + 1e-9 {
         return;
     }
@@ -82,7 +95,12 @@ fn lower(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, window: &Window<'_>, c
                 stands: false,
                 ..member.permit
             };
-            levers(solver.machine, solver.how, member.mv, &permit)
+            let mut found = levers(solver.machine, solver.how, member.mv, &permit);
+            // The bound knows of limits of the axes alone.
+            found.accel = found
+                .accel
+                .filter(|knob| solver.along_path(*knob, member.mv).is_none());
+            found
         })
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
@@ -128,7 +146,12 @@ fn by_law(
 }
 
 /// Changes a move.
-fn put(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, member: &Member<'_>, change: Change) {
+pub(super) fn put(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    member: &Member<'_>,
+    change: Change,
+) {
     let slot = &mut slots[member.index];
     slot.changed = Some(Box::new(change.apply(
         solver.machine,
@@ -139,13 +162,13 @@ fn put(solver: &Solver<'_>, slots: &mut VecDeque<Slot>, member: &Member<'_>, cha
 }
 
 /// What a move gets so far.
-fn change(slots: &VecDeque<Slot>, member: &Member<'_>) -> Change {
+pub(super) fn change(slots: &VecDeque<Slot>, member: &Member<'_>) -> Change {
     let change = slots[member.index].outcome.change.as_deref();
     change.copied().unwrap_or(Change::NONE)
 }
 
 /// A move and the neighbours that it is joined to.
-type Window<'a> = ArrayVec<Member<'a>, 3>;
+pub(super) type Window<'a> = ArrayVec<Member<'a>, 3>;
 
 /// Indices of the window around `center`, across moves of no length.
 fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
@@ -158,7 +181,7 @@ fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
     window
 }
 
-/// Blended moves are lowered by F, also a rapid written as a feed.
+/// Blended moves are lowered by F or by a word for the largest speed, also a rapid written as a feed.
 fn speed_lever(levers: Levers) -> Option<SpeedLever> {
     levers
         .speed
@@ -295,7 +318,7 @@ fn scale(bound: &SpeedBound, factor: f64) -> SpeedBound {
     }
 }
 
-/// Sets the F of one move to a share of the speed that it has now.
+/// Sets the F of one move, or its largest speed, to a share of the speed that it has now.
 fn lower_feed(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
@@ -304,20 +327,35 @@ fn lower_feed(
     factor: f64,
 ) -> bool {
     let changed = member.changed(slots);
-    let speed_mm_s = if changed.unknown_start.is_empty() {
+    let speed_mm_s = if let SpeedLever::Cap(_) = lever
+        && !changed.unknown_start.is_empty()
+    {
+        solver.fastest_axis(changed)
+    } else if changed.unknown_start.is_empty() {
         blended_speed(solver.machine, changed, solver.largest)
     } else {
         changed.feed_mm_s.min(1e6) * solver.largest.feed
     };
     let speed_mm_s = speed_mm_s * factor / solver.largest.feed;
-    let feed = feed_word(solver.machine, member.mv, &member.permit, speed_mm_s);
-    if !(feed > 0.0 && feed.is_finite()) {
-        return false;
-    }
-    let change = Change {
-        feed: Some(feed),
-        as_feed: lever == SpeedLever::AsFeed,
-        ..change(slots, member)
+    let before = change(slots, member);
+    let change = if let SpeedLever::Cap(knob) = lever {
+        let Some(values) = solver.cap_values(member.case(slots), knob, speed_mm_s) else {
+            return false;
+        };
+        Change {
+            speed: Some((knob, values)),
+            ..before
+        }
+    } else {
+        let feed = feed_word(solver.machine, member.mv, &member.permit, speed_mm_s);
+        if !(feed > 0.0 && feed.is_finite()) {
+            return false;
+        }
+        Change {
+            feed: Some(feed),
+            as_feed: lever == SpeedLever::AsFeed,
+            ..before
+        }
     };
     if let Err(obstacle) = solver.respect_floor(member.case(slots), &change) {
         slots[member.index].outcome.obstacle = Some(Box::new(obstacle));

@@ -1,7 +1,7 @@
 //! Controller profiles: what a controller reads, how it plans, and which words
 //! lower speed and acceleration. Profiles are data (TOML).
 
-use super::axis::{Axis, AxisKind};
+use super::knob::{Knob, KnobArgument};
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
 use super::queue::Queue;
@@ -41,6 +41,9 @@ pub struct Language {
     /// The words that `G4` takes, with the seconds in one unit of each; if a
     /// block has several, the last in this list wins (Marlin: S over P).
     pub dwell: Vec<(u8, f64)>,
+    /// The F in force at power-on, mm/s; infinite where none is known. An earlier program may
+    /// have left another one.
+    pub power_on_feed_mm_s: f64,
     /// `true`: G0 is in force at power-on; else no motion word is.
     pub rapid_at_power_on: bool,
     /// `true`: O words as FluidNC has them: a label may serve several branches and
@@ -79,6 +82,8 @@ pub struct Language {
     /// Whether G73 to G89 are the canned cycles of a milling control, with G98
     /// and G99 for the level that they return to.
     pub mill_cycles: bool,
+    /// G83 and G87 of a lathe come out to R after each peck; else a parameter says whether.
+    pub pecks_return_to_r: bool,
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
@@ -122,6 +127,31 @@ pub struct Dialect {
 }
 
 impl Language {
+    /// The word for exact stop in one block, such as `G9`.
+    #[must_use]
+    pub fn stop_word(&self) -> Option<String> {
+        let number = self.exact_stop_word?;
+        Some(format!("G{}", f64::from(number) / 10.0))
+    }
+
+    /// A dwell as a block, and how long it lasts, s: at least `wanted_s`, in tenths of a
+    /// second.
+    #[must_use]
+    pub fn dwell_block(&self, wanted_s: f64) -> Option<(String, f64)> {
+        let (letter, unit_s) = *self.dwell.first()?;
+        let tenths = (wanted_s * 10.0 - 1e-9).ceil().max(1.0);
+        // In tenths of the unit it is the decimal number that will be read.
+        let value = (tenths / (unit_s * 10.0) * 1e6).round() / 1e6;
+        // Numbers without a point may be in another unit.
+        let point = if self.dialect.adapts() && value.fract() == 0.0 {
+            "."
+        } else {
+            ""
+        };
+        let words = format!("G4 {}{value}{point}", char::from(letter));
+        Some((words, value * unit_s))
+    }
+
     /// The shortest dwell as a block, and how long it lasts, s. Where the letter counts
     /// whole units, one of them, since it is not known that a dwell of no time stops.
     #[must_use]
@@ -313,117 +343,5 @@ impl Controller {
                 && knob.unit == like.unit
                 && knob.argument == KnobArgument::Axes
         })
-    }
-}
-
-/// A word that limits speed or acceleration until it is taken back.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Knob {
-    /// Letter and number × 10 of the word, such as `(b'G', 1310)`.
-    pub code: (u8, u16),
-    /// What it acts on.
-    pub target: KnobTarget,
-    /// What stands behind the word.
-    pub argument: KnobArgument,
-    /// Unit of the value.
-    pub unit: KnobUnit,
-    /// Smallest step of a value that is written.
-    pub step: f64,
-    /// Smallest value that is accepted.
-    pub min: f64,
-    /// True when a document confirms it.
-    pub verified: bool,
-    /// It acts between two moves that run into each other, without a stop.
-    pub between_moves: bool,
-    /// The line after it, for which the axes stand; before that it does not act.
-    pub wait: Option<String>,
-    /// How long the axes stand for a change of it, s.
-    pub change_s: f64,
-}
-
-impl Knob {
-    /// Whether the axes stand while it is turned.
-    #[must_use]
-    pub fn stands(&self) -> bool {
-        self.wait.is_some()
-    }
-
-    /// The analog output that it sets.
-    #[must_use]
-    pub fn output(&self) -> Option<u16> {
-        match self.argument {
-            KnobArgument::Output(number) => Some(number),
-            _ => None,
-        }
-    }
-}
-
-/// What a knob acts on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KnobTarget {
-    /// Acceleration of feed moves.
-    FeedAccel,
-    /// Acceleration of rapids.
-    RapidAccel,
-    /// Acceleration of all moves.
-    Accel,
-    /// Speed of rapids.
-    RapidSpeed,
-}
-
-/// What stands behind a knob's word.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum KnobArgument {
-    /// `= value` for all axes (`G131 = 50`).
-    Assign,
-    /// A value for each axis letter (`G130 X70 Y60`).
-    Axes,
-    /// One value behind any of these letters, the path's limit (`M204 P500 T500`).
-    Path(Vec<u8>),
-    /// The number of an analog output, and a value for all axes (`M68 E0 Q0.5`).
-    Output(u16),
-}
-
-/// Unit of a knob's value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KnobUnit {
-    /// Percent of the machine's limit; 100 takes it back.
-    Percent,
-    /// A share of the machine's limit; 1 takes it back.
-    Share,
-    /// Program units per s² (mm/s², or inch/s² after G20); the machine's own
-    /// limit takes it back.
-    PerSecondSquared,
-}
-
-impl KnobUnit {
-    /// The acceleration limit of an axis, mm/s² (degrees/s²), that a value
-    /// means; `mm_per_unit` is the program's unit of length.
-    #[must_use]
-    pub fn accel_mm_s2(self, axis: &Axis, value: f64, mm_per_unit: f64) -> f64 {
-        match self {
-            Self::Percent => axis.accel_mm_s2 * value / 100.0,
-            Self::Share => axis.accel_mm_s2 * value,
-            Self::PerSecondSquared => value * unit_of(axis, mm_per_unit),
-        }
-    }
-
-    /// The value that means an acceleration limit of an axis.
-    #[must_use]
-    pub fn value(self, axis: &Axis, accel_mm_s2: f64, mm_per_unit: f64) -> f64 {
-        match self {
-            Self::Percent => accel_mm_s2 / axis.accel_mm_s2 * 100.0,
-            Self::Share => accel_mm_s2 / axis.accel_mm_s2,
-            Self::PerSecondSquared => accel_mm_s2 / unit_of(axis, mm_per_unit),
-        }
-    }
-}
-
-/// Millimetres in the unit that positions of an axis are written in; degrees
-/// are degrees.
-fn unit_of(axis: &Axis, mm_per_unit: f64) -> f64 {
-    match axis.kind {
-        AxisKind::Linear => mm_per_unit,
-        AxisKind::Rotary => 1.0,
     }
 }

@@ -1,9 +1,9 @@
 //! What would bring a move down, in a few words.
 
-use super::entry::turns_apart;
-use crate::interpret::{FeedMode, Interpreter, Move, MoveKind};
+use super::entry::{positions, turns_apart};
+use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
-use crate::machine::{AxisValues, Machine};
+use crate::machine::{AxisSet, AxisValues, Machine};
 use crate::power::Assessment;
 
 /// What helps where the spindle alone is too much.
@@ -20,6 +20,7 @@ pub(super) struct Circumstances {
     feed_mode: FeedMode,
     mm_per_unit: f64,
     feed_accel_mm_s2: AxisValues,
+    motion: Motion,
 }
 
 impl Circumstances {
@@ -30,6 +31,7 @@ impl Circumstances {
             feed_mode: modal.feed_mode,
             mm_per_unit: modal.mm_per_unit,
             feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
+            motion: modal.motion,
         }
     }
 }
@@ -76,12 +78,14 @@ impl<'m> Adviser<'m> {
             as_feed: per_minute || apart,
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
+            stop_word: false,
             unsplit: None,
             reason: "",
             reason_help: "",
             mm_per_unit: at.mm_per_unit,
             knob_mm_per_unit: at.mm_per_unit,
             feed_before: None,
+            positions: positions(self.machine, at.motion, mv),
             feed_accel_mm_s2: at.feed_accel_mm_s2,
         };
         let ends = if assessment.blended {
@@ -90,13 +94,13 @@ impl<'m> Adviser<'m> {
             Ends::Rest
         };
         match self.solver.solve(mv, assessment, &permit, ends) {
-            Ok(change) => self.words(mv, &change),
+            Ok(change) => self.words(mv, &change, permit.positions),
             Err(obstacle) => format!("{}: {}", obstacle.message, obstacle.help),
         }
     }
 
     /// The words that a change writes.
-    fn words(&self, mv: &Move, change: &Change) -> String {
+    fn words(&self, mv: &Move, change: &Change, free: bool) -> String {
         let mut words = Vec::new();
         if let Some(feed) = change.feed {
             words.push(format!(
@@ -104,12 +108,15 @@ impl<'m> Adviser<'m> {
                 if change.as_feed { "G1 " } else { "" }
             ));
         }
+        let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
+        let least = |(knob, values): (usize, AxisValues)| {
+            let least = axes.iter().map(|axis| values[axis]);
+            (knob, least.fold(f64::INFINITY, f64::min))
+        };
         let settings = [
             change.rapid_percent,
-            change.accel.map(|(knob, values)| {
-                let least = mv.moving.iter().map(|axis| values[axis]);
-                (knob, least.fold(f64::INFINITY, f64::min))
-            }),
+            change.accel.map(least),
+            change.speed.map(least),
         ];
         // An infinite value leaves the axes that move here as they are.
         let settings = settings.into_iter().flatten();
@@ -122,7 +129,7 @@ impl<'m> Adviser<'m> {
         if words.is_empty() {
             return NEIGHBOURS_HELP.to_owned();
         }
-        let option = if mv.kind != MoveKind::Rapid && change.feed.is_some() {
+        let option = if mv.kind != MoveKind::Rapid && change.feed.is_some() && !free {
             " (limit --allow feed)"
         } else {
             ""

@@ -9,12 +9,14 @@
 
 mod compare;
 mod pieces;
+mod reasons;
 mod spindle;
 
 use std::collections::VecDeque;
 
 use compare::compare;
 use pieces::{Found, Pieces};
+pub(super) use reasons::Reasons;
 
 use super::batch::Batch;
 use super::expected::{Expected, Originals, Stops, added_mode, added_stop, different};
@@ -23,10 +25,10 @@ use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
-use crate::limit::{Depths, Obstacle, Place};
+use crate::limit::{Depths, Place};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
-use crate::source::{Span, lines};
+use crate::source::lines;
 use crate::syntax::{Block, scan_line};
 
 /// Reads the written program.
@@ -69,83 +71,6 @@ pub(super) struct Verdict<'m, 'r> {
     /// Rows of the spindle in the written program that no row of the original
     /// has met yet.
     spindle: VecDeque<Assessment>,
-}
-
-/// Rules of what must not be: a written program of which one of these is said is not the
-/// original made slower.
-const FAULTS: [&str; 5] = [
-    "changed-sequence",
-    "unreadable-output",
-    "went-up",
-    "changed-feed",
-    "edit",
-];
-
-/// Why the certificate does not hold: the first reasons in full.
-#[derive(Debug, Default)]
-pub(super) struct Reasons {
-    pub(super) list: Vec<Diagnostic>,
-    pub(super) count: u64,
-    /// One of [`FAULTS`] is among them, in the list or not.
-    faulty: bool,
-}
-
-impl Reasons {
-    /// Whether nothing is said but that moves still draw too much.
-    pub(super) fn only_power(&self) -> bool {
-        !self.faulty
-    }
-
-    /// Takes those of the certificate too.
-    pub(super) fn extend(&mut self, other: Self) {
-        self.count += other.count;
-        self.faulty |= other.faulty;
-        self.list.extend(other.list);
-    }
-
-    /// With those found on another way through the program, each line once.
-    pub(super) fn join(&mut self, other: Self) {
-        self.count += other.count - other.list.len() as u64;
-        self.faulty |= other.faulty;
-        for reason in other.list {
-            let mut known = self.list.iter();
-            if !known.any(|it| (it.line, it.rule) == (reason.line, reason.rule)) {
-                self.count += 1;
-                self.list.push(reason);
-            }
-        }
-        self.list.truncate(Summary::KEPT);
-    }
-
-    /// A move that does not fit and cannot be helped.
-    pub(super) fn refuse(&mut self, mv: &Move, obstacle: &Obstacle, text: &[u8]) {
-        let Obstacle {
-            rule,
-            message,
-            help,
-        } = obstacle;
-        self.push(mv.line, rule, message.clone(), help, text);
-    }
-
-    pub(super) fn push(
-        &mut self,
-        line: u64,
-        rule: &'static str,
-        message: String,
-        help: &str,
-        text: &[u8],
-    ) {
-        self.count += 1;
-        self.faulty |= FAULTS.contains(&rule);
-        if self.list.len() < Summary::KEPT {
-            let span = Span::new(0, crate::source::split_line_end(text).0.len());
-            self.list.push(
-                Diagnostic::error(rule, message)
-                    .at(line, span, text)
-                    .help(help),
-            );
-        }
-    }
 }
 
 /// What the certifier found.
@@ -193,7 +118,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
     pub(super) fn take(&mut self, batch: &mut Batch) -> Result<(), Failure> {
         self.verdict.refill(&mut batch.expected);
         let mut rest = batch.bytes.as_slice();
-        let mut moves = batch.moves.iter_mut();
+        let mut moves = batch.moves.iter();
         let mut stances = batch.stances.drain(..);
         for block in &batch.blocks {
             let Some((text, behind)) = rest.split_at_checked(block.length) else {
@@ -245,19 +170,19 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 ..
             } = self;
             interpreter.execute(*line, text, block, steps, facts, diagnostics);
-            for step in &*steps {
+            for step in steps.iter_mut() {
                 let mut text = text;
                 if let Step::Move(mv) = step
                     && mv.line != *line
                 {
                     text = interpreter.held_text(mv).unwrap_or(text);
                 }
-                verdict.compare_step(step, text);
+                verdict.take_step(step, text);
                 assessor.want = verdict.tally.want();
                 let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
                     verdict.judge(mv, after, text);
                 };
-                match step {
+                match &*step {
                     Step::Move(mv) => assessor.push(mv, text, &mut sink),
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
@@ -269,12 +194,11 @@ impl<'m, 'r> Certifier<'m, 'r> {
 
     /// Judges the move of a plain block that stands in both programs, in the
     /// same state: read again, it would be the same move.
-    fn repeat(&mut self, mv: &mut Move, text: &[u8]) {
+    fn repeat(&mut self, mv: &Move, text: &[u8]) {
         let Self {
             assessor, verdict, ..
         } = self;
         self.line += 1;
-        mv.line = self.line;
         self.behind = true;
         verdict.pass_spindle();
         verdict.done += 1;
@@ -317,6 +241,12 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
     }
 
+    /// Learns the names of files of subprograms.
+    pub(super) fn learn_files(&mut self, names: &[String]) {
+        self.tally.learn_files(names);
+        self.reasons.learn_files(names);
+    }
+
     /// What is wanted of the next move, and whether the rows could be written.
     pub(super) fn want(&self) -> Want {
         self.tally.want()
@@ -337,7 +267,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
     pub(super) fn expect_nothing(&mut self) {
         if self.expects() {
             let message = "the written program leaves something out".to_owned();
-            self.reasons.push(0, "changed-sequence", message, BUG, b"");
+            self.reasons
+                .push((0, 0), "changed-sequence", message, BUG, b"");
         }
     }
 
@@ -355,7 +286,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
         for found in found {
             if found.severity == Severity::Error {
                 let message = format!("the written program cannot be read: {}", found.message);
-                reasons.push(found.line, "unreadable-output", message, BUG, &found.text);
+                let place = (0, found.line);
+                reasons.push(place, "unreadable-output", message, BUG, &found.text);
+                reasons.in_file(found.file.as_ref());
             }
         }
         let mut summary = self.tally.finish(false);
@@ -380,8 +313,25 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.judged = 0;
     }
 
+    /// Compares a step with the original's next one, and gives it that one's line: what is
+    /// found counts for the program that was read.
+    pub(super) fn take_step(&mut self, step: &mut Step, text: &[u8]) {
+        self.pass_spindle();
+        let line = match self.originals.get(self.done) {
+            Some(Expected::Move(original)) => Some(original.line),
+            Some(Expected::Action(original)) => Some(original.line),
+            Some(Expected::Spindle(..)) | None => None,
+        };
+        self.compare_step(step, text);
+        match (step, line) {
+            (Step::Move(mv), Some(line)) => mv.line = line,
+            (Step::Action(action), Some(line)) => action.line = line,
+            (_, None) => {}
+        }
+    }
+
     /// (b): the step must be the original's next one.
-    pub(super) fn compare_step(&mut self, step: &Step, text: &[u8]) {
+    fn compare_step(&mut self, step: &Step, text: &[u8]) {
         self.pass_spindle();
         if step.is_feed_note() {
             return;
@@ -414,14 +364,14 @@ impl<'m, 'r> Verdict<'m, 'r> {
             _ => Some("something else than the original"),
         };
         let Some(message) = message else { return };
-        let line = match original {
-            Some(Expected::Move(original)) => original.line,
-            Some(Expected::Action(original)) => original.line,
-            Some(Expected::Spindle(..)) | None => 0,
+        let place = match original {
+            Some(Expected::Move(original)) => (original.text, original.line),
+            Some(Expected::Action(original)) => (0, original.line),
+            Some(Expected::Spindle(..)) | None => (0, 0),
         };
         let message = format!("the written program has {message} here");
         self.reasons
-            .push(line, "changed-sequence", message, BUG, text);
+            .push(place, "changed-sequence", message, BUG, text);
     }
 
     /// (a), (c) and (d): the written move is judged.
@@ -462,13 +412,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
             row.duration_after_s = Some(after.duration_s);
             self.tally.write(row);
         }
-        // What is found counts for the line of the program that was read.
-        let line = match self.originals.get(self.judged) {
-            Some(Expected::Move(original)) => original.line,
-            _ => mv.line,
-        };
         self.judged += 1;
-        self.tally.add_of(line, mv, after, text);
+        self.tally.add(mv, after, text);
     }
 }
 

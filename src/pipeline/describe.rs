@@ -4,7 +4,7 @@ use super::Row;
 use super::tally::axes;
 use crate::interpret::Move;
 use crate::limit::{Change, Split};
-use crate::machine::{AxisValues, KnobUnit, Machine};
+use crate::machine::{AxisSet, AxisValues, KnobArgument, KnobUnit, Machine};
 use crate::power::{Assessment, PowerModel};
 
 /// The row of a judged move that begins at `start_s`.
@@ -57,13 +57,15 @@ pub(super) fn describe(
     row: &mut Row,
 ) {
     let Some(change) = change else { return };
-    let speed = change.feed.is_some() || change.rapid_percent.is_some();
+    let speed = change.feed.is_some() || change.rapid_percent.is_some() || change.speed.is_some();
     row.action = match (speed, change.accel.is_some()) {
         (true, true) => "lower speed and acceleration",
         (true, false) if change.as_feed => "rapid as feed",
         (true, false) if change.rapid_percent.is_some() => "lower rapid speed",
+        (true, false) if change.speed.is_some() => "lower speed",
         (true, false) => "lower feed",
         (false, true) => "lower acceleration",
+        (false, false) if change.stop => "exact stop",
         (false, false) => "",
     };
     let mut names = Vec::new();
@@ -77,6 +79,11 @@ pub(super) fn describe(
         row.value_before = Some(mv.rapid_factor * 100.0);
         row.value_after = Some(percent);
     }
+    if let Some((knob, values)) = &change.speed {
+        names.push(knob_name(machine, *knob));
+        let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
+        row.value_after = axes.iter().map(|axis| values[axis]).min_by(f64::total_cmp);
+    }
     if let Some((knob, values)) = &change.accel {
         names.push(knob_name(machine, written(machine, *knob, values)));
         if row.value_after.is_none()
@@ -86,15 +93,24 @@ pub(super) fn describe(
                 .min_by(|a, b| values[*a].total_cmp(&values[*b]))
         {
             let own = machine.axes[axis].map_or(1.0, |data| data.accel_mm_s2);
-            let unit = machine.controller.knobs.get(*knob).map(|knob| knob.unit);
-            let scale = match unit {
+            let found = machine.controller.knobs.get(*knob);
+            let along = found.is_some_and(|knob| knob.argument == KnobArgument::Value);
+            let before = if along {
+                mv.path_accel_mm_s2
+            } else {
+                mv.accel_mm_s2[axis]
+            };
+            let scale = match found.map(|knob| knob.unit) {
                 Some(KnobUnit::Percent) => 100.0 / own,
                 Some(KnobUnit::Share) => 1.0 / own,
                 _ => 1.0,
             };
-            row.value_before = Some(mv.accel_mm_s2[axis] * scale);
+            row.value_before = Some(before * scale);
             row.value_after = Some(values[axis]);
         }
+    }
+    if change.stop {
+        names.extend(machine.controller.language.stop_word());
     }
     row.knob = names.join(" ");
 }
@@ -126,8 +142,8 @@ fn written(machine: &Machine, knob: usize, values: &AxisValues) -> usize {
 
 /// The word of a knob, such as `G131`.
 pub(super) fn knob_name(machine: &Machine, index: usize) -> String {
-    let Some(knob) = machine.controller.knobs.get(index) else {
-        return String::new();
-    };
-    format!("{}{}", knob.code.0 as char, f64::from(knob.code.1) / 10.0)
+    let knob = machine.controller.knobs.get(index);
+    knob.map_or_else(String::new, |knob| {
+        knob.name.trim_end_matches('=').to_owned()
+    })
 }

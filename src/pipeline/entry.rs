@@ -2,18 +2,21 @@
 
 use super::front::Line;
 use super::split::Places;
-use super::table::LineKey;
+use super::table::{IN_A_FILE, LineKey};
 use crate::interpret::{
-    CYCLE, Facts, FeedMode, KnobState, Move, MoveKind, Stance, Step, TURNING_CYCLE,
+    CYCLE, Facts, FeedMode, KnobState, Motion, Move, MoveKind, Stance, Step, TURNING_CYCLE,
 };
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
+use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
 
 /// Why a rapid is not written as a feed, where the program can help.
 const PER_REVOLUTION: &str = "the feed in force is per revolution";
+const UNKNOWN_FEED: &str = "no F is in force, and the one that the control takes then is not known";
+const NO_FEED: &str = "no F is in force, and one of the blocks that count on none cannot have its \
+     own";
 const REFERENCE: &str = "it moves to a reference point";
 const MACHINE_COORDINATES: &str = "G53 is for rapids";
 const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
@@ -31,6 +34,8 @@ pub(super) struct Entry {
     pub(super) skips: bool,
     /// Corners are taken in one way each time that it runs.
     pub(super) one_corner: bool,
+    /// Where no F is in force, it may not have one either: another block cannot.
+    pub(super) without_feed: bool,
     /// The state behind it.
     pub(super) mark: Mark,
     /// The same, as far as plain blocks go by it; `None` behind a plain one.
@@ -59,6 +64,7 @@ impl Entry {
             steps: Vec::new(),
             skips: false,
             one_corner: true,
+            without_feed: false,
             mark: Mark::of(modal),
             stance: None,
             knobs: None,
@@ -172,13 +178,11 @@ impl Entry {
         // What forbids any edit, what forbids an F, what forbids G1 for G0.
         let skips = self.skips || !machine.controller.language.block_delete;
         let edit = self.keeps_its_words(skips);
+        let no_feed = self.cannot_get_feed(machine, mv);
         let feed = [
             (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
-            (
-                self.mark.feed.is_none() && mv.kind != MoveKind::Rapid,
-                "no F is in force that could be put back",
-            ),
+            (no_feed.is_some(), no_feed.unwrap_or_default()),
             (facts.computed_feed, "its feed is worked out by the program"),
             (
                 self.feed_mode == FeedMode::InverseTime,
@@ -228,6 +232,15 @@ impl Entry {
                  the axes, the work offset ([offsets] or --parameters) and the tool's length \
                  (--tool-table); or give the speed of the return, reference_mm_min"
             }
+            IN_A_FILE => {
+                "--with-subprograms writes the files of subprograms too, certified together with \
+                 all programs that are given"
+            }
+            UNKNOWN_FEED => {
+                "write F before it; or give the F of power-on, which no written one exceeds \
+                 (SINUMERIK: setting data 42110): power_on_feed_mm_min under [language] of the \
+                 machine file"
+            }
             PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
                 "program G98 (feed per minute) and F in it before the rapid"
             }
@@ -250,12 +263,18 @@ impl Entry {
             as_feed: reasons == [None; 3],
             exact_stop: may_stop,
             stands: !facts.compensated && (stops || blended_rapid && may_stop),
+            stop_word: reasons[0].is_none()
+                && self.moves == 1
+                && !self.block.words.is_empty()
+                && language.exact_stop_word.is_some()
+                && self.may_stop_exactly(machine),
             unsplit: self.unsplit(mv),
             reason: reason_text,
             reason_help,
             mm_per_unit: facts.feed_mm_per_unit,
             knob_mm_per_unit: self.mm_per_unit_before,
             feed_before: self.feed_before(),
+            positions: facts.homes || positions(machine, self.mark.motion, mv),
             feed_accel_mm_s2,
         }
     }
@@ -321,6 +340,32 @@ impl Entry {
         words.any(|word| word.letter == b'G' && (93.0..=99.0).contains(&word.value))
     }
 
+    /// Why a move for which no F is in force cannot have one.
+    fn cannot_get_feed(&self, machine: &Machine, mv: &Move) -> Option<&'static str> {
+        if self.mark.feed.is_some() || mv.kind == MoveKind::Rapid {
+            return None;
+        }
+        if !self.lacks_feed() {
+            return Some("no F is in force that could be put back");
+        }
+        if machine.controller.language.power_on_feed_mm_s == f64::INFINITY {
+            return Some(UNKNOWN_FEED);
+        }
+        self.without_feed.then_some(NO_FEED)
+    }
+
+    /// Whether its moves obey F, but none is in force: neither its own nor an earlier one.
+    pub(super) fn lacks_feed(&self) -> bool {
+        let facts = &self.facts;
+        self.mark.feed.is_none()
+            && self.feed_mode == FeedMode::PerMinute
+            && facts.uses_motion
+            && facts.uses_feed
+            && self
+                .its_moves()
+                .any(|mv| mv.moves_axes() && mv.kind != MoveKind::Rapid)
+    }
+
     /// The F in force, in program units.
     pub(super) fn feed_before(&self) -> Option<f64> {
         self.mark.feed.as_ref().map(|feed| feed.value)
@@ -332,6 +377,14 @@ pub(super) fn rests(machine: &Machine, mv: &Move) -> bool {
     machine.controller.planner.rapid_joint != RapidJoint::All
         && mv.kind == MoveKind::Rapid
         && mv.length_mm > 0.0
+}
+
+/// Whether a move that obeys F is a rapid by its motion word, and prints nothing.
+pub(super) fn positions(machine: &Machine, motion: Motion, mv: &Move) -> bool {
+    machine.controller.language.rapid_uses_feed
+        && motion == Motion::Rapid
+        && mv.kind == MoveKind::Feed
+        && !mv.moving.contains(AxisId::E as usize)
 }
 
 /// Whether the mode of the feed is a matter of its own: with others it also switches

@@ -43,6 +43,8 @@ pub(super) struct ExpectedMove {
     pub(super) as_feed: bool,
     /// It was given exact stop.
     pub(super) exact_stop: bool,
+    /// A word was put in it that lets it end at rest.
+    pub(super) stops: bool,
     /// It does not fit and could not be helped; the reason has been given.
     pub(super) hopeless: bool,
     /// The written program runs its line in pieces.
@@ -55,6 +57,15 @@ impl ExpectedMove {
     /// A move that must not change.
     pub(super) fn of(mv: &Move, assessment: &Assessment) -> Self {
         Self {
+            speed_mm_s: assessment.speed_mm_s,
+            accel_mm_s2: assessment.accel_mm_s2,
+            ..Self::standing(mv)
+        }
+    }
+
+    /// The same for one without speed, as a dwell.
+    pub(super) fn standing(mv: &Move) -> Self {
+        Self {
             line: mv.line,
             text: mv.text,
             kind: mv.kind,
@@ -66,11 +77,12 @@ impl ExpectedMove {
             loads: mv.loads,
             dwell_s: mv.dwell_s,
             axis_accel_mm_s2: mv.accel_mm_s2,
-            speed_mm_s: assessment.speed_mm_s,
-            accel_mm_s2: assessment.accel_mm_s2,
+            speed_mm_s: 0.0,
+            accel_mm_s2: 0.0,
             changed: false,
             as_feed: false,
             exact_stop: false,
+            stops: false,
             hopeless: false,
             split: None,
             row: None,
@@ -148,6 +160,8 @@ pub(super) fn added_mode(action: &Action, original: Option<&Expected>) -> bool {
 pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static str> {
     let same_kind = original.kind == mv.kind
         || original.as_feed && original.kind == MoveKind::Rapid && mv.kind == MoveKind::Feed;
+    let may_stop = original.as_feed || original.exact_stop || original.stops;
+    let stops = may_stop && mv.path_mode == PathMode::ExactStop;
     let message = if !same_kind {
         "another kind of move"
     } else if original.end != mv.end {
@@ -158,14 +172,9 @@ pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static s
         "another arc"
     } else if original.dwell_s != mv.dwell_s {
         "another dwell"
-    } else if !(original.as_feed || original.exact_stop)
-        && original.corner != mv.corner
-        && mv.moves_axes()
-    {
+    } else if !original.as_feed && !stops && original.corner != mv.corner && mv.moves_axes() {
         "other corners"
-    } else if original.path_mode != mv.path_mode
-        && !((original.as_feed || original.exact_stop) && mv.path_mode == PathMode::ExactStop)
-    {
+    } else if original.path_mode != mv.path_mode && !stops {
         "another path mode"
     } else if original.loads != mv.loads {
         "other switched loads"

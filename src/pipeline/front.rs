@@ -5,6 +5,7 @@
 //! held whole from the first of these on.
 
 use std::io::{Read, Seek, SeekFrom};
+use std::path::PathBuf;
 
 use super::table::LineKey;
 use super::{Failure, Options};
@@ -85,6 +86,11 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         &self.interpreter
     }
 
+    /// Where the files of subprograms that were read lie.
+    pub(super) fn paths(&self) -> &[PathBuf] {
+        self.flow.as_deref().map_or(&[], Flow::paths)
+    }
+
     /// Whether lines are executed in another order than they stand in.
     pub(super) fn flows(&self) -> bool {
         self.flow.is_some()
@@ -131,10 +137,11 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             steps,
             facts,
             interpreter,
+            reading,
             ..
         } = self;
         Ok(Some(Line {
-            key: (0, number),
+            key: (reading.text, number),
             text: reader.last_line(),
             block,
             steps,
@@ -189,7 +196,8 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         let text = flow.text();
         let number = place.line as u64 + 1;
         self.steps.clear();
-        self.interpreter.begin_line(run, place.text);
+        let number_of_text = flow.number(place);
+        self.interpreter.begin_line(run, number_of_text);
         let said = self.diagnostics.list.len();
         self.interpreter.execute(
             number,
@@ -257,7 +265,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         }
         let place = flow.now();
         Some(Line {
-            key: (place.text as u16, place.line as u64 + 1),
+            key: (flow.number(place), place.line as u64 + 1),
             text: flow.text(),
             block,
             steps,

@@ -4,8 +4,12 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
-use super::{Allowed, Failure, Law, LimitOptions, Options, Strategy, Summary};
+use super::{
+    Allowed, Failure, Law, LimitOptions, Options, Restart, RestartRows, Row, RowSink, Strategy,
+    Summary,
+};
 use crate::diagnostic::Diagnostic;
+use crate::interpret::MoveKind;
 use crate::machine::Machine;
 
 /// What helps where a cycle has to be written out.
@@ -25,7 +29,9 @@ pub fn take_hints<R: Read + Seek + Send>(
     if summary.unfit_count == 0 {
         return Ok(());
     }
-    let mut reasons = |allow_expand| -> Result<BTreeMap<u64, Diagnostic>, Failure> {
+    let mut reasons = |allow_expand,
+                       rows: Option<&mut dyn RestartRows>|
+     -> Result<BTreeMap<u64, Diagnostic>, Failure> {
         input.rewind().map_err(Failure::Input)?;
         let how = LimitOptions {
             strategy: Strategy::Optimal,
@@ -36,18 +42,33 @@ pub fn take_hints<R: Read + Seek + Send>(
                 ..Allowed::NOTHING
             },
         };
-        let limited = limit(&mut input, machine, options, how, io::sink(), None)?;
+        let limited = limit(&mut input, machine, options, how, io::sink(), rows)?;
         let mut reasons = BTreeMap::new();
         for reason in limited.reasons {
             reasons.entry(reason.line).or_insert(reason);
         }
         Ok(reasons)
     };
-    let as_it_stands = reasons(false)?;
+    let unfit = summary.unfit.iter().chain(&summary.worst);
+    let lines = unfit.filter(|unfit| unfit.file.is_empty());
+    let mut written = Written {
+        lines: lines.map(|unfit| (unfit.line, None)).collect(),
+    };
+    let as_it_stands = reasons(false, Some(&mut written))?;
+    for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
+        let words = written.lines.get(&unfit.line).and_then(Option::as_ref);
+        // What was advised for a move by itself gives way to what is written next to others.
+        if let Some((_, words)) = words
+            && unfit.file.is_empty()
+            && unfit.help.starts_with("fits with ")
+        {
+            unfit.help.clone_from(words);
+        }
+    }
     if as_it_stands.is_empty() {
         return Ok(());
     }
-    let written_out = reasons(true)?;
+    let written_out = reasons(true, None)?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
         let Some(reason) = as_it_stands
             .get(&unfit.line)
@@ -62,4 +83,51 @@ pub fn take_hints<R: Read + Seek + Send>(
         };
     }
     Ok(())
+}
+
+/// The words that each line gets, with the lowest value of the first of them.
+struct Written {
+    lines: BTreeMap<u64, Option<(f64, String)>>,
+}
+
+impl RowSink for Written {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let Some(known) = self.lines.get_mut(&row.line) else {
+            return Ok(());
+        };
+        let (Some(value), true) = (row.value_after, row.file.is_empty()) else {
+            return Ok(());
+        };
+        if known.as_ref().is_none_or(|(lowest, _)| value < *lowest) {
+            *known = Some((value, words(row, value)));
+        }
+        Ok(())
+    }
+}
+
+impl Restart for Written {
+    fn restart(&mut self) -> io::Result<()> {
+        self.lines.values_mut().for_each(|words| *words = None);
+        Ok(())
+    }
+}
+
+/// What the limiter writes for a move: its words, with the value of the first.
+fn words(row: &Row, value: f64) -> String {
+    let mut names = row.knob.split(' ');
+    let first = names.next().unwrap_or_default();
+    let (before, blank) = match first {
+        "F" if row.kind == MoveKind::Rapid => ("G1 ", ""),
+        "F" => ("", ""),
+        _ => ("", " "),
+    };
+    let mut words = format!("fits with {before}{first}{blank}{value}");
+    for name in names {
+        words.push_str(" and ");
+        words.push_str(name);
+    }
+    if first == "F" && row.kind != MoveKind::Rapid {
+        words.push_str(" (limit --allow feed)");
+    }
+    words
 }

@@ -1,29 +1,29 @@
 //! A program that fits: analysed, changed, written, and handed to the
 //! certifier piece by piece, so that nothing of it is held for long.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 use super::batch::Batch;
-use super::certify::{Certified, Certifier, Reasons};
-use super::conditions::conditions;
+use super::certify::{Certified, Certifier};
+use super::conclusion::{conclude, holds_one_way};
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand, in_fixed_blocks};
 use super::front::read_whole;
-use super::lower::lower_further;
-use super::over_time::OverTime;
+use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::pause::limit_waiting;
 use super::relay::no_thread;
-use super::split::impossible;
+use super::stops;
+use super::strategy::{check_strategy, trusting};
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
-use super::writer::{Writer, Written};
-use super::{
-    Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Strategy, Summary,
-};
+use super::writer::{Plan, Writer, Written};
+use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Law, Limiter};
-use crate::machine::{ALL_AXES, KnobArgument, KnobTarget, Machine, RapidPath};
+use crate::limit::{Depths, Limiter};
+use crate::machine::Machine;
 use crate::power::PowerModel;
 
 /// Pieces that may wait for the certifier.
@@ -45,6 +45,11 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut output: W,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
+    if let Some((machine, note)) = trusting(machine, how) {
+        let mut summary = limit(input, &machine, options, how, output, rows)?;
+        summary.before.notes.push(note);
+        return Ok(summary);
+    }
     check_strategy(machine, how)?;
     let paths = if has_ways(options) {
         let paths = ways(&mut input, machine, options, false)?;
@@ -78,18 +83,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     };
     let errors = |found: &&Diagnostic| found.severity == Severity::Error;
     if let Some(found) = otherwise.iter().find(errors).filter(|_| as_asked.certified) {
-        let message = format!(
-            "this holds only for the blocks with / that are skipped or executed as --block-delete \
-             says; otherwise {}",
-            found.message
-        );
-        let warning = Diagnostic {
-            severity: Severity::Warning,
-            rule: "holds-one-way",
-            message,
-            help: None,
-            ..found.clone()
-        };
+        let warning = holds_one_way(found.clone());
         as_asked.before.notes.push(warning);
     }
     Ok(as_asked)
@@ -101,11 +95,22 @@ fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
     machine: &Machine,
     paths: &[Options],
-    how: LimitOptions,
+    asked: LimitOptions,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    let mut how = asked;
+    let mut first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    if how.allowed.stop && stops::in_the_way(&first) {
+        how.allowed.stop = false;
+        input.rewind().map_err(Failure::Input)?;
+        restart(&mut output, rows)?;
+        first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+    }
+    first
+        .before
+        .notes
+        .extend(stops::without_word(machine, asked));
     if first.certified || !in_fixed_blocks(&first) {
         return Ok(first);
     }
@@ -141,7 +146,8 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         }
         let all = refused.reasons.len() >= Summary::KEPT;
         let asked = ways.clone();
-        ways.extend(refused.reasons.iter().map(|reason| (reason.line, way)));
+        let reasons = refused.reasons.iter().filter(|it| it.file.is_none());
+        ways.extend(reasons.map(|reason| (reason.line, way)));
         if ways == asked {
             break;
         }
@@ -192,7 +198,8 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let mut attempt = |target: &Machine, again: bool| {
+    let places = Cell::new(Vec::new());
+    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
@@ -208,8 +215,10 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 paths,
                 how,
                 depths: depths.clone(),
+                plan,
             };
-            let (written, mut certified) = job.run(&mut input, &mut output, rows)?;
+            let (mut written, mut certified) = job.run(&mut input, &mut output, rows)?;
+            places.set(std::mem::take(&mut written.places));
             if certified.deeper.is_empty() {
                 // What the bound over all overrides leaves open is looked at in further
                 // runs, which write the same.
@@ -231,19 +240,26 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             restart(&mut output, rows)?;
         }
     };
-    let first = attempt(machine, false)?;
+    let stands = how.allowed.pause.then_some(Plan::NEVER);
+    let first = attempt(machine, stands, false)?;
+    if missed_narrowly(&first) {
+        return aim_lower(machine, first, &mut |target| attempt(target, None, true));
+    }
     let in_time = first.after.over_time.iter().all(|it| it.rating.fits());
     if first.certified || in_time || first.after.unfit_count > 0 {
         return Ok(first);
     }
-    lower_further(machine, first, &mut |target| attempt(target, true))
+    if !how.allowed.pause {
+        return lower_further(machine, first, &mut |target| attempt(target, None, true));
+    }
+    limit_waiting(machine, first, &places.take(), &mut attempt)
 }
 
 /// Why there is no further round.
-fn last_round(depths: &Depths) -> Diagnostic {
+pub(super) fn last_round(depths: &Depths) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
-        "last-round",
+        LAST_ROUND,
         format!("blocks exceed the limit beside others that were lowered, after {rounds} rounds"),
     )
     .help("another strategy, or --allow feed, may help")
@@ -260,6 +276,8 @@ struct Job<'a> {
     paths: &'a [Options],
     how: LimitOptions,
     depths: Depths,
+    /// Where the program waits, if it may.
+    plan: Option<Plan>,
 }
 
 impl Job<'_> {
@@ -277,19 +295,19 @@ impl Job<'_> {
             paths,
             how,
             depths,
+            plan,
         } = self;
         let whole = Whole {
             machine,
             target,
-            rungs,
-            paths,
             how,
-            depths: &depths,
         };
+        let source = (paths, &depths, rungs);
         let [options] = paths else {
             return whole.limit(
                 input,
                 output,
+                source,
                 rows.as_mut().map(|rows| as_sink(&mut **rows)),
             );
         };
@@ -306,7 +324,8 @@ impl Job<'_> {
             &mut output,
             None,
             PowerModel::new(machine),
-        );
+        )
+        .pausing(plan);
         let streamed = if options.threads > 1 {
             side_by_side(writer, certifier)?
         } else {
@@ -323,6 +342,7 @@ impl Job<'_> {
         whole.limit(
             input,
             output,
+            source,
             rows.as_mut().map(|rows| as_sink(&mut **rows)),
         )
     }
@@ -340,7 +360,7 @@ fn restart(
     }
 }
 
-fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
+pub(super) fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
     rows
 }
 
@@ -397,104 +417,4 @@ fn send(
     sender
         .send(full)
         .map_err(|_| Failure::Output(std::io::ErrorKind::BrokenPipe.into()))
-}
-
-fn conclude(
-    machine: &Machine,
-    target: &Machine,
-    paths: &[Options],
-    how: LimitOptions,
-    written: Written,
-    certified: Certified,
-) -> LimitSummary {
-    let Written {
-        mut before,
-        edited_lines,
-        mut reasons,
-        may_skip,
-    } = written;
-    let Certified {
-        summary: mut after,
-        reasons: found,
-        deeper: _,
-    } = certified;
-    if target != machine {
-        // What cannot reach the lower limit keeps the machine's own, or else the
-        // figures show it.
-        reasons = Reasons::default();
-    }
-    reasons.extend(found);
-    let missed = after.over_time.iter().filter(|it| !it.rating.fits());
-    for reason in missed.map(OverTime::reason) {
-        reasons.count += 1;
-        reasons.list.push(reason);
-    }
-    let slower = reasons.only_power();
-    reasons.list.sort_by_key(|reason| reason.line);
-    reasons.list.truncate(Summary::KEPT);
-    for summary in [&mut before, &mut after] {
-        summary.conditions = conditions(machine, paths, summary);
-    }
-    if before
-        .notes
-        .iter()
-        .any(|note| note.rule == "no-motion-word")
-    {
-        let taken = "blocks before the first motion word are taken for rapids (G0)";
-        after.conditions.push(taken.to_owned());
-    }
-    let rooms = machine.path.clearance_mm.iter().zip(ALL_AXES);
-    let rooms: Vec<String> = rooms
-        .filter_map(|(room, axis)| Some(format!("{} {}", char::from(axis.letter()), (*room)?)))
-        .collect();
-    let each_for_itself = machine.path.rapid == RapidPath::Independent;
-    if how.allowed.straighten && each_for_itself && !rooms.is_empty() {
-        after.conditions.push(format!(
-            "rapids of several axes may run along lines beyond the clearance ({}, machine \
-             coordinates)",
-            rooms.join(", ")
-        ));
-    }
-    let certified = reasons.count == 0 && after.fits();
-    LimitSummary {
-        before,
-        after,
-        edited_lines,
-        may_skip,
-        certified,
-        slower,
-        reasons: reasons.list,
-    }
-}
-
-/// A strategy that needs a word which the controller lacks is refused.
-fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
-    let accel = machine.controller.knobs.iter().any(|knob| {
-        knob.verified
-            && knob.target != KnobTarget::RapidSpeed
-            && !matches!(knob.argument, KnobArgument::Path(_))
-    });
-    let name = &machine.controller.name;
-    let unsuitable = |message: String| Err(Failure::Unsuitable(message));
-    match how.strategy {
-        Strategy::Accel if !accel => unsuitable(format!(
-            "--strategy accel: the controller `{name}` has no word for acceleration; use speed or optimal"
-        )),
-        Strategy::Preset if machine.presets.is_empty() => {
-            unsuitable("--strategy preset: the machine file has no [[preset]]".to_owned())
-        }
-        Strategy::Preset if !accel && machine.presets.iter().any(|preset| preset.has_accel) => {
-            unsuitable(format!(
-                "--strategy preset: a preset limits acceleration, for which the controller `{name}` has no word"
-            ))
-        }
-        Strategy::Preset | Strategy::Optimal | Strategy::Split if how.law == Law::Patent => {
-            unsuitable("--law patent goes with --strategy speed or accel".to_owned())
-        }
-        Strategy::Split => match impossible(machine) {
-            Some(reason) => unsuitable(format!("--strategy split: {reason}; use optimal")),
-            None => Ok(()),
-        },
-        _ => Ok(()),
-    }
 }

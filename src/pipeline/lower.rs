@@ -13,6 +13,8 @@ use crate::power::Measure;
 const SHARES: [f64; 5] = [0.75, 0.55, 0.4, 0.3, 0.2];
 /// Halvings between the first share that is enough and the one before.
 const HALVINGS: u32 = 4;
+/// The rule of what is said where there is no further round.
+pub(super) const LAST_ROUND: &str = "last-round";
 /// Beyond the peak power there is only what the capacitor gives: so much is
 /// tried at most.
 const BEYOND: f64 = 4.0;
@@ -64,6 +66,42 @@ pub(super) fn lower_further(
     }
     // Once more, for the report and the reasons.
     (search.attempt)(machine)
+}
+
+/// Shares of the peak powers that are aimed at where the limits themselves were missed.
+const AIMS: [f64; 2] = [0.97, 0.9];
+
+/// Whether every block could be lowered, and some exceed the limit all the same, since their
+/// neighbours run otherwise then.
+pub(super) fn missed_narrowly(first: &LimitSummary) -> bool {
+    let mut reasons = first.reasons.iter();
+    let narrow = |rule| rule == "does-not-fit" || rule == LAST_ROUND;
+    !first.certified && !first.reasons.is_empty() && reasons.all(|reason| narrow(reason.rule))
+}
+
+/// Aims a little lower, which leads to other feeds; what comes of it is certified for the
+/// machine itself. `first` is what was missed narrowly.
+pub(super) fn aim_lower(
+    machine: &Machine,
+    first: LimitSummary,
+    attempt: &mut dyn FnMut(&Machine) -> Result<LimitSummary, Failure>,
+) -> Result<LimitSummary, Failure> {
+    for aim in AIMS {
+        let mut target = machine.clone();
+        for converter in &mut target.converters {
+            converter.peak_power_w *= aim;
+            converter.regen_power_w = converter.regen_power_w.map(|power_w| aim * power_w);
+        }
+        let summary = attempt(&target)?;
+        if summary.certified {
+            return Ok(LimitSummary {
+                before: first.before,
+                ..summary
+            });
+        }
+    }
+    // Once more, for the report and the reasons.
+    attempt(machine)
 }
 
 /// Whether a limit is one of the power that is fed back.

@@ -11,9 +11,7 @@ use super::entry::Entry;
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{FeedMode, Interpreter, Move, MoveKind, Step};
 use crate::limit::Split;
-use crate::machine::{
-    ALL_AXES, AXES, AxisId, AxisValues, KnobArgument, KnobTarget, Machine, PathMode,
-};
+use crate::machine::{ALL_AXES, AXES, AxisId, AxisValues, Machine, PathMode};
 use crate::rewrite::PieceWords;
 use crate::source::{Span, split_line_end};
 use crate::syntax::Word;
@@ -176,11 +174,7 @@ impl Entry {
 pub(super) fn impossible(machine: &Machine) -> Option<String> {
     let controller = &machine.controller;
     let name = &controller.name;
-    let words = controller.knobs.iter().filter(|knob| {
-        knob.verified
-            && knob.target != KnobTarget::RapidSpeed
-            && !matches!(knob.argument, KnobArgument::Path(_))
-    });
+    let words = controller.knobs.iter().filter(|knob| knob.lowers_accel());
     let acts: Vec<bool> = words.map(|knob| knob.between_moves).collect();
     if acts.is_empty() {
         return Some(format!(

@@ -8,6 +8,7 @@ use crate::power::Rating;
 use super::by_line::LineSummary;
 use super::front::ONLY_SUBPROGRAMS;
 use super::over_time::OverTime;
+use super::pause::Pause;
 use super::row::Certificate;
 
 /// A move that does not fit.
@@ -114,6 +115,8 @@ pub struct LimitSummary {
     pub after: Summary,
     /// Number of lines that were changed or inserted.
     pub edited_lines: u64,
+    /// Where the written program waits though the original does not, in program order.
+    pub pauses: Vec<Pause>,
     /// Some of its blocks may be skipped: they begin with `/`.
     pub may_skip: bool,
     /// True when the certificate holds: only then may the output be delivered.

@@ -1,14 +1,18 @@
 //! What is known and decided about the lines of a program that has calls or
 //! loops: a line gets one change, which must suit each of its runs.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use super::entry::Entry;
 use crate::interpret::{Corner, Facts, FeedMode, KnobState, MoveKind};
-use crate::limit::Change;
+use crate::limit::{Change, FirstFeed};
 use crate::machine::Machine;
 use crate::rewrite::Mark;
 use crate::syntax::Block;
+
+/// Why a line of a subprogram's file is not changed.
+pub(super) const IN_A_FILE: &str =
+    "it stands in a file of subprograms, which other programs may call";
 
 /// A line: which text it stands in (0 is the program itself, others are files of
 /// subprograms), and its number from 1.
@@ -20,8 +24,16 @@ pub(super) struct Table {
     lines: HashMap<LineKey, Entered>,
     /// See [`Table::new`].
     pub(super) skips: bool,
+    /// Files of subprograms are written too: their lines may change.
+    with_files: bool,
+    /// How many of the texts are programs themselves; those are the first.
+    programs: u16,
     /// A block before any motion word cannot have one: then none gets one.
     without_word: bool,
+    /// The same of blocks that count on no F.
+    without_feed: bool,
+    /// The F that all of these get: the lowest that one of them needs.
+    first_feed: Option<FirstFeed>,
 }
 
 #[derive(Debug)]
@@ -31,9 +43,13 @@ struct Entered {
     unanimous: bool,
     /// Corners were taken in one way.
     one_corner: bool,
+    /// One of its runs counts on no F.
+    lacks_feed: bool,
     decision: Option<Box<Decision>>,
     /// What it gets where blocks before any motion word get one.
     own_word: Option<Box<Decision>>,
+    /// What it gets besides an F where blocks that count on none get one.
+    own_feed: Option<Box<Decision>>,
     hopeless: bool,
 }
 
@@ -71,7 +87,21 @@ impl Table {
         Self {
             lines: HashMap::new(),
             skips,
+            with_files: false,
+            programs: 1,
             without_word: false,
+            without_feed: false,
+            first_feed: None,
+        }
+    }
+
+    /// The same for several programs and the files of subprograms that they call, which are
+    /// written as well.
+    pub(super) fn with_files(self, programs: u16) -> Self {
+        Self {
+            with_files: true,
+            programs,
+            ..self
         }
     }
 
@@ -100,6 +130,7 @@ impl Table {
         };
         if let Some(entered) = self.lines.get_mut(&line) {
             entered.one_corner &= entered.sight.corner == sight.corner;
+            entered.lacks_feed |= entry.lacks_feed();
             entered.unanimous &= Sight {
                 corner,
                 ..entered.sight.clone()
@@ -110,21 +141,31 @@ impl Table {
             sight,
             unanimous: true,
             one_corner: true,
+            lacks_feed: entry.lacks_feed(),
             decision: None,
             own_word: None,
+            own_feed: None,
             hopeless: false,
         };
         self.lines.insert(line, entered);
-        self.without_word |= facts.no_motion_word && entry.keeps_its_words(self.skips).is_some();
+        let keeps = entry.keeps_its_words(self.skips).is_some();
+        self.without_word |= facts.no_motion_word && keeps;
+        self.without_feed |= entry.lacks_feed() && keeps;
     }
 
     /// All runs are seen.
     pub(super) fn settle(&mut self) {
-        let fixed = |(key, entered): (&LineKey, &Entered)| {
-            entered.sight.no_motion_word
-                && (key.0 > 0 || !entered.unanimous || entered.sight.fixed.is_some())
-        };
-        self.without_word |= self.lines.iter().any(fixed);
+        for (key, entered) in &self.lines {
+            let fixed =
+                key.0 >= self.programs || !entered.unanimous || entered.sight.fixed.is_some();
+            self.without_word |= entered.sight.no_motion_word && fixed;
+            self.without_feed |= entered.lacks_feed && fixed;
+        }
+    }
+
+    /// Whether blocks that count on no F may get one.
+    pub(super) fn may_get_feed(&self) -> bool {
+        !self.without_feed
     }
 
     /// Whether a block before any motion word may get one: G1 stays in force then for all
@@ -135,8 +176,8 @@ impl Table {
 
     /// Why a line of the program may not be changed.
     pub(super) fn fixed(&self, line: LineKey) -> Option<&'static str> {
-        if line.0 > 0 {
-            return Some("it stands in a file of subprograms, which other programs may call");
+        if line.0 > 0 && !self.with_files {
+            return Some(IN_A_FILE);
         }
         let unanimous = self
             .lines
@@ -192,17 +233,17 @@ impl Table {
         }
     }
 
-    /// Where one line before any motion word is written as a feed, all of them are: G1 is
-    /// in force for whichever comes next.
+    /// Where one line of a program before any motion word is written as a feed, all of them
+    /// are: G1 is in force for whichever comes next.
     pub(super) fn spread_word(&mut self, machine: &Machine) {
-        let feeds = |entered: &Entered| {
-            let decision = entered.decision.as_deref();
-            decision.is_some_and(|it| it.facts.no_motion_word && it.change.as_feed)
+        let feeds = |(key, entered): (&LineKey, &Entered)| {
+            let decision = entered.decision.as_deref()?;
+            let feeds = decision.facts.no_motion_word && decision.change.as_feed;
+            feeds.then_some(key.0)
         };
-        if !self.lines.values().any(feeds) {
-            return;
-        }
-        for entered in self.lines.values_mut() {
+        let texts: BTreeSet<u16> = self.lines.iter().filter_map(feeds).collect();
+        let lines = self.lines.iter_mut();
+        for (_, entered) in lines.filter(|(key, _)| texts.contains(&key.0)) {
             let Some(mut own) = entered.own_word.take() else {
                 continue;
             };
@@ -212,6 +253,36 @@ impl Table {
                 own.change.feed = own.change.feed.or_else(slowest);
             }
             entered.decision = Some(own);
+        }
+    }
+
+    /// Takes what a run of a line that counts on no F gets besides one, and the lowest F that
+    /// such lines need so far.
+    pub(super) fn offer_feed(
+        &mut self,
+        machine: &Machine,
+        line: LineKey,
+        entry: &Entry,
+        first_feed: Option<FirstFeed>,
+    ) {
+        if let Some(entered) = self.lines.get_mut(&line) {
+            Decision::add(&mut entered.own_feed, machine, entry, Change::NONE);
+        }
+        self.first_feed = match (self.first_feed, first_feed) {
+            (Some(known), Some(other)) => Some(known.lower(other)),
+            (known, other) => known.or(other),
+        };
+    }
+
+    /// Where one line that counts on no F gets one, all of them get it, whichever comes next.
+    pub(super) fn spread_feed(&mut self) {
+        let Some(first) = self.first_feed else { return };
+        for entered in self.lines.values_mut() {
+            let Some(own) = entered.own_feed.take() else {
+                continue;
+            };
+            let decision = entered.decision.get_or_insert(own);
+            decision.change.feed = Some(first.in_units(decision.facts.feed_mm_per_unit));
         }
     }
 

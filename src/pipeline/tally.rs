@@ -96,7 +96,7 @@ impl<'m, 'r> Tally<'m, 'r> {
             row.file = self.file(mv.text);
             self.write(&row);
         }
-        self.count(mv, mv.line, assessment, text, help);
+        self.count(mv, assessment, text, help);
     }
 
     /// Learns the names of files of subprograms.
@@ -138,18 +138,12 @@ impl<'m, 'r> Tally<'m, 'r> {
 
     /// Adds a move to the figures, without a row and without advice.
     pub(super) fn add(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
-        self.count(mv, mv.line, assessment, text, String::new);
-    }
-
-    /// The same of a move that stands in a line of another program.
-    pub(super) fn add_of(&mut self, line: u64, mv: &Move, assessment: &Assessment, text: &[u8]) {
-        self.count(mv, line, assessment, text, String::new);
+        self.count(mv, assessment, text, String::new);
     }
 
     fn count(
         &mut self,
         mv: &Move,
-        line: u64,
         assessment: &Assessment,
         text: &[u8],
         help: impl FnOnce() -> String,
@@ -164,19 +158,18 @@ impl<'m, 'r> Tally<'m, 'r> {
         }
         if demand.peak_w > summary.peak_w {
             summary.peak_w = demand.peak_w;
-            summary.peak_line = line;
+            summary.peak_line = mv.line;
         }
         if demand.regen_w > summary.regen_w {
             summary.regen_w = demand.regen_w;
-            summary.regen_line = line;
+            summary.regen_line = mv.line;
         }
         summary.ahead |= assessment.ahead;
         if assessment.certificate == Certificate::Robust {
             summary.certificate = Some(Certificate::Robust);
         }
         if !self.model.fits(demand) {
-            let mv = Move { line, ..mv.clone() };
-            self.keep_unfit(&mv, assessment, text, help);
+            self.keep_unfit(mv, assessment, text, help);
         }
     }
 

@@ -4,6 +4,7 @@
 
 use std::collections::VecDeque;
 use std::io::{Cursor, Read, Seek, Write};
+use std::slice;
 
 use super::certify::{Certified, Reasons, Verdict};
 use super::describe::{describe, row};
@@ -18,7 +19,7 @@ use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, Options, RowSink, Summary};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::{Depths, Limiter};
-use crate::machine::Machine;
+use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Rewriter};
 use crate::source::lines;
@@ -26,122 +27,163 @@ use crate::source::lines;
 /// Steps of the original that are held at a time while they are compared.
 const STEPS: usize = 4096;
 
-/// What a program that is held whole is limited by.
+/// What programs that are held whole are limited by.
+#[derive(Clone, Copy)]
 pub(super) struct Whole<'a> {
     pub(super) machine: &'a Machine,
     /// The same with the limits that are aimed at.
     pub(super) target: &'a Machine,
+    pub(super) how: LimitOptions,
+}
+
+/// A program that is held whole.
+pub(super) struct Source<'a> {
+    pub(super) program: &'a [u8],
+    /// How it is read, on each path through it.
+    pub(super) paths: &'a [Options],
+    pub(super) depths: &'a Depths,
     /// The machine with its knobs where they are looked at as well.
     pub(super) rungs: &'a [Machine],
-    /// How the program is read, on each path through it.
-    pub(super) paths: &'a [Options],
-    pub(super) how: LimitOptions,
-    pub(super) depths: &'a Depths,
 }
 
 impl Whole<'_> {
-    /// Limits the program, and certifies what was written on each path; `rows` are those
+    /// Limits a program, and certifies what was written on each path; `rows` are those
     /// of the path that draws the most.
     pub(super) fn limit<R: Read + Seek>(
         &self,
         mut input: R,
         mut output: impl Write,
-        mut rows: Option<&mut dyn RowSink>,
+        (paths, depths, rungs): (&[Options], &Depths, &[Machine]),
+        rows: Option<&mut dyn RowSink>,
     ) -> Result<(Written, Certified), Failure> {
-        let Self { machine, paths, .. } = *self;
         let program = read_whole(&mut input)?.ok_or_else(too_large)?;
-        let exact = rows.is_some();
-        let Decided {
-            befores,
-            reasons,
-            may_skip,
-            table,
-        } = self.decide(&program, exact)?;
-        let (text, edited_lines) = write(&program, machine, &table);
-        let worst = worst(&befores);
+        let source = Source {
+            program: &program,
+            paths,
+            depths,
+            rungs,
+        };
+        let (decided, table) = self.decide(slice::from_ref(&source), 0, rows.is_some())?;
+        let [decided] = <[Decided; 1]>::try_from(decided).map_err(|_| no_way())?;
+        let (text, edited_lines) = write(0, &program, self.machine, &table);
+        let certified = self.certify(&source, (&text, paths), &decided, &table, rows)?;
+        output.write_all(&text).map_err(Failure::Output)?;
+        output.flush().map_err(Failure::Output)?;
+        Ok((decided.written(edited_lines)?, certified))
+    }
+
+    /// Decides about the lines of programs that share files of subprograms: the lowest of
+    /// all their runs counts. `with_files` is how many programs there are where these files
+    /// are written too, 0 where they are not.
+    pub(super) fn decide(
+        &self,
+        sources: &[Source<'_>],
+        with_files: u16,
+        exact: bool,
+    ) -> Result<(Vec<Decided>, Table), Failure> {
+        let Self {
+            machine,
+            target,
+            how,
+        } = *self;
+        let skips = sources.iter().any(|source| turns_switches(source.paths));
+        let mut table = Table::new(skips);
+        if with_files > 0 {
+            table = table.with_files(with_files);
+        }
+        for source in sources {
+            for options in source.paths {
+                survey(source.program, machine, options, &mut table)?;
+            }
+        }
+        table.settle();
+        let mut all = Vec::with_capacity(sources.len());
+        for source in sources {
+            let mut decided = Decided::default();
+            for options in source.paths {
+                let writer = Writer::new(
+                    Cursor::new(source.program),
+                    target,
+                    options,
+                    Limiter::new(target, how, source.depths.clone()),
+                    exact,
+                    std::io::sink(),
+                    Some(table),
+                    PowerModel::new(machine),
+                );
+                let written;
+                (written, table) = writer.decide_all()?;
+                decided.befores.push(written.before);
+                decided.reasons.join(written.reasons);
+                decided.may_skip |= written.may_skip;
+            }
+            all.push(decided);
+        }
+        table.spread_word(machine);
+        table.spread_feed();
+        Ok((all, table))
+    }
+
+    /// Certifies what was written for a program; `paths` are the same as those of the
+    /// program, with the files as they are written.
+    pub(super) fn certify(
+        &self,
+        source: &Source<'_>,
+        (text, paths): (&[u8], &[Options]),
+        decided: &Decided,
+        table: &Table,
+        mut rows: Option<&mut dyn RowSink>,
+    ) -> Result<Certified, Failure> {
+        let machine = self.machine;
+        let worst = worst(&decided.befores);
         let mut certified: Option<Certified> = None;
-        for (place, options) in paths.iter().enumerate() {
+        for (place, (options, written)) in source.paths.iter().zip(paths).enumerate() {
             let rows = if place == worst { rows.take() } else { None };
-            let original = Original::new(&program, machine, options, &table, rows.is_some());
-            let path = certify(original, &text, (machine, self.rungs), options, rows)?;
+            let original = Original::new(source.program, machine, options, table, rows.is_some());
+            let path = certify(original, text, (machine, source.rungs), written, rows)?;
             certified = Some(match certified {
                 Some(certified) => certified.join(path),
                 None => path,
             });
         }
-        let (Some(certified), Some(before)) = (certified, worst_of(befores)) else {
-            return Err(Failure::Unsuitable(
-                "no way to read the program is given".to_owned(),
-            ));
-        };
-        output.write_all(&text).map_err(Failure::Output)?;
-        output.flush().map_err(Failure::Output)?;
-        let written = Written {
-            before,
-            edited_lines,
-            reasons,
-            may_skip,
-        };
-        Ok((written, certified))
-    }
-
-    fn decide(&self, program: &[u8], exact: bool) -> Result<Decided, Failure> {
-        let Self {
-            machine,
-            target,
-            paths,
-            how,
-            depths,
-            ..
-        } = *self;
-        let switches = |options: &Options| options.reading.block_delete;
-        let mut pairs = paths.windows(2);
-        let skips = pairs.any(|pair| matches!(pair, [a, b] if switches(a) != switches(b)));
-        let mut table = Table::new(skips);
-        for options in paths {
-            survey(program, machine, options, &mut table)?;
-        }
-        table.settle();
-        let mut befores = Vec::with_capacity(paths.len());
-        let mut reasons = Reasons::default();
-        let mut may_skip = false;
-        for options in paths {
-            let writer = Writer::new(
-                Cursor::new(program),
-                target,
-                options,
-                Limiter::new(target, how, depths.clone()),
-                exact,
-                std::io::sink(),
-                Some(table),
-                PowerModel::new(machine),
-            );
-            let written;
-            (written, table) = writer.decide_all()?;
-            befores.push(written.before);
-            reasons.join(written.reasons);
-            may_skip |= written.may_skip;
-        }
-        table.spread_word(machine);
-        Ok(Decided {
-            befores,
-            reasons,
-            may_skip,
-            table,
-        })
+        certified.ok_or_else(no_way)
     }
 }
 
+/// Whether a program is looked at with several settings of the switches of block delete.
+fn turns_switches(paths: &[Options]) -> bool {
+    let switches = |options: &Options| options.reading.block_delete;
+    let mut pairs = paths.windows(2);
+    pairs.any(|pair| matches!(pair, [a, b] if switches(a) != switches(b)))
+}
+
+fn no_way() -> Failure {
+    Failure::Unsuitable("no way to read the program is given".to_owned())
+}
+
 /// What was decided about a program.
-struct Decided {
+#[derive(Default)]
+pub(super) struct Decided {
     /// The figures of the original on each path.
     befores: Vec<Summary>,
     /// What cannot be helped.
     reasons: Reasons,
     /// Some of its blocks may be skipped.
     may_skip: bool,
-    /// What each line gets.
-    table: Table,
+}
+
+impl Decided {
+    /// What the writing half comes to, with the number of lines that were changed.
+    pub(super) fn written(self, edited_lines: u64) -> Result<Written, Failure> {
+        Ok(Written {
+            before: worst_of(self.befores).ok_or_else(no_way)?,
+            edited_lines,
+            reasons: self.reasons,
+            may_skip: self.may_skip,
+            places: Vec::new(),
+            pauses: Vec::new(),
+        })
+    }
 }
 
 /// What each line meets in its runs.
@@ -152,8 +194,9 @@ fn survey(
     table: &mut Table,
 ) -> Result<(), Failure> {
     let mut front = Front::new(Cursor::new(program), machine, options);
-    let modal = front.interpreter().modal();
-    let (mut mode, mut mm_per_unit) = (modal.path_mode, modal.mm_per_unit);
+    // The axes stand before the first move.
+    let mut mode = PathMode::ExactStop;
+    let mut mm_per_unit = front.interpreter().modal().mm_per_unit;
     let mut entry: Option<Entry> = None;
     while let Some(mut line) = front.next_line()? {
         let entry = entry.get_or_insert_with(|| Entry::new(&line));
@@ -170,12 +213,17 @@ fn survey(
     Ok(())
 }
 
-/// The program with its changes, and how many lines were edited.
-fn write(program: &[u8], machine: &Machine, table: &Table) -> (Vec<u8>, u64) {
+/// A text, of that number, with its changes, and how many lines were edited.
+pub(super) fn write(
+    number_of_text: u16,
+    program: &[u8],
+    machine: &Machine,
+    table: &Table,
+) -> (Vec<u8>, u64) {
     let mut rewriter = Rewriter::new(machine);
     let mut out = Vec::with_capacity(program.len() + program.len() / 8);
     for (number, text) in lines(program).enumerate() {
-        let Some(decision) = table.decision((0, number as u64 + 1)) else {
+        let Some(decision) = table.decision((number_of_text, number as u64 + 1)) else {
             out.extend_from_slice(text);
             continue;
         };
@@ -396,6 +444,7 @@ impl<'m, 'p> Original<'m, 'p> {
             changed: change.is_some(),
             as_feed: change.is_some_and(|change| change.as_feed),
             exact_stop: change.is_some_and(|change| change.exact_stop),
+            stops: change.is_some_and(|change| change.stop),
             hopeless,
             row,
             ..ExpectedMove::of(mv, assessment)
@@ -423,18 +472,25 @@ fn certify(
             let Some(line) = written.next_line()? else {
                 break;
             };
-            for step in &*line.steps {
-                verdict.compare_step(step, line.text);
+            verdict.learn_files(line.files);
+            let mut steps = std::mem::take(line.steps);
+            for step in &mut steps {
+                let text = match step {
+                    Step::Move(mv) => line.text_of(mv),
+                    Step::Action(_) => line.text,
+                };
+                verdict.take_step(step, text);
                 assessor.want = verdict.want();
                 let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
                     verdict.judge(mv, after, text);
                 };
-                match step {
-                    Step::Move(mv) => assessor.push(mv, line.text_of(mv), &mut sink),
+                match &*step {
+                    Step::Move(mv) => assessor.push(mv, text, &mut sink),
                     Step::Action(action) => assessor.act(action, &mut sink),
                 }
             }
-            let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
+            let moved = line.facts.turns_knob || steps.iter().any(Step::moves_axes);
+            *line.steps = steps;
             assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
         verdict.check()?;

@@ -2,8 +2,10 @@
 //! decided, are written with their changes, and go to the certifier in pieces.
 
 mod expect;
+mod first_feed;
 mod forced;
 mod noted;
+mod waiting;
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
@@ -14,6 +16,7 @@ use super::certify::Reasons;
 use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
+use super::pause::Pause;
 use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
 use super::table::Table;
@@ -21,13 +24,12 @@ use super::tally::Tally;
 use super::watching::watching;
 use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
-use crate::limit::{Change, Limiter, Outcome};
+use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
 use crate::rewrite::{BlockView, Mark, Rewriter};
-
-/// Why a block before any motion word is not changed where one of them cannot have its own.
-const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
+pub(super) use waiting::Plan;
+use waiting::Waits;
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.
@@ -40,6 +42,10 @@ pub(super) struct Written {
     pub(super) reasons: Reasons,
     /// Some of its blocks may be skipped.
     pub(super) may_skip: bool,
+    /// Lines before which the program may wait.
+    pub(super) places: Vec<u64>,
+    /// Where it waits now.
+    pub(super) pauses: Vec<Pause>,
 }
 
 /// Analyses, changes and writes.
@@ -79,8 +85,11 @@ pub(super) struct Writer<'m, R, W> {
     model: PowerModel,
     /// Time of the original so far, s.
     start_s: f64,
+    /// The lowest F that stands where none was in force.
+    first_feed: Option<FirstFeed>,
     spindle: SpindleRows,
     may_skip: bool,
+    waits: Waits,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -104,7 +113,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             machine,
             mark: Mark::of(front.interpreter().modal()),
             knobs: knobs(machine, front.interpreter().knobs()),
-            mode: front.interpreter().modal().path_mode,
+            // The axes stand before the first move.
+            mode: PathMode::ExactStop,
             mm_per_unit: front.interpreter().modal().mm_per_unit,
             front,
             output,
@@ -126,8 +136,10 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             exact,
             model,
             start_s: 0.0,
+            first_feed: None,
             spindle: SpindleRows::default(),
             may_skip: false,
+            waits: Waits::default(),
             table,
         }
     }
@@ -168,19 +180,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.conclude().map(|(written, _)| Some(written))
     }
 
-    /// Reads the whole program and decides for its lines, without writing.
-    pub(super) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
-        if self.exact {
-            self.tally.keep_lines();
-        }
-        while self.read_block()? {
-            self.write_ready();
-        }
-        self.finish_moves();
-        self.write_decided();
-        self.conclude()
-    }
-
     /// The figures of the original, and what was decided.
     fn conclude(mut self) -> Result<(Written, Table), Failure> {
         let lines = self.front.lines;
@@ -196,6 +195,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             edited_lines: self.rewriter.edited_lines,
             reasons: self.reasons,
             may_skip: self.may_skip,
+            places: self.waits.places,
+            pauses: self.waits.pauses,
         };
         Ok((written, self.table.unwrap_or_default()))
     }
@@ -221,6 +222,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             && self.entries.is_empty()
             && !self.exact
             && self.table.is_none()
+            && self.waits.plan.is_none()
             && let [Step::Move(mv)] = line.steps.as_slice()
             && !self.assessor.waits(mv)
         {
@@ -254,6 +256,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         let spare = self.spare.pop();
         let mut entry = spare.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        let line_files = line.files;
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         if self.limiter.splits() && self.table.is_none() {
             entry.keep_places(line.interpreter);
@@ -262,13 +265,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.may_skip |=
             entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
         if let Some(table) = &self.table {
-            entry.skips = table.skips;
-            // A line that runs again would meet another motion word.
-            let without = entry.facts.no_motion_word && !table.may_get_word();
-            let without = without.then_some(NO_MOTION_WORD);
-            let fixed = entry.facts.fixed.or(without);
-            entry.facts.fixed = fixed.or_else(|| table.fixed(entry.key));
-            entry.one_corner = table.one_corner(entry.key);
+            self.tally.learn_files(line_files);
+            self.reasons.learn_files(line_files);
+            table.tell(&mut entry);
         }
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
@@ -465,7 +464,10 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.note(&entry, change);
             return self.spare.push(entry);
         }
+        let change = self.with_first_feed(&entry, change);
         let pieces = entry.pieces(self.machine);
+        let start = self.batch.bytes.len();
+        self.wait_before(&entry);
         let view = BlockView {
             text: &entry.text,
             block: &entry.block,
@@ -480,11 +482,15 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             stops: entry.needs_stops(self.machine, change.as_ref()),
             rests: entry.rests(self.machine, change.as_ref()),
         };
-        let start = self.batch.bytes.len();
         if !self.rewriter.write(&view, &mut self.batch.bytes) {
             let message = "the edits of this block contradict each other".to_owned();
-            self.reasons
-                .push(0, "edit", message, "change the block by hand", &entry.text);
+            self.reasons.push(
+                (0, 0),
+                "edit",
+                message,
+                "change the block by hand",
+                &entry.text,
+            );
             self.batch.bytes.extend_from_slice(&entry.text);
         }
         self.batch.end_block(start, &mut entry);

@@ -143,10 +143,6 @@ impl PowerModel {
             ramps: &ramps,
             duration_s: 0.0,
         };
-        let want = Want {
-            energy: false,
-            ..Want::PEAKS
-        };
-        cruise.evaluate(want, totals);
+        cruise.evaluate(Want::PEAKS, totals);
     }
 }

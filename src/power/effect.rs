@@ -61,7 +61,7 @@ impl Switched {
             | ActionKind::SpindleClamp
             | ActionKind::SpindleCenter
             | ActionKind::ToolLoaded => return Effect::None,
-            ActionKind::Stop | ActionKind::End => return Effect::Stop,
+            ActionKind::Stop | ActionKind::End | ActionKind::Rest => return Effect::Stop,
             ActionKind::Spindle
             | ActionKind::ToolChange
             | ActionKind::Coolant

@@ -17,6 +17,9 @@ use arrayvec::ArrayVec;
 /// Switching instants of all axes: seven phases each, of four parts at most.
 const INSTANTS: usize = 7 * 4 * AXES;
 
+/// By what share of its duration a move may end early by rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// The converter's share of an independent rapid.
 pub(super) fn totals(
     model: &PowerModel,
@@ -56,12 +59,13 @@ pub(super) fn totals(
             start = end;
         }
     }
-    if want.energy {
-        // Axes that hold their weight while those of other converters run on.
-        let rest_s = duration_s - start;
-        let arrived = AxisSet(converter.holding.0 & mv.moving.0);
-        if rest_s > 0.0 {
-            totals.energy_j += rest_s * holding_w(model, arrived);
+    // Axes that hold their weight while those of other converters run on.
+    let rest_s = duration_s - start;
+    if rest_s > ROUNDING * duration_s {
+        let arrived_w = holding_w(model, AxisSet(converter.holding.0 & mv.moving.0));
+        totals.raise_peak(idle_w + arrived_w);
+        if want.energy {
+            totals.energy_j += rest_s * arrived_w;
         }
     }
     totals

@@ -23,7 +23,7 @@ use crate::plan::{Overrides, PhaseKind, Plan, Profile, Trajectory, plan};
 use arrayvec::ArrayVec;
 
 /// How close the bound comes, as a share.
-const CLOSE: f64 = 1e-6;
+pub(super) const CLOSE: f64 = 1e-6;
 /// Ranges of the override that are looked at, at most.
 const RANGES_MAX: usize = 400;
 /// Parts of a ramp on which the bend of what is fed back counts.
@@ -93,6 +93,7 @@ impl PowerModel {
             let rapid = largest.rapid * knob;
             plan(machine, mv, Overrides { rapid, ..largest })
         };
+        demand.include(&self.alone_at_any(mv, profiles, &at, want));
         if !profiles.iter().all(|(_, profile)| is_trapezoid(profile)) {
             demand.include(&self.each_at_its_worst(mv, profiles, want));
             return demand;

@@ -11,6 +11,7 @@
 mod assess;
 mod assessment;
 mod ahead;
+mod alone;
 mod arc;
 mod arc_energy;
 mod arc_piece;
@@ -46,6 +47,7 @@ mod sample;
 mod search;
 mod slower;
 mod overlap;
+mod overlap_lower;
 mod spindle;
 mod spindle_state;
 mod spindle_trace;

@@ -35,41 +35,37 @@ pub(super) fn peaks(
     (trace, from_s): (&SpindleTrace, f64),
 ) -> [f64; 2] {
     [Side::Drawn, Side::FedBack].map(|side| {
-        let flow = match side {
-            Side::Drawn => Flow::Drawn,
-            Side::FedBack => Flow::FedBack,
-        };
-        // Without credit no axis takes anything off, and arcs have no exact slices.
-        let signed = converter.credit_regen && mv.arc.is_none();
-        let slices = signed.then(|| model.slices(converter, mv, plan, flow));
+        let axes = Axes::new(model, converter, mv, plan, side);
         let sum = Sum {
-            model,
-            converter,
-            mv,
-            plan,
+            axes,
             trace,
             from_s,
-            slices,
         };
-        sum.largest(side)
+        sum.largest()
     })
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Side {
+pub(super) enum Side {
     Drawn,
     FedBack,
 }
 
-struct Sum<'a> {
+/// What the axes of a converter ask for during a planned move, on one side.
+pub(super) struct Axes<'a> {
     model: &'a PowerModel,
     converter: &'a ConverterPower,
     mv: &'a Move,
     plan: &'a Plan,
+    side: Side,
+    /// Power over time, negative where they give more than is drawn.
+    slices: Option<Vec<Slice>>,
+}
+
+struct Sum<'a> {
+    axes: Axes<'a>,
     trace: &'a SpindleTrace,
     from_s: f64,
-    /// Power of the axes over time, negative where they give more than is drawn.
-    slices: Option<Vec<Slice>>,
 }
 
 /// A span of time and what the sum reaches in it, at least and at most.
@@ -82,8 +78,8 @@ struct Node {
 }
 
 impl Sum<'_> {
-    fn largest(&self, side: Side) -> f64 {
-        let duration_s = self.plan.duration_s;
+    fn largest(&self) -> f64 {
+        let duration_s = self.axes.plan.duration_s;
         let own = self.trace.instants().map(|t| t - self.from_s);
         let mut ends: Vec<f64> = own.filter(|t| *t > 0.0 && *t < duration_s).collect();
         ends.push(duration_s);
@@ -91,7 +87,7 @@ impl Sum<'_> {
         let mut from = 0.0;
         let mut best = f64::NEG_INFINITY;
         for to in ends {
-            let node = self.node(side, from, to);
+            let node = self.node(from, to);
             best = best.max(node.least);
             stack.push(node);
             from = to;
@@ -108,7 +104,7 @@ impl Sum<'_> {
             }
             budget -= 1;
             let halves = [(node.from, middle), (middle, node.to)];
-            let mut halves = halves.map(|(from, to)| self.node(side, from, to));
+            let mut halves = halves.map(|(from, to)| self.node(from, to));
             halves.sort_by(|a, b| a.most.total_cmp(&b.most));
             for half in halves {
                 best = best.max(half.least);
@@ -118,18 +114,11 @@ impl Sum<'_> {
         upper.max(best)
     }
 
-    fn node(&self, side: Side, from: f64, to: f64) -> Node {
-        let axes = self.axes(side, from, to);
-        let SpindleSpan {
-            largest_w, least_w, ..
-        } = self.trace.over(self.from_s + from, self.from_s + to);
-        let [mut low, mut high] = match side {
-            Side::Drawn => [least_w, largest_w],
-            Side::FedBack => [-largest_w, -least_w],
-        };
-        if !self.converter.credit_regen {
-            (low, high) = (low.max(0.0), high.max(0.0));
-        }
+    fn node(&self, from: f64, to: f64) -> Node {
+        let side = self.axes.side;
+        let axes = self.axes.power_w(from, to);
+        let span = self.trace.over(self.from_s + from, self.from_s + to);
+        let [low, high] = side.of(&span, self.axes.converter);
         let floor = if side == Side::FedBack { 0.0 } else { f64::MIN };
         Node {
             from,
@@ -138,9 +127,57 @@ impl Sum<'_> {
             most: (axes + high).max(floor),
         }
     }
+}
 
-    /// The largest power of the axes and the converter's own load in a span.
-    fn axes(&self, side: Side, from: f64, to: f64) -> f64 {
+impl Side {
+    /// The least and the largest power of the spindle on this side of its converter, W.
+    pub fn of(self, span: &SpindleSpan, converter: &ConverterPower) -> [f64; 2] {
+        let SpindleSpan {
+            largest_w, least_w, ..
+        } = *span;
+        let powers = match self {
+            Self::Drawn => [least_w, largest_w],
+            Self::FedBack => [-largest_w, -least_w],
+        };
+        if converter.credit_regen {
+            powers
+        } else {
+            powers.map(|power_w| power_w.max(0.0))
+        }
+    }
+
+    pub fn flow(self) -> Flow {
+        match self {
+            Self::Drawn => Flow::Drawn,
+            Self::FedBack => Flow::FedBack,
+        }
+    }
+}
+
+impl<'a> Axes<'a> {
+    pub fn new(
+        model: &'a PowerModel,
+        converter: &'a ConverterPower,
+        mv: &'a Move,
+        plan: &'a Plan,
+        side: Side,
+    ) -> Self {
+        // Without credit no axis takes anything off, and arcs have no exact slices.
+        let signed = converter.credit_regen && mv.arc.is_none();
+        let slices = signed.then(|| model.slices(converter, mv, plan, side.flow()));
+        Self {
+            model,
+            converter,
+            mv,
+            plan,
+            side,
+            slices,
+        }
+    }
+
+    /// Their largest power in a span of time, with the converter's own load, W.
+    pub fn power_w(&self, from: f64, to: f64) -> f64 {
+        let side = self.side;
         if let Some(slices) = &self.slices {
             return largest_between(slices, from, to);
         }

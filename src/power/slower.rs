@@ -12,7 +12,7 @@ use super::demand::Demand;
 /// How many lower speeds are looked at, and by what share they differ; far below the
 /// largest, where limits of jerk alone matter, every third of them.
 const RUNGS: i32 = 24;
-const RUNG_RATIO: f64 = 0.92;
+pub(super) const RUNG_RATIO: f64 = 0.92;
 const FAR_RUNGS: i32 = 27;
 const FAR: i32 = 3;
 /// Speeds nearer to the largest are not looked at.

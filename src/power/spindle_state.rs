@@ -288,12 +288,17 @@ impl SpindleState {
         }
     }
 
-    /// The run that it is on, and the shortest time since its command, s.
-    pub fn run(&self) -> Option<(&SpindleTrace, f64)> {
+    /// The run that it is on, and the time since its command, at least and at most, s.
+    pub fn on_run(&self) -> Option<(&SpindleTrace, [f64; 2])> {
         match &self.course {
-            Course::Run(trace, [since_s, _]) => Some((trace, *since_s)),
+            Course::Run(trace, since_s) => Some((trace, *since_s)),
             _ => None,
         }
+    }
+
+    /// The run that it is on, and the shortest time since its command, s.
+    pub fn run(&self) -> Option<(&SpindleTrace, f64)> {
+        self.on_run().map(|(trace, [since_s, _])| (trace, since_s))
     }
 
     /// The start and the target of the run that it is on, 1/min.

@@ -15,6 +15,9 @@ pub(super) const LINE_CHARS: usize = 80;
 pub(super) struct Finding<'a> {
     severity: &'static str,
     rule: &'static str,
+    /// Where it is not the program itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<&'a str>,
     line: u64,
     column: u32,
     message: &'a str,
@@ -26,6 +29,7 @@ impl<'a> From<&'a Diagnostic> for Finding<'a> {
         Self {
             severity: severity_name(diagnostic.severity),
             rule: diagnostic.rule,
+            file: diagnostic.file.as_deref(),
             line: diagnostic.line,
             column: diagnostic.column,
             message: &diagnostic.message,

@@ -10,7 +10,9 @@ use super::figure::Figure;
 use super::finding::{Finding, UnfitMove};
 use super::over_time::OverTimeRecord;
 use super::record::Record;
-use crate::pipeline::{Certificate, Failure, LimitSummary, Row, RowSink, Summary};
+use crate::pipeline::{
+    Certificate, Failure, LimitSummary, Row, RowSink, SetFile, SetSummary, Summary,
+};
 
 /// Writes rows as JSON objects with commas between them.
 #[derive(Debug)]
@@ -122,11 +124,72 @@ struct LimitTail<'a> {
     lines: Vec<LineFigures<'a>>,
     edited_lines: u64,
     certified: bool,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pauses: Vec<PauseRecord>,
     reasons: Vec<Finding<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time: Vec<OverTimeRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time_after: Vec<OverTimeRecord<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    files: Vec<WrittenFile<'a>>,
+}
+
+/// A file that the certificate is for.
+#[derive(Serialize)]
+struct WrittenFile<'a> {
+    file: &'a str,
+    edited_lines: u64,
+}
+
+impl<'a> WrittenFile<'a> {
+    fn list(files: &'a [SetFile]) -> Vec<Self> {
+        let files = files.iter();
+        files
+            .map(|file| Self {
+                file: &file.name,
+                edited_lines: file.edited_lines,
+            })
+            .collect()
+    }
+}
+
+/// A program of several.
+#[derive(Serialize)]
+struct LimitedProgram<'a> {
+    #[serde(flatten)]
+    head: Head<'a>,
+    #[serde(flatten)]
+    tail: LimitTail<'a>,
+}
+
+#[derive(Serialize)]
+struct SetHead<'a> {
+    machine: &'a str,
+    certified: bool,
+    programs: Vec<LimitedProgram<'a>>,
+}
+
+#[derive(Serialize)]
+struct SetTail<'a> {
+    files: Vec<WrittenFile<'a>>,
+}
+
+/// A dwell that the original does not have.
+#[derive(Serialize)]
+struct PauseRecord {
+    line: u64,
+    seconds: Figure,
+}
+
+impl PauseRecord {
+    fn list(summary: &LimitSummary) -> Vec<Self> {
+        let pauses = summary.pauses.iter().map(|pause| Self {
+            line: pause.line,
+            seconds: Figure(pause.seconds),
+        });
+        pauses.collect()
+    }
 }
 
 /// Writes what `report` found; `blocks` are the rows that [`JsonRows`] wrote.
@@ -160,6 +223,44 @@ pub fn limit_json(
     blocks: impl Read,
     out: impl Write,
 ) -> io::Result<()> {
+    let LimitedProgram { head, tail } = limited(program, machine, summary);
+    write_object(&head, blocks, &tail, out)
+}
+
+/// Writes what `limit` did to several programs, `names`, and the files of subprograms that
+/// they call. Of one program it is what [`limit_json`] writes, with the files.
+///
+/// # Errors
+/// Those of `blocks` and `out`.
+pub fn set_json(
+    names: &[&str],
+    machine: &str,
+    set: &SetSummary,
+    blocks: impl Read,
+    out: impl Write,
+) -> io::Result<()> {
+    let files = WrittenFile::list(&set.files);
+    let programs = names.iter().zip(&set.programs);
+    let programs = programs.map(|(name, summary)| limited(name, machine, summary));
+    let mut programs: Vec<_> = programs.collect();
+    if let [LimitedProgram { head, tail }] = programs.as_mut_slice() {
+        tail.files = files;
+        return write_object(head, blocks, tail, out);
+    }
+    let head = SetHead {
+        machine,
+        certified: set.certified(),
+        programs,
+    };
+    write_object(&head, blocks, &SetTail { files }, out)
+}
+
+/// The parts of what `limit` did to a program.
+fn limited<'a>(
+    program: &'a str,
+    machine: &'a str,
+    summary: &'a LimitSummary,
+) -> LimitedProgram<'a> {
     let after = Head::new(program, machine, &summary.after);
     let head = Head {
         certificate: after.certificate,
@@ -175,11 +276,13 @@ pub fn limit_json(
         lines: LineFigures::list(&summary.before),
         edited_lines: summary.edited_lines,
         certified: summary.certified,
+        pauses: PauseRecord::list(summary),
         reasons: summary.reasons.iter().map(Finding::from).collect(),
         over_time: OverTimeRecord::list(&summary.before),
         over_time_after: OverTimeRecord::list(&summary.after),
+        files: Vec::new(),
     };
-    write_object(&head, blocks, &tail, out)
+    LimitedProgram { head, tail }
 }
 
 /// Joins the keys of `head`, `blocks` and the keys of `tail` in one object.

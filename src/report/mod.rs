@@ -38,7 +38,7 @@ pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
     rigid_text,
 };
-pub use json::{JsonRows, check_json, limit_json, report_json};
+pub use json::{JsonRows, check_json, limit_json, report_json, set_json};
 pub use junit::junit;
 pub use moves::write_move;
 pub use patch::unified_diff;
@@ -48,6 +48,6 @@ pub use sarif::sarif;
 pub use series::SeriesRows;
 pub use size::{size_chart, size_csv, size_json, size_text, size_verdict};
 pub use spindle::{SpindleRows, spindle_text};
-pub use text::{axis_table, check_text, limit_text, partial_text};
+pub use text::{axis_table, check_text, limit_text, partial_text, set_text};
 pub use tune_page::tune_page;
 pub use tuned::{sections_csv, tuned_json, tuned_text};

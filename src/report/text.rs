@@ -9,8 +9,11 @@ use super::over_time::over_time_text;
 use super::quantity::{duration, percent, power, three_digits};
 use crate::diagnostic::{Severity, excerpt};
 use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
-use crate::pipeline::{Certificate, Failure, LimitSummary, Summary, Unfit};
+use crate::pipeline::{Certificate, Failure, LimitSummary, SetSummary, Summary, Unfit};
 use crate::units::SECONDS_PER_MINUTE;
+
+/// Pauses that are named one by one.
+const PAUSES_SHOWN: usize = 20;
 
 /// What `check` says of one program: one line where it fits.
 #[must_use]
@@ -167,12 +170,37 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
         )
     };
     text.push_str(&over_time_text(after));
+    text.push_str(&pauses_text(summary));
     if let Some(certificate) = after.certificate {
         let _ = writeln!(text, "certificate: {}", certificate.name());
     }
     for condition in &after.conditions {
         let _ = writeln!(text, "  {condition}");
     }
+    text
+}
+
+/// Where the written program waits though the original does not; nothing where it does not.
+fn pauses_text(summary: &LimitSummary) -> String {
+    let pauses = &summary.pauses;
+    if pauses.is_empty() {
+        return String::new();
+    }
+    let sum_s: f64 = pauses.iter().map(|pause| pause.seconds).sum();
+    let mut text = format!("waits for {} in all (G4), before", duration(sum_s));
+    for (place, pause) in pauses.iter().take(PAUSES_SHOWN).enumerate() {
+        let comma = if place > 0 { "," } else { "" };
+        let _ = write!(
+            text,
+            "{comma} line {} for {}",
+            pause.line,
+            duration(pause.seconds)
+        );
+    }
+    if pauses.len() > PAUSES_SHOWN {
+        let _ = write!(text, " and {} more", pauses.len() - PAUSES_SHOWN);
+    }
+    text.push('\n');
     text
 }
 
@@ -190,6 +218,33 @@ pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) ->
         worst(after),
         over_time_text(after)
     )
+}
+
+/// Which files a set of programs consists of, and what was changed in each.
+#[must_use]
+pub fn set_text(set: &SetSummary, delivered: bool) -> String {
+    if !delivered {
+        return "nothing is written: the programs are certified together, or none is\n".to_owned();
+    }
+    let heading = if set.certified() {
+        "files of this certificate:\n"
+    } else {
+        "files that are written without a certificate:\n"
+    };
+    let mut text = heading.to_owned();
+    for file in &set.files {
+        let what = match file.edited_lines {
+            0 => "as it was".to_owned(),
+            count => format!("{} changed", lines(count)),
+        };
+        let _ = writeln!(text, "  {}: {what}", file.name);
+    }
+    if set.files.len() > set.programs.len() {
+        text.push_str(
+            "other programs that call these files are not looked at: give them together\n",
+        );
+    }
+    text
 }
 
 fn lines(count: u64) -> String {

@@ -155,7 +155,7 @@ impl<'m> Rewriter<'m> {
         if let Some(word) = stop {
             self.edits.push(Edit::replace(without(word, view), ""));
         }
-        if view.change.exact_stop {
+        if view.change.exact_stop || view.change.stop {
             self.exact_stop(view, out);
         }
         self.motion_word(view);
@@ -410,9 +410,14 @@ impl<'m> Rewriter<'m> {
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute {
             // A printer reads no line without a command.
-            if words.is_empty() && self.machine.controller.language.family == Family::Marlin {
-                let digit = original.motion.digit();
+            let printer = self.machine.controller.language.family == Family::Marlin;
+            if words.is_empty() && printer && feed.is_some() {
+                // An arc it reads only with its centre: a line takes its place.
+                let arc = !matches!(original.motion, Motion::Rapid | Motion::Linear);
+                let motion = if arc { Motion::Linear } else { original.motion };
+                let digit = motion.digit();
                 words.extend(digit.map(|digit| format!("G{}", digit as char)));
+                self.written.motion = motion;
             }
             words.extend(
                 original
@@ -451,6 +456,14 @@ impl<'m> Rewriter<'m> {
         if let Some(words) = self.blend_words.take() {
             self.insert_line(&words, out);
         }
+    }
+
+    /// A line between two blocks at which the axes stand, such as a dwell.
+    pub fn put_between(&mut self, words: &str, out: &mut Vec<u8>) {
+        self.complete_line(out);
+        self.blend_again(out);
+        self.insert_line(words, out);
+        self.stopped = true;
     }
 
     fn insert_stop(&mut self, out: &mut Vec<u8>) {

@@ -1,7 +1,7 @@
 //! Lines that turn a knob, such as `G131 = 70` or `M201 X500 Y500`.
 
 use super::number::decimal;
-use crate::machine::{ALL_AXES, AxisValues, Knob, KnobArgument, Machine};
+use crate::machine::{ALL_AXES, AxisValues, KnobArgument, Machine};
 
 /// The words that give a knob these values for the machine's axes; `None` when
 /// its form cannot say it.
@@ -12,14 +12,14 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
     let uniform = axes.all(|axis| values[axis] == first);
     match &knob.argument {
         KnobArgument::Assign if uniform => {
-            Some(format!("{} = {}", code(knob), decimal(first, false)))
+            Some(format!("{} = {}", knob.name, decimal(first, false)))
         }
         KnobArgument::Assign => {
             let other = machine.controller.knob_by_axis(index)?;
             words(machine, other, values)
         }
         KnobArgument::Axes => {
-            let mut text = code(knob);
+            let mut text = knob.name.clone();
             for axis in machine.axis_set.iter() {
                 text.push(' ');
                 text.push(ALL_AXES[axis].letter() as char);
@@ -29,10 +29,11 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
         }
         KnobArgument::Output(number) if uniform => Some(format!(
             "{} E{number} Q{}",
-            code(knob),
+            knob.name,
             decimal(first, false)
         )),
         KnobArgument::Output(_) | KnobArgument::Path(_) => None,
+        KnobArgument::Value => Some(format!("{}{}", knob.name, decimal(first, false))),
     }
 }
 
@@ -41,10 +42,4 @@ pub(super) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Opt
     let mut lines = vec![words(machine, index, values)?];
     lines.extend(machine.controller.knobs.get(index)?.wait.clone());
     Some(lines)
-}
-
-/// The word of a knob, such as `G131`.
-pub(super) fn code(knob: &Knob) -> String {
-    let number = f64::from(knob.code.1) / 10.0;
-    format!("{}{number}", knob.code.0 as char)
 }

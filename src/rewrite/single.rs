@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 
 use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
-use crate::interpret::{Action, ActionKind, Corner, Modal, Motion, Move, MoveKind, Step};
+use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
 use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
@@ -20,6 +20,11 @@ use crate::units::SECONDS_PER_MINUTE;
 const PLAIN: [u16; 7] = [730, 810, 820, 830, 850, 860, 890];
 /// Turning cycles along a contour of `LinuxCNC`, times ten.
 const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
+/// Drilling and boring along X of Fanuc's lathes, times ten; along Z they have the numbers of
+/// milling machines.
+const ACROSS: [u16; 2] = [870, 890];
+/// Those whose way out is a feed of its own.
+const OUT_FASTER: [u16; 2] = [850, 890];
 /// Those of Fanuc's lathes, times ten: roughing, grooving, and cycles of four moves, which
 /// are G90 and G94 in system A.
 const LATHE: [u16; 7] = [710, 720, 730, 740, 750, BOX, FACE];
@@ -91,6 +96,10 @@ impl<'m> Singles<'m> {
         place: impl Fn(&AxisValues) -> AxisValues,
     ) -> Result<Vec<u8>, &'static str> {
         self.may_write_out(of.number)?;
+        let lathe = self.language.dialect.lathe.is_some();
+        if lathe && OUT_FASTER.contains(&of.number) && of.modal.feed_mode != FeedMode::PerMinute {
+            return Err("its way out is faster than its F, which is per revolution");
+        }
         let mut lines = Lines::new(of, &place);
         let feed_mm_s = lines.feed_mm_s;
         self.first_line(of, &mut lines)?;
@@ -117,7 +126,7 @@ impl<'m> Singles<'m> {
     fn may_write_out(&self, number: u16) -> Result<(), &'static str> {
         let lathe = self.language.dialect.lathe.is_some();
         match number {
-            _ if lathe && LATHE.contains(&number) => Ok(()),
+            _ if lathe && (LATHE.contains(&number) || ACROSS.contains(&number)) => Ok(()),
             _ if PLAIN.contains(&number) || TURNING.contains(&number) => Ok(()),
             _ => Err("it taps, or stops for the operator"),
         }
@@ -333,8 +342,8 @@ impl<'m> Singles<'m> {
         if words.len() == word.len() {
             return Ok(());
         }
-        // On a lathe all moves of a cycle have the F in force.
-        let lathe = self.language.dialect.lathe.is_some();
+        // On a lathe all moves of a cycle have the F in force, but for the way out of a bore.
+        let lathe = self.language.dialect.lathe.is_some() && !OUT_FASTER.contains(&of.number);
         if mv.kind != MoveKind::Rapid && !lathe && lines.feed_mm_s != Some(mv.feed_mm_s) {
             let feed = mv.feed_mm_s * SECONDS_PER_MINUTE / of.modal.mm_per_unit;
             let _ = write!(words, " F{}", decimal(rounded(feed), true));

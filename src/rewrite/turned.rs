@@ -1,9 +1,9 @@
 //! Knobs that the written program has turned otherwise than the original.
 
 use super::knob_line;
-use crate::interpret::KnobState;
+use crate::interpret::{KnobState, Square, own_path_speed};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
+use crate::machine::{AXES, AxisValues, KnobArgument, KnobTarget, Machine};
 
 /// See the module.
 #[derive(Debug)]
@@ -52,13 +52,16 @@ impl<'m> Turned<'m> {
         in_force: InForce<'_>,
     ) -> Vec<String> {
         let mut lines = Vec::new();
-        let none = change.accel.is_none() && change.rapid_percent.is_none();
+        let none = [change.accel, change.speed] == [None; 2]
+            && change.cruise.is_none()
+            && change.rapid_percent.is_none();
         if none && self.knobs.is_empty() {
             return lines;
         }
-        let mut wanted: [Option<(usize, AxisValues)>; 2] = [change.accel, None];
+        let mut wanted: [Option<(usize, AxisValues)>; 4] = [change.accel, change.speed, None, None];
+        wanted[2] = change.cruise.map(|knob| (knob, [0.0; AXES]));
         if let Some((knob, percent)) = change.rapid_percent {
-            wanted[1] = Some((knob, [percent; AXES]));
+            wanted[3] = Some((knob, [percent; AXES]));
         }
         for (knob, values) in wanted.into_iter().flatten() {
             if self.knobs.contains(&(knob, values)) {
@@ -101,7 +104,7 @@ impl<'m> Turned<'m> {
         knob.is_some_and(|knob| match knob.target {
             KnobTarget::FeedAccel => acted.feeds,
             KnobTarget::RapidAccel | KnobTarget::RapidSpeed => acted.rapids,
-            KnobTarget::Accel => true,
+            KnobTarget::Accel | KnobTarget::Speed | KnobTarget::CruiseRatio => true,
         })
     }
 
@@ -110,9 +113,24 @@ impl<'m> Turned<'m> {
         self.knobs.retain(|(turned, _)| *turned != knob);
         let state = in_force.knobs?;
         let data = self.machine.controller.knobs.get(knob)?;
+        if data.argument == KnobArgument::Value {
+            let value = match data.target {
+                KnobTarget::Speed if state.path_speed_mm_s.is_finite() => state.path_speed_mm_s,
+                KnobTarget::Speed => own_path_speed(self.machine)?,
+                KnobTarget::CruiseRatio => {
+                    state
+                        .square
+                        .or_else(|| Square::of(self.machine))?
+                        .cruise_ratio
+                }
+                _ => state.path_accel_mm_s2[0],
+            };
+            let value = if value > 0.0 { tidy(value) } else { value };
+            return knob_line::lines(self.machine, knob, &[value; AXES]);
+        }
         let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
-            let Some(own) = &self.machine.axes[axis] else {
+            let Some(axis_data) = &self.machine.axes[axis] else {
                 continue;
             };
             let accel = match data.target {
@@ -121,7 +139,17 @@ impl<'m> Turned<'m> {
             };
             values[axis] = tidy(match data.target {
                 KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
-                _ => data.unit.value(own, accel, in_force.mm_per_unit),
+                KnobTarget::Speed => {
+                    let speed_mm_s = state.speed_mm_s[axis];
+                    let own = axis_data.rapid_mm_s;
+                    let own = if speed_mm_s.is_finite() {
+                        speed_mm_s
+                    } else {
+                        own
+                    };
+                    data.unit.speed_value(axis_data, own, in_force.mm_per_unit)
+                }
+                _ => data.unit.value(axis_data, accel, in_force.mm_per_unit),
             });
         }
         knob_line::lines(self.machine, knob, &values)

@@ -291,3 +291,15 @@ fn a_file_of_subprograms_is_said_to_be_one() {
     let read = shop.run(&["check", "none.ngc", "-m", "linuxcnc-mill"]);
     refused(&read, "there is no program in this file");
 }
+
+/// What the machine file says of its own dialect holds with that dialect's name, too.
+#[test]
+fn the_own_dialect_by_name() {
+    let rest = "[language]\nignored = [\"M428\"]";
+    let shop = crate::shop::Shop::mill("linuxcnc", "peak_power_w = 5000", rest, "");
+    shop.put("a.ngc", "M428\nG0 X1\nM2\n");
+    for (dialect, expected) in [("", 0), (" --dialect linuxcnc", 0), (" --dialect grbl", 2)] {
+        let (code, _, errors) = shop.run(&format!("check a.ngc{dialect}"));
+        assert_eq!(code, expected, "{dialect}: {errors}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Words for acceleration and rapid speed: inserted, and taken back.
 
 use super::{EXACT_STOP, RIG, Rig};
-use gwatt::pipeline::Strategy;
+use gwatt::pipeline::{Allowed, Failure, Law, LimitOptions, Options, Strategy, limit};
 
 const ISG: Rig = Rig {
     controller: "isg",
@@ -174,4 +174,80 @@ fn marlin_acceleration_beside_a_change_of_units() {
             .fits("G1 F30000 X1\nG20 G1 X15\nG21\nG1 X380\n"),
         "G1 F30000 X1\nM201 X3999 Y3999\nG20 G1 X15\nG21\nM201 X5000 Y5000\nG1 X380\n"
     );
+}
+
+/// A word that no document confirms is written on request alone, and the summary says so.
+#[test]
+fn unconfirmed_words_are_written_on_request() {
+    let mut machine = ISG.machine();
+    for knob in &mut machine.controller.knobs {
+        knob.verified = false;
+    }
+    let run = |strategy, unverified| {
+        let how = LimitOptions {
+            strategy,
+            law: Law::Exact,
+            allowed: Allowed {
+                unverified,
+                ..Allowed::NOTHING
+            },
+        };
+        let mut text = Vec::new();
+        let program = std::io::Cursor::new(b"G0 X400\nM30\n");
+        let summary = limit(program, &machine, &Options::default(), how, &mut text, None)?;
+        Ok::<_, Failure>((String::from_utf8(text).expect("text"), summary))
+    };
+    let Err(Failure::Unsuitable(message)) = run(Strategy::Accel, false) else {
+        panic!("no word");
+    };
+    assert!(
+        message.contains("--allow unverified permits G131, "),
+        "{message}"
+    );
+    let (text, summary) = run(Strategy::Speed, false).expect("a program");
+    assert!(!text.contains("G129"), "{text}");
+    assert!(
+        summary
+            .before
+            .notes
+            .iter()
+            .all(|note| note.rule != "unverified")
+    );
+    let (text, summary) = run(Strategy::Accel, true).expect("a program");
+    assert!(summary.certified, "{:?}", summary.reasons);
+    assert_eq!(text, "G231 = 79.9\nG0 X400\nG231 = 100\nM30\n");
+    let notes = summary
+        .before
+        .notes
+        .iter()
+        .filter(|note| note.rule == "unverified");
+    assert_eq!(notes.count(), 1);
+}
+
+/// Homing, and moves before any F, take no F: M203 caps them by axis, in mm/s with Marlin
+/// and mm/min with RepRapFirmware, and what the program or the machine had comes back.
+#[test]
+fn largest_feeds_by_axis() {
+    for (controller, unit) in [("marlin", 1.0), ("reprap", 60.0)] {
+        let rig = Rig {
+            controller,
+            rest: "",
+            ..RIG
+        }
+        .strategy(Strategy::Speed);
+        let words = |axes: [f64; 2]| {
+            let [x, y] = axes.map(|speed| speed * unit);
+            format!("M203 X{x} Y{y}")
+        };
+        let machine = rig.machine();
+        let own = [0, 1].map(|axis| machine.axes[axis].expect("an axis").rapid_mm_s);
+        let text = rig.fits("G28 X\nG1 Y1 F60\nM84\n");
+        let (first, rest) = text.split_once('\n').expect("lines");
+        assert!(first.starts_with("M203 X"), "{text}");
+        assert_eq!(rest, format!("G28 X\n{}\nG1 Y1 F60\nM84\n", words(own)));
+        // Its own limit is no reason to write another one, nor does homing go faster.
+        let own = format!("{}\n", words([100.0, 100.0]));
+        let text = rig.fits(&format!("{own}G28 X\nG1 Y1 F60\nM84\n"));
+        assert_eq!(text, format!("{own}G28 X\nG1 Y1 F60\nM84\n"));
+    }
 }

@@ -411,3 +411,60 @@ fn offsets_of_tools_move_the_coordinates() {
     ];
     assert_eq!(places, expected.map(|[x, z]| [x, z - 200.0]));
 }
+
+/// Drilling cycles: pecks along Z and X, and bores whose way out is twice as fast.
+#[test]
+fn drilling() {
+    let program = "O1\nG21 G40 G98 G54\nT0300\nG97 S500 M3\nG0 X60. Z5.\n\
+                   G83 X40. Z-30. R-3. Q10000 F100.\nX30.\nG80\nG0 X100. Z5.\n\
+                   G85 X40. Z-20. R-3. P500 F80.\nG80\nG0 X100. Z-10.\n\
+                   G87 X20. Z-20. R-10. F50.\nG80\nG0 X100. Z50.\nM30\n";
+    let known = "[language]\npecks_return_to_r = true";
+    let shop = Shop::lathe("fanuc-lathe", 300.0, known);
+    let text = limited(&shop, program);
+    assert_eq!(text.matches("(G83 written out)").count(), 2, "{text}");
+    for lines in [
+        // 10 mm from R on, then 10 mm more from 1 mm above.
+        "G1 Z-8. F100.",
+        "G1 Z-18.",
+        "G1 Z-30.",
+        "(G85 written out)",
+        "G4 P500\nG1 Z2. F160.",
+        "(G87 written out)",
+        "G1 X20.",
+    ] {
+        assert!(text.contains(lines), "{lines}\n{text}");
+    }
+    // Feeds by the revolution stay the same.
+    let turning = "O1\nG21 G40 G99 G54\nT0300\nG97 S500 M3\nG0 X60. Z5.\n\
+                   G83 X40. Z-30. R-3. Q10000 F0.1\nG80\nG0 X100. Z50.\nM30\n";
+    assert!(limited(&shop, turning).contains("G0 G99 F0.1\nG1 Z-18.\n"));
+}
+
+/// How far pecks return is a parameter; taps stay, and a way out that is faster than an F by
+/// the revolution.
+#[test]
+fn drilling_cycles_that_stay() {
+    let program = |cycle: &str| {
+        format!("O1\nG21 G40 G99 G54\nT0300\nG97 S500 M3\nG0 X60. Z5.\n{cycle}\nG80\nM30\n")
+    };
+    let cases = [
+        (
+            "G83 X40. Z-30. R-3. Q10000 F0.1",
+            "how far its pecks return is a parameter of the control",
+        ),
+        (
+            "G85 X-300. Z-20. R-3. F0.1",
+            "its way out is faster than its F, which is per revolution",
+        ),
+        (
+            "G84 X-300. Z-20. R-3. F0.1",
+            "it taps, or stops for the operator",
+        ),
+    ];
+    for (cycle, why) in cases {
+        let shop = Shop::lathe("fanuc-lathe", 300.0, "");
+        let errors = refused(&shop, &program(cycle), READ);
+        assert!(errors.contains(why), "{why}\n{errors}");
+    }
+}

@@ -138,12 +138,9 @@ fn blocks_that_are_not_touched() {
         ..ISG
     };
     untouchable(marlin, "N5 G1 X400 F30000*52\n", "it carries a checksum");
-    // Marlin moves without an F, at a feed that no word can put back.
-    untouchable(
-        marlin.strategy(Strategy::Speed),
-        "G1 X400\n",
-        "no F is in force that could be put back",
-    );
+    // Marlin moves without an F, at a feed that no word can put back: M203 caps it.
+    let text = marlin.strategy(Strategy::Speed).fits("G1 X400\n");
+    assert_eq!(text, "M203 X400 Y500\nG1 X400\nM203 X500 Y500\n");
 }
 
 #[test]

@@ -150,6 +150,10 @@ fn words_that_leave_the_acceleration_open_are_refused() {
             "G1 F1000 X0 Y0\nG41.1 D6\nG1 X10 Y10\nM68 E2 Q0.5\nM66 P0 L0\nG1 X20\nG40\nM2\n",
             "knob-value: the acceleration changes under cutter compensation",
         ),
+        (
+            "G1 F1000 X0 Y0\nM68 E2 Q0.5\nG41.1 D6\nM66 P0 L0\nG1 X10 Y10\nG1 X20\nG40\nM2\n",
+            "knob-value: the acceleration changes under cutter compensation",
+        ),
     ] {
         let said = said(rig, program);
         assert!(said.starts_with(reason), "{program}: {said}");

@@ -113,7 +113,7 @@ fn profiles_hold_their_facts() {
     let codes: Vec<_> = isg
         .knobs
         .iter()
-        .map(|knob| (knob.code.1, knob.target))
+        .map(|knob| (knob.code.expect("a code").1, knob.target))
         .collect();
     assert_eq!(codes[0], (1310, KnobTarget::FeedAccel));
     assert_eq!(codes[1], (2310, KnobTarget::RapidAccel));

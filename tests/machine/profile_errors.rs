@@ -57,7 +57,7 @@ fn a_knob_is_read() {
     assert_eq!(findings(&with(KNOB)), "");
     let (controller, _) = Controller::from_toml(&with(KNOB)).unwrap();
     assert_eq!(controller.knobs.len(), 1);
-    assert_eq!(controller.knobs[0].code, (b'G', 1310));
+    assert_eq!(controller.knobs[0].code, Some((b'G', 1310)));
     assert!(
         !controller.knobs[0].verified,
         "only on request unless the file says otherwise"
@@ -191,7 +191,7 @@ fn knob_incomplete() {
     line 19, error machine-missing: `target` is missing in `knob` / What it acts on
       | [[knob]]
       | ^^^^^^^^
-    line 19, error machine-missing: `argument` is missing in `knob` / What stands behind it: `= value`, a value per axis, the path's value, or the number of an analog output ([outputs] of the machine file) with its value
+    line 19, error machine-missing: `argument` is missing in `knob` / What stands behind it: `= value`, a value per axis, the path's value behind a letter, or right behind the word, or the number of an analog output ([outputs] of the machine file) with its value
       | [[knob]]
       | ^^^^^^^^
     line 19, error machine-missing: `unit` is missing in `knob` / Unit of the value
@@ -244,4 +244,53 @@ fn the_word_for_exact_stop_is_a_g_word() {
         errors.contains("\"M9\" is not a G word / such as \"G9\""),
         "{errors}"
     );
+}
+
+/// What is written must be read back, in its unit.
+#[test]
+fn knobs_with_a_value() {
+    let knob = |word: &str, target: &str, unit: &str| {
+        with(&format!(
+            "[[knob]]\nword = \"{word}\"\ntarget = \"{target}\"\nargument = \"value\"\n\
+             unit = \"{unit}\"\nstep = 1\nmin = 1\n"
+        ))
+    };
+    let accel = "SET_VELOCITY_LIMIT ACCEL=";
+    assert_eq!(findings(&knob(accel, "accel", "per-second-squared")), "");
+    let found = findings(&knob("SET_SPEED V=", "speed", "per-second"));
+    assert!(
+        found.contains("\"SET_SPEED V=\" with argument = \"value\" is not read back"),
+        "{found}"
+    );
+    let found = findings(&knob(accel, "speed", "per-second"));
+    assert!(found.contains("is not read back"), "{found}");
+    let found = findings(&knob(accel, "accel", "per-minute"));
+    assert!(
+        found.contains("`unit` does not go with `target`"),
+        "{found}"
+    );
+}
+
+#[test]
+fn knobs_of_outputs() {
+    let knob = |word: &str, target: &str, unit: &str, wait: &str| {
+        with(&format!(
+            "[[knob]]\nword = \"{word}\"\ntarget = \"{target}\"\nargument = \"output\"\n\
+             unit = \"{unit}\"\nstep = 0.001\nmin = 0.001\nwait = \"{wait}\"\n"
+        ))
+    };
+    let wait = "M66 P0 L0";
+    assert_eq!(findings(&knob("M68", "accel", "share", wait)), "");
+    for (word, wait) in [("M67", wait), ("M68", "G4 P0")] {
+        let found = findings(&knob(word, "accel", "share", wait));
+        let message = format!("\"{word}\" with argument = \"output\" is not read back");
+        assert!(found.contains(&message), "{found}");
+    }
+    for (target, unit) in [("accel", "percent"), ("cruise-ratio", "share")] {
+        let found = findings(&knob("M68", target, unit, wait));
+        assert!(
+            found.contains("`unit` does not go with `target`"),
+            "{found}"
+        );
+    }
 }

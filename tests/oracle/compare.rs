@@ -108,9 +108,11 @@ impl Compared {
         };
         // Times and energies are those at 100 %, or at the largest override below.
         let usual = plant.overrides.map(|factor| factor.min(1.0));
-        let mut nominal = Judge::new(&plant, usual).keeping();
-        let at_full: Vec<Figures> = steps.iter().filter_map(|step| nominal.take(step)).collect();
-        let mut at_most = judged(plant.overrides);
+        let at_full = judged(usual);
+        // Limits over time are shown at the largest overrides.
+        let mut largest = Judge::new(&plant, plant.overrides).keeping();
+        let mut at_most: Vec<Figures> =
+            steps.iter().filter_map(|step| largest.take(step)).collect();
         assert_eq!(rows.len(), at_full.len(), "{program}");
         for ((row, full), most) in rows.iter().zip(&at_full).zip(&at_most) {
             self.row(&plant, row, full, most, true);
@@ -132,7 +134,7 @@ impl Compared {
                 .iter()
                 .position(|it| it.name == found.converter);
             let which = converter.unwrap();
-            let slices = &nominal.slices.as_ref().unwrap()[which];
+            let slices = &largest.slices.as_ref().unwrap()[which];
             let (own, measure) = (&plant.converters[which], found.rating.measure);
             let value = over_time::value(own, measure, slices, plant.share);
             self.ratings += 1;

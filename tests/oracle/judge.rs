@@ -16,6 +16,8 @@ const PER_TURN: f64 = 400.0;
 /// Stretches from which on they are short by themselves, and samples of all.
 const MANY: usize = 60;
 const ALL_SAMPLES: f64 = 400.0;
+/// Stretches of less than this share of a move are none.
+const ROUNDING: f64 = 1e-12;
 
 /// What is asked of the converters by one move, by converter.
 #[derive(Debug, Clone)]
@@ -118,6 +120,10 @@ impl<'p> Judge<'p> {
             let [from, to] = [pair[0], pair[1]];
             let inside = 0.5 * (from + to);
             let part = (to - from) / duration_s;
+            // A cruise that is nothing but rounding.
+            if part < ROUNDING {
+                continue;
+            }
             let samples = if breaks.len() > MANY {
                 2 + (ALL_SAMPLES * part) as usize
             } else if course.is_plain() {

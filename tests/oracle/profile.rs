@@ -99,7 +99,8 @@ impl Limits<'_> {
         let mut top = self.speed;
         if far(top) > length {
             let (mut low, mut high) = (0.0, top);
-            for _ in 0..36 {
+            // Far below the largest speed too, rounding alone is left.
+            for _ in 0..48 {
                 let middle = 0.5 * (low + high);
                 if far(middle) > length {
                     high = middle;

@@ -3,6 +3,7 @@
 use insta::assert_snapshot;
 
 use super::*;
+use crate::shop::Shop;
 
 /// Marlin M203 in mm/s, RepRapFirmware M203 in mm/min: lower caps the move,
 /// higher lifts the machine's limit.
@@ -14,7 +15,7 @@ fn speed_limits_of_axes() {
     4 feed X30.000>0.000 v20.000
     ");
     assert_snapshot!(reprap("M203 X1200\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
-    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000");
+    assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000 a1000");
     // Marlin M205 S: no move that extrudes is slower.
     assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"
     2 feed X0.000>1.000 E0.000>1.000 v20.000
@@ -60,7 +61,7 @@ fn klipper_velocity_limits() {
     5 feed X30.000>0.000 v300.000 a3000 raised 3.00
     7 feed Y40.000>0.000 v10.000 a100 raised 3.00
     9 feed Y0.000>1.000 v10.000 a100 raised 3.00
-    11 feed Y1.000>0.000 v10.000
+    11 feed Y1.000>0.000 v10.000 a1000
     ");
     assert_snapshot!(klipper("SET_VELOCITY_LIMIT ACCEL={a}\n"), @"printer-value: this value is out of range");
 }
@@ -95,4 +96,29 @@ fn raised_limits_raise_the_peak() {
     .expect("accepted")
     .peak_w;
     assert!(arc > 2.0, "{arc}");
+}
+
+/// Between the moves of homing the axes stand: each axis draws
+/// (200 kg · 3 m/s² + 100 N) · 0.05 m/s / 0.8 = 43.75 W beside 100 W, with those that home
+/// together, whatever comes before and after.
+#[test]
+fn moves_of_homing_do_not_blend() {
+    let axis = "reference_mm = 0\nreference_mm_min = 3000";
+    for (controller, together) in [("marlin", 2.0), ("klipper", 1.0), ("reprap", 3.0)] {
+        let shop = Shop::mill(controller, "peak_power_w = 5000", "", axis);
+        shop.put("a.gcode", "G1 Z5 F600\nG28\nG1 X10 F600\n");
+        let (code, out, errors) = shop.run("check a.gcode --format json");
+        assert_eq!(code, 0, "{errors}");
+        let found: serde_json::Value = serde_json::from_str(&out).unwrap();
+        let peak_w = found[0]["peak_w"].as_f64().unwrap();
+        let expected = 100.0 + 43.75 * together;
+        assert!((peak_w - expected).abs() < 1e-6, "{controller} {peak_w}");
+    }
+    // Friction takes 100 N · 0.05 m/s / 0.8 = 6.25 W of each; the rest a lower acceleration
+    // leaves.
+    let shop = Shop::mill("marlin", "peak_power_w = 120", "", axis);
+    shop.put("a.gcode", "G28\nG1 X10 F600\n");
+    let (code, _, errors) = shop.run("limit a.gcode -o out.gcode");
+    assert_eq!(code, 0, "{errors}");
+    assert!(shop.get("out.gcode").starts_with("M201 "), "{errors}");
 }

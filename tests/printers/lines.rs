@@ -66,9 +66,9 @@ fn extended_commands() {
          TIMELAPSE_TAKE_FRAME\nRESPOND TYPE=echo MSG=\"hi; there\"\nSET_GCODE_OFFSET Z=.1\n\
          G1 Z1 F60\nset_gcode_offset Z=0 MOVE=1\nBED_MESH_CALIBRATE\n"
     ), @r"
-    6 feed from anywhere Z v1.000
-    7 feed from anywhere XYZE
-    8 feed from anywhere XYZE
+    6 feed from anywhere Z v1.000 a1000
+    7 feed from anywhere XYZE a1000
+    8 feed from anywhere XYZE a1000
     note pressure-advance
     note unknown-moves
     note bed-levelling

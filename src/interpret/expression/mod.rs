@@ -14,4 +14,4 @@ mod value;
 
 pub(super) use reader::{Name, Reader};
 pub(super) use tape::{Op, parameter_number, work_out};
-pub(super) use value::{Fault, Held, KEPT, PROBED, Read, Value, Variables, remedy};
+pub(super) use value::{Fault, Held, KEPT, PROBED, Read, TOOL, Value, Variables, remedy};

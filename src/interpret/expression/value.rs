@@ -11,6 +11,9 @@ pub(in crate::interpret) const KEPT: &str = "what the control has kept from befo
 /// Why a variable that a probe sets is unknown.
 pub(in crate::interpret) const PROBED: &str = "the result of probing";
 
+/// Why the number of the tool is unknown.
+pub(in crate::interpret) const TOOL: &str = "the tool at the start";
+
 /// Why a variable is unknown to which such a value was given.
 pub(super) const FROM_KEPT: &str = "a variable that the control keeps";
 
@@ -30,6 +33,9 @@ pub(in crate::interpret) fn remedy(reason: &'static str) -> &'static str {
         PROBED => {
             "--probe hit and --probe miss each follow one way, --probe both all of them; where a \
              probe touches stays unknown"
+        }
+        TOOL => {
+            "give its number by --set: '#5400=NUMBER', of Fanuc and its relatives '#4120=NUMBER'"
         }
         _ => "give it a value in the program, or take what depends on it out",
     }

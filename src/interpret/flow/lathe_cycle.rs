@@ -53,7 +53,7 @@ impl Flow {
             let Some(place) = self.advance()? else { break };
             self.read(&mut own);
             let run = self.begin_line();
-            interpreter.begin_line(run, place.text);
+            interpreter.begin_line(run, self.number(place));
             let line = place.line as u64 + 1;
             let said = diagnostics.list.len();
             let errors = diagnostics.errors;

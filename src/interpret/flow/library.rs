@@ -4,7 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::Trouble;
+use super::{Flow, Place, Trouble};
+use crate::interpret::position::Reading;
+use crate::interpret::shelf::Shelf;
 use crate::interpret::transfer::Label;
 
 /// Bytes that all files of subprograms may have together.
@@ -42,17 +44,43 @@ pub(in crate::interpret) fn find_named(folders: &[PathBuf], wanted: &[String]) -
 pub(super) struct Library {
     folders: Arc<[PathBuf]>,
     bytes: u64,
-    /// Names of the files that were loaded.
+    /// Names of the files that were loaded, with their paths and numbers.
     loaded: Vec<String>,
+    paths: Vec<PathBuf>,
+    numbers: Vec<u16>,
+    /// Files that stand for those on the disk, and the program's own number among them.
+    shelf: Option<Arc<Shelf>>,
+    own: u16,
 }
 
 impl Library {
-    pub(super) fn new(folders: Arc<[PathBuf]>) -> Self {
+    pub(super) fn new(reading: &Reading) -> Self {
         Self {
-            folders,
+            folders: Arc::clone(&reading.sub_paths),
             bytes: 0,
             loaded: Vec::new(),
+            paths: Vec::new(),
+            numbers: Vec::new(),
+            shelf: reading.shelf.clone(),
+            own: reading.text,
         }
+    }
+
+    /// Names of the files of subprograms by number, from 1 on.
+    pub(super) fn names(&self) -> &[String] {
+        let shelf = self.shelf.as_deref();
+        shelf.map_or(self.loaded.as_slice(), Shelf::names)
+    }
+
+    /// Where the files that were loaded lie.
+    pub(super) fn paths(&self) -> &[PathBuf] {
+        &self.paths
+    }
+
+    /// The number of a text; 0 is the program itself.
+    pub(super) fn number(&self, text: usize) -> u16 {
+        let numbers = |text: usize| self.numbers.get(text).copied();
+        text.checked_sub(1).and_then(numbers).unwrap_or(self.own)
     }
 
     /// Names of the files that were loaded, in order.
@@ -143,6 +171,16 @@ impl Library {
             let message = format!("the subprogram file {shown} cannot be read: {why}");
             Trouble::new("no-such-subprogram", message, "check the file")
         };
+        if let Some(shelf) = &self.shelf {
+            let Some((number, text)) = shelf.take(path) else {
+                return Err(unreadable(
+                    "it was not there when the programs were read first".to_owned(),
+                ));
+            };
+            let text = text.to_vec();
+            self.note(path, shown, number);
+            return Ok(text);
+        }
         let size = fs::metadata(path)
             .map_err(|error| unreadable(error.to_string()))?
             .len();
@@ -153,8 +191,27 @@ impl Library {
             ));
         }
         let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
-        self.loaded.push(shown);
+        let number = u16::try_from(self.loaded.len() + 1).unwrap_or(u16::MAX);
+        self.note(path, shown, number);
         Ok(bytes)
+    }
+
+    fn note(&mut self, path: &Path, shown: String, number: u16) {
+        self.loaded.push(shown);
+        self.paths.push(path.to_owned());
+        self.numbers.push(number);
+    }
+}
+
+impl Flow {
+    /// Where the files that were read so far lie.
+    pub(crate) fn paths(&self) -> &[PathBuf] {
+        self.library.paths()
+    }
+
+    /// The number of a text, by which moves and reports know it.
+    pub(crate) fn number(&self, place: Place) -> u16 {
+        self.library.number(place.text)
     }
 }
 

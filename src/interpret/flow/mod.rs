@@ -15,7 +15,6 @@ mod siemens;
 mod text;
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use self::library::Library;
 pub use self::limits::Limits;
@@ -147,7 +146,7 @@ impl Flow {
         let now = Place { text: 0, line };
         Self {
             texts: vec![main],
-            library: Library::new(Arc::clone(&reading.sub_paths)),
+            library: Library::new(reading),
             limits: reading.limits,
             next: Place {
                 text: 0,
@@ -209,9 +208,9 @@ impl Flow {
         self.now
     }
 
-    /// Names of the files of subprograms; they are texts 1 and so on.
+    /// Names of the files of subprograms, by number from 1 on.
     pub(crate) fn files(&self) -> &[String] {
-        self.library.loaded()
+        self.library.names()
     }
 
     /// Lines of the program itself.
@@ -236,7 +235,7 @@ impl Flow {
     /// The name of its file, unless it is the program itself.
     pub(crate) fn file(&self) -> Option<&str> {
         let index = self.now.text.checked_sub(1)?;
-        self.files().get(index).map(String::as_str)
+        self.library.loaded().get(index).map(String::as_str)
     }
 
     /// Counts a run of the line; gives its number from 1.

@@ -41,10 +41,6 @@ pub(super) struct State {
     flow: f64,
     /// M200: length of filament for one unit of E.
     volumetric: f64,
-    /// M203, mm/s; infinite for axes that were not named.
-    speed_caps: AxisValues,
-    /// `SET_VELOCITY_LIMIT VELOCITY`, mm/s.
-    velocity_mm_s: f64,
     /// M205 S and T: smallest speeds of moves that extrude, and of others.
     least_mm_s: [f64; 2],
     /// G10 and G11, and whether the program has set them.
@@ -76,8 +72,6 @@ impl State {
             kept_feed_factor: 1.0,
             flow: 1.0,
             volumetric: 1.0,
-            speed_caps: [f64::INFINITY; AXES],
-            velocity_mm_s: f64::INFINITY,
             least_mm_s: [0.0; 2],
             retract: language.printer.retract,
             retract_given: false,
@@ -100,6 +94,8 @@ pub(super) struct Course<'a> {
     pub(super) commanded: AxisSet,
     /// Length of a straight path; 0 where it is none or is not known.
     pub(super) length_mm: f64,
+    /// Where it starts is not known.
+    pub(super) unknown: bool,
 }
 
 /// Whether a line has to be read as a printer's command: not one of axis words

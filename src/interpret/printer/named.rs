@@ -84,12 +84,40 @@ impl Control<'_> {
         let state = || text.argument(at, "NAME").unwrap_or(b"default").to_vec();
         match name {
             b"SET_VELOCITY_LIMIT" => {
-                match ["VELOCITY", "ACCEL"].map(|key| text.number_argument(at, key)) {
-                    [Ok(velocity), Ok(accel)] => self.limit_velocity(run, velocity, accel, span),
-                    _ => Self::bad_value(run, span, "write numbers behind VELOCITY and ACCEL"),
+                const KEYS: [&str; 5] = [
+                    "VELOCITY",
+                    "ACCEL",
+                    "SQUARE_CORNER_VELOCITY",
+                    "MINIMUM_CRUISE_RATIO",
+                    "ACCEL_TO_DECEL",
+                ];
+                let [velocity, accel, corner, ratio, to_decel] =
+                    KEYS.map(|key| text.number_argument(at, key));
+                let (Ok(velocity), Ok(accel), Ok(corner), Ok(ratio), Ok(to_decel)) =
+                    (velocity, accel, corner, ratio, to_decel)
+                else {
+                    Self::bad_value(
+                        run,
+                        span,
+                        "write numbers after VELOCITY, ACCEL and the like",
+                    );
+                    return true;
+                };
+                self.limit_velocity(run, velocity, accel, span);
+                let ratio = ratio.or_else(|| {
+                    let [x, y, ..] = self.knobs.feed_accel_mm_s2;
+                    let most = self.knobs.path_accel_mm_s2[0].min(x.max(y));
+                    to_decel.map(|accel| 1.0 - (accel / most).min(1.0))
+                });
+                if corner.is_some() || ratio.is_some() {
+                    self.limit_corners(run, corner, ratio, span);
                 }
+                return true;
             }
-            b"RESET_VELOCITY_LIMIT" => self.reset_velocity(run),
+            b"RESET_VELOCITY_LIMIT" => {
+                self.reset_velocity(run);
+                return true;
+            }
             b"SET_RETRACTION" => self.set_retraction(run, text, span, at),
             b"SAVE_GCODE_STATE" => self.save_state(run, state(), span),
             b"RESTORE_GCODE_STATE" => {

@@ -29,7 +29,10 @@ impl Control<'_> {
 
     /// G28: each group of axes from an unknown place to its endstops.
     ///
-    /// Source: Marlin G28 (no axis: all of X Y Z), Klipper G28.
+    /// The axes stand before and after each of these moves: an endstop ends it, and where
+    /// that is becomes the position.
+    ///
+    /// Source: Marlin G28 (no axis: all of X Y Z), Klipper G28, `RepRapFirmware` G28.
     pub(super) fn home(&mut self, run: &mut Run<'_, '_>, parameters: &Parameters, span: Span) {
         run.facts.reference = true;
         run.facts.homes = true;
@@ -82,7 +85,9 @@ impl Control<'_> {
                 .and_then(|data| data.reference_mm)
                 .unwrap_or(0.0);
         }
+        run.act(ActionKind::Rest, 0.0);
         self.go_at(run, MoveKind::Feed, &end, group, None, Some(feed_mm_s));
+        run.act(ActionKind::Rest, 0.0);
     }
 
     /// The coordinates shift: the next absolute move of the axes named, of all

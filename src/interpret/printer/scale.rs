@@ -23,39 +23,52 @@ impl Control<'_> {
         }
         let extrudes = course.commanded.contains(EXTRUDER);
         feed = feed.max(state.least_mm_s[usize::from(!extrudes)]);
-        if course.length_mm <= 0.0 {
-            return feed;
-        }
+        self.capped(course, feed)
+    }
+
+    /// A speed along the path, mm/s, under the limits that the program has set.
+    pub(in crate::interpret) fn capped(&self, course: &Course<'_>, feed_mm_s: f64) -> f64 {
+        let knobs = &self.knobs;
+        let mut feed = feed_mm_s;
         if course.commanded.0 & !(1 << EXTRUDER) != 0 {
-            feed = feed.min(state.velocity_mm_s);
+            feed = feed.min(knobs.path_speed_mm_s);
+        }
+        if course.unknown {
+            // In whatever direction: no axis is faster than the largest of their limits.
+            let caps = course.commanded.iter().map(|axis| knobs.speed_mm_s[axis]);
+            return feed.min(caps.fold(0.0, f64::max));
         }
         for axis in course.commanded.iter() {
             let distance = (course.end[axis] - self.position.at[axis]).abs();
-            if distance > 0.0 {
-                feed = feed.min(state.speed_caps[axis] * course.length_mm / distance);
+            if distance > 0.0 && course.length_mm > 0.0 {
+                feed = feed.min(knobs.speed_mm_s[axis] * course.length_mm / distance);
             }
         }
         feed
     }
 
-    /// By how much the program raised the speed limits of the axes that move,
-    /// above what the machine file says; at least 1.
-    pub(in crate::interpret) fn printer_speed_factor(&self, course: &Course<'_>) -> f64 {
-        let state = &self.printer;
-        let mut factor = 1.0_f64;
+    /// The limits of speed of the axes that move, as a share of what the machine file
+    /// says, the largest of them: of rapids as it is, of feeds at least 1, since what
+    /// lowers them is in their feed already.
+    pub(in crate::interpret) fn speed_factor(&self, course: &Course<'_>, rapid: bool) -> f64 {
+        let knobs = &self.knobs;
+        let mut factor = if rapid { 0.0_f64 } else { 1.0 };
         for axis in course.commanded.iter() {
             let Some(data) = &self.machine.axes[axis] else {
                 continue;
             };
-            let mut cap = state.speed_caps[axis];
-            if XY & 1 << axis != 0 && state.velocity_mm_s.is_finite() {
-                cap = state.velocity_mm_s;
+            let mut cap = knobs.speed_mm_s[axis];
+            if XY & 1 << axis != 0 && knobs.path_speed_mm_s.is_finite() {
+                cap = knobs.path_speed_mm_s;
             }
-            if cap.is_finite() {
-                factor = factor.max(cap / data.rapid_mm_s);
-            }
+            let share = if cap.is_finite() {
+                cap / data.rapid_mm_s
+            } else {
+                1.0
+            };
+            factor = factor.max(share);
         }
-        factor
+        if factor > 0.0 { factor } else { 1.0 }
     }
 
     /// M221 and M200: of what E names, the extruder moves more or less; E

@@ -2,9 +2,9 @@
 
 use super::line::{Parameters, value};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::knob::KnobState;
-use crate::interpret::moves::ActionKind;
-use crate::machine::{AXES, AxisId, KnobArgument};
+use crate::interpret::knob::{KnobState, Square};
+use crate::interpret::moves::{ActionKind, Corner};
+use crate::machine::{AxisId, KnobArgument};
 use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -20,13 +20,12 @@ impl Control<'_> {
     }
 
     /// Whether anything changes feeds or lengths of moves.
-    pub(super) fn settle(&mut self) {
+    pub(in crate::interpret) fn settle(&mut self) {
         let state = &mut self.printer;
         state.adjusts = state.feed_factor != 1.0
             || state.flow * state.volumetric != 1.0
-            || state.velocity_mm_s.is_finite()
             || state.least_mm_s != [0.0; 2]
-            || state.speed_caps.iter().any(|cap| cap.is_finite());
+            || self.knobs.limits_speed();
     }
 
     /// M220: percentage of all feeds; B puts it by, R takes it back.
@@ -127,12 +126,9 @@ impl Control<'_> {
             if !(cap > 0.0 && cap <= 1e6) {
                 return Self::bad_value(run, span, "write a speed above 0");
             }
-            if self.machine.axes[axis].is_some() {
-                self.printer.speed_caps[axis] = cap;
-            }
+            self.knobs.limit_axis_speed(self.machine, axis, cap);
         }
-        run.facts.boundary = true;
-        run.act(ActionKind::Other, 203.0);
+        run.facts.turns_knob = true;
         self.settle();
     }
 
@@ -265,7 +261,7 @@ impl Control<'_> {
     ) -> bool {
         let knobs = &self.machine.controller.knobs;
         let letters = knobs.iter().find_map(|knob| match &knob.argument {
-            KnobArgument::Path(letters) if knob.code == (b'M', 2040) => Some(letters),
+            KnobArgument::Path(letters) if knob.code == Some((b'M', 2040)) => Some(letters),
             _ => None,
         });
         let Some(letters) = letters else { return false };
@@ -304,28 +300,56 @@ impl Control<'_> {
         }
         run.facts.turns_knob = true;
         if let Some(velocity) = velocity_mm_s {
-            self.printer.velocity_mm_s = velocity;
+            self.knobs.limit_path_speed(self.machine, velocity);
         }
         if let Some(accel) = accel_mm_s2 {
-            self.knobs.path_accel_mm_s2[..2].fill(accel);
-            for axis in [0, 1] {
-                if let Some(data) = &self.machine.axes[axis] {
-                    let limit = data.accel_mm_s2.max(accel);
-                    self.knobs.feed_accel_mm_s2[axis] = limit;
-                    self.knobs.rapid_accel_mm_s2[axis] = limit;
-                }
-            }
+            self.knobs.limit_path_accel(self.machine, accel);
         }
-        run.act(ActionKind::Other, 204.0);
         self.settle();
+    }
+
+    /// Klipper's look-ahead: the speed at a right angle, mm/s, and the share of each hill
+    /// that is cruised at least.
+    ///
+    /// Source: Klipper, "G-Codes", `SET_VELOCITY_LIMIT`; `ACCEL_TO_DECEL` of earlier
+    /// versions is `ACCEL` less the ratio (`toolhead.py`).
+    pub(super) fn limit_corners(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        corner_mm_s: Option<f64>,
+        cruise_ratio: Option<f64>,
+        span: Span,
+    ) {
+        let Some(own) = Square::of(self.machine) else {
+            return;
+        };
+        let fine = corner_mm_s.is_none_or(|speed| (0.0..=1e7).contains(&speed))
+            && cruise_ratio.is_none_or(|ratio| (0.0..1.0).contains(&ratio));
+        if !fine {
+            let help = "write a corner velocity from 0 and a cruise ratio from 0 to below 1";
+            return Self::bad_value(run, span, help);
+        }
+        let before = self.knobs.square.unwrap_or(own);
+        let square = Square {
+            corner_mm_s: corner_mm_s.unwrap_or(before.corner_mm_s),
+            cruise_ratio: cruise_ratio.unwrap_or(before.cruise_ratio),
+        };
+        run.facts.turns_knob = true;
+        self.take_square((square != own).then_some(square));
+    }
+
+    fn take_square(&mut self, square: Option<Square>) {
+        if self.knobs.square != square {
+            self.knobs.square = square;
+            self.modal.corner = square.map_or_else(Corner::default, Corner::Square);
+        }
     }
 
     /// `RESET_VELOCITY_LIMIT`: the configured limits.
     pub(super) fn reset_velocity(&mut self, run: &mut Run<'_, '_>) {
         run.facts.turns_knob = true;
+        self.take_square(None);
         self.knobs = KnobState::new(self.machine);
-        self.printer.velocity_mm_s = f64::INFINITY;
-        run.act(ActionKind::Other, 204.0);
         self.settle();
     }
 
@@ -335,10 +359,9 @@ impl Control<'_> {
     pub(super) fn restore_settings(&mut self, run: &mut Run<'_, '_>, span: Span) {
         run.facts.turns_knob = true;
         run.facts.boundary = true;
+        self.take_square(None);
         self.knobs = KnobState::new(self.machine);
         let state = &mut self.printer;
-        state.speed_caps = [f64::INFINITY; AXES];
-        state.velocity_mm_s = f64::INFINITY;
         state.least_mm_s = [0.0; 2];
         state.volumetric = 1.0;
         state.retract = self.machine.controller.language.printer.retract;

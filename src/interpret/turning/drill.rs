@@ -7,6 +7,9 @@ use crate::interpret::moves::MoveKind::{Feed, Rapid, Tap};
 use crate::interpret::special::Turning as Spin;
 use crate::machine::{ALL_AXES, AxisValues};
 
+/// Why it is not known how far its pecks return.
+const BY_RETURN: &str = "how far its pecks return is a parameter of the control: say \
+                         pecks_return_to_r under [language] of the machine file";
 /// Dwells are in milliseconds unless they have a point.
 const MILLISECOND_S: f64 = 1e-3;
 /// The way out of G85 and G89 is this much faster.
@@ -128,7 +131,9 @@ impl Control<'_> {
                 let off = self.machine.controller.language.peck_clearance_mm;
                 let mut depth = level;
                 if let Some(peck) = hole.peck {
-                    note_pecks(run);
+                    if !self.machine.controller.language.pecks_return_to_r {
+                        note_pecks(run);
+                    }
                     while (bottom - depth) * inward > peck + 1e-9 && run.within_limits() {
                         depth += inward * peck;
                         to(self, run, Feed, depth);
@@ -170,7 +175,10 @@ impl Control<'_> {
 
 fn note_pecks(run: &mut Run<'_, '_>) {
     let whole = run.whole();
-    let message = "G83 and G87 are taken to come out to R behind each peck (parameter 5101 \
-                   bit RTR), peck_clearance_mm of the controller profile off the last depth";
+    let message = "G83 and G87 are taken to come out to R after each peck and to stay 1 mm off the \
+                   last depth, which are parameters of the control (5101 bit RTR, 5114): say \
+                   pecks_return_to_r = true and peck_clearance_mm under [language] of the machine \
+                   file";
+    run.facts.guessed = Some(BY_RETURN);
     run.report.note_once("peck-clearance", message, whole);
 }

@@ -77,7 +77,10 @@ impl Control<'_> {
                 run.facts.cycle = true;
                 self.single_cycle(number, run);
             }
-            _ => self.drill(number, run),
+            _ => {
+                run.facts.cycle = true;
+                self.drill(number, run);
+            }
         }
     }
 

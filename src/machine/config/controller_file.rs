@@ -85,6 +85,9 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// Whether G83 and G87 of a lathe come out to R after each peck; default: a parameter
+    /// of the control says so.
+    pub(crate) pecks_return_to_r: Option<bool>,
     /// How far an arc's end may always be off its circle, in mm: in a program in mm, and
     /// in one in inches; where it is at most 0.1 % of the radius, a hundred times as far.
     /// Default 0.005 and 0.0127, and 0.5 at most.
@@ -104,6 +107,9 @@ pub(crate) struct LanguageTable {
     /// Whether M words from M10 on that are not known move no axis, which is
     /// then said once; default false: they are refused.
     pub(crate) other_m: Option<bool>,
+    /// The F in force at power-on, in mm/min: where the first moves come before any F, none
+    /// above it is written for them. Default: none is known.
+    pub(crate) power_on_feed_mm_min: Option<Positive>,
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
@@ -297,14 +303,16 @@ pub(crate) enum RapidKnobName {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct KnobTable {
-    /// The word, such as `G131`.
+    /// The word, such as `G131`; with `argument = "value"` all that stands before the
+    /// value, such as `SET_VELOCITY_LIMIT ACCEL=`.
     #[schemars(required)]
     pub(crate) word: Option<At<String>>,
     /// What it acts on.
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
-    /// What stands behind it: `= value`, a value per axis, the path's value, or the number of
-    /// an analog output ([outputs] of the machine file) with its value.
+    /// What stands behind it: `= value`, a value per axis, the path's value behind a
+    /// letter, or right behind the word, or the number of an analog output ([outputs] of the
+    /// machine file) with its value.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
     /// Letters of the value, for `argument = "path"`.
@@ -336,6 +344,8 @@ pub(crate) enum TargetName {
     RapidAccel,
     Accel,
     RapidSpeed,
+    Speed,
+    CruiseRatio,
 }
 
 /// What stands behind a knob's word.
@@ -346,6 +356,7 @@ pub(crate) enum ArgumentName {
     Axes,
     Path,
     Output,
+    Value,
 }
 
 /// Unit of a knob's value.
@@ -353,6 +364,8 @@ pub(crate) enum ArgumentName {
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum UnitName {
     Percent,
-    Share,
     PerSecondSquared,
+    PerSecond,
+    PerMinute,
+    Share,
 }

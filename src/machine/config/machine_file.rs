@@ -139,6 +139,14 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) decimal_point: Option<PointName>,
     /// Whether words of X are diameters.
     pub(crate) diameter: Option<bool>,
+    /// The F in force at power-on, in mm/min (SINUMERIK: setting data 42110): where moves come
+    /// before any F, none above it is written for them.
+    pub(crate) power_on_feed_mm_min: Option<Positive>,
+    /// Whether G83 and G87 of a lathe come out to R after each peck (Fanuc: parameter 5101
+    /// bit RTR).
+    pub(crate) pecks_return_to_r: Option<bool>,
+    /// How far G73 and G83 stay off the last depth, in mm (Fanuc: parameters 5114 and 5115).
+    pub(crate) peck_clearance_mm: Option<Positive>,
     /// How arc centres I J K are meant at power-on.
     pub(crate) arc_centre: Option<DistanceName>,
     /// How G41 and G42 shift the path.

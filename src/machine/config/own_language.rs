@@ -7,6 +7,7 @@ use super::machine_file::OwnLanguageTable;
 use super::value::At;
 use super::{printer, profile};
 use crate::machine::controller::{Family, Language};
+use crate::units::SECONDS_PER_MINUTE;
 
 /// Takes what the table gives into the language of the profile.
 pub(crate) fn take(
@@ -18,6 +19,15 @@ pub(crate) fn take(
     let dialect = &mut language.dialect;
     dialect.point = own.decimal_point.map(profile::point).or(dialect.point);
     dialect.diameter = own.diameter.unwrap_or(dialect.diameter);
+    if let Some(returns) = own.pecks_return_to_r {
+        language.pecks_return_to_r = returns;
+    }
+    if let Some(clearance) = &own.peck_clearance_mm {
+        language.peck_clearance_mm = clearance.value;
+    }
+    if let Some(feed) = &own.power_on_feed_mm_min {
+        language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;
+    }
     dialect.active = true;
     if let Some(centre) = own.arc_centre {
         language.arc_absolute = centre == DistanceName::Absolute;

@@ -13,10 +13,11 @@ use super::word;
 use crate::machine::axis::AxisId;
 use crate::machine::controller::{
     ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
-    Knob, KnobArgument, KnobTarget, KnobUnit, Language, Lathe, Planner, Point, RapidJoint,
-    RapidKnob, RapidPath, SpindleWait,
+    Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait,
 };
+use crate::machine::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
 use crate::machine::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
+use crate::units::SECONDS_PER_MINUTE;
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
 /// the result is not to be used.
@@ -64,6 +65,10 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         name: String::new(),
         family,
         dwell,
+        power_on_feed_mm_s: table
+            .power_on_feed_mm_min
+            .as_ref()
+            .map_or(f64::INFINITY, |it| it.value / SECONDS_PER_MINUTE),
         rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
         loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
@@ -85,6 +90,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         compensation: table.cutter_compensation.as_ref().and_then(compensation),
         printer: super::printer::printer(findings, table),
         mill_cycles: table.mill_cycles.unwrap_or(false),
+        pecks_return_to_r: table.pecks_return_to_r.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         arc_tolerance_mm: table
             .arc_tolerance_mm
@@ -291,30 +297,96 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
 
 fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     let knob = &table.value;
-    let code = knob.word.as_ref().and_then(|text| {
+    let target = match knob.target? {
+        TargetName::FeedAccel => KnobTarget::FeedAccel,
+        TargetName::RapidAccel => KnobTarget::RapidAccel,
+        TargetName::Accel => KnobTarget::Accel,
+        TargetName::RapidSpeed => KnobTarget::RapidSpeed,
+        TargetName::Speed => KnobTarget::Speed,
+        TargetName::CruiseRatio => KnobTarget::CruiseRatio,
+    };
+    let unit = match knob.unit? {
+        UnitName::Percent => KnobUnit::Percent,
+        UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
+        UnitName::PerSecond => KnobUnit::PerSecond,
+        UnitName::PerMinute => KnobUnit::PerMinute,
+        UnitName::Share => KnobUnit::Share,
+    };
+    let argument = argument(findings, knob)?;
+    let output = argument == KnobArgument::Output(0);
+    let suits = match target {
+        KnobTarget::Accel if output => unit == KnobUnit::Share,
+        _ if output => false,
+        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
+            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
+        }
+        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
+        KnobTarget::Speed => {
+            matches!(
+                unit,
+                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
+            )
+        }
+        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
+    };
+    if !suits {
+        let message = "`unit` does not go with `target`";
+        let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
+                    \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
+                    cruise-ratio is a \"share\", as is accel with argument = \"output\"";
+        findings.error("machine-kind", &table.span, message, Some(help.to_owned()));
+    }
+    let text = knob.word.as_ref()?;
+    let waits = knob
+        .wait
+        .as_deref()
+        .is_some_and(|it| it.starts_with("M66 "));
+    if output && !(text.value == "M68" && waits) {
+        let message = format!(
+            "\"{}\" with argument = \"output\" is not read back",
+            text.value
+        );
+        let help = Some("\"M68\" with wait = \"M66 P0 L0\"".to_owned());
+        findings.error("machine-word", &text.span, message, help);
+        return None;
+    }
+    let code = if argument == KnobArgument::Value {
+        let read = match target {
+            KnobTarget::Accel => Some("SET_VELOCITY_LIMIT ACCEL="),
+            KnobTarget::Speed => Some("SET_VELOCITY_LIMIT VELOCITY="),
+            KnobTarget::CruiseRatio => Some("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO="),
+            KnobTarget::FeedAccel | KnobTarget::RapidAccel | KnobTarget::RapidSpeed => None,
+        };
+        if read != Some(text.value.as_str()) || unit == KnobUnit::Percent {
+            let message = format!(
+                "\"{}\" with argument = \"value\" is not read back",
+                text.value
+            );
+            let help = "\"SET_VELOCITY_LIMIT ACCEL=\" in mm/s² with target = \"accel\", \
+                        \"SET_VELOCITY_LIMIT VELOCITY=\" in mm/s with target = \"speed\", or \
+                        \"SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=\" with target = \"cruise-ratio\"";
+            findings.error("machine-word", &text.span, message, Some(help.to_owned()));
+            return None;
+        }
+        None
+    } else {
         let code = word::code(&text.value);
         if code.is_none() {
             let message = format!("\"{}\" is not a program word", text.value);
             let help = Some("a letter and a number, such as \"G131\"".to_owned());
             findings.error("machine-word", &text.span, message, help);
         }
-        code
-    });
-    let argument = argument(findings, knob)?;
+        Some(code?)
+    };
     Some(Knob {
-        code: code?,
-        target: match knob.target? {
-            TargetName::FeedAccel => KnobTarget::FeedAccel,
-            TargetName::RapidAccel => KnobTarget::RapidAccel,
-            TargetName::Accel => KnobTarget::Accel,
-            TargetName::RapidSpeed => KnobTarget::RapidSpeed,
+        code,
+        name: match code {
+            Some((letter, number)) => format!("{}{}", letter as char, f64::from(number) / 10.0),
+            None => text.value.clone(),
         },
+        target,
         argument,
-        unit: match knob.unit? {
-            UnitName::Percent => KnobUnit::Percent,
-            UnitName::Share => KnobUnit::Share,
-            UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
-        },
+        unit,
         step: knob.step.as_ref()?.value,
         min: knob.min.as_ref()?.value,
         verified: knob.verified.unwrap_or(false),
@@ -337,6 +409,7 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
         ArgumentName::Axes => KnobArgument::Axes,
         // Which one, the machine file says.
         ArgumentName::Output => KnobArgument::Output(0),
+        ArgumentName::Value => KnobArgument::Value,
         ArgumentName::Path => {
             let mut list = Vec::new();
             for text in knob.letters.iter().flat_map(|letters| &letters.value) {

@@ -18,7 +18,7 @@ pub(super) fn compare(
     text: &[u8],
     reasons: &mut Reasons,
 ) {
-    let line = original.line;
+    let place = (original.text, original.line);
     if !model.fits(&after.demand) && !original.hopeless {
         let limit_w = model.limit_w(after.demand.converter);
         let message = format!(
@@ -26,7 +26,7 @@ pub(super) fn compare(
             after.demand.peak_w
         );
         let help = "another strategy, or --allow feed, may help";
-        reasons.push(line, "does-not-fit", message, help, text);
+        reasons.push(place, "does-not-fit", message, help, text);
     }
     let rounding = rounding(original, mv, ROUNDING);
     let rises = |before: f64, after: f64| after > before * (1.0 + rounding);
@@ -43,7 +43,7 @@ pub(super) fn compare(
         || axis_rises
     {
         let message = "a speed or an acceleration went up".to_owned();
-        reasons.push(line, "went-up", message, BUG, text);
+        reasons.push(place, "went-up", message, BUG, text);
     }
     let falls = |before: f64, after: f64| after < before * (1.0 - ROUNDING);
     if !original.changed
@@ -51,6 +51,6 @@ pub(super) fn compare(
             || falls(original.accel_mm_s2, after.accel_mm_s2))
     {
         let message = "the feed of a block that was not to be changed differs".to_owned();
-        reasons.push(line, "changed-feed", message, BUG, text);
+        reasons.push(place, "changed-feed", message, BUG, text);
     }
 }

@@ -42,8 +42,13 @@ impl Verdict<'_, '_> {
     pub(super) fn judge_spindle(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
         if !self.model.fits(&after.demand) {
             let message = message(&self.model, after);
-            self.reasons
-                .push(mv.line, "spindle-power", message, SPINDLE_HELP, text);
+            self.reasons.push(
+                (mv.text, mv.line),
+                "spindle-power",
+                message,
+                SPINDLE_HELP,
+                text,
+            );
         }
         if self.spindle.len() >= ROWS {
             self.spindle.pop_front();

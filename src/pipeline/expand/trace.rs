@@ -10,8 +10,11 @@ impl Expanded {
     /// lines that were written in another way.
     pub(in crate::pipeline) fn trace(&self, summary: &mut LimitSummary) {
         let here = |line: &mut u64| *line = self.origin(*line);
-        for reason in &mut summary.reasons {
+        for reason in summary.reasons.iter_mut().filter(|it| it.file.is_none()) {
             here(&mut reason.line);
+        }
+        for pause in &mut summary.pauses {
+            here(&mut pause.line);
         }
         summary.edited_lines += self.blocks as u64;
         let after = &mut summary.after;
@@ -22,11 +25,25 @@ impl Expanded {
                 here(&mut unfit.line);
             }
         }
+        for found in &mut after.over_time {
+            if found.file.is_empty() {
+                here(&mut found.rating.line);
+            }
+        }
         for line in &mut after.by_line {
             if line.file.is_empty() {
                 here(&mut line.line);
             }
         }
+    }
+}
+
+impl Expanded {
+    /// Gives a row of the program itself the line of the original.
+    pub(in crate::pipeline) fn trace_row(&self, row: &mut Row) {
+        row.line = self.origin(row.line);
+        let n_word = self.n_words.get(&row.line).copied();
+        row.n_word = n_word.or(row.n_word);
     }
 }
 
@@ -51,9 +68,7 @@ impl RowSink for Traced<'_> {
             return self.rows.row(row);
         }
         let mut row = row.clone();
-        row.line = self.expanded.origin(row.line);
-        let n_word = self.expanded.n_words.get(&row.line).copied();
-        row.n_word = n_word.or(row.n_word);
+        self.expanded.trace_row(&mut row);
         self.rows.row(&row)
     }
 }

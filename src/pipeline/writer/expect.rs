@@ -64,6 +64,8 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
                 changed: change.is_some(),
                 as_feed: change.is_some_and(|change| change.as_feed),
                 exact_stop: change.is_some_and(|change| change.exact_stop),
+                stops: change.is_some_and(|change| change.stop),
+                corner: change.map_or(mv.corner, |change| change.corner(self.machine, mv)),
                 hopeless,
                 split: split.map(|split| Box::new(Line::of(mv, split))),
                 row,

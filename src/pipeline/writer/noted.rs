@@ -2,12 +2,44 @@
 
 use std::io::{Read, Seek, Write};
 
-use super::Writer;
+use super::{Writer, Written};
 use crate::limit::Change;
+use crate::pipeline::Failure;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::split::SEVERAL_RUNS;
+use crate::pipeline::table::Table;
+
+/// Why a block before any motion word is not changed where one of them cannot have its own.
+const NO_MOTION_WORD: &str = "no motion word is in force that could be put back";
+
+impl Table {
+    /// Gives a block what all runs of its line are known to meet.
+    pub(super) fn tell(&self, entry: &mut Entry) {
+        entry.skips = self.skips;
+        // A line that runs again would meet another motion word.
+        let without = entry.facts.no_motion_word && !self.may_get_word();
+        let without = without.then_some(NO_MOTION_WORD);
+        let fixed = entry.facts.fixed.or(without);
+        entry.facts.fixed = fixed.or_else(|| self.fixed(entry.key));
+        entry.one_corner = self.one_corner(entry.key);
+        entry.without_feed = !self.may_get_feed();
+    }
+}
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+    /// Reads the whole program and decides for its lines, without writing.
+    pub(in crate::pipeline) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
+        if self.exact {
+            self.tally.keep_lines();
+        }
+        while self.read_block()? {
+            self.write_ready();
+        }
+        self.finish_moves();
+        self.write_decided();
+        self.conclude()
+    }
+
     /// Keeps what was decided for a run of a line.
     pub(super) fn note(&mut self, entry: &Entry, change: Option<Change>) {
         self.spindle.clear();
@@ -23,9 +55,18 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         } else {
             None
         };
+        let lacks_feed = entry.lacks_feed();
+        let first_feed = if lacks_feed {
+            self.first_feed_with(entry, change)
+        } else {
+            None
+        };
         let Some(table) = &mut self.table else { return };
         if let Some(own) = own {
             table.offer_word(self.machine, entry.key, entry, own);
+        }
+        if lacks_feed {
+            table.offer_feed(self.machine, entry.key, entry, first_feed);
         }
         if !table.decide(self.machine, entry.key, entry, change) {
             return;

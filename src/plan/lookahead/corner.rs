@@ -41,7 +41,7 @@ pub(super) struct Before {
     rest2: f64,
     prints: Prints,
     /// See [`After`].
-    accel_share: f64,
+    square2: f64,
 }
 
 impl Before {
@@ -67,9 +67,9 @@ pub(super) struct After<'e, T> {
     pub rest2: f64,
     /// Of interest to [`CornerRule::SpeedStep`] alone.
     prints: Prints,
-    /// Its acceleration as a share of what counts for all paths, up to 1; of interest
-    /// to [`CornerRule::SquareCorner`] alone.
-    accel_share: f64,
+    /// Squared speed at a right angle, less where its acceleration is below what counts
+    /// for all paths; of interest to [`CornerRule::SquareCorner`] alone.
+    square2: f64,
 }
 
 impl<'e, T> After<'e, T> {
@@ -93,11 +93,13 @@ impl<'e, T> After<'e, T> {
             }
             _ => (false, false),
         };
-        let accel_share = match rule {
-            CornerRule::SquareCorner { .. } => {
-                accel_share(element.accel_mm_s2, element.common_accel_mm_s2())
+        let square2 = match rule {
+            CornerRule::SquareCorner { velocity_mm_s, .. } => {
+                let own = element.square.map(|square| square.corner_mm_s);
+                let v90 = own.unwrap_or(*velocity_mm_s);
+                accel_share(element.accel_mm_s2, element.common_accel_mm_s2()) * v90 * v90
             }
-            _ => 1.0,
+            _ => 0.0,
         };
         Self {
             element,
@@ -106,7 +108,7 @@ impl<'e, T> After<'e, T> {
             is_unit: is_unit(&element.start),
             rest2,
             prints,
-            accel_share,
+            square2,
         }
     }
 
@@ -130,7 +132,7 @@ impl<'e, T> After<'e, T> {
             ramp2: element.length_mm * element.accel_mm_s2,
             rest2: self.rest2,
             prints: self.prints,
-            accel_share: self.accel_share,
+            square2: self.square2,
         }
     }
 }
@@ -190,9 +192,8 @@ pub(super) fn speed2<T>(
         }
         CornerRule::ClassicJerk { step_mm_s } => jerk(step_mm_s, before, after, span),
         CornerRule::SquareCorner {
-            velocity_mm_s,
-            extruder_step_mm_s,
-        } => square(*velocity_mm_s, *extruder_step_mm_s, before, after),
+            extruder_step_mm_s, ..
+        } => square(*extruder_step_mm_s, before, after),
         CornerRule::SpeedStep {
             step_mm_s,
             same_kind_only,
@@ -347,8 +348,8 @@ pub(super) fn accel_share(accel_mm_s2: f64, common_mm_s2: f64) -> f64 {
     }
 }
 
-fn square<T>(v90: f64, extruder_step: f64, before: &Before, after: &After<'_, T>) -> f64 {
-    let share = before.accel_share.min(after.accel_share);
+fn square<T>(extruder_step: f64, before: &Before, after: &After<'_, T>) -> f64 {
+    let square2 = before.square2.min(after.square2);
     let after = after.element;
     let Some(cos) = cosine(LINEAR, &before.end, &after.start) else {
         return 0.0;
@@ -367,7 +368,7 @@ fn square<T>(v90: f64, extruder_step: f64, before: &Before, after: &After<'_, T>
     // Half a block may bend into the circle: v² = a·(L/2)·tan(half angle).
     let half_tan = 0.5 * s / c;
     let bent = (after.length_mm * after.accel_mm_s2).min(before.ramp2);
-    (share * v90 * v90 * (SQRT_2 - 1.0) * s / (1.0 - s))
+    (square2 * (SQRT_2 - 1.0) * s / (1.0 - s))
         .min(bent * half_tan)
         .min(extruder2)
 }

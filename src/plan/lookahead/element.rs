@@ -7,7 +7,7 @@ use super::super::arc;
 use super::super::drive::{self, Heading};
 use super::super::limits::{self, PathLimits, lower};
 use super::super::trajectory::{Caps, Overrides};
-use crate::interpret::{Arc, Move, MoveKind};
+use crate::interpret::{Arc, Corner, Move, MoveKind, Square};
 use crate::machine::{AXES, AxisValues, Machine};
 
 /// What happens at the end of an element, if the controller's rules permit it.
@@ -82,6 +82,8 @@ pub struct Element<T> {
     pub end: AxisValues,
     /// The curvature of an arc.
     pub curve: Option<Curve>,
+    /// What the program has set for corners and hills.
+    pub square: Option<Square>,
     /// What happens at its end.
     pub joint: Joint,
 }
@@ -119,6 +121,7 @@ impl<T> Element<T> {
             start: [0.0; AXES],
             end: [0.0; AXES],
             curve: None,
+            square: None,
             joint: Joint::Stop,
         }
     }
@@ -154,6 +157,10 @@ impl<T> Element<T> {
         }
         self.end = self.start;
         self.curve = None;
+        self.square = match mv.corner {
+            Corner::Square(square) => Some(square),
+            _ => None,
+        };
         self.joint = joint;
         let caps = Caps::default();
         let limits = match &mv.arc {

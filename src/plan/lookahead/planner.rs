@@ -225,7 +225,7 @@ impl<T: Copy> PathPlanner<T> {
             }
             _ => Rule::Corner(None),
         };
-        let mut window = Window::new(look_ahead.blocks, look_ahead.min_cruise_ratio > 0.0);
+        let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead));
         if machine
             .axes
             .iter()
@@ -334,8 +334,9 @@ impl<T: Copy> PathPlanner<T> {
         };
         let top2 = after.top_mm_s * after.top_mm_s;
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
-        if self.look_ahead.min_cruise_ratio > 0.0 {
-            let share = 1.0 - self.look_ahead.min_cruise_ratio;
+        if smooths(&self.look_ahead) {
+            let ratio = self.look_ahead.min_cruise_ratio;
+            let share = 1.0 - element.square.map_or(ratio, |square| square.cruise_ratio);
             node.smooth_accel = element.common_accel_mm_s2() * share;
         }
         node.step2 = after.rest2;
@@ -434,4 +435,9 @@ impl<T> Planned<T> {
             overlaps: span.payload.overlaps,
         }
     }
+}
+
+/// Whether hills may be smoothed: by the profile, or since a program may ask for it.
+fn smooths(rules: &LookAhead) -> bool {
+    rules.min_cruise_ratio > 0.0 || matches!(rules.corner, CornerRule::SquareCorner { .. })
 }

@@ -114,5 +114,9 @@ pub(crate) fn joint(mv: &Move) -> Joint {
             tolerance_mm,
             join_mm,
         },
+        (PathMode::LookAhead, Corner::Square(_)) => Joint::Blend {
+            tolerance_mm: 0.0,
+            join_mm: 0.0,
+        },
     }
 }

@@ -110,7 +110,13 @@ impl SpindleBus<'_> {
 
     /// Waits for the run to end; a row where that takes time.
     pub(super) fn wait(&mut self, mv: &Move, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        if self.states.iter().all(SpindleState::is_steady) {
+        let slower = self.slower.as_ref().map(|slower| &slower.state);
+        if self
+            .states
+            .iter()
+            .chain(slower)
+            .all(SpindleState::is_steady)
+        {
             return;
         }
         let extremes = self.states[0].henceforth(&self.motor);
@@ -142,6 +148,9 @@ impl SpindleBus<'_> {
             self.show_wait(mv, duration_s);
         }
         self.states.iter_mut().for_each(SpindleState::settle);
+        if let Some(slower) = &mut self.slower {
+            slower.state.settle();
+        }
         if duration_s > 0.0 {
             let demand = self.alone(Some(mv), extremes);
             self.row(mv.line, Some(mv), demand, span, duration_s, sink);

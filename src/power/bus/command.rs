@@ -92,6 +92,9 @@ impl SpindleBus<'_> {
             ActionKind::ToolChange => {
                 // The spindle stops for it, on most machines.
                 self.states[0].lose(&self.motor);
+                if let Some(slower) = &mut self.slower {
+                    slower.state.lose(&self.motor);
+                }
                 self.states
                     .iter_mut()
                     .for_each(|state| state.pass([0.0, 0.0]));
@@ -104,7 +107,7 @@ impl SpindleBus<'_> {
                 let target = self.states[0].target();
                 if target != 0.0 {
                     let range = [target.min(0.0), target.max(0.0)];
-                    self.states[0].wander(&self.motor, range, target);
+                    self.wander(range, target);
                     self.wait_unknown();
                 }
                 return;
@@ -120,6 +123,9 @@ impl SpindleBus<'_> {
     /// Something takes a time that is not known.
     pub(super) fn wait_unknown(&mut self) {
         self.states[0].pass([0.0, f64::INFINITY]);
+        if let Some(slower) = &mut self.slower {
+            slower.state.pass([0.0, f64::INFINITY]);
+        }
     }
 
     /// The speed that is asked for now, 1/min, at an override.
@@ -144,6 +150,9 @@ impl SpindleBus<'_> {
         for side in 0..2 {
             let target = self.target(self.overrides[side].spindle);
             self.states[side].command(&self.motor, target);
+            if let (0, Some(slower)) = (side, &mut self.slower) {
+                slower.command(&self.motor, target);
+            }
         }
         let nominal = self.target(self.overrides[1].spindle);
         if let Some(shown) = &mut self.shown {
@@ -155,7 +164,11 @@ impl SpindleBus<'_> {
         if unknown && !self.states[0].is_steady() {
             self.wait_unknown();
         }
-        let demand = self.alone(next, self.states[0].henceforth(&self.motor));
+        let mut demand = self.alone(next, self.states[0].henceforth(&self.motor));
+        if let (true, Some(slower)) = (self.model.fits(&demand), &self.slower) {
+            // Turned down, the run before has come further.
+            demand = self.alone(next, slower.state.henceforth(&self.motor));
+        }
         if !self.model.fits(&demand) {
             self.row(line, next, demand, SpindleSpan::steady(0.0, 0.0), 0.0, sink);
         }

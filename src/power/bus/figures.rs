@@ -127,7 +127,11 @@ impl SpindleBus<'_> {
         self.handed += 1;
         // A move that follows the surface has left the spindle where it ends.
         if !followed {
-            self.states[0].pass(self.time_of(mv, judged));
+            let time_s = self.time_of(mv, judged);
+            self.states[0].pass(time_s);
+            if let Some(slower) = &mut self.slower {
+                slower.pass(mv, time_s);
+            }
             self.states[1].pass([judged.duration_s; 2]);
         }
         if self.queue.is_empty() && self.reserve_w != [0.0; 2] {
@@ -163,7 +167,11 @@ impl SpindleBus<'_> {
 
     /// What is drawn and fed back at most as long as no command comes.
     pub(super) fn reserve(&mut self) {
-        let [largest_w, least_w] = self.states[0].henceforth(&self.motor);
+        let [mut largest_w, mut least_w] = self.states[0].henceforth(&self.motor);
+        if let Some(slower) = &self.slower {
+            let [most_w, lowest_w] = slower.state.henceforth(&self.motor);
+            (largest_w, least_w) = (largest_w.max(most_w), least_w.min(lowest_w));
+        }
         self.reserve_w = if self.surface.is_some() && self.direction != 0.0 {
             [f64::INFINITY; 2]
         } else {

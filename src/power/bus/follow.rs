@@ -43,7 +43,7 @@ impl SpindleBus<'_> {
             // Any speed up to the clamp.
             let clamp = sides[0].clamp_rpm * self.direction;
             let range = [clamp.min(0.0), clamp.max(0.0)];
-            self.states[0].wander(&self.motor, range, clamp);
+            self.wander(range, clamp);
             let extremes = self.states[0].henceforth(&self.motor);
             self.states[1].pass([assessment.duration_s; 2]);
             return Some(Followed {
@@ -69,6 +69,9 @@ impl SpindleBus<'_> {
             let planned = plan(self.machine, mv, self.overrides[1]);
             let energy_j = sides[1].energy(&self.motor.power, mv, &planned);
             self.states[0].follow(speeds.end);
+            if let Some(slower) = &mut self.slower {
+                slower.state.follow(speeds.end);
+            }
             self.states[1].follow(nominal.end);
             return Some(Followed {
                 extremes,
@@ -77,7 +80,7 @@ impl SpindleBus<'_> {
                 target: None,
             });
         }
-        self.states[0].wander(&self.motor, speeds.range, speeds.end);
+        self.wander(speeds.range, speeds.end);
         self.states[1].command(&self.motor, nominal.end);
         let span = self.states[1].span(&self.motor, assessment.duration_s);
         self.states[1].pass([assessment.duration_s; 2]);
@@ -87,5 +90,13 @@ impl SpindleBus<'_> {
             surface: None,
             target: Some(nominal.end),
         })
+    }
+
+    /// Somewhere between two speeds, and on the way to a target.
+    pub(super) fn wander(&mut self, range: [f64; 2], target: f64) {
+        self.states[0].wander(&self.motor, range, target);
+        if let Some(slower) = &mut self.slower {
+            slower.state.wander(&self.motor, range, target);
+        }
     }
 }

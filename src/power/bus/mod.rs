@@ -6,7 +6,8 @@
 //! does not fit.
 //!
 //! The spindle is followed twice, at the largest overrides for the peaks, and at
-//! the nominal ones for times and energies.
+//! the nominal ones for times and energies; and where lower overrides count once more
+//! for those.
 
 mod alone;
 mod assessor;
@@ -15,12 +16,14 @@ mod figures;
 mod follow;
 mod levels;
 mod show;
+mod slower;
 
 use std::collections::VecDeque;
 
 use self::command::Queued;
 pub(super) use self::show::Shown;
 pub use self::show::Turning;
+use self::slower::Slower;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{Machine, Spindle, SpindleWait};
 use crate::plan::{Overrides, plan};
@@ -74,6 +77,8 @@ pub(super) struct SpindleBus<'m> {
     /// Of peaks, and of times.
     overrides: [Overrides; 2],
     states: [SpindleState; 2],
+    /// At lower overrides, where these count.
+    slower: Option<Slower>,
     queue: VecDeque<Queued>,
     pushed: u64,
     handed: u64,
@@ -108,13 +113,16 @@ impl<'m> SpindleBus<'m> {
         let spindle = machine.spindle.as_ref()?;
         // A machine whose numbers are out of range has been refused.
         let motor = SpindleMotor::new(spindle).ok()?;
-        let states = [0, 1].map(|side| {
-            if unknown && side == 0 {
+        let begin = |unknown: bool| {
+            if unknown {
                 SpindleState::anywhere(&motor, -spindle.max_rpm, spindle.max_rpm)
             } else {
                 SpindleState::steady(0.0)
             }
-        });
+        };
+        let lower = machine.limits.override_at.is_none();
+        let slower = lower.then(|| Slower::new(begin(unknown)));
+        let states = [begin(unknown), begin(false)];
         let mut bus = Self {
             machine,
             spindle,
@@ -122,6 +130,7 @@ impl<'m> SpindleBus<'m> {
             motor,
             overrides,
             states,
+            slower,
             queue: VecDeque::new(),
             pushed: 0,
             handed: 0,
@@ -203,7 +212,12 @@ impl<'m> SpindleBus<'m> {
         });
         let later = covered.unwrap_or_else(|| self.states[0].henceforth(&self.motor));
         let runs = !matches!(window, Window::Steady(_)) || covered.is_some();
-        let mut exact = None;
+        let (mut exact, mut own) = (None, None);
+        let planned = assessment.certificate == Certificate::Planned;
+        let known = planned && !assessment.ahead && duration_s > 0.0;
+        if known && runs {
+            own = Some(plan(self.machine, mv, self.overrides[0]));
+        }
         let extremes = match (&window, covered) {
             (_, Some(extremes)) => extremes,
             (Window::Steady(power_w), None) => [*power_w; 2],
@@ -211,8 +225,6 @@ impl<'m> SpindleBus<'m> {
             (Window::Run(trace, from_s), None) => {
                 let span = trace.over(*from_s, from_s + duration_s);
                 let extremes = [span.largest_w, span.least_w];
-                let planned = assessment.certificate == Certificate::Planned;
-                let known = planned && !assessment.ahead && duration_s > 0.0;
                 if known && self.reaches(&judged.demand, extremes, cutting_w, want) {
                     exact = Some((*trace, *from_s));
                 }
@@ -220,9 +232,10 @@ impl<'m> SpindleBus<'m> {
             }
         };
         let index = self.spindle.converter;
-        if let (Some(run), Some(converter)) = (exact, self.model.converters.get(index)) {
-            let plan = plan(self.machine, mv, self.overrides[0]);
-            let [peak_w, regen_w] = overlap::peaks(&self.model, converter, mv, &plan, run);
+        if let (Some(run), Some(plan), Some(converter)) =
+            (exact, &own, self.model.converters.get(index))
+        {
+            let [peak_w, regen_w] = overlap::peaks(&self.model, converter, mv, plan, run);
             let base_w = self.spindle.base_load_w;
             let fed_back_w = (regen_w - self.credited_w()).max(0.0);
             let peaks = [peak_w + base_w + cutting_w, fed_back_w];
@@ -231,6 +244,9 @@ impl<'m> SpindleBus<'m> {
             let rests = mv.moving.is_empty() && mv.unknown_start.is_empty();
             let idle_w = if rests { self.idle_w(mv) } else { 0.0 };
             self.add(&mut judged.demand, extremes, idle_w, cutting_w);
+        }
+        if covered.is_none() {
+            self.count_slower(mv, assessment, own.as_ref(), cutting_w, &mut judged);
         }
         judged.spindle.drawn_w = later[0].max(0.0) + self.spindle.base_load_w;
         judged.spindle.fed_back_w = (-later[1]).max(0.0);

@@ -101,7 +101,7 @@ impl PowerModel {
         Some(self.tracer_of(self.converters.get(converter)?, flow))
     }
 
-    fn tracer_of<'a>(&'a self, converter: &'a ConverterPower, flow: Flow) -> Tracer<'a> {
+    pub(super) fn tracer_of<'a>(&'a self, converter: &'a ConverterPower, flow: Flow) -> Tracer<'a> {
         Tracer {
             model: self,
             converter,

@@ -74,6 +74,8 @@ impl Terms {
             && mv.unknown_start.is_empty()
             && !mv.stray.strays()
             && mv.path_mode == PathMode::LookAhead
+            // What the program has set is left to the planner.
+            && !matches!(mv.corner, Corner::Square(_))
     }
 
     /// Describes a move that suits, and a joint before it at which these axes move, in

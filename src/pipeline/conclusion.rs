@@ -1,0 +1,99 @@
+//! What limiting a program comes to.
+
+use super::certify::{Certified, Reasons};
+use super::conditions::conditions;
+use super::over_time::OverTime;
+use super::writer::Written;
+use super::{LimitOptions, LimitSummary, Options, Summary};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::machine::{ALL_AXES, Machine, RapidPath};
+
+/// The figures of both programs and the reasons of both halves as one.
+pub(super) fn conclude(
+    machine: &Machine,
+    target: &Machine,
+    paths: &[Options],
+    how: LimitOptions,
+    written: Written,
+    certified: Certified,
+) -> LimitSummary {
+    let Written {
+        mut before,
+        edited_lines,
+        mut reasons,
+        may_skip,
+        places: _,
+        pauses,
+    } = written;
+    let Certified {
+        summary: mut after,
+        reasons: found,
+        deeper: _,
+    } = certified;
+    if target != machine {
+        // What cannot reach the lower limit keeps the machine's own, or else the
+        // figures show it.
+        reasons = Reasons::default();
+    }
+    reasons.extend(found);
+    let missed = after.over_time.iter().filter(|it| !it.rating.fits());
+    for reason in missed.map(OverTime::reason) {
+        reasons.count += 1;
+        reasons.list.push(reason);
+    }
+    let slower = reasons.only_power();
+    reasons
+        .list
+        .sort_by(|a, b| (&a.file, a.line).cmp(&(&b.file, b.line)));
+    reasons.list.truncate(Summary::KEPT);
+    for summary in [&mut before, &mut after] {
+        summary.conditions = conditions(machine, paths, summary);
+    }
+    if before
+        .notes
+        .iter()
+        .any(|note| note.rule == "no-motion-word")
+    {
+        let taken = "blocks before the first motion word are taken for rapids (G0)";
+        after.conditions.push(taken.to_owned());
+    }
+    let rooms = machine.path.clearance_mm.iter().zip(ALL_AXES);
+    let rooms: Vec<String> = rooms
+        .filter_map(|(room, axis)| Some(format!("{} {}", char::from(axis.letter()), (*room)?)))
+        .collect();
+    let each_for_itself = machine.path.rapid == RapidPath::Independent;
+    if how.allowed.straighten && each_for_itself && !rooms.is_empty() {
+        after.conditions.push(format!(
+            "rapids of several axes may run along lines beyond the clearance ({}, machine \
+             coordinates)",
+            rooms.join(", ")
+        ));
+    }
+    let certified = reasons.count == 0 && after.fits();
+    LimitSummary {
+        before,
+        after,
+        edited_lines,
+        may_skip,
+        pauses,
+        certified,
+        slower,
+        reasons: reasons.list,
+    }
+}
+
+/// That something is right only as the switches of block delete are set.
+pub(super) fn holds_one_way(found: Diagnostic) -> Diagnostic {
+    let message = format!(
+        "this holds only for the blocks with / that are skipped or executed as --block-delete \
+         says; otherwise {}",
+        found.message
+    );
+    Diagnostic {
+        severity: Severity::Warning,
+        rule: "holds-one-way",
+        message,
+        help: None,
+        ..found
+    }
+}

@@ -1,0 +1,221 @@
+//! `--allow stop`: exact stops between feeds where only the robust bound holds between
+//! them, and where one costs less time than the lower feed.
+
+use proptest::prelude::*;
+
+use crate::shop::Shop;
+
+fn shop(controller: &str, power_w: f64) -> Shop {
+    let converter = format!("peak_power_w = {power_w}");
+    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
+}
+
+/// Exit code, what is written and what is said.
+fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
+    shop.put("a.nc", program);
+    shop.run(format!("limit a.nc {options}").trim_end())
+}
+
+/// At F20000 an axis draws 0.3333·(200·3 + 100)/0.8 = 292 W, and 100 W at rest: by itself
+/// it fits under 450 W. Blended with the next one it draws 683 W, so that 350 W are shared
+/// by both at F12000: 5 s against 3 s and 0.22 s for the stop.
+#[test]
+fn a_stop_takes_the_place_of_a_lower_feed() {
+    let program = "G21 G90 G64\nG1 X1000. F20000.\nN20 Y1000.\nX0. Y0.\nM30\n";
+    let (code, text, errors) = limited(&shop("fanuc", 450.0), program, "--allow feed,stop");
+    assert_eq!(code, 0, "{errors}");
+    // X and Y together have 350 W, 0.2 m/s each: 0.2·2·(200·3 + 100)/0.8.
+    assert_eq!(
+        text,
+        "G21 G90 G64\nG9 G1 X1000. F20000.\nN20 G9 Y1000.\nX0. Y0. F16970.\nF20000.\nM30\n"
+    );
+    let (code, text, _) = limited(&shop("fanuc", 450.0), program, "--allow feed");
+    assert_eq!(code, 0);
+    assert!(text.contains("G1 X1000. F11999.\n"), "{text}");
+}
+
+/// 10 mm are gone in 0.05 s at F12000: a stop would cost 0.22 s.
+#[test]
+fn short_blocks_take_the_lower_feed() {
+    let program = "G21 G90 G64\nG1 X10. F20000.\nY10.\nX0.\nY0.\nM30\n";
+    let with = limited(&shop("fanuc", 450.0), program, "--allow feed,stop");
+    assert_eq!(with.0, 0, "{}", with.2);
+    assert_eq!(
+        with,
+        limited(&shop("fanuc", 450.0), program, "--allow feed")
+    );
+}
+
+/// Without a word for the feed the stop alone may do.
+#[test]
+fn stops_need_no_other_permission() {
+    let program = "G21 G90 G64\nG1 X10. F20000.\nY10.\nM30\n";
+    let shop = shop("fanuc", 450.0);
+    let (code, text, errors) = limited(&shop, program, "--allow stop --report r.csv");
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(text, "G21 G90 G64\nG9 G1 X10. F20000.\nY10.\nM30\n");
+    let report = shop.get("r.csv");
+    let row = report.lines().nth(1).unwrap_or_default();
+    assert!(row.contains(",exact stop,G9,"), "{report}");
+    let (code, _, errors) = limited(&shop, program, "");
+    assert_eq!(code, 1);
+    assert!(errors.contains("cutting feeds are not changed"), "{errors}");
+}
+
+#[test]
+fn each_control_has_its_own_word() {
+    for (controller, word) in [
+        ("haas", "G9"),
+        ("mazak", "G9"),
+        ("mitsubishi", "G9"),
+        ("syntec", "G9"),
+        ("okuma", "G9"),
+        ("siemens", "G9"),
+        ("isg", "G60"),
+    ] {
+        let shop = shop(controller, 450.0);
+        let program = "G90\nG1 X1000. F20000.\nY1000.\nM30\n";
+        let options = "--allow feed,stop --strategy speed";
+        let (code, text, errors) = limited(&shop, program, options);
+        assert_eq!(code, 0, "{controller}: {errors}");
+        let expected = format!("G90\n{word} G1 X1000. F20000.\nY1000.\nM30\n");
+        assert_eq!(text, expected, "{controller}");
+    }
+}
+
+/// Where the profile has no word, and where no stop is needed, a message says so.
+#[test]
+fn a_control_without_the_word() {
+    let program = "G90 G64\nG1 X1000. F20000.\nY1000.\nM2\n";
+    for (controller, reason) in [
+        (
+            "iso",
+            "the controller `iso` names no word for an exact stop",
+        ),
+        ("linuxcnc", "the planner of `linuxcnc` is modelled"),
+    ] {
+        let shop = shop(controller, 450.0);
+        let (code, with, errors) = limited(&shop, program, "--allow feed,stop");
+        assert_eq!(code, 0, "{controller}: {errors}");
+        assert!(errors.contains("warning[no-stop-word]"), "{errors}");
+        assert!(errors.contains(reason), "{errors}");
+        let (_, without, errors) = limited(&shop, program, "--allow feed");
+        assert_eq!(with, without);
+        assert!(!errors.contains("no-stop-word"), "{errors}");
+    }
+}
+
+/// Nothing is put into blocks under compensation, with a path mode of their own, and where the
+/// start is not known or nothing of the control is to be relied on.
+#[test]
+fn where_no_stop_is_put() {
+    let plain = "G1 X1000. F20000.\nY1000.\n";
+    for (program, options) in [
+        (
+            format!("G21 G90 G64\nG41 D1 G1 X10. Y10. F2000.\n{plain}G40 X0. Y0.\nM30\n"),
+            "",
+        ),
+        (
+            "G21 G90 G64\nG64 G1 X1000. F20000.\nG64 Y1000.\nM30\n".to_owned(),
+            "",
+        ),
+        (format!("G21 G90 G64\n{plain}M30\n"), "--start unknown"),
+        (format!("G21 G90 G64\n{plain}M30\n"), "--certificate robust"),
+    ] {
+        let shop = shop("fanuc", 450.0);
+        shop.put("tools.tbl", "T1 P1 D4\n");
+        let all = format!("--allow feed,stop {options}");
+        let (_, text, errors) = limited(&shop, &program, all.trim_end());
+        assert!(!text.contains("G9 "), "{program}{text}{errors}");
+    }
+}
+
+/// Feeds that mean something else stay as they are; a stop changes none.
+#[test]
+fn stops_among_feeds_of_another_meaning() {
+    let shop = shop("haas", 450.0);
+    let program = "G21 G90 G64\nG93 G1 X1000. F20.\nY1000. F20.\nG94\nM30\n";
+    let (code, text, errors) = limited(&shop, program, "--allow feed,stop");
+    assert_eq!(code, 0, "{errors}");
+    assert!(
+        text.contains("G93 G9 G1 X1000. F20.\n") || text.contains("G9 G93 G1 X1000. F20.\n"),
+        "{text}"
+    );
+    assert!(text.contains("\nY1000. F20.\n"), "{text}");
+}
+
+/// A line that runs several times has its stop each time.
+#[test]
+fn a_loop_has_the_stop_in_each_run() {
+    let shop = shop("fanuc", 450.0);
+    let program = "G21 G90 G64\n#1=0\nWHILE [#1 LT 3] DO1\nG1 X1000. F20000.\nY1000.\nX0.\nY0.\n\
+                   #1=#1+1\nEND1\nM30\n";
+    let (code, text, errors) = limited(&shop, program, "--allow feed,stop");
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(text.matches("G9 ").count(), 4, "{text}");
+    assert!(!text.contains(" F1"), "{text}");
+    assert_eq!(text.replace("G9 ", ""), program);
+}
+
+/// The blocks of a modal macro call stay its blocks: the macro runs after each of them.
+#[test]
+fn a_modal_macro_call_goes_on() {
+    let shop = shop("fanuc", 450.0);
+    let program = "G21 G90 G64\nG66 P1\nG1 X1000. F20000.\nY1000.\nG67\nM30\nO1\nG4 X1.\nM99\n";
+    let (code, text, errors) = limited(&shop, program, "--allow feed,stop");
+    assert_eq!(code, 0, "{errors}");
+    shop.put("out.nc", &text);
+    assert_eq!(moves(&shop, "a.nc"), moves(&shop, "out.nc"), "{text}");
+}
+
+/// What moves, in order: kind, end and arc.
+fn moves(shop: &Shop, name: &str) -> Vec<String> {
+    let (code, out, errors) = shop.run(&format!("moves {name}"));
+    assert_eq!(code, 0, "{errors}");
+    let rows = out.lines().map(|line| {
+        let mv: serde_json::Value = serde_json::from_str(line).expect("a move");
+        format!(
+            "{} {} {} {}",
+            mv["kind"], mv["end"], mv["center"], mv["turns"]
+        )
+    });
+    rows.collect()
+}
+
+fn block() -> impl Strategy<Value = String> {
+    let place = -300..300;
+    let feed = prop::sample::select(vec!["", " F20000.", " F3000.", " F9000."]);
+    prop_oneof![
+        6 => (place.clone(), feed.clone()).prop_map(|(x, f)| format!("G1 X{x}.{f}\n")),
+        6 => (place.clone(), feed.clone()).prop_map(|(y, f)| format!("G1 Y{y}.{f}\n")),
+        4 => (place.clone(), place.clone(), feed).prop_map(|(x, y, f)| format!("G1 X{x}. Y{y}.{f}\n")),
+        1 => place.clone().prop_map(|z| format!("G0 Z{z}.\n")),
+        1 => place.prop_map(|x| format!("G3 X{x}. R400.\n")),
+        1 => prop::sample::select(vec!["G4 P100\n", "M8\n", "G61\n", "G64\n", "/G1 X5.\n"]).prop_map(str::to_owned),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    /// Whatever fits without stops fits with them, over the same moves; and no feed is
+    /// lower for the stops but where its block was not lowered before.
+    #[test]
+    fn stops_change_no_path(blocks in prop::collection::vec(block(), 2..14), power_w in 430.0..640.0_f64) {
+        let shop = shop("fanuc", power_w);
+        let program = format!("G21 G90 G64\nG1 X0. F20000.\n{}M30\n", blocks.concat());
+        let without = limited(&shop, &program, "--allow feed -o without.nc");
+        let with = limited(&shop, &program, "--allow feed,stop -o with.nc");
+        if without.0 == 0 {
+            prop_assert_eq!(with.0, 0, "{}{}", program, with.2);
+        }
+        if with.0 == 0 {
+            prop_assert_eq!(
+                moves(&shop, "a.nc").into_iter().filter(|it| !it.contains("dwell")).count(),
+                moves(&shop, "with.nc").into_iter().filter(|it| !it.contains("dwell")).count()
+            );
+            let (code, _, errors) = shop.run("check with.nc");
+            prop_assert_eq!(code, 0, "{}", errors);
+        }
+    }
+}
