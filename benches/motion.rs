@@ -134,6 +134,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         feed_word: true,
         as_feed: false,
         exact_stop: false,
+        stands: false,
         stop_word: false,
         unsplit: None,
         reason: "",

@@ -219,38 +219,7 @@ impl Entry {
         let reasons = [edit, reason(&feed), reason(&rapid)];
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
         let language = &machine.controller.language;
-        let reason_help = match reason_text {
-            CYCLE => {
-                "--allow expand writes canned cycles out as single blocks; where it taps, more \
-                 power or slower axes are needed"
-            }
-            TURNING_CYCLE if facts.cycle => {
-                "--allow expand writes turning cycles out as single blocks, where they cut no thread"
-            }
-            REFERENCE | MACHINE_COORDINATES => {
-                "the way is gone by a feed before it where the places are known: reference_mm of \
-                 the axes, the work offset ([offsets] or --parameters) and the tool's length \
-                 (--tool-table); or give the speed of the return, reference_mm_min"
-            }
-            IN_A_FILE => {
-                "--with-subprograms writes the files of subprograms too, certified together with \
-                 all programs that are given"
-            }
-            UNKNOWN_FEED => {
-                "write F before it; or give the F of power-on, which no written one exceeds \
-                 (SINUMERIK: setting data 42110): power_on_feed_mm_min under [language] of the \
-                 machine file"
-            }
-            PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
-                "program G98 (feed per minute) and F in it before the rapid"
-            }
-            PER_REVOLUTION => "program G94 (feed per minute) and F in it before the rapid",
-            WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
-                "program an exact stop (G61) before the block in front of it, or write the \
-                 move as a feed by hand"
-            }
-            _ => "",
-        };
+        let reason_help = self.help(machine, reason_text);
         let feed_accel_mm_s2 = self
             .knobs
             .as_ref()
@@ -276,6 +245,43 @@ impl Entry {
             feed_before: self.feed_before(),
             positions: facts.homes || positions(machine, self.mark.motion, mv),
             feed_accel_mm_s2,
+        }
+    }
+
+    /// What helps where something may not be changed for this reason.
+    fn help(&self, machine: &Machine, reason: &str) -> &'static str {
+        let language = &machine.controller.language;
+        match reason {
+            CYCLE => {
+                "--allow expand writes canned cycles out as single blocks; where it taps, more \
+                 power or slower axes are needed"
+            }
+            TURNING_CYCLE if self.facts.cycle => {
+                "--allow expand writes turning cycles out as single blocks, where they cut no thread"
+            }
+            REFERENCE | MACHINE_COORDINATES => {
+                "the way is gone by a feed before it where the places are known: reference_mm of \
+                 the axes, the work offset ([offsets] or --parameters) and the tool's length \
+                 (--tool-table); or give the speed of the return, reference_mm_min"
+            }
+            IN_A_FILE => {
+                "--with-subprograms writes the files of subprograms too, certified together with \
+                 all programs that are given"
+            }
+            UNKNOWN_FEED => {
+                "write F before it; or give the F of power-on, which no written one exceeds \
+                 (SINUMERIK: setting data 42110): power_on_feed_mm_min under [language] of the \
+                 machine file"
+            }
+            PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
+                "program G98 (feed per minute) and F in it before the rapid"
+            }
+            PER_REVOLUTION => "program G94 (feed per minute) and F in it before the rapid",
+            WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
+                "program an exact stop (G61) before the block in front of it, or write the \
+                 move as a feed by hand"
+            }
+            _ => "",
         }
     }
 

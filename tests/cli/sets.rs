@@ -413,3 +413,25 @@ fn usage() {
     shop.run(&["limit", "one.nc", "-m", "rig.toml", "--with-subprograms"])
         .refused("give a folder by -o, or --in-place");
 }
+
+/// LinuxCNC's accelerations over HAL: each run of a subprogram carries its own words.
+#[test]
+fn outputs_are_set_in_subprograms_too() {
+    let shop = shop("linuxcnc");
+    let machine = shop.get("rig.toml");
+    shop.put(
+        "rig.toml",
+        format!("{machine}[outputs]\nacceleration = 0\n"),
+    );
+    shop.put(
+        "w.ngc",
+        "G21 G90 G94 F100\nG0 X400\no<home> call\nG0 X400\no<home> call\nM2\n",
+    );
+    shop.put("home.ngc", "o<home> sub\nG0 X0\nG1 X1\no<home> endsub\n");
+    fits(&shop, &["w.ngc"]);
+    assert_eq!(
+        shop.get("fit/home.ngc"),
+        "o<home> sub\nM68 E0 Q0.799\nM66 P0 L0\nG0 X0\nM68 E0 Q1\nM66 P0 L0\nG1 X1\n\
+         o<home> endsub\n"
+    );
+}
