@@ -138,3 +138,10 @@ fn too_many() -> Failure {
         more: 0,
     }
 }
+
+/// Whether a program is looked at with several settings of the switches of block delete.
+pub(super) fn turns_switches(paths: &[Options]) -> bool {
+    let switches = |options: &Options| options.reading.block_delete;
+    let mut pairs = paths.windows(2);
+    pairs.any(|pair| matches!(pair, [a, b] if switches(a) != switches(b)))
+}

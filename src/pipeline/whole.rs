@@ -14,6 +14,7 @@ use super::front::{Front, read_whole, too_large};
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
 use super::watching::watching_at;
+use super::ways::turns_switches;
 use super::worst::{worst, worst_of};
 use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, Options, RowSink, Summary};
@@ -148,13 +149,6 @@ impl Whole<'_> {
         }
         certified.ok_or_else(no_way)
     }
-}
-
-/// Whether a program is looked at with several settings of the switches of block delete.
-fn turns_switches(paths: &[Options]) -> bool {
-    let switches = |options: &Options| options.reading.block_delete;
-    let mut pairs = paths.windows(2);
-    pairs.any(|pair| matches!(pair, [a, b] if switches(a) != switches(b)))
 }
 
 fn no_way() -> Failure {

@@ -442,21 +442,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
     }
 
-    /// Writes the blocks whose moves are all decided.
-    fn write_decided(&mut self) {
-        while self
-            .entries
-            .front()
-            .is_some_and(|entry| entry.decided.len() >= entry.moves)
-        {
-            let Some(entry) = self.entries.pop_front() else {
-                break;
-            };
-            self.first += 1;
-            self.write(entry);
-        }
-    }
-
     /// Writes a block whose moves are decided, and keeps its buffers.
     fn write(&mut self, mut entry: Box<Entry>) {
         let change = self.forced(&entry, entry.change());

@@ -377,14 +377,6 @@ impl Profile {
         Self { phases }
     }
 
-    /// A constant speed (mm/s) for a time (s).
-    #[must_use]
-    pub(crate) fn cruise(speed: f64, duration_s: f64) -> Self {
-        let mut phases = Phases::new();
-        phases.push(Phase::constant(duration_s, 0.0, speed, speed, 0.0));
-        Self { phases }
-    }
-
     /// How long it lasts in s.
     #[must_use]
     #[inline]

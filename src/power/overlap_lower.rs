@@ -117,13 +117,13 @@ fn parts(
     if mv.arc.is_some() || profile.phases.iter().any(jerks) {
         return None;
     }
-    let cruise = Plan {
+    let steady = Plan {
         duration_s: 1.0,
-        trajectory: Trajectory::Path(Profile::cruise(profile.top_speed_mm_s(), 1.0)),
+        trajectory: Trajectory::Path(cruise(profile.top_speed_mm_s())),
         ..plan.clone()
     };
     let axes = Axes::new(model, converter, mv, plan, side);
-    let cruise_w = Axes::new(model, converter, mv, &cruise, side).power_w(0.0, 1.0);
+    let cruise_w = Axes::new(model, converter, mv, &steady, side).power_w(0.0, 1.0);
     // Where what an axis gives is credited, or it is held against its weight, next to rest
     // may be the worst.
     let rest_w = model.tracer_of(converter, side.flow()).rest_w(mv);
@@ -148,4 +148,18 @@ fn parts(
         start_s += phase.duration_s;
     }
     Some(parts)
+}
+
+/// A constant speed, mm/s, for a second.
+fn cruise(speed_mm_s: f64) -> Profile {
+    let mut profile = Profile::default();
+    profile.phases.push(Phase {
+        kind: PhaseKind::ConstantAcceleration,
+        duration_s: 1.0,
+        position_mm: 0.0,
+        velocity_mm_s: speed_mm_s,
+        end_velocity_mm_s: speed_mm_s,
+        accel_mm_s2: 0.0,
+    });
+    profile
 }

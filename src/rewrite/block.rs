@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 pub use pieces::PieceWords;
 
 use super::number::{Style, decimal, feed_again, has_point, with_blanks, with_digit};
-use super::state::{FeedValue, Mark, Written};
+use super::state::{FeedValue, Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
@@ -399,12 +399,7 @@ impl<'m> Rewriter<'m> {
         }
         let mut words = Vec::new();
         if self.written.motion != original.motion {
-            words.extend(
-                original
-                    .motion
-                    .digit()
-                    .map(|digit| format!("G{}", digit as char)),
-            );
+            words.extend(motion_word(original.motion));
             self.written.motion = original.motion;
         }
         let feed = original.feed_value();
@@ -415,8 +410,7 @@ impl<'m> Rewriter<'m> {
                 // An arc it reads only with its centre: a line takes its place.
                 let arc = !matches!(original.motion, Motion::Rapid | Motion::Linear);
                 let motion = if arc { Motion::Linear } else { original.motion };
-                let digit = motion.digit();
-                words.extend(digit.map(|digit| format!("G{}", digit as char)));
+                words.extend(motion_word(motion));
                 self.written.motion = motion;
             }
             words.extend(

@@ -17,6 +17,12 @@ pub struct Mark {
     pub corner: Option<Corner>,
 }
 
+/// The word of a motion, such as `G1`; none where no single digit says it.
+pub(super) fn motion_word(motion: Motion) -> Option<String> {
+    let digit = motion.digit()?;
+    Some(format!("G{}", digit as char))
+}
+
 impl Mark {
     /// The mark of a modal state.
     #[must_use]

@@ -93,19 +93,31 @@ fn it_is_asked_for() {
     refused(&shop(KNOWN), differs, "--allow feed", &both);
 }
 
-/// A printer starts with an F of its firmware; none above it is written.
+/// A printer keeps the F of what ran before, which may be lower than any other: none is
+/// written, and words that cap speed stand around the block.
 #[test]
 fn of_printers() {
-    for (controller, feed) in [("marlin", 1500), ("klipper", 1500), ("reprap", 3000)] {
+    for (controller, cap) in [
+        ("marlin", "M203 X"),
+        ("klipper", "SET_VELOCITY_LIMIT VELOCITY="),
+        ("reprap", "M203 X"),
+    ] {
         let shop = Shop::mill(controller, "peak_power_w = 300", "", "");
         shop.put("a.gcode", "G1 X100 Y100\nG1 X0 F60000\nG1 X1 F600\n");
         let (code, _, errors) =
             shop.run("limit a.gcode --strategy speed --allow feed -o out.gcode");
         assert_eq!(code, 0, "{errors}");
         let text = shop.get("out.gcode");
+        let mut lines = text.lines();
         assert!(
-            text.starts_with(&format!("G1 X100 Y100 F{feed}\nG1 X0 F")),
+            lines.next().is_some_and(|line| line.starts_with(cap)),
             "{text}"
         );
+        assert_eq!(lines.next(), Some("G1 X100 Y100"), "{text}");
+        assert!(
+            lines.next().is_some_and(|line| line.starts_with(cap)),
+            "{text}"
+        );
+        assert!(!errors.contains("first-feed"), "{errors}");
     }
 }

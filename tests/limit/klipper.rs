@@ -159,7 +159,8 @@ fn unlike_axes_keep_their_words() {
     let found = refused(&machine, how(Strategy::Speed, true), "G1 X100\n");
     assert_eq!(
         found,
-        "the block may not be changed: no F is in force that could be put back"
+        "the block may not be changed: no F is in force, and the one that the control takes then \
+         is not known"
     );
 }
 

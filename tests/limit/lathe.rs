@@ -438,7 +438,8 @@ fn drilling() {
     // Feeds by the revolution stay the same.
     let turning = "O1\nG21 G40 G99 G54\nT0300\nG97 S500 M3\nG0 X60. Z5.\n\
                    G83 X40. Z-30. R-3. Q10000 F0.1\nG80\nG0 X100. Z50.\nM30\n";
-    assert!(limited(&shop, turning).contains("G0 G99 F0.1\nG1 Z-18.\n"));
+    let text = limited(&shop, turning);
+    assert!(text.contains("G0 G99 F0.1\nG1 Z-28.\n"), "{text}");
 }
 
 /// How far pecks return is a parameter; taps stay, and a way out that is faster than an F by

@@ -40,6 +40,21 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         self.conclude()
     }
 
+    /// Writes the blocks whose moves are all decided.
+    pub(super) fn write_decided(&mut self) {
+        while self
+            .entries
+            .front()
+            .is_some_and(|entry| entry.decided.len() >= entry.moves)
+        {
+            let Some(entry) = self.entries.pop_front() else {
+                break;
+            };
+            self.first += 1;
+            self.write(entry);
+        }
+    }
+
     /// Keeps what was decided for a run of a line.
     pub(super) fn note(&mut self, entry: &Entry, change: Option<Change>) {
         self.spindle.clear();
