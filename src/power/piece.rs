@@ -88,8 +88,11 @@ pub(super) fn shifted_demand(
     let ramp2 = 2.0 * planned.accel_mm_s2 * planned.length_mm;
     let mut lower = Demand::NONE;
     for (side, (low2, falls)) in sides.into_iter().zip([(start, false), (end, true)]) {
-        let speeds_mm_s = speeds_mm_s(low2.sqrt());
-        for low_mm_s in speeds_mm_s.filter(|_| side).chain(side.then_some(0.0)) {
+        let low_mm_s = low2.sqrt();
+        // As planned it may turn round within the chord, where a slower one goes on.
+        let ends = [low_mm_s, 0.0];
+        let speeds_mm_s = ends.into_iter().chain(speeds_mm_s(low_mm_s));
+        for low_mm_s in speeds_mm_s.filter(|_| side) {
             let low2 = low_mm_s * low_mm_s;
             let high2 = top.min(low2 + ramp2);
             let (start, end) = if falls { (high2, low2) } else { (low2, high2) };
