@@ -54,7 +54,8 @@ pub fn take_hints<R: Read + Seek + Send>(
     let mut written = Written {
         lines: lines.map(|unfit| (unfit.line, None)).collect(),
     };
-    let as_it_stands = reasons(false, Some(&mut written))?;
+    let rows = (summary.moves <= MOVES_MAX).then_some(&mut written as &mut dyn RestartRows);
+    let as_it_stands = reasons(false, rows)?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
         let words = written.lines.get(&unfit.line).and_then(Option::as_ref);
         // What was advised for a move by itself gives way to what is written next to others.
@@ -84,6 +85,10 @@ pub fn take_hints<R: Read + Seek + Send>(
     }
     Ok(())
 }
+
+/// Moves of a program whose words are looked up: that takes some ten times as long as to
+/// read it. Of longer ones the advice is that for each move by itself.
+const MOVES_MAX: u64 = 20_000;
 
 /// The words that each line gets, with the lowest value of the first of them.
 struct Written {
