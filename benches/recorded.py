@@ -263,11 +263,12 @@ def worst_line(lines, planned):
     return worst
 
 
-def at_power_on(text):
-    """The program after the path mode that the plan begins with. Up to 2.9.1 it is chance which
-    LinuxCNC has: the end of the emergency stop, in which it starts, makes the tolerance 0."""
+def enclosed(text):
+    """The program after the path mode that the plan begins with, and with an end. Up to 2.9.1
+    it is chance which mode LinuxCNC has: the end of the emergency stop, in which it starts,
+    makes the tolerance 0."""
     head = len(text.split(b"\n", 1)[0]) + 1 if text.startswith(b"%") else 0
-    return text[:head] + b"G64 P0.0254 Q0\n" + text[head:]
+    return text[:head] + b"G64 P0.0254 Q0\n" + text[head:] + (b"" if head else b"\nM2\n")
 
 
 # Planning
@@ -322,7 +323,7 @@ class Table:
         with tempfile.TemporaryDirectory() as folder:
             raw, text = pathlib.Path(folder) / "raw", program.read_bytes()
             if limit_w:
-                text = at_power_on(text)
+                text = enclosed(text)
             for speedup in dict.fromkeys((self.given.speedup, 1)):
                 try:
                     wrong = record(self.given.tools, machine, text, place, speedup, planned.whole_s * 2 + 30, raw)
