@@ -68,6 +68,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let options = Options {
         once: false,
+        rapid_mark: None,
         reading: Reading {
             start: if options & 1 == 0 {
                 Reading::default().start

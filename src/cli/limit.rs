@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gwatt::pipeline::{self, Allowed};
+use gwatt::pipeline::{self, Allowed, RapidMark, RapidMarkError};
 
 use super::{MachineArgs, ProgramArgs};
 
@@ -58,6 +58,18 @@ pub struct LimitArgs {
     /// What may be changed besides rapids and their accelerations; several with commas
     #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
     pub allow: Vec<Allow>,
+    /// Write a comment into each block in which a rapid becomes a feed, and take feeds with
+    /// this comment for what they stand for: their F may be lowered without --allow feed, so
+    /// that a program can be limited once more [default text: RAPID]
+    #[arg(
+        long,
+        value_name = "TEXT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = RapidMark::USUAL,
+        value_parser = mark
+    )]
+    pub mark_rapids: Option<RapidMark>,
     /// Write what can be lowered even if not all moves fit then; the exit status stays 1
     #[arg(long)]
     pub partial: bool,
@@ -67,6 +79,10 @@ pub struct LimitArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: ProgramArgs,
+}
+
+fn mark(text: &str) -> Result<RapidMark, RapidMarkError> {
+    RapidMark::new(text)
 }
 
 /// What `--allow` allows.

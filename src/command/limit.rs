@@ -44,6 +44,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);
+    setup.options.rapid_mark.clone_from(&args.mark_rapids);
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
     let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args, path)?.spool()?);

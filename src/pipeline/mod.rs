@@ -48,7 +48,10 @@ pub use by_line::LineSummary;
 pub use hints::take_hints;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};
-pub use options::{Allowed, Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
+pub use options::{
+    Allowed, Law, LimitOptions, Limits, Options, RapidMark, RapidMarkError, Reading, Start,
+    Strategy,
+};
 pub use over_time::OverTime;
 pub use pause::Pause;
 pub use restart::{Restart, RestartRows};

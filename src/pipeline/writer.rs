@@ -27,7 +27,7 @@ use crate::interpret::{KnobState, Move, MoveKind, Step};
 use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
-use crate::rewrite::{BlockView, Mark, Rewriter};
+use crate::rewrite::{BlockView, Comment, Mark, Rewriter};
 pub(super) use waiting::Plan;
 use waiting::Waits;
 
@@ -90,6 +90,8 @@ pub(super) struct Writer<'m, R, W> {
     spindle: SpindleRows,
     may_skip: bool,
     waits: Waits,
+    /// Marks what stands for a rapid.
+    comment: Option<Comment>,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -109,6 +111,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         model: PowerModel,
     ) -> Self {
         let front = Front::new(input, machine, options);
+        let comment = options.comment(machine);
         Self {
             machine,
             mark: Mark::of(front.interpreter().modal()),
@@ -121,7 +124,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             assessor: watching(machine, options),
             limiter,
             tally: Tally::new(machine, options, None),
-            rewriter: Rewriter::new(machine),
+            rewriter: Rewriter::new(machine).marking(comment.clone()),
             entries: VecDeque::new(),
             first: 0,
             ready: None,
@@ -140,6 +143,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             spindle: SpindleRows::default(),
             may_skip: false,
             waits: Waits::default(),
+            comment,
             table,
         }
     }
@@ -260,6 +264,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         entry.fill(&mut line, self.machine, self.mode, self.mm_per_unit);
         if self.limiter.splits() && self.table.is_none() {
             entry.keep_places(line.interpreter);
+        }
+        if let Some(comment) = &self.comment {
+            entry.look_for(comment);
         }
         self.mm_per_unit = entry.mark.mm_per_unit;
         self.may_skip |=
