@@ -33,6 +33,7 @@ const LIMIT: LimitOptions = LimitOptions {
         feed: true,
         ..Allowed::NOTHING
     },
+    ..LimitOptions::USUAL
 };
 
 fn main() {

@@ -256,6 +256,7 @@ fn surface_speed_where_the_axis_stands_or_is_not_known() {
             feed: true,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let (program, mut out) = (format!("G21 G90\n{facing}M2\n"), Vec::new());
     let summary = limit(Cursor::new(&program), &lathe, &options, how, &mut out, None).unwrap();
@@ -339,6 +340,7 @@ fn limited(machine: &Machine, program: &str, allow_feed: bool) -> (String, Limit
             feed: allow_feed,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let program = format!("G21 G90\n{program}M2\n");
     let (mut out, mut rows) = (Vec::new(), Rows::default());

@@ -85,6 +85,7 @@ const HOW: LimitOptions = LimitOptions {
         feed: true,
         ..Allowed::NOTHING
     },
+    ..LimitOptions::USUAL
 };
 
 const SPINDLE: &str = "G21 G90 F100 S500 M3\n";

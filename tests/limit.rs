@@ -146,6 +146,7 @@ pub(crate) fn run(
             feed: run.allow_feed,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let mut text = Vec::new();
     let summary = limit(

@@ -65,6 +65,7 @@ fuzz_target!(|bytes: &[u8]| {
             feed: strategy & 8 == 0,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let options = Options {
         once: false,

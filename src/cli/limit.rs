@@ -55,6 +55,14 @@ pub struct LimitArgs {
     /// How far to lower it
     #[arg(long, value_enum, default_value_t = Law::Exact)]
     pub law: Law,
+    /// With --strategy preset or --law patent: their values count for moves that fit without
+    /// them too
+    #[arg(long)]
+    pub always: bool,
+    /// With --strategy preset: what becomes of a move that does not fit and for whose axes
+    /// there is no preset [default: refuse]
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub preset_else: Option<PresetElse>,
     /// What may be changed besides rapids and their accelerations; several with commas
     #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
     pub allow: Vec<Allow>,
@@ -133,6 +141,15 @@ pub enum Strategy {
     Split,
 }
 
+/// See [`pipeline::PresetElse`].
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum PresetElse {
+    /// It gets the speed at which it fits
+    Speed,
+    /// It stays, and the program does not fit
+    Refuse,
+}
+
 /// See [`pipeline::Law`].
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Law {
@@ -159,6 +176,15 @@ impl From<Strategy> for pipeline::Strategy {
             Strategy::Accel => Self::Accel,
             Strategy::Optimal => Self::Optimal,
             Strategy::Split => Self::Split,
+        }
+    }
+}
+
+impl From<PresetElse> for pipeline::PresetElse {
+    fn from(other: PresetElse) -> Self {
+        match other {
+            PresetElse::Speed => Self::Speed,
+            PresetElse::Refuse => Self::Refuse,
         }
     }
 }

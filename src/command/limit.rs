@@ -17,13 +17,17 @@ use super::output::{Spool, Target, back_up, print};
 use super::rows::Rows;
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
-use crate::cli::{LimitArgs, allowed};
+use crate::cli::{LimitArgs, Strategy, allowed};
 
 /// Bytes that go to the spool at once.
 const SPOOL_BYTES: usize = 1 << 16;
 
 /// Writes a program that fits.
 pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
+    ensure!(
+        args.preset_else.is_none() || matches!(args.strategy, Strategy::Preset),
+        "--preset-else goes with --strategy preset"
+    );
     if args.with_subprograms {
         return limit_set::run(args, terminal);
     }
@@ -83,6 +87,8 @@ pub(super) fn options(args: &LimitArgs) -> LimitOptions {
         strategy: args.strategy.into(),
         law: args.law.into(),
         allowed: allowed(&args.allow),
+        always: args.always,
+        preset_else: args.preset_else.map_or_else(Default::default, Into::into),
     }
 }
 

@@ -51,6 +51,7 @@ impl<'m> Adviser<'m> {
                 feed: true,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         Self {
             machine,

@@ -21,6 +21,7 @@ mod motion;
 mod options;
 mod over_time;
 mod pause;
+mod preset_notes;
 mod relay;
 mod restart;
 mod row;
@@ -49,7 +50,7 @@ pub use hints::take_hints;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};
 pub use options::{
-    Allowed, Law, LimitOptions, Limits, Options, RapidMark, RapidMarkError, Reading, Start,
+    Allowed, Law, LimitOptions, Limits, Options, PresetElse, RapidMark, RapidMarkError, Reading, Start,
     Strategy,
 };
 pub use over_time::OverTime;

@@ -5,7 +5,7 @@ pub use crate::interpret::{Limits, Reading, Start};
 use super::row::Certificate;
 use crate::machine::Machine;
 use crate::rewrite::Comment;
-pub use crate::limit::{Allowed, Law, LimitOptions, Strategy};
+pub use crate::limit::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 pub use crate::rewrite::{RapidMark, RapidMarkError};
 
 /// How a program is read and judged.

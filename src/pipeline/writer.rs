@@ -17,6 +17,7 @@ use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::pause::Pause;
+use super::preset_notes::PresetNotes;
 use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
 use super::table::Table;
@@ -80,6 +81,7 @@ pub(super) struct Writer<'m, R, W> {
     batch: Batch,
     reasons: Reasons,
     unsplit: Unsplit,
+    presets: PresetNotes,
     /// Every figure is wanted exactly: there are rows.
     exact: bool,
     model: PowerModel,
@@ -136,6 +138,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             batch: Batch::default(),
             reasons: Reasons::default(),
             unsplit: Unsplit::default(),
+            presets: PresetNotes::default(),
             exact,
             model,
             start_s: 0.0,
@@ -194,6 +197,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         before.lines = lines;
         before.notes = notes;
         before.notes.append(&mut self.unsplit.notes);
+        before.notes.extend(self.presets.notes());
         let written = Written {
             before,
             edited_lines: self.rewriter.edited_lines,

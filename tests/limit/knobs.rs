@@ -191,6 +191,7 @@ fn unconfirmed_words_are_written_on_request() {
                 unverified,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let mut text = Vec::new();
         let program = std::io::Cursor::new(b"G0 X400\nM30\n");

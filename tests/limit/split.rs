@@ -22,6 +22,7 @@ const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Split,
     law: Law::Exact,
     allowed: Allowed::NOTHING,
+    ..LimitOptions::USUAL
 };
 
 /// The text that `limit` writes for a program that it makes fit, and its rows.

@@ -249,6 +249,7 @@ fn sweep(seed: u64, programs: usize) -> [usize; 2] {
                 feed: true,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let mut out = Vec::new();
         let input = Cursor::new(text.as_bytes());
