@@ -5,6 +5,7 @@ mod identify;
 #[cfg(unix)]
 mod interrupts;
 mod machines;
+mod marks;
 mod sets;
 mod sizes;
 mod ways;

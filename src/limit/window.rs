@@ -165,7 +165,11 @@ fn by_law(
     }
     let others = window.iter().zip(found).map(|(member, levers)| {
         let falls_back = solver.falls_back(member.mv);
-        if falls_back { *levers } else { Levers::default() }
+        if falls_back {
+            *levers
+        } else {
+            Levers::default()
+        }
     });
     let others: Vec<Levers> = others.collect();
     let by_speed = others.iter().any(|levers| speed_lever(*levers).is_some());

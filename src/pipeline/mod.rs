@@ -50,8 +50,8 @@ pub use hints::take_hints;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};
 pub use options::{
-    Allowed, Law, LimitOptions, Limits, Options, PresetElse, RapidMark, RapidMarkError, Reading, Start,
-    Strategy,
+    Allowed, Law, LimitOptions, Limits, Options, PresetElse, RapidMark, RapidMarkError, Reading,
+    Start, Strategy,
 };
 pub use over_time::OverTime;
 pub use pause::Pause;

@@ -3,9 +3,9 @@
 pub use crate::interpret::{Limits, Reading, Start};
 
 use super::row::Certificate;
+pub use crate::limit::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 use crate::machine::Machine;
 use crate::rewrite::Comment;
-pub use crate::limit::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 pub use crate::rewrite::{RapidMark, RapidMarkError};
 
 /// How a program is read and judged.

@@ -202,7 +202,10 @@ mod tests {
         assert_eq!(put(false, "(MSG, a) G1 X1", true), "(RAPID) (MSG, a) G1 X1");
         assert_eq!(put(false, "G1X1;go", false), "G1X1(RAPID);go");
         assert_eq!(put(true, "G1 X1\n", true), "G1 X1 ; RAPID\n");
-        assert_eq!(put(true, "G1 X=IC(5) ; go\n", true), "G1 X=IC(5) ; RAPID ; go\n");
+        assert_eq!(
+            put(true, "G1 X=IC(5) ; go\n", true),
+            "G1 X=IC(5) ; RAPID ; go\n"
+        );
         assert_eq!(put(true, "G1X1;go", false), "G1X1; RAPID;go");
     }
 
@@ -212,7 +215,18 @@ mod tests {
             assert!(RapidMark::new(text).is_ok(), "{text}");
         }
         let long = "R".repeat(33);
-        for text in ["", " R", "R ", "a)", "(a", "a;b", "a\nb", "Eilgänge", "a\"", &long] {
+        for text in [
+            "",
+            " R",
+            "R ",
+            "a)",
+            "(a",
+            "a;b",
+            "a\nb",
+            "Eilgänge",
+            "a\"",
+            &long,
+        ] {
             let error = RapidMark::new(text).unwrap_err().to_string();
             assert!(error.contains("1 to 32 letters"), "{error}");
         }
