@@ -94,8 +94,9 @@ pub struct Comment {
 }
 
 impl Comment {
-    /// Its bytes.
-    pub(super) fn text(&self) -> &str {
+    /// As it is written.
+    #[must_use]
+    pub fn text(&self) -> &str {
         &self.text
     }
 
