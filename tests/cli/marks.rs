@@ -151,3 +151,29 @@ fn presets_are_for_strategies_that_have_them() {
                 that fits (--preset-else speed)\n";
     assert!(ran.stderr.starts_with(note), "{}", ran.stderr);
 }
+
+/// A cycle that was written out shifts the lines after it, but not in what is said of them.
+#[test]
+fn notes_name_the_lines_that_were_read() {
+    let shop = shop();
+    let program =
+        "G21 G90 G94\nG0 Z300.\nG81 X400. Z-10. R200. F500.\nG80\nG1 Y100. F20000.\nM30\n";
+    shop.put("holes.nc", program);
+    let usual = ["limit", "holes.nc", "-m", "large.toml", "--allow", "expand"];
+    let presets = ["--strategy", "preset", "--preset-else", "speed", "--always"];
+    let ran = shop.run(&[&usual[..], &presets].concat());
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(
+        ran.stdout.contains("\nG1 Y100. F20000.\n"),
+        "{}",
+        ran.stdout
+    );
+    let stays = "note[preset-not-set]: 1 line fits and stays as it is, though --always asks for \
+                 less: no permitted word lowers the speed of this block\n --> holes.nc:5:1\n";
+    assert!(ran.stderr.contains(stays), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("note[no-preset]: 4 lines move axes"),
+        "{}",
+        ran.stderr
+    );
+}
