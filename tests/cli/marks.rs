@@ -1,5 +1,7 @@
 //! `limit --mark-rapids`, `--always` and `--preset-else` from outside.
 
+use std::fmt::Write as _;
+
 use super::Shop;
 
 /// X of 500 kg, 0.5 m/s and 5 m/s², without friction: 1000 W are F24000, 800 W are F19200.
@@ -12,7 +14,8 @@ fn shop() -> Shop {
              rapid = \"linear\"\n[[preset]]\naxes = [\"Y\"]\nspeed_mm_min = {{ Y = 9000 }}\n"
         );
         for axis in ["X", "Y", "Z"] {
-            machine += &format!(
+            let _ = write!(
+                machine,
                 "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\n\
                  mass_kg = 500\n"
             );

@@ -41,8 +41,7 @@ fn own(controller: &str, path: &str) -> Machine {
 /// lathes by the revolution.
 fn header(name: &str) -> (&'static str, [&'static str; 2]) {
     match name {
-        "fanuc-lathe" | "haas-lathe" => ("XZ", ["G98 F500.", "G97 S600 M3\nG99 F0.5"]),
-        "lathe" => ("XZ", ["G98 F500.", "G97 S600 M3\nG99 F0.5"]),
+        "fanuc-lathe" | "haas-lathe" | "lathe" => ("XZ", ["G98 F500.", "G97 S600 M3\nG99 F0.5"]),
         name if name.contains("lathe") => ("XZ", ["G94 F500.", "G97 S600 M3\nG95 F0.5"]),
         _ => ("XYZ", ["F500.", "G91\nF500."]),
     }
