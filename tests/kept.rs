@@ -236,6 +236,18 @@ fn a_program_that_ends_in_an_alarm_is_not_judged() {
     );
 }
 
+/// SINUMERIK and the ISG kernel decide by the alarm's number whether the program goes on.
+#[test]
+fn an_alarm_of_another_control_is_no_verdict_either() {
+    let siemens = "IF R1<>2 GOTOF OK\nSETAL(65000)\nOK: G0 X5\nM30\n";
+    let found = "SETAL raises an alarm: whether the program fits is not known";
+    refused("siemens", &siemens.replace("R1", "1+1"), found);
+    let (code, told) = check("siemens", &siemens.replace("R1", "1+2"), "");
+    assert_eq!(code, 0, "{told}");
+    let found = "#ERROR raises an alarm: whether the program fits is not known";
+    refused("isg", "G0 X5\n#ERROR [ID455 RC5]\nM30\n", found);
+}
+
 #[test]
 fn what_depends_on_a_probe_is_refused() {
     let found = "G38.3 Z-20 F50\no1 if [#5070 EQ 0]\nM2\no1 endif\nG0 X5000 Y5000\nM2\n";

@@ -101,6 +101,45 @@ fn an_overload_is_told_and_lowered_away() {
     assert_eq!(told[0]["fits"], false);
 }
 
+/// Braking feeds 200 W back, less and less over 1/6 s: 15.04 J above 10 W, and 0.04 J below.
+/// The 0.8 s to the next braking take 8 J off, and the dwell takes all. Of two brakings one
+/// after the other 22.04 J are left, and 36.12 J of four: those at the end of a run, and
+/// those at the beginning of the next one.
+#[test]
+fn braking_at_the_end_and_at_the_beginning_add_up_where_a_program_runs_again() {
+    let ratings = "peak_power_w = 1000\nbrake_power_w = 10\nbrake_energy_j = 30";
+    let shop = mill("iso", "", ratings);
+    shop.put(
+        "a.ngc",
+        "G21 G90 G94\nG0 X400\nG0 X0\nG4 P5\nG0 X400\nG0 X0\nM30\n",
+    );
+    let braked = |options: &str| {
+        let command = format!("check a.ngc --override 100% --format json {options}");
+        let (code, told, _) = shop.run(command.trim_end());
+        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+        let limits = told[0]["over_time"].as_array().unwrap();
+        let found = limits
+            .iter()
+            .find(|it| it["check"] == "brake-energy")
+            .unwrap();
+        (code, found["value"].as_f64().unwrap())
+    };
+    let kept = 0.5 * 190.0 * (190.0 / 200.0) / 6.0;
+    let lost = 0.8 * 10.0 + 0.5 * 10.0 * (10.0 / 200.0) / 6.0;
+    for (options, fits, expected_j) in [
+        ("--once", true, 2.0 * kept - lost),
+        ("", false, 4.0 * kept - 3.0 * lost),
+    ] {
+        let (code, found_j) = braked(options);
+        assert_eq!(code == 0, fits, "{found_j}");
+        // What is fed back is counted in slices of 1 per mille of the converter's power.
+        assert!(
+            found_j >= expected_j - 1e-6 && found_j < expected_j * 1.03,
+            "{found_j} {expected_j}"
+        );
+    }
+}
+
 #[test]
 fn what_cannot_be_lowered_is_refused_with_the_reason() {
     let shop = mill("iso", "", "peak_power_w = 1000\ncontinuous_power_w = 90");

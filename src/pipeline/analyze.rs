@@ -7,6 +7,7 @@ use super::advice::{Adviser, Circumstances};
 use super::conditions::conditions;
 use super::front::Front;
 use super::relay::relay;
+use super::summary::AT_LENGTH_MAX;
 use super::tally::Tally;
 use super::watching::watching_at;
 use super::ways::{has_ways, ways};
@@ -58,16 +59,19 @@ fn analyze_way<R: Read + Seek + Send>(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
     let mut summary = judge(&mut input, machine, &[], options, rows)?;
-    let mut ladder = summary.ladder(machine);
-    loop {
-        let rungs = ladder.ask();
-        if rungs.is_empty() {
-            break;
+    // To look at lower overrides takes many times as long as all the rest.
+    if summary.fits_at_largest() || summary.moves <= AT_LENGTH_MAX {
+        let mut ladder = summary.ladder(machine);
+        loop {
+            let rungs = ladder.ask();
+            if rungs.is_empty() {
+                break;
+            }
+            input.rewind().map_err(Failure::Input)?;
+            ladder.take(&judge(&mut input, machine, &rungs, options, None)?.lower);
         }
-        input.rewind().map_err(Failure::Input)?;
-        ladder.take(&judge(&mut input, machine, &rungs, options, None)?.lower);
+        summary.settle(&ladder);
     }
-    summary.settle(&ladder);
     summary.conditions = conditions(machine, slice::from_ref(options), &summary);
     Ok(summary)
 }

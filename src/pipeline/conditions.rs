@@ -63,7 +63,11 @@ fn overrides_condition(machine: &Machine) -> String {
 /// For which overrides limits over time hold.
 fn over_time_condition(machine: &Machine, summary: &Summary) -> String {
     let looked_at = summary.over_time.iter().any(|it| it.rating.looked_at);
-    let mut said = if looked_at {
+    let mut said = if summary.over_time.iter().any(|it| it.rating.is_open()) {
+        "limits over time at lower overrides are not all looked at, since the program does not fit \
+         at the largest"
+            .to_owned()
+    } else if looked_at {
         let lowest = lowest_share() * 100.0;
         format!(
             "limits over time at lower overrides: where a bound over all of them leaves one open, feed \

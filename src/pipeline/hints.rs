@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
+use super::summary::AT_LENGTH_MAX;
 use super::{
     Allowed, Failure, Law, LimitOptions, Options, Restart, RestartRows, Row, RowSink, Strategy,
     Summary,
 };
+
 use crate::diagnostic::Diagnostic;
 use crate::interpret::MoveKind;
 use crate::machine::Machine;
@@ -55,7 +57,8 @@ pub fn take_hints<R: Read + Seek + Send>(
     let mut written = Written {
         lines: lines.map(|unfit| (unfit.line, None)).collect(),
     };
-    let rows = (summary.moves <= MOVES_MAX).then_some(&mut written as &mut dyn RestartRows);
+    // Of longer programs the advice is that for each move by itself.
+    let rows = (summary.moves <= AT_LENGTH_MAX).then_some(&mut written as &mut dyn RestartRows);
     let as_it_stands = reasons(false, rows)?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
         let words = written.lines.get(&unfit.line).and_then(Option::as_ref);
@@ -86,10 +89,6 @@ pub fn take_hints<R: Read + Seek + Send>(
     }
     Ok(())
 }
-
-/// Moves of a program whose words are looked up: that takes some ten times as long as to
-/// read it. Of longer ones the advice is that for each move by itself.
-const MOVES_MAX: u64 = 20_000;
 
 /// The words that each line gets, with the lowest value of the first of them.
 struct Written {

@@ -11,6 +11,11 @@ use super::over_time::OverTime;
 use super::pause::Pause;
 use super::row::Certificate;
 
+/// Moves of a program that does not fit of which all is looked into that takes many times as
+/// long as to read it: the words that `limit` would write, and limits over time at lower
+/// overrides.
+pub(super) const AT_LENGTH_MAX: u64 = 20_000;
+
 /// A move that does not fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unfit {

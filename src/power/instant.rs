@@ -276,7 +276,7 @@ fn state_in(phase: &Phase, t: f64) -> State {
 }
 
 /// Speed and acceleration of an axis along the path of a move.
-fn on_path(mv: &Move, axis: usize, state: &State) -> (f64, f64) {
+pub(super) fn on_path(mv: &Move, axis: usize, state: &State) -> (f64, f64) {
     let (v, a) = (state.velocity_mm_s, state.accel_mm_s2);
     if let Some(arc) = &mv.arc
         && let Some(which) = arc.plane.iter().position(|&own| own == axis)

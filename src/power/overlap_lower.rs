@@ -1,5 +1,6 @@
 //! Axes next to a run of the spindle at lower overrides: moves begin later after the
-//! command, last longer, and pass each place at a lower speed.
+//! command, last longer, and pass each place at a lower speed. What the run itself comes to
+//! at lower overrides of the spindle is in `spindle_lower`.
 //!
 //! Input: a planned move, a run, and how much of the time since the command grows as the
 //! override falls. Output: peak and regenerative peak of one converter at any override
@@ -20,7 +21,7 @@
 use super::demand::larger;
 use super::model::{ConverterPower, PowerModel};
 use super::overlap::{Axes, Side};
-use super::spindle_trace::SpindleTrace;
+use super::spindle_lower::LoweredRun;
 use crate::interpret::Move;
 use crate::plan::{Phase, PhaseKind, Plan, Profile, Trajectory};
 
@@ -69,7 +70,7 @@ pub(super) fn peaks(
     mv: &Move,
     plan: Option<&Plan>,
     (duration_s, most_w): (f64, [f64; 2]),
-    (trace, since): (&SpindleTrace, Since),
+    (run, since): (LoweredRun<'_>, Since),
 ) -> [f64; 2] {
     let sides = [(Side::Drawn, most_w[0]), (Side::FedBack, most_w[1])];
     sides.map(|(side, most_w)| {
@@ -90,7 +91,7 @@ pub(super) fn peaks(
             for part in &parts {
                 let later = if part.stretches { lower } else { 1.0 };
                 let window_s = [since.span_s[0] + part.from_s, latest_s + part.to_s / later];
-                let span = trace.over(window_s[0], window_s[1]);
+                let span = run.over(window_s[0], window_s[1]);
                 let [_, spindle_w] = side.of(&span, converter);
                 largest = larger(largest, part.power_w + spindle_w);
             }

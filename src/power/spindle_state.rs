@@ -199,6 +199,19 @@ impl SpindleState {
         };
     }
 
+    /// When its run began is not known any more: any of it may come as long as it lasts.
+    pub fn blur(&mut self) {
+        if let Course::Run(trace, _) = &self.course {
+            let span = trace.over(0.0, f64::INFINITY);
+            self.course = Course::Somewhere {
+                range: self.range(),
+                target: self.target(),
+                left_s: Some(trace.duration_s()),
+                extremes: [span.largest_w, span.least_w],
+            };
+        }
+    }
+
     /// It may stop of itself, or turn on: until the next command nothing more
     /// is known.
     pub fn lose(&mut self, motor: &SpindleMotor) {

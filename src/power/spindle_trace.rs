@@ -135,7 +135,11 @@ impl SpindleTrace {
     /// What holds the speed at the end, W.
     #[must_use]
     pub fn holding_w(&self) -> f64 {
-        let speed = self.end_rpm;
+        self.held_w(self.end_rpm)
+    }
+
+    /// What holds a speed in 1/min, W.
+    pub(super) fn held_w(&self, speed: f64) -> f64 {
         self.power.electrical_w(Motion { speed, accel: 0.0 })
     }
 

@@ -34,7 +34,7 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct Ride {
     /// The first and the last move that it belongs to.
     pub moves: [u64; 2],
-    path: Move,
+    pub path: Move,
     profile: Profile,
     accel_mm_s2: f64,
     length_mm: f64,
@@ -117,7 +117,13 @@ impl Ride {
         }
     }
 
-    fn state(&self, t: f64) -> State {
+    /// How long it lasts, s.
+    pub fn duration_s(&self) -> f64 {
+        self.profile.duration_s()
+    }
+
+    /// Where it is on its path, `t` seconds after its beginning.
+    pub fn state(&self, t: f64) -> State {
         self.profile.state_at(t).unwrap_or_default()
     }
 
@@ -212,7 +218,7 @@ fn extremes(
     overlap_s: f64,
     [from_s, to_s]: [f64; 2],
 ) -> (SpeedBound, AxisValues) {
-    let begins_s = [rides[0].profile.duration_s() - overlap_s, 0.0];
+    let begins_s = [rides[0].duration_s() - overlap_s, 0.0];
     let switches = rides.iter().zip(begins_s);
     let switches =
         switches.flat_map(|(ride, begins_s)| ride.switches_s().map(move |t| t - begins_s));

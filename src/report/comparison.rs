@@ -70,7 +70,7 @@ impl Comparison {
 fn exceeded_beyond<'a>(one: &'a Summary, other: &'a Summary) -> impl Iterator<Item = &'a OverTime> {
     let exceeded = |summary: &'a Summary| {
         let limits = summary.over_time.iter();
-        limits.filter(|limit| !limit.rating.fits())
+        limits.filter(|limit| limit.rating.is_missed())
     };
     let same = |a: &OverTime, b: &OverTime| {
         a.converter == b.converter && a.rating.measure.name() == b.rating.measure.name()

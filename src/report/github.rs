@@ -60,7 +60,7 @@ fn annotations(checked: &Checked) -> Vec<(f64, String)> {
 
 /// Limits over time that are not kept.
 fn missed<'a>(program: &'a str, summary: &'a Summary) -> impl Iterator<Item = (f64, String)> + 'a {
-    let missed = summary.over_time.iter().filter(|it| !it.rating.fits());
+    let missed = summary.over_time.iter().filter(|it| it.rating.is_missed());
     missed.map(move |found| {
         let program = if found.file.is_empty() {
             program

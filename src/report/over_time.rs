@@ -30,7 +30,9 @@ fn row(found: &OverTime) -> [String; 4] {
     if rating.line > 0 && !found.file.is_empty() {
         place = format!("{place} in {}", found.file);
     }
-    if !rating.fits() {
+    if rating.is_open() {
+        place.push_str("  at the largest overrides; lower ones are looked at once all else fits");
+    } else if rating.is_missed() {
         place = format!("{place}  does not fit → {}", found.help());
     }
     [found.title(), figures(rating), ratio, place]

@@ -86,7 +86,7 @@ fn findings(checked: &Checked) -> Vec<Finding> {
                 .chain(unfit.map(|unfit| unfit_finding(program, unfit)))
                 .chain(
                     over_time
-                        .filter(|found| !found.rating.fits())
+                        .filter(|found| found.rating.is_missed())
                         .map(|found| over_time_finding(program, found)),
                 )
                 .collect()

@@ -1,4 +1,4 @@
-//! Lower overrides of feed and rapid next to a run of the spindle: moves come later.
+//! Lower overrides next to a run of the spindle: moves come later, and runs end sooner.
 
 use std::fmt::Write as _;
 
@@ -9,12 +9,12 @@ use proptest::prelude::*;
 use super::{FULL_W, machine, run};
 
 /// The same machine where the knobs stand there.
-fn at(machine: &Machine, feed: f64, rapid: f64) -> Machine {
+fn at(machine: &Machine, [feed, rapid, spindle]: [f64; 3]) -> Machine {
     let mut machine = machine.clone();
     machine.limits.override_at = Some(OverrideAt {
         feed,
         rapid,
-        spindle: 1.0,
+        spindle,
     });
     machine
 }
@@ -45,7 +45,7 @@ fn a_rapid_that_comes_later_meets_the_end_of_the_run() {
     // With the feed at 23.6 % its peak comes next to the end of the run.
     let most_w = FULL_W + 1000.0 * 0.05_f64.sqrt();
     let (rows, _) = run(
-        &at(&machine, 0.2363, 1.0),
+        &at(&machine, [0.2363, 1.0, 1.0]),
         THERE_AND_BACK,
         &Options::default(),
     );
@@ -84,6 +84,29 @@ fn the_first_rapid_after_a_command_speeds_up_when_it_always_does() {
     assert_eq!(summary.unfit_count, 0);
 }
 
+/// From 3000/min to as much in the other direction: a second of braking and one of speeding
+/// up. At 30 % it speeds up from 0.3 s to 0.6 s; the rapid speeds up until 0.624 s.
+#[test]
+fn a_spindle_that_turns_round_does_so_sooner_when_turned_down() {
+    let machine = machine("iso", "", "wait = false", "");
+    let program = "S3000\nM3\nG4 P2\nM4\nG4 P0.4\nG0 X50\nG4 P3\n";
+    let (rapid_w, turned_w) = (1000.0 * 0.05_f64.sqrt(), 0.3 * FULL_W);
+    let rapid = |machine: &Machine| {
+        let (rows, summary) = run(machine, program, &Options::default());
+        (rows[2].clone(), summary)
+    };
+    let (row, _) = rapid(&machine);
+    assert!((row.peak_w - rapid_w).abs() < 1e-6, "{row:?}");
+    let (row, _) = rapid(&at(&machine, [1.0, 1.0, 0.3]));
+    assert!(row.peak_w > turned_w + 0.8 * rapid_w, "{row:?}");
+    // At any override it may be anywhere on its run.
+    let (row, summary) = rapid(&with_limit(&machine, FULL_W + 1.0));
+    assert!(summary.unfit_count > 0);
+    assert!((row.peak_w - FULL_W - rapid_w).abs() < 1.0, "{row:?}");
+    let (_, summary) = rapid(&with_limit(&machine, FULL_W + rapid_w + 1.0));
+    assert_eq!(summary.unfit_count, 0);
+}
+
 /// A line of a program.
 fn any_line() -> impl Strategy<Value = String> {
     prop_oneof![
@@ -107,7 +130,7 @@ proptest! {
         kind in 0..5_usize,
         wait in prop::sample::select(vec!["false", "true"]),
         credit in any::<bool>(),
-        knobs in prop::collection::vec((0.02..1.0_f64, 0.02..1.0_f64), 6),
+        knobs in prop::collection::vec((0.02..1.0_f64, 0.02..1.0_f64, 0.02..1.0_f64), 6),
         tight in 0.0..1.0_f64,
     ) {
         let (controller, rest) = [
@@ -126,8 +149,9 @@ proptest! {
             let _ = writeln!(program, "{line}");
         }
         let options = Options::default();
-        let settings = knobs.iter().flat_map(|(feed, rapid)| {
-            [(*feed, *feed), (*feed, 1.0), (1.0, *rapid), (*feed, *rapid)]
+        let settings = knobs.iter().flat_map(|&(feed, rapid, spindle)| {
+            let axes = [[feed, feed], [feed, 1.0], [1.0, rapid], [feed, rapid], [1.0, 1.0]];
+            axes.map(|[feed, rapid]| [feed, rapid, spindle])
         });
         let peaks = |machine: &Machine| {
             let (rows, _) = run(machine, &program, &options);
@@ -135,7 +159,7 @@ proptest! {
                 [peaks[0].max(row.peak_w), peaks[1].max(row.regen_w)]
             })
         };
-        let found: Vec<[f64; 2]> = settings.map(|(feed, rapid)| peaks(&at(&machine, feed, rapid))).collect();
+        let found: Vec<[f64; 2]> = settings.map(|knobs| peaks(&at(&machine, knobs))).collect();
         let own = peaks(&machine);
         // Between what the largest overrides ask for and what others do.
         for side in [0, 1] {

@@ -142,6 +142,33 @@ fn what_the_bound_settles_is_not_looked_at() {
     assert!(brake.looked_at, "{brake:?}");
 }
 
+/// The lift of 2 m misses its limit at lower overrides, which in a long program are looked at
+/// once the lift of 1 m keeps the peak power.
+#[test]
+fn lower_overrides_are_left_open_where_the_largest_do_not_fit() {
+    let ratings = "continuous_power_w = 400\n\
+                   overload = [{ power_w = 2100, seconds = 3.5, every_s = 1000 }]";
+    let machine = lift(
+        ratings,
+        "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 500\n",
+    );
+    let lifts = "G90 G21\nG0 Z2000\nG4 P30\n";
+    let beyond = format!("{lifts}M8\nG0 Z3000\nM9\n");
+    let short = check(&machine, &beyond, &once());
+    assert!(short.over_time[0].rating.is_missed());
+    let long = beyond + &"G1 X1 F6000\nX0\n".repeat(10_000);
+    let open = check(&machine, &long, &once());
+    assert_eq!(open.unfit_count, 1);
+    let rating = open.over_time[0].rating;
+    assert!(rating.is_open() && !rating.fits() && !rating.is_missed());
+    assert!(rating.overrides.is_none() && !rating.looked_at);
+    let left = "limits over time at lower overrides are not all looked at";
+    assert!(open.conditions.iter().any(|it| it.starts_with(left)));
+    let settled = check(&machine, lifts, &once());
+    let rating = settled.over_time[0].rating;
+    assert!(rating.is_missed() && !rating.is_open() && rating.looked_at);
+}
+
 /// A load of 500 W: at a lower override more of a window is feed than pause. At 100 %
 /// 3 s of 20 s, at 40 % 7.5 s.
 #[test]

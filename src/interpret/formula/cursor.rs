@@ -233,6 +233,15 @@ impl<'t> Cursor<'t> {
         self.fault("unsupported-word", message, help, start)
     }
 
+    /// A command that raises an alarm: whether and where the program ends by it the control
+    /// decides.
+    pub(in crate::interpret) fn alarm(&self, name: &str, start: usize) -> Fault {
+        let message = format!("{name} raises an alarm: whether the program fits is not known");
+        let help = "give what is checked before it (arguments, --set, --parameters), or see why the \
+                    program comes to this line";
+        self.fault("alarm", message, help, start)
+    }
+
     /// What stands from `start` to the place; a byte at least.
     pub(in crate::interpret) fn span(&self, start: usize) -> Span {
         let end = self.end().max(start + 1).min(self.text.len());

@@ -100,6 +100,7 @@ impl Reading<'_, '_, '_> {
             "CS OFF" => self.system_off(false),
             "CS OFF ALL" => self.system_off(true),
             "OVERRIDE" => self.factors(start)?,
+            "ERROR" => return Err(self.cursor.alarm("#ERROR", start)),
             _ => self.listed(&name, start)?,
         }
         Ok(None)

@@ -10,6 +10,8 @@ pub(super) enum Name {
     Data,
     /// Changes the path or the speed in a way that is not followed.
     Refused(&'static str),
+    /// Raises an alarm.
+    Alarm,
 }
 
 /// Passed over.
@@ -215,7 +217,6 @@ const REFUSED: &[(&str, &str)] = &[
     ("DO", "a synchronized action"),
     ("DEFINE", "a macro, which gives words another meaning"),
     ("REDEF", "a change of a variable's attributes"),
-    ("SETAL", "an alarm, which ends the program"),
     ("SETINT", "an interrupt routine"),
     ("ASUP", "an interrupt routine"),
     ("REPOSL", "a return to the contour"),
@@ -273,6 +274,9 @@ impl Name {
     pub(super) fn of(name: &str) -> Option<Self> {
         if name.len() < 2 {
             return None;
+        }
+        if name == "SETAL" {
+            return Some(Self::Alarm);
         }
         if DATA.contains(&name) {
             return Some(Self::Data);

@@ -113,6 +113,7 @@ impl Reading<'_, '_, '_> {
         match known {
             Some(Name::Data) => return self.pass_over().map(|()| None),
             Some(Name::Refused(reason)) => return Err(self.cursor.refused(&name, reason, start)),
+            Some(Name::Alarm) => return Err(self.cursor.alarm(&name, start)),
             None => {}
         }
         if self.address(&name, assigns, start, block)? {

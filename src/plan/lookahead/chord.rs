@@ -7,7 +7,7 @@ use super::element::{Curve, Element};
 use crate::machine::ChordRule;
 
 /// Chords of one arc that are followed.
-const CHORDS_MAX: f64 = 65_536.0;
+const CHORDS_MAX: f64 = 16_384.0;
 
 impl ChordRule {
     /// How many chords an arc of this length (mm) and radius gets at a feed.

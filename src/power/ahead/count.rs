@@ -1,7 +1,7 @@
 //! Pieces of plans, counted for the moves that they belong to.
 
-use super::Ahead;
 use super::joints::step_before;
+use super::{Ahead, Side};
 use crate::interpret::Move;
 use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
@@ -10,6 +10,7 @@ use crate::power::model::PowerModel;
 use crate::power::piece::{is_quiet, piece_demand};
 use crate::power::steps::StepEnergy;
 use crate::power::tandem::{Ride, tandem_demand, tandem_demand_at_any};
+use crate::power::tandem_energy::shared_energy_j;
 
 impl Ahead {
     /// Counts a piece of path.
@@ -91,12 +92,14 @@ impl Ahead {
             let doubtful =
                 open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;
             if doubtful {
-                self.ride(model, planned);
+                self.ride(model, planned, true, times);
                 let certain = self.is_certain(eye, planned, number, number);
                 if let Some(open) = self.open.get_mut(number) {
                     open.certain &= certain;
                 }
             }
+        } else {
+            self.ride(model, planned, false, times);
         }
     }
 
@@ -143,8 +146,8 @@ impl Ahead {
         } else {
             piece_demand(model, &open.mv, planned, open.want)
         };
+        self.ride(model, planned, peaks, times);
         if peaks {
-            self.ride(model, planned);
             if let Some(surge) = self.surge(model, eye, planned) {
                 demand.include(&surge);
             }
@@ -197,37 +200,65 @@ impl Ahead {
 
     /// A piece that may share its time with another one, and what both ask for
     /// together.
-    fn ride(&mut self, model: &PowerModel, planned: &Planned<u64>) {
-        let last = self.last_ride.take();
-        let open = self.open.get(planned.tag).filter(|_| planned.overlaps);
-        let ride = open.and_then(|open| {
+    fn ride(&mut self, model: &PowerModel, planned: &Planned<u64>, peaks: bool, times: bool) {
+        let last = self.side(peaks).last_ride.take();
+        if !planned.overlaps {
+            return;
+        }
+        let ride = self.open.get(planned.tag).and_then(|open| {
             let speeds2 = [open.pace.asked2, open.pace.cap2];
             Ride::of(&open.mv, planned, speeds2.map(f64::sqrt))
         });
         let Some(ride) = ride else {
             return;
         };
-        if let Some(last) = last.filter(|_| planned.overlap_s > 0.0)
-            && let Some(open) = self.open.get(planned.tag)
-        {
-            let (rides, overlap_s) = ([&last, &ride], planned.overlap_s);
-            let demand = if self.surges.is_some() {
-                tandem_demand_at_any(model, &open.mv, rides, overlap_s)
-            } else {
-                tandem_demand(model, &open.mv, rides, overlap_s)
-            };
-            for number in last.moves[0]..=ride.moves[1] {
+        if let Some(last) = last.filter(|_| planned.overlap_s > 0.0) {
+            let rides = [&last, &ride];
+            if peaks {
+                self.ride_together(model, rides, planned.overlap_s);
+            }
+            if times
+                && let Some(open) = self.open.get_mut(planned.tag)
+                && open.want.energy
+            {
+                let shared_j = shared_energy_j(model, &open.mv, rides, planned.overlap_s);
+                open.assessment.demand.energy_j += shared_j;
+            }
+        }
+        if peaks {
+            for number in ride.moves[0]..=ride.moves[1] {
                 if let Some(open) = self.open.get_mut(number) {
-                    open.assessment.demand.include(&demand);
+                    open.alone = false;
                 }
             }
         }
-        for number in ride.moves[0]..=ride.moves[1] {
+        self.side(peaks).last_ride = Some(ride);
+    }
+
+    /// The planner that peaks come from, or else times and energies.
+    fn side(&mut self, peaks: bool) -> &mut Side {
+        match &mut self.nominal {
+            Some(nominal) if !peaks => nominal,
+            _ => &mut self.largest,
+        }
+    }
+
+    /// What two pieces ask for that share some of their time.
+    fn ride_together(&mut self, model: &PowerModel, rides: [&Ride; 2], overlap_s: f64) {
+        let [last, ride] = rides;
+        let Some(open) = self.open.get(ride.moves[1]) else {
+            return;
+        };
+        let demand = if self.surges.is_some() {
+            tandem_demand_at_any(model, &open.mv, rides, overlap_s)
+        } else {
+            tandem_demand(model, &open.mv, rides, overlap_s)
+        };
+        for number in last.moves[0]..=ride.moves[1] {
             if let Some(open) = self.open.get_mut(number) {
-                open.alone = false;
+                open.assessment.demand.include(&demand);
             }
         }
-        self.last_ride = Some(ride);
     }
 
     /// Whether a piece runs as planned whatever happened where the motion was in

@@ -63,8 +63,6 @@ pub(super) struct Ahead {
     /// Since the last stop a drive leaves less than the axis' own acceleration at the
     /// speed of some move.
     driven: bool,
-    /// The last piece, where the next one may run already while it does.
-    last_ride: Option<Ride>,
     /// What lower overrides may make of them, if these count.
     surges: Option<Surges>,
     /// Steps of speed at joints, where the rules know them.
@@ -83,6 +81,8 @@ struct Side {
     /// Speeds of the axes at the end of the last piece, mm/s, where they are of
     /// interest.
     end_mm_s: AxisValues,
+    /// The last piece, where the next one may run already while it does.
+    last_ride: Option<Ride>,
 }
 
 impl Side {
@@ -112,6 +112,7 @@ impl Ahead {
             element: Element::blank(0),
             next: 0,
             end_mm_s: [0.0; AXES],
+            last_ride: None,
         });
         let alike = largest.overrides == nominal.overrides;
         // What is decided for another override does not glide.
@@ -130,7 +131,6 @@ impl Ahead {
             reach2: None,
             unwaited: None,
             driven: false,
-            last_ride: None,
             surges: machine
                 .limits
                 .override_at

@@ -167,7 +167,7 @@ impl SpindleBus<'_> {
         let mut demand = self.alone(next, self.states[0].henceforth(&self.motor));
         if let (true, Some(slower)) = (self.model.fits(&demand), &self.slower) {
             // Turned down, the run before has come further.
-            demand = self.alone(next, slower.state.henceforth(&self.motor));
+            demand = self.alone(next, slower.henceforth(&self.motor));
         }
         if !self.model.fits(&demand) {
             self.row(line, next, demand, SpindleSpan::steady(0.0, 0.0), 0.0, sink);

@@ -1,16 +1,21 @@
-//! Runs of the spindle next to axes at lower overrides of feed and rapid.
+//! Runs of the spindle next to axes at lower overrides of feed, rapid and spindle.
 
 use super::SpindleBus;
 use crate::interpret::{Move, MoveKind};
 use crate::plan::Plan;
+use crate::plan::period::Motion;
 use crate::power::assessment::Assessment;
 use crate::power::overlap_lower::{self, Since};
+use crate::power::spindle_lower::LoweredRun;
 use crate::power::spindle_state::{SpindleMotor, SpindleState};
+use crate::power::spindle_trace::SpindleTrace;
 
-/// The spindle where the knobs of feed and rapid may stand lower than at the largest.
+/// The spindle where the knobs may stand lower than at the largest.
 #[derive(Debug)]
 pub(super) struct Slower {
     pub state: SpindleState,
+    /// The run from or to rest that stands for its run, see [`LoweredRun`].
+    whole: Option<Box<SpindleTrace>>,
     /// Time at the largest overrides since the last command, s: of moves that the knob of
     /// feeds makes last longer, and that of rapids.
     grows_s: [f64; 2],
@@ -30,6 +35,7 @@ impl Slower {
     pub fn new(state: SpindleState) -> Self {
         Self {
             state,
+            whole: None,
             grows_s: [0.0; 2],
         }
     }
@@ -49,7 +55,50 @@ impl Slower {
             self.state.pass([0.0, f64::INFINITY]);
         }
         self.grows_s = [0.0; 2];
+        let was_steady = self.state.is_steady();
+        let start = self.state.target();
         self.state.command(motor, target);
+        self.whole = None;
+        if self.state.on_run().is_none() {
+            return;
+        }
+        // Turned down, a run is over sooner, and so is its first half where it turns round.
+        if !was_steady {
+            self.state.wander(motor, [0.0; 2], target);
+        } else if start * target < 0.0 {
+            self.state.blur();
+        } else if start != 0.0 && target != 0.0 {
+            let [from, to] = if target.abs() > start.abs() {
+                [0.0, target]
+            } else {
+                [start, 0.0]
+            };
+            let from = Motion {
+                speed: from,
+                accel: 0.0,
+            };
+            self.whole = Some(Box::new(motor.trace(from, to)));
+        }
+    }
+
+    /// The run that it is on, and the time since its command at the largest overrides, at
+    /// least and at most, s.
+    fn run(&self) -> Option<(LoweredRun<'_>, [f64; 2])> {
+        let (trace, since_s) = self.state.on_run()?;
+        let whole = self.whole.as_deref();
+        Some((LoweredRun { trace, whole }, since_s))
+    }
+
+    /// Largest and smallest power from now on, W.
+    pub fn henceforth(&self, motor: &SpindleMotor) -> [f64; 2] {
+        let [largest_w, least_w] = match self.run() {
+            Some((run, [since_s, _])) => {
+                let span = run.over(since_s, f64::INFINITY);
+                [span.largest_w, span.least_w]
+            }
+            None => self.state.henceforth(motor),
+        };
+        [largest_w.max(0.0), least_w.min(0.0)]
     }
 
     /// How much of the time since the command grows as the override of a move falls, s;
@@ -82,14 +131,14 @@ impl SpindleBus<'_> {
             return;
         };
         let mut demand = assessment.demand;
-        let henceforth = slower.state.henceforth(&self.motor);
+        let henceforth = slower.henceforth(&self.motor);
         self.add(&mut demand, henceforth, 0.0, cutting_w);
         if self.model.fits(&demand) || !self.model.fits(&self.alone(Some(mv), henceforth)) {
             return;
         }
         let index = self.spindle.converter;
-        if let (Some((trace, span_s)), Some(converter)) =
-            (slower.state.on_run(), self.model.converters.get(index))
+        if let (Some((run, span_s)), Some(converter)) =
+            (slower.run(), self.model.converters.get(index))
         {
             let since = Since {
                 span_s,
@@ -102,9 +151,8 @@ impl SpindleBus<'_> {
                 f64::INFINITY
             };
             let axes = (duration_s, assessment.demand.beside);
-            let run = (trace, since);
             let [peak_w, regen_w] =
-                overlap_lower::peaks(&self.model, converter, mv, plan, axes, run);
+                overlap_lower::peaks(&self.model, converter, mv, plan, axes, (run, since));
             let more_w = self.spindle.base_load_w + cutting_w;
             let fed_back_w = (regen_w - self.credited_w()).max(0.0);
             demand = assessment.demand;

@@ -99,6 +99,18 @@ impl Rating {
         self.keeps() && self.bound.is_none()
     }
 
+    /// Whether the limit is kept at the largest overrides, and lower ones were not looked at.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.keeps() && self.bound.is_some()
+    }
+
+    /// Whether it is missed by the value.
+    #[must_use]
+    pub fn is_missed(&self) -> bool {
+        !self.keeps()
+    }
+
     /// Whether it is kept by the value.
     pub(in crate::power) fn keeps(&self) -> bool {
         let slack = ROUNDING * self.limit.abs().max(1e-3);
