@@ -6,6 +6,7 @@ mod identify;
 mod interrupts;
 mod machines;
 mod marks;
+mod prices;
 mod sets;
 mod sizes;
 mod ways;

@@ -54,15 +54,20 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args, path)?.spool()?);
 
     let done = (|| {
-        if args.dry_run {
-            program.keep()?;
-        }
+        program.keep()?;
         let sink = rows.sink();
         let how = options(args);
         let input = program.open()?;
         let options = setup.options_for(&program);
         pipeline::limit(input, &setup.machine, &options, how, &mut spool, sink)
     })();
+    let done = done.and_then(|mut summary| {
+        let options = setup.options_for(&program);
+        let how = self::options(args);
+        let input = program.open()?;
+        summary.price = pipeline::price(input, &setup.machine, &options, how, &summary)?;
+        Ok(summary)
+    });
     let summary = match done {
         Ok(summary) => summary,
         Err(failure) => {

@@ -99,4 +99,19 @@ impl Allowed {
         pause: false,
         unverified: false,
     };
+
+    /// The names that the command line has for it, with commas.
+    #[must_use]
+    pub fn names(self) -> String {
+        let all = [
+            (self.feed, "feed"),
+            (self.expand, "expand"),
+            (self.straighten, "straighten"),
+            (self.stop, "stop"),
+            (self.pause, "pause"),
+            (self.unverified, "unverified"),
+        ];
+        let names = all.iter().filter(|(allowed, _)| *allowed);
+        names.map(|(_, name)| *name).collect::<Vec<_>>().join(",")
+    }
 }

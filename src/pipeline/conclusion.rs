@@ -84,6 +84,7 @@ pub(super) fn conclude(
         certified,
         slower,
         reasons: reasons.list,
+        price: None,
     }
 }
 

@@ -22,6 +22,7 @@ mod options;
 mod over_time;
 mod pause;
 mod preset_notes;
+mod price;
 mod relay;
 mod restart;
 mod row;
@@ -55,6 +56,7 @@ pub use options::{
 };
 pub use over_time::OverTime;
 pub use pause::Pause;
+pub use price::{Price, price};
 pub use restart::{Restart, RestartRows};
 pub use row::{Certificate, Row, RowSink};
 pub use schedule::{Command, Schedule};
