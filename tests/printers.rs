@@ -298,7 +298,7 @@ fn kept_positions() {
     assert_snapshot!(marlin("G61 S1\n"), @"no-such-position: G61 to a position that G60 has not kept");
 }
 
-/// Loads by value (Marlin M104, M140, M106, M107): S0 switches off, behind the
+/// Loads by value (Marlin M104, M140, M106, M107): S0 switches off, after the
 /// block; a second fan or tool keeps its load on.
 #[test]
 fn heaters_and_fans() {
@@ -344,7 +344,7 @@ fn stored_settings() {
     ");
 }
 
-/// Marlin `G2_G3.cpp`: an end beside the circle is reached by the circle of the
+/// Marlin `G2_G3.cpp`: an end next to the circle is reached by the circle of the
 /// start and a straight line: centre (10, 0), radius 10, a quarter turn to
 /// (10, 10), then up to (10, 12).
 #[test]
@@ -364,7 +364,7 @@ fn arcs_with_an_end_beside_the_circle() {
     ");
 }
 
-/// The same wall in absolute numbers, in increments behind G92, and with the
+/// The same wall in absolute numbers, in increments after G92, and with the
 /// extruder set back: Marlin G90 to G92, M82, M83.
 #[test]
 fn twins_in_other_modes_move_alike() {

@@ -1,7 +1,7 @@
 //! All moves in their order: those with stops by themselves, blended ones
 //! together with their neighbours.
 //!
-//! A move waits until nothing behind it can change it any more: a blended one
+//! A move waits until nothing after it can change it any more: a blended one
 //! until the move after the next is known, all others not at all.
 
 use std::collections::VecDeque;
@@ -77,7 +77,7 @@ pub struct Limiter<'m> {
     solver: Solver<'m>,
     slots: VecDeque<Slot>,
     depths: Depths,
-    /// A move has been changed since the spindle was steady last: those behind
+    /// A move has been changed since the spindle was steady last: those after
     /// it meet its run later than in the original.
     shifted: bool,
 }

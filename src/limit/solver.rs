@@ -183,7 +183,7 @@ impl<'m> Solver<'m> {
         load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
     }
 
-    /// Load of a move that begins and ends at rest, with the spindle beside it.
+    /// Load of a move that begins and ends at rest, with the spindle next to it.
     fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
         let halved = self.halved(case.mv, mv);
         let mv = halved.as_ref().unwrap_or(mv);

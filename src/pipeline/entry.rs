@@ -38,9 +38,9 @@ pub(super) struct Entry {
     pub(super) without_feed: bool,
     /// It has the comment that marks what stands for a rapid.
     marked: bool,
-    /// The state behind it.
+    /// The state after it.
     pub(super) mark: Mark,
-    /// The same, as far as plain blocks go by it; `None` behind a plain one.
+    /// The same, as far as plain blocks go by it; `None` after a plain one.
     pub(super) stance: Option<Stance>,
     pub(super) knobs: Option<KnobState>,
     pub(super) feed_mode: FeedMode,

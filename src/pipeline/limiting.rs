@@ -268,7 +268,7 @@ pub(super) fn last_round(depths: &Depths) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
         LAST_ROUND,
-        format!("blocks exceed the limit beside others that were lowered, after {rounds} rounds"),
+        format!("blocks exceed the limit next to others that were lowered, after {rounds} rounds"),
     )
     .help("another strategy, or --allow feed, may help")
 }

@@ -73,9 +73,9 @@ pub(super) struct Writer<'m, R, W> {
     decided: Vec<(Assessment, Outcome)>,
     /// Path mode of the last move that was read.
     mode: PathMode,
-    /// Millimetres in a program unit behind the last block that was read.
+    /// Millimetres in a program unit after the last block that was read.
     mm_per_unit: f64,
-    /// The original's state behind the last block that was written.
+    /// The original's state after the last block that was written.
     mark: Mark,
     knobs: Option<KnobState>,
     batch: Batch,
@@ -312,7 +312,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let entries = &*entries;
         let Some(entry) = entries.back() else { return };
         let moved = entry.moves_on();
-        // Behind the last step the line ends.
+        // After the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
         for (index, step) in steps.enumerate() {
             assessor.want = if self.exact { Want::ALL } else { tally.want() };

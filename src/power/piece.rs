@@ -160,7 +160,7 @@ impl PowerModel {
         self.demand(mv, &plan, want)
     }
 
-    /// The peaks and the energy of a blend behind the move `mv`.
+    /// The peaks and the energy of a blend after the move `mv`.
     pub(super) fn blend_demand(
         &self,
         mv: &Move,

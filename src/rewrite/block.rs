@@ -32,7 +32,7 @@ pub struct BlockView<'a> {
     pub facts: &'a Facts,
     /// The original's modal state before it.
     pub before: &'a Mark,
-    /// The original's modal state behind it.
+    /// The original's modal state after it.
     pub after: &'a Mark,
     /// The original's limits in force for it; needed where the controller has
     /// knobs.
@@ -269,7 +269,7 @@ impl<'m> Rewriter<'m> {
         }
     }
 
-    /// Writes a block by itself: what it changes is put back right behind it, so
+    /// Writes a block by itself: what it changes is put back right after it, so
     /// that it does not matter where the program comes from or goes on, nor whether the
     /// block is skipped. False when its edits contradict each other.
     #[must_use]

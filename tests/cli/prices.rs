@@ -50,10 +50,12 @@ fn the_price_is_what_limit_asks_for() {
     }
 }
 
-/// Where the base load takes all no permission helps, and none is named.
+/// Where coolant alone draws too much no permission helps, and none is named.
 #[test]
 fn no_price_where_nothing_helps() {
-    let shop = mill(100.0);
+    let load = "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 500";
+    let shop = Shop::mill("fanuc", "peak_power_w = 450", load, "");
+    shop.put("part.nc", &format!("M8\n{PART}"));
     for more in ["", " --allow feed,expand", " --partial"] {
         let (code, _, told) = shop.run(&format!("limit part.nc -o fit.nc{more}"));
         assert_eq!(code, 1, "{told}");

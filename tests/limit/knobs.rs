@@ -68,7 +68,7 @@ fn independent_axes_arrive_together() {
 }
 
 /// Where arriving together is not enough all arrive later: 1250 W of X are 950 W with
-/// 76 % of its acceleration, and Y draws a little beside it.
+/// 76 % of its acceleration, and Y draws a little next to it.
 #[test]
 fn independent_axes_arrive_together_a_little_later() {
     let rig = Rig {

@@ -157,7 +157,7 @@ fn subprograms_of_the_program_are_marked() {
     let (first, _) = fits(rig("fanuc", 1000.0), program);
     assert_eq!(first.matches(" (RAPID)\n").count(), 3, "{first}");
     let (again, _) = fits(rig("fanuc", 800.0), &first);
-    // What was in force behind such a line is put back: others may count on it.
+    // What was in force after such a line is put back: others may count on it.
     assert_eq!(
         again,
         first.replace("F24000 (RAPID)\n", "F19200 (RAPID)\nF24000\n")

@@ -13,7 +13,7 @@ use crate::power::model::PowerModel;
 use crate::power::piece::{piece_demand, shifted_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
 
-/// What is known of the path before and behind a piece.
+/// What is known of the path before and after a piece.
 #[derive(Debug)]
 pub(super) struct Surges {
     past: Past,
