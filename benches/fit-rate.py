@@ -5,13 +5,16 @@
 
 Each program is read with a machine that suits its control: linear rapids, the control's
 own path modes, known reference points, work offsets and tools, a converter of 60 % and of
-80 % of the program's own largest peak, no margin. Printed are, by control and share, how many programs are certified, and why the
-others are not, by the rules that refuse them.
+80 % of the program's own largest peak, no margin. Printed are, by control and share, how
+many programs are certified, and why the others are not, by the rules that refuse them.
+With --rapids-only nothing but rapids may be lowered, and only programs count of which all
+else fits.
 """
 
 import argparse
 import collections
 import concurrent.futures
+import csv
 import hashlib
 import json
 import pathlib
@@ -94,6 +97,17 @@ def peak(gwatt, program, arguments, seconds):
     return found[0].get("peak_w") or 0.0, ""
 
 
+def largest_feed(gwatt, program, arguments, folder, seconds):
+    """The largest peak of all moves but rapids, W."""
+    rows = folder / "rows.csv"
+    run([gwatt, "report", str(program), *arguments, "--csv", str(rows)], seconds)
+    if not rows.exists():
+        return float("inf")
+    with rows.open(encoding="latin1") as lines:
+        peaks = [float(row["peak_w"]) for row in csv.DictReader(lines) if row["move"] != "rapid"]
+    return max(peaks, default=0.0)
+
+
 def programs(folders, which):
     """(profile, file) of all programs of PROFILE=FOLDER, or of one half of them."""
     found = []
@@ -104,7 +118,7 @@ def programs(folders, which):
     return found
 
 
-def judge(gwatt, profile, program, shares, options, seconds):
+def judge(gwatt, profile, program, shares, options, rapids_only, seconds):
     """By share: "certified", "fits", "unread", or the rules that refuse it."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
@@ -113,9 +127,10 @@ def judge(gwatt, profile, program, shares, options, seconds):
         peak_w, _ = peak(gwatt, program, arguments, seconds)
         if peak_w is None:
             return {share: "unread" for share in shares}
+        feed_w = largest_feed(gwatt, program, arguments, folder, seconds) if rapids_only else 0.0
         results = {}
         for share in shares:
-            if peak_w <= 0.0:
+            if peak_w <= 0.0 or feed_w > share * peak_w:
                 results[share] = "fits"
                 continue
             file.write_text(machine(profile, share * peak_w))
@@ -138,12 +153,13 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--half", choices=("tune", "rest"), help="only this half of each folder")
+    parser.add_argument("--rapids-only", action="store_true")
     parser.add_argument("--list", action="store_true", help="name every program that is refused")
     given = parser.parse_args()
     shares = [float(share) for share in given.shares.split(",")]
-    options = ["--allow", given.allow] if given.allow else []
+    options = ["--allow", given.allow] if given.allow and not given.rapids_only else []
     jobs = programs(given.folders, given.half)
-    work = lambda job: (job, judge(given.gwatt, job[0], job[1], shares, options, given.seconds))
+    work = lambda job: (job, judge(given.gwatt, job[0], job[1], shares, options, given.rapids_only, given.seconds))
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         results = list(pool.map(work, jobs))
     table = collections.defaultdict(collections.Counter)

@@ -160,6 +160,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
             feed: true,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let solver = Solver::new(&machine, how);
     if let Err(obstacle) = solver.solve(&mv, &assessment, &permit, Ends::Rest) {

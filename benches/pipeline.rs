@@ -21,7 +21,7 @@ use gwatt::source::{LineReader, lines};
 use gwatt::syntax::{Block, parse_line, scan_line};
 
 const PROGRAM_BYTES: usize = 1_000_000;
-/// A machine with look-ahead, and the same that stops behind each block.
+/// A machine with look-ahead, and the same that stops after each block.
 const AHEAD: &str = "router-48v";
 const STOPS: &str = "router-48v, exact stop";
 /// Straight cuts that fit; a small converter; the default.
@@ -33,6 +33,7 @@ const LIMIT: LimitOptions = LimitOptions {
         feed: true,
         ..Allowed::NOTHING
     },
+    ..LimitOptions::USUAL
 };
 
 fn main() {

@@ -9,7 +9,7 @@ use memchr::{memchr, memchr2};
 pub struct Span {
     /// Offset of the first byte.
     pub start: u32,
-    /// Offset behind the last byte.
+    /// Offset after the last byte.
     pub end: u32,
 }
 
@@ -56,7 +56,7 @@ pub enum SourceError {
     /// A line longer than [`MAX_LINE_BYTES`].
     #[error(
         "line {line} is longer than {} MiB: this is not a part program, or its line ends were lost; \
-         export it again with a line end behind each block",
+         export it again with a line end after each block",
         MAX_LINE_BYTES >> 20
     )]
     LineTooLong {
@@ -79,7 +79,7 @@ pub enum SourceError {
     Io(#[from] std::io::Error),
 }
 
-/// Offset behind the first line end of `bytes`: LF, CR and CRLF each are one.
+/// Offset after the first line end of `bytes`: LF, CR and CRLF each are one.
 ///
 /// `None` when there is no line end, and also when `bytes` ends in a CR, since
 /// an LF that follows would belong to it.
@@ -172,7 +172,7 @@ impl<R: Read> LineReader<R> {
     }
 
     /// The next line with its number from 1, its line end included; `None`
-    /// behind the last one.
+    /// after the last one.
     ///
     /// # Errors
     ///

@@ -56,7 +56,7 @@ fn reached(places: impl Iterator<Item = AxisValues>, start: AxisValues) -> Vec<A
     out
 }
 
-/// Its table has a row for each block: the values that the block leaves behind.
+/// Its table has a row for each block: the values that the block leaves after.
 fn rows(table: &Path, start: AxisValues) -> Vec<AxisValues> {
     let mut reader = csv::Reader::from_path(table).expect("a table");
     let head = reader.headers().expect("names").clone();

@@ -106,7 +106,7 @@ fn the_peaks_do_not_add_up_where_they_do_not_meet() {
     let found = rows(&quick, "M3 S3000\nG0 X2000\n");
     near(found[0].peak_w, 2.0 * FULL_W + 500.0);
     let short = with("", "M3 S3000\nG0 X250\n");
-    // v = √(1·0.25) = 0.5 m/s at 0.5 s: 500 W beside half of the run-up's power;
+    // v = √(1·0.25) = 0.5 m/s at 0.5 s: 500 W next to half of the run-up's power;
     // at its end, after 1 s, the run-up alone.
     near(short, FULL_W);
     let shorter = with("", "M3 S3000\nG0 X90\n");
@@ -256,6 +256,7 @@ fn surface_speed_where_the_axis_stands_or_is_not_known() {
             feed: true,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let (program, mut out) = (format!("G21 G90\n{facing}M2\n"), Vec::new());
     let summary = limit(Cursor::new(&program), &lathe, &options, how, &mut out, None).unwrap();
@@ -272,7 +273,7 @@ fn tapping_turns_the_spindle_round() {
     );
     let kinds: Vec<_> = found.iter().map(|row| row.kind).collect();
     assert_eq!(kinds, [Dwell, Tap, MoveKind::Spindle, Tap, Rapid]);
-    // 600/min with full torque, beside the slide at 10 mm/s.
+    // 600/min with full torque, next to the slide at 10 mm/s.
     let turned = 31.415_926_535_897_93 * 600.0 * std::f64::consts::TAU / 60.0;
     for index in [1, 3] {
         near(found[index].peak_w, turned + 10.0);
@@ -339,6 +340,7 @@ fn limited(machine: &Machine, program: &str, allow_feed: bool) -> (String, Limit
             feed: allow_feed,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let program = format!("G21 G90\n{program}M2\n");
     let (mut out, mut rows) = (Vec::new(), Rows::default());

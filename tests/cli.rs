@@ -5,6 +5,8 @@ mod identify;
 #[cfg(unix)]
 mod interrupts;
 mod machines;
+mod marks;
+mod prices;
 mod sets;
 mod sizes;
 mod ways;

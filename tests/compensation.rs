@@ -94,7 +94,7 @@ fn shown(controller: &str, options: &Options, program: &str) -> String {
 #[test]
 fn outside_a_square() {
     // Clockwise with the tool on the left: corners are rounded by arcs about
-    // them, with the feed of the block behind the corner.
+    // them, with the feed of the block after the corner.
     let program =
         "G21 F600\nG0 X0 Y-10\nG41.1 D4\nG1 X0 Y0\nY20\nX20 F300\nY0\nX0\nG40\nG1 X-10 Y-10\nM2\n";
     assert_snapshot!(moves(program), @r#"
@@ -241,7 +241,7 @@ fn rapids_go_round_corners_straight() {
 fn a_lathe_tool_by_its_orientation() {
     // Orientation 2: the controlled point lies at smaller X and smaller Z than
     // the nose's centre, each by its radius. So it is on the path along the
-    // face and beside it by the radius along Z.
+    // face and next to it by the radius along Z.
     let program = "G18 F600\nG0 X0 Z10\nG42.1 D2 L2\nG1 X0 Z0\nX10\nZ-20\nG40\nG0 X20 Z10\nM2\n";
     assert_snapshot!(moves(program), @r#"
 2 rapid Z10.000000
@@ -255,7 +255,7 @@ fn a_lathe_tool_by_its_orientation() {
 
 #[test]
 fn helices_and_arcs_as_first_moves() {
-    // The first arc would end 2 mm beside the programmed end, in (12, 0); its
+    // The first arc would end 2 mm next to the programmed end, in (12, 0); its
     // centre moves so that it passes where the tool is. The next arc turns back
     // there: both circles meet at 6 + (6² + 14² - 12²)/(2·14). The helix has two
     // turns, less what is cut off.
@@ -268,7 +268,7 @@ fn helices_and_arcs_as_first_moves() {
 "#);
 }
 
-/// LinuxCNC, "G40": the move behind it leads back.
+/// LinuxCNC, "G40": the move after it leads back.
 #[test]
 fn the_ends_of_compensation() {
     // M2 ends it; G40 without motion and D0 change nothing.
@@ -281,7 +281,7 @@ fn the_ends_of_compensation() {
 10 feed X8.000000 Y2.000000 F600.00
 11 feed Y10.000000 F600.00
 "#);
-    // Incremental moves behind G40 count from the programmed place.
+    // Incremental moves after G40 count from the programmed place.
     let program = "F600\nG0 X0 Y0\nG41.1 D4 G1 X10\nG40\nG91 G1 Y5\nM2\n";
     assert_snapshot!(moves(program), @r#"
 2 rapid

@@ -14,7 +14,7 @@ use gwatt::identify::{Factor, TransferFunction};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Options, Stretch, analyze, motion};
 
-/// A machine of X, Y and Z with these tables behind the axes'.
+/// A machine of X, Y and Z with these tables after the axes'.
 fn machine(controller: &str, tables: &str) -> Machine {
     let mut text = format!(
         "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 9000\nbase_load_w = 100\n"

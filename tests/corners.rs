@@ -85,7 +85,7 @@ fn type_b() -> Machine {
 fn outside_corners_of_90_degrees() {
     // Radius 5, the tool to the left of a clockwise square: each corner is the
     // one of the square that is larger by 5. Type A: the first move ends beside
-    // the start of the second, at (-5, 0); the last begins beside the end of the
+    // the start of the second, at (-5, 0); the last begins next to the end of the
     // one before, at (0, -5).
     let program = "G10 L12 P1 R5.\nG0 X-20. Y-20.\nG41 D1 G1 X0. Y0. F600\nY40.\nX40.\nY0.\nX0.\nG40 X-20. Y-20.\nM30\n";
     let square = moves("fanuc", program);
@@ -121,7 +121,7 @@ fn outside_corners_of_90_degrees() {
 fn sharp_outside_corners() {
     // The path bends by 135°: on by the radius to (-5, 45), across to
     // (0, 40 + 5√2), and along the shifted line, which ends at
-    // (30, 10) + 5(1, 1)/√2 beside its end.
+    // (30, 10) + 5(1, 1)/√2 next to its end.
     let program = "G10 L12 P1 R5.\nG0 X20. Y-20.\nG41 D1 G1 X0. Y0. F600\nY40.\nX30. Y10. F500\nG40 X40. Y0.\nM30\n";
     assert_snapshot!(moves("fanuc", program), @r"
 2 rapid X20.0000 Y-20.0000
@@ -136,7 +136,7 @@ fn sharp_outside_corners() {
 #[test]
 fn arcs_at_outside_corners() {
     // Tangents meet at (-5, 45); the arc about (0, 20) begins at (0, 45) with a
-    // radius of 25. It goes over into the line behind it.
+    // radius of 25. It goes over into the line after it.
     let program = "G10 L12 P1 R5.\nG0 X20. Y-20.\nG41 D1 G1 X0. Y0. F600\nY40.\nG2 X20. Y20. J-20.\nG1 Y0.\nX10.\nG40\nZ5.\nX0. Y9.\nM30\n";
     assert_snapshot!(moves("fanuc", program), @r"
 2 rapid X20.0000 Y-20.0000
@@ -209,7 +209,7 @@ fn the_nose_of_a_lathe_tool() {
 6 feed X35.0000 F100.00
 ");
     // G71 goes by the contour as it is programmed; G70 by the shifted one: in
-    // from (15, 5) to beside the first move, and back to where it began.
+    // from (15, 5) to next to the first move, and back to where it began.
     let contour = "T0303\nG98 G0 X30. Z5.\nG71 P10 Q20 D4. R1. F100.\nN10 G42 G0 X10.\nG1 Z-20. F100.\nX24.\nN20 G40 X28.\nG70 P10 Q20\nM30\n";
     let table = "T3 D1.6 Q3\n";
     let found = moves_on(&lathe, table, contour);
@@ -339,7 +339,7 @@ fn what_cannot_be_compensated() {
     }
     assert_snapshot!(all, @r"
 2 tool-radius: the radius of G41 and G42, number 3, is not known
-3 compensation: the compensation ends with no move in the plane behind the one that began it
+3 compensation: the compensation ends with no move in the plane after the one that began it
 2 compensation: the first move under cutter compensation must be straight here
 6 compensation: the control does not look this far ahead for the corner: blocks without motion in the plane of the compensation come before it
 4 compensation: another radius under cutter compensation: the controller stops here
@@ -371,7 +371,7 @@ fn what_cannot_be_compensated() {
 
 #[test]
 fn sinumerik_goes_round_corners_by_arcs_or_to_where_lines_meet() {
-    // NORM: beside the start of the next move. G450: an arc about the corner.
+    // NORM: next to the start of the next move. G450: an arc about the corner.
     // CFC: on the outer arc the edge has F, the centre 25/20 of it. G451: on to
     // where the shifted lines meet; an arc again where the path bends by 135°.
     let program = "$TC_DP6[1,1]=4.5 $TC_DP15[1,1]=0.5\nT1 D1\nG0 X-20 Y-20\nG41 G1 X0 Y0 F600\nY40\nX40\nG2 X60 Y20 J-20\nG451\nG1 Y0\nX20\nX40 Y-20\nG40 X50 Y-30\nM30\n";

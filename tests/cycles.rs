@@ -85,6 +85,7 @@ const HOW: LimitOptions = LimitOptions {
         feed: true,
         ..Allowed::NOTHING
     },
+    ..LimitOptions::USUAL
 };
 
 const SPINDLE: &str = "G21 G90 F100 S500 M3\n";
@@ -205,7 +206,7 @@ fn linuxcnc_taps_and_bores() {
     ");
 }
 
-/// "G87": beside the hole down, a counterbore upwards, and back. "G88": the
+/// "G87": next to the hole down, a counterbore upwards, and back. "G88": the
 /// operator retracts, the next move starts at the bottom.
 #[test]
 fn linuxcnc_bores_back_and_by_hand() {

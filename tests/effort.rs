@@ -289,7 +289,7 @@ fn used(child: &Child) -> (f64, u64) {
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kib = peak.and_then(|peak| peak.trim().trim_end_matches(" kB").parse().ok());
     let stat = fs::read_to_string(format!("{folder}/stat")).unwrap_or_default();
-    // Behind the name in brackets, user and system time are the 12th and the 13th.
+    // After the name in brackets, user and system time are the 12th and the 13th.
     let fields = stat.rsplit(") ").next().unwrap_or_default().split(' ');
     let ticks = fields
         .skip(11)

@@ -189,7 +189,7 @@ fn functions() {
     );
 }
 
-/// LinuxCNC, "Parameters": a value takes effect behind its block.
+/// LinuxCNC, "Parameters": a value takes effect after its block.
 #[test]
 fn parameters_take_effect_behind_their_block() {
     let end = |program: &str| end("linuxcnc", program);
@@ -254,7 +254,7 @@ fn every_message() {
             "[EXISTS[#1+1]]",
             "expression: EXISTS takes one parameter in brackets",
         ),
-        ("[ATAN[1]]", "arithmetic: ATAN[…] without /[…] behind it"),
+        ("[ATAN[1]]", "arithmetic: ATAN[…] without /[…] after it"),
         ("[1/0]", "arithmetic: a division by zero"),
         ("[1 MOD 0]", "arithmetic: a division by zero"),
         ("[EXP[1000]]", "arithmetic: a result beyond all numbers"),

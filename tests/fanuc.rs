@@ -209,7 +209,7 @@ fn alarms_and_state() {
 #[test]
 fn a_feed_behind_a_comma_is_refused() {
     let found = moves_on(&machine("mitsubishi", ""), "G0 X10. ,F500\nM30\n");
-    assert_snapshot!(found, @"1 corner-word: a word behind a comma is not supported");
+    assert_snapshot!(found, @"1 corner-word: a word after a comma is not supported");
 }
 
 #[test]

@@ -118,7 +118,7 @@ fn calls_of_programs_and_macros() {
     assert_eq!(ends("iso", program), [9.0, 2.0]);
 }
 
-/// B-63944EN, "Modal Call (G66)": the macro runs behind each block that moves, to
+/// B-63944EN, "Modal Call (G66)": the macro runs after each block that moves, to
 /// G67. Haas mill operator's manual, "M97 Local Sub-Program Call": to a block of the
 /// same program, L times.
 #[test]
@@ -148,23 +148,20 @@ fn every_message_of_o_words() {
     );
     fails(
         "g0 x5 o1 call\n",
-        "1 o-word: an O-word stands behind other words",
+        "1 o-word: an O-word stands after other words",
     );
     fails("o1 if\n", "1 expression: `[` is missing here");
     let call = format!("o1 call {}\n", "[1]".repeat(31));
     fails(&call, "1 o-word: a call has at most 30 arguments");
-    fails(
-        "o1 if [0]\n",
-        "1 o-word: there is no `O1 endif` behind this",
-    );
+    fails("o1 if [0]\n", "1 o-word: there is no `O1 endif` after this");
     fails(
         "o<a> while [0]\n",
-        "1 o-word: there is no `o<a> endwhile` behind this",
+        "1 o-word: there is no `o<a> endwhile` after this",
     );
-    fails("o1 sub\n", "1 o-word: there is no `O1 endsub` behind this");
+    fails("o1 sub\n", "1 o-word: there is no `O1 endsub` after this");
     fails(
         "o1 repeat [0]\n",
-        "1 o-word: there is no `O1 endrepeat` behind this",
+        "1 o-word: there is no `O1 endrepeat` after this",
     );
     fails("o1 repeat [1e13]\n", "1 expression: `]` is missing here");
     fails(
@@ -256,7 +253,7 @@ fn every_message_of_subroutines_and_labels() {
     );
     fails(
         "o1 do\no1 continue\no1 break\no1 while [0]\n",
-        "2 o-word: behind this continue stands a break of the same do loop, which LinuxCNC would take",
+        "2 o-word: after this continue stands a break of the same do loop, which LinuxCNC would take",
     );
     fails(
         "o1 while [1]\no1 break\no1 endwhile\no2 do\no2 while [1]\n",

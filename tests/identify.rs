@@ -61,7 +61,7 @@ fn sum(p: &[f64], factor: f64, q: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Motor, table and side masses, one behind the other on springs: the motor
+/// Motor, table and side masses, one after the other on springs: the motor
 /// drives the table through (`k`, `c`), each side mass hangs on the table. From
 /// torque to the table's acceleration.
 pub(crate) fn branched(
@@ -413,7 +413,7 @@ fn in_a_closed_loop_the_excitation_is_the_instrument() {
     assert!(inertia.std < 2e-4);
 }
 
-/// Data of others beside the repository, if they are there.
+/// Data of others next to the repository, if they are there.
 pub(crate) fn shared(path: &str) -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let found = [root.join("../shared"), root.join("../../shared")]

@@ -263,13 +263,13 @@ fn cycles_that_are_refused() {
         let _ = writeln!(said, "{case}: {}", refused(&format!("{case}\n")));
     }
     assert_snapshot!(said, @r"
-L CYCLE.CYC [@P1=5]: 1 subprogram: parameters behind the name of a subprogram
+L CYCLE.CYC [@P1=5]: 1 subprogram: parameters after the name of a subprogram
 L CYCLE [NAME=SysDrillDeepHole.ecy @P1=5]: 1 unsupported-word: SysDrillDeepHole.ecy is a cycle of the control's maker, which gwatt does not follow
-L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]: 1 unsupported-word: MODAL is a cycle behind each block that moves, which gwatt does not follow
+L CYCLE [NAME=a.cyc MODAL_MOVE @P1=5]: 1 unsupported-word: MODAL is a cycle after each block that moves, which gwatt does not follow
 L CYCLE [NAME=a.cyc @P201=5]: 1 no-such-parameter: the parameters of a cycle are @P1 to @P200
 L CYCLE [@P1=5]: 1 subprogram: a cycle without its name
-L CYCLE [NAME=a.cyc Q=5]: 1 subprogram: behind CYCLE stand NAME= and the parameters @P1= and so on
-G0 L CYCLE [NAME=a.cyc]: 1 subprogram: a cycle behind other words
+L CYCLE [NAME=a.cyc Q=5]: 1 subprogram: after CYCLE stand NAME= and the parameters @P1= and so on
+G0 L CYCLE [NAME=a.cyc]: 1 subprogram: a cycle after other words
 X@P1: 1 unknown-value: @P1 is given by no call of a cycle: what it holds, only the machine knows
 @P1=3: 1 unsupported-word: @P1 belongs to the control or the PLC, and may change offsets
 @X5: 1 syntax: @ stands before P, X, Y, Z, I, J, K and S in cycles
@@ -360,7 +360,7 @@ X0 Y0 Z2
 ");
 }
 
-/// A jump behind other words is the last action of its block ("The $GOTO
+/// A jump after other words is the last action of its block ("The $GOTO
 /// statement"); lines of a comment or a declaration do not move.
 #[test]
 fn plain_moves_beside_what_is_more() {

@@ -39,7 +39,7 @@ fn roughing_cuts_level_by_level() {
 ");
 }
 
-/// Beside the contour by (2 - 0) / 2 = 1 mm, then on it. The shifted lines meet
+/// Next to the contour by (2 - 0) / 2 = 1 mm, then on it. The shifted lines meet
 /// tan(22.5°) mm = 0.4142 mm before the corner.
 #[test]
 fn finishing_runs_beside_the_contour() {
@@ -83,7 +83,7 @@ fn what_cannot_be_is_refused() {
 7 lathe-cycle: G70 to G72: the cycle outside of G18
 7 lathe-cycle: G70 to G72: the depth of cut I must be above 0, the retraction R not below it
 7 lathe-cycle: G70 to G72: P is no number of passes
-7 lathe-cycle: G70 to G72: another motion word beside the cycle
+7 lathe-cycle: G70 to G72: another motion word next to the cycle
 7 lathe-cycle: G70 to G72: the cycle under G93
 8 compensation: a canned cycle under cutter compensation: the controller stops here
 7 lathe-cycle: G70 to G72: Q is no number of a subroutine

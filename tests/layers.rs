@@ -46,7 +46,7 @@ fn module_of(path: &Path) -> String {
     name.trim_end_matches(".rs").to_owned()
 }
 
-/// The modules that a text names behind `crate::`, with their lines; comments
+/// The modules that a text names after `crate::`, with their lines; comments
 /// may name any.
 fn imports(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();

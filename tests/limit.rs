@@ -12,10 +12,12 @@ mod knobs;
 mod klipper;
 mod lathe;
 mod lines;
+mod marked;
 mod no_word;
 mod obstacles;
 mod outputs;
 mod partial;
+mod presets;
 mod random;
 mod reader;
 mod returns;
@@ -146,6 +148,7 @@ pub(crate) fn run(
             feed: run.allow_feed,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let mut text = Vec::new();
     let summary = limit(

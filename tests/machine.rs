@@ -42,7 +42,7 @@ fn edited(old: &str, new: &str) -> String {
     BASE.replacen(old, new, 1)
 }
 
-/// The base machine with lines behind it.
+/// The base machine with lines after it.
 fn with(more: &str) -> String {
     format!("{BASE}{more}\n")
 }

@@ -56,8 +56,20 @@ fn random_blocks_agree() {
     compare(1, 2000);
 }
 
-#[test]
-#[ignore = "100,000 blocks take some minutes"]
-fn many_random_blocks_agree() {
-    compare(1_000_000, 100_000);
+/// A quarter of 100,000 blocks, which take some minutes.
+macro_rules! quarters {
+    ($($name:ident: $seed:expr),*) => {$(
+        #[test]
+        #[ignore = "25,000 blocks take some minutes"]
+        fn $name() {
+            compare($seed, 25_000);
+        }
+    )*};
 }
+
+quarters!(
+    many_random_blocks_agree: 1_000_000,
+    many_more_random_blocks_agree: 1_025_000,
+    still_more_random_blocks_agree: 1_050_000,
+    the_last_random_blocks_agree: 1_075_000
+);

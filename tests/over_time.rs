@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::shop::Shop;
 
-/// A mill whose converter has `ratings`; `rest` comes behind it.
+/// A mill whose converter has `ratings`; `rest` comes after it.
 fn mill(controller: &str, rest: &str, ratings: &str) -> Shop {
     Shop::mill(controller, ratings, rest, "")
 }
@@ -198,7 +198,7 @@ fn a_capacitor_carries_peaks_only_where_it_may() {
 const ROUND: &str = "G21 G90 G94 G17 G64 P0.05\nG0 X20 Y10 Z5\nG1 X60 F6000\nG1 Y40\nG3 X40 Y60 I-20\n\
                      G2 X20 Y40 J-20 F3000\nG4 P0.25\nG1 Z0 F600\nG0 X0 Y0\nM30\n";
 
-/// The rows of a series with a value in the first column, as numbers behind it.
+/// The rows of a series with a value in the first column, as numbers after it.
 fn rows(text: &str, program: &str) -> Vec<Vec<f64>> {
     text.lines()
         .filter_map(|line| line.strip_prefix(program)?.strip_prefix(','))

@@ -16,7 +16,7 @@ fn demand(machine: &Machine, mv: &Move) -> Demand {
     PowerModel::new(machine).demand(mv, &plan, Want::ALL)
 }
 
-/// Judges moves one behind the other.
+/// Judges moves one after the other.
 fn judged(
     machine: &Machine,
     moves: &[Move],

@@ -318,7 +318,7 @@ pub(crate) fn path_power(
     };
     let mut rest = t;
     for (left, phase) in (0..profile.phases.len()).rev().zip(&profile.phases) {
-        // What rounding puts behind the end belongs to the last phase.
+        // What rounding puts after the end belongs to the last phase.
         let slack = if left == 0 { 1e-12 * t } else { 0.0 };
         if rest <= phase.duration_s + slack {
             let rest = rest.min(phase.duration_s);
@@ -326,7 +326,7 @@ pub(crate) fn path_power(
         }
         rest -= phase.duration_s;
     }
-    panic!("{t} s is behind the end");
+    panic!("{t} s is after the end");
 }
 
 /// Peaks and energy of a path by dense sampling and local refinement: a lower

@@ -140,7 +140,7 @@ fn a_program_fails_as_in_one_thread() {
     }
 }
 
-/// A file that cannot be read behind so many bytes.
+/// A file that cannot be read after so many bytes.
 struct Breaks<'a>(Cursor<&'a [u8]>, u64);
 
 impl Read for Breaks<'_> {

@@ -15,6 +15,7 @@ const HOW: LimitOptions = LimitOptions {
     strategy: Strategy::Optimal,
     law: Law::Exact,
     allowed: Allowed::NOTHING,
+    ..LimitOptions::USUAL
 };
 
 /// 500 kg, 0.5 m/s, 5 m/s² and 100 N of friction: 0.5 · (2500 + 100) = 1300 W at the

@@ -210,7 +210,7 @@ fn files(directory: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Real programs lie beside the project, not in it.
+/// Real programs lie next to the project, not in it.
 #[test]
 fn real_programs_come_back() {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");

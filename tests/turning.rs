@@ -382,7 +382,7 @@ fn what_turning_cycles_refuse() {
         ),
         (
             "G70 P10 Q20\nN10 G0 X5.",
-            "contour: there is no block N20 behind N10 to end the contour",
+            "contour: there is no block N20 after N10 to end the contour",
         ),
         (
             "G70 P10 Q20\nN10 M98 P1\nN20 X5.",

@@ -8,8 +8,9 @@
 use std::sync::OnceLock;
 
 use gwatt::machine::{Machine, builtin};
-use gwatt::pipeline::{Allowed, 
-    Certificate, Law, LimitOptions, Reading, LimitSummary, Options, Start, Strategy, analyze, limit,
+use gwatt::pipeline::{
+    Allowed, Certificate, Law, LimitOptions, LimitSummary, Options, PresetElse, RapidMark, Reading,
+    Start, Strategy, analyze, limit,
 };
 use libfuzzer_sys::fuzz_target;
 
@@ -65,9 +66,16 @@ fuzz_target!(|bytes: &[u8]| {
             feed: strategy & 8 == 0,
             ..Allowed::NOTHING
         },
+        always: strategy & 16 != 0,
+        preset_else: if strategy & 32 == 0 {
+            PresetElse::Refuse
+        } else {
+            PresetElse::Speed
+        },
     };
     let options = Options {
         once: false,
+        rapid_mark: (options & 8 != 0).then(RapidMark::default),
         reading: Reading {
             start: if options & 1 == 0 {
                 Reading::default().start

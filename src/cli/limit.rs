@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gwatt::pipeline::{self, Allowed};
+use gwatt::pipeline::{self, Allowed, RapidMark, RapidMarkError};
 
 use super::{MachineArgs, ProgramArgs};
 
@@ -55,9 +55,29 @@ pub struct LimitArgs {
     /// How far to lower it
     #[arg(long, value_enum, default_value_t = Law::Exact)]
     pub law: Law,
+    /// With --strategy preset or --law patent: their values count for moves that fit without
+    /// them too
+    #[arg(long)]
+    pub always: bool,
+    /// With --strategy preset: what becomes of a move that does not fit and for whose axes
+    /// there is no preset [default: refuse]
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub preset_else: Option<PresetElse>,
     /// What may be changed besides rapids and their accelerations; several with commas
     #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
     pub allow: Vec<Allow>,
+    /// Write a comment into each block in which a rapid becomes a feed, and take feeds with
+    /// this comment for what they stand for: their F may be lowered without --allow feed, so
+    /// that a program can be limited once more [default text: RAPID]
+    #[arg(
+        long,
+        value_name = "TEXT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = RapidMark::USUAL,
+        value_parser = mark
+    )]
+    pub mark_rapids: Option<RapidMark>,
     /// Write what can be lowered even if not all moves fit then; the exit status stays 1
     #[arg(long)]
     pub partial: bool,
@@ -67,6 +87,10 @@ pub struct LimitArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: ProgramArgs,
+}
+
+fn mark(text: &str) -> Result<RapidMark, RapidMarkError> {
+    RapidMark::new(text)
 }
 
 /// What `--allow` allows.
@@ -117,6 +141,15 @@ pub enum Strategy {
     Split,
 }
 
+/// See [`pipeline::PresetElse`].
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum PresetElse {
+    /// It gets the speed at which it fits
+    Speed,
+    /// It stays, and the program does not fit
+    Refuse,
+}
+
 /// See [`pipeline::Law`].
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Law {
@@ -143,6 +176,15 @@ impl From<Strategy> for pipeline::Strategy {
             Strategy::Accel => Self::Accel,
             Strategy::Optimal => Self::Optimal,
             Strategy::Split => Self::Split,
+        }
+    }
+}
+
+impl From<PresetElse> for pipeline::PresetElse {
+    fn from(other: PresetElse) -> Self {
+        match other {
+            PresetElse::Speed => Self::Speed,
+            PresetElse::Refuse => Self::Refuse,
         }
     }
 }

@@ -70,7 +70,7 @@ pub struct ProgramArgs {
         allow_hyphen_values = true
     )]
     pub start: Option<StartArg>,
-    /// Folder where subprograms are looked for, behind the program's own
+    /// Folder where subprograms are looked for, after the program's own
     #[arg(long, value_name = "DIR", help_heading = "Program")]
     pub sub_path: Vec<PathBuf>,
     /// The program runs once: limits over time need not bear it again at once

@@ -28,7 +28,7 @@ pub struct TuneArgs {
     #[arg(value_name = "[AXIS=]FILE", required_unless_present = "from")]
     pub recordings: Vec<String>,
     /// Take zeros, poles and inertias from this file, as --toml and the page
-    /// write it; recordings beside it are shown
+    /// write it; recordings next to it are shown
     #[arg(long, value_name = "TOML")]
     pub from: Option<PathBuf>,
     /// Sampling period of the filters [default: 1]

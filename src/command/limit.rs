@@ -17,13 +17,17 @@ use super::output::{Spool, Target, back_up, print};
 use super::rows::Rows;
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
-use crate::cli::{LimitArgs, allowed};
+use crate::cli::{LimitArgs, Strategy, allowed};
 
 /// Bytes that go to the spool at once.
 const SPOOL_BYTES: usize = 1 << 16;
 
 /// Writes a program that fits.
 pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
+    ensure!(
+        args.preset_else.is_none() || matches!(args.strategy, Strategy::Preset),
+        "--preset-else goes with --strategy preset"
+    );
     if args.with_subprograms {
         return limit_set::run(args, terminal);
     }
@@ -44,20 +48,26 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);
+    setup.options.rapid_mark.clone_from(&args.mark_rapids);
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
     let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args, path)?.spool()?);
 
     let done = (|| {
-        if args.dry_run {
-            program.keep()?;
-        }
+        program.keep()?;
         let sink = rows.sink();
         let how = options(args);
         let input = program.open()?;
         let options = setup.options_for(&program);
         pipeline::limit(input, &setup.machine, &options, how, &mut spool, sink)
     })();
+    let done = done.and_then(|mut summary| {
+        let options = setup.options_for(&program);
+        let how = self::options(args);
+        let input = program.open()?;
+        summary.price = pipeline::price(input, &setup.machine, &options, how, &summary)?;
+        Ok(summary)
+    });
     let summary = match done {
         Ok(summary) => summary,
         Err(failure) => {
@@ -82,6 +92,8 @@ pub(super) fn options(args: &LimitArgs) -> LimitOptions {
         strategy: args.strategy.into(),
         law: args.law.into(),
         allowed: allowed(&args.allow),
+        always: args.always,
+        preset_else: args.preset_else.map_or_else(Default::default, Into::into),
     }
 }
 

@@ -28,6 +28,7 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     dialect::settle(&mut setup, &mut programs, terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);
+    setup.options.rapid_mark.clone_from(&args.mark_rapids);
     let mut set = Vec::with_capacity(programs.len());
     for program in &programs {
         match read(program, &setup) {

@@ -54,6 +54,7 @@ pub fn write(
                 feed: args.allow == Some(Allow::Feed),
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let mut written = BufWriter::new(Target::Stdout.spool()?);
         let summary = program

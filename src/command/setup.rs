@@ -100,6 +100,7 @@ impl Setup {
             },
             certificate: None,
             once: reading.once,
+            rapid_mark: None,
             threads: threads(reading),
         };
         Ok(Self {

@@ -69,6 +69,7 @@ fn wish(args: &SizeArgs, setup: &Setup) -> Result<Wish> {
             strategy: args.strategy.into(),
             law: args.law.into(),
             allowed: allowed(&args.allow),
+            ..LimitOptions::USUAL
         },
         converter: converter(args.converter.as_deref(), &setup.machine)?,
         steps: args.steps,

@@ -40,7 +40,7 @@ fn printable(c: char) -> char {
 }
 
 /// The first `max_chars` characters of `bytes` as printable text, with `…`
-/// behind them if there are more.
+/// after them if there are more.
 #[must_use]
 pub fn excerpt(bytes: &[u8], max_chars: usize) -> String {
     let mut chars = decode(bytes).map(|(c, _)| c);
@@ -101,7 +101,7 @@ impl Shown {
                 shown.marked.end = shown.text.len();
             }
         }
-        // Behind the last character, as for something that is missing there.
+        // After the last character, as for something that is missing there.
         if first >= chars.len() {
             shown.marked = shown.text.len()..shown.text.len();
         }

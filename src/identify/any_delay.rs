@@ -6,7 +6,7 @@ use super::output_error::{Effort, Estimate, Fitting};
 /// periods.
 const CLEAR_DELAY: f64 = 10.0;
 
-/// The delay set free, if that is clearly worth a parameter: beside a fast zero
+/// The delay set free, if that is clearly worth a parameter: next to a fast zero
 /// and a fast pole it makes all of them uncertain.
 #[must_use]
 pub fn any_delay(fitting: &Fitting<'_>, t: f64, best: Estimate) -> Timed {

@@ -16,7 +16,7 @@ pub struct CommandInput {
     pub values: Vec<f64>,
     /// How they run between samples: as differences of such a measurement do.
     pub runs: Measured,
-    /// By how much that comes behind the command, s.
+    /// By how much that comes after the command, s.
     pub late_s: f64,
 }
 

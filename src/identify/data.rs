@@ -31,7 +31,7 @@ pub struct Data<'a> {
     pub leak: f64,
 }
 
-/// Signals of a recording behind a filter: all go through the same one, which leaves a
+/// Signals of a recording after a filter: all go through the same one, which leaves a
 /// model between them as it is.
 pub struct Signals {
     pub input: Vec<f64>,
@@ -40,7 +40,7 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Those of `data` behind `filter`.
+    /// Those of `data` after `filter`.
     #[must_use]
     pub fn behind(data: &Data<'_>, filter: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! How long the dead time behind a command is, and how far that is known.
+//! How long the dead time after a command is, and how far that is known.
 //!
 //! A loop follows up to some frequency, and a recording shows little beyond: there
 //! a mode, a lag or dead time make slow motion late alike. A search finds one of
@@ -98,7 +98,7 @@ pub fn profile(
     of_the_mean(if plain.is_empty() { &noisy } else { &plain }, bounds)
 }
 
-/// True for a zero that swings beside a pole that leaves nothing of it.
+/// True for a zero that swings next to a pole that leaves nothing of it.
 fn cancels(model: &TransferFunction) -> bool {
     let is_undone = |zero: &Factor| model.poles.iter().any(|pole| zero.is_undone_by(*pole));
     model.zeros.iter().any(is_undone)

@@ -1,5 +1,5 @@
 //! What noise a position or speed was measured with, and what disturbs the axis beside
-//! it: integrators with the leak behind which it is predicted best.
+//! it: integrators with the leak after which it is predicted best.
 //!
 //! Noise of the measurement alone needs integrators that hardly leak, disturbances of
 //! the force plain differences; where both are, it is in between, and an
@@ -40,7 +40,7 @@ const EFFORT: Effort = Effort {
 pub struct Noise {
     /// Leak of the integrators that go with it; 0 without them.
     pub leak: f64,
-    /// Taps of the filter that makes white what is left behind them, without the
+    /// Taps of the filter that makes white what is left after them, without the
     /// leading 1.
     pub taps: Vec<f64>,
 }
@@ -60,13 +60,13 @@ pub fn as_it_is(data: &Data<'_>, transfer: &TransferFunction) -> Option<Estimate
 }
 
 impl Noise {
-    /// Plain differences behind the integrators that go with it; `None` for none.
+    /// Plain differences after the integrators that go with it; `None` for none.
     #[must_use]
     pub fn held(&self, data: &Data<'_>) -> Option<Leaky> {
         (self.leak > 0.0).then(|| Leaky::of(data, self.leak))
     }
 
-    /// The noise beside the best of the models that a search starts from, found on the
+    /// The noise next to the best of the models that a search starts from, found on the
     /// first samples, and these models.
     #[must_use]
     pub fn first(
@@ -91,7 +91,7 @@ impl Noise {
         (noise.unwrap_or(first), starts)
     }
 
-    /// The noise beside which a model, moved a little, explains plain differences best,
+    /// The noise next to which a model, moved a little, explains plain differences best,
     /// with so many taps at most. `None` when none is clearly better than this one.
     #[must_use]
     pub fn beside(
@@ -141,7 +141,7 @@ impl Noise {
         (best, is_white)
     }
 
-    /// The best of all leaks with a filter behind each, and its criterion.
+    /// The best of all leaks with a filter after each, and its criterion.
     fn coloured(
         data: &Data<'_>,
         transfer: &TransferFunction,
@@ -173,7 +173,7 @@ impl Noise {
         best
     }
 
-    /// White noise that was integrated, behind integrators that leak less, as long as
+    /// White noise that was integrated, after integrators that leak less, as long as
     /// all samples are explained better with them.
     #[must_use]
     pub fn closer(self, data: &Data<'_>, transfer: &TransferFunction) -> Self {
@@ -220,7 +220,7 @@ impl Noise {
         }
     }
 
-    /// Akaike's criterion of what could not be foreseen behind the integrators, whatever
+    /// Akaike's criterion of what could not be foreseen after the integrators, whatever
     /// was filtered by: each filter begins with 1. With the model that was moved for it.
     /// `None` also where motion leaves no digits for noise.
     fn criterion(&self, data: &Data<'_>, transfer: &TransferFunction) -> Option<(f64, Estimate)> {

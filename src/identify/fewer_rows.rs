@@ -21,7 +21,7 @@ const POINTS: usize = 400;
 const EVERY_MAX: usize = 8;
 const ROWS_MIN: usize = 1500;
 
-/// The signals behind the low-pass.
+/// The signals after the low-pass.
 pub struct FewerRows {
     signals: Signals,
     every: usize,
@@ -83,7 +83,7 @@ fn low_pass(every: usize) -> Vec<f64> {
     taps.iter().map(|tap| tap * scale).collect()
 }
 
-/// A signal behind a symmetrical filter, where all of it is known.
+/// A signal after a symmetrical filter, where all of it is known.
 fn behind(x: &[f64], taps: &[f64]) -> Vec<f64> {
     let windows = x.windows(taps.len());
     windows

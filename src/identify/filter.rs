@@ -62,7 +62,7 @@ pub fn low_pass(x: &[f64], corner_hz: f64, period_s: f64) -> Vec<f64> {
 }
 
 /// First derivative by five points (error of fourth order); the two values at
-/// each end are those beside them.
+/// each end are those next to them.
 #[must_use]
 pub fn derivative(x: &[f64], period_s: f64) -> Vec<f64> {
     stencil(x, [1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * period_s)

@@ -77,9 +77,9 @@ pub struct Flexible {
     /// period or a whole one, as the input was taken early.
     pub fitted_delay_s: f64,
     /// Norm of what is left by norm of the output; of a position or speed the smaller
-    /// one of its differences, and behind leaky integrators.
+    /// one of its differences, and after leaky integrators.
     pub rel_error: f64,
-    /// Whiteness of what is left, behind the filter for coloured noise.
+    /// Whiteness of what is left, after the filter for coloured noise.
     pub whiteness: Whiteness,
     /// Order of that filter; 0 for white noise.
     pub noise_order: usize,

@@ -1,9 +1,9 @@
 //! The search where a position or speed was measured: model and noise, which show only
-//! behind one another.
+//! after one another.
 //!
 //! The models that a search starts from are mostly near to what is sought, though the
-//! noise is known but roughly: beside the best of them it is taken anew, and the search
-//! goes on behind that. What is found may show still other noise, or may have modes that
+//! noise is known but roughly: next to the best of them it is taken anew, and the search
+//! goes on after that. What is found may show still other noise, or may have modes that
 //! stand for noise: then the search goes on from there, among neighbours.
 
 use std::f64::consts::PI;
@@ -21,11 +21,11 @@ use super::search::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, fewer_rows, is_whit
 use super::spectrum::FrequencyResponse;
 use super::transfer::TransferFunction;
 
-/// Rounds of model and noise, behind the one that the starts are fitted in.
+/// Rounds of model and noise, after the one that the starts are fitted in.
 const ROUNDS: usize = 3;
 /// What swings so many times only while a recording lasts may be a disturbance.
 const SLOW: f64 = 20.0;
-/// Simpler models beside which the noise is taken.
+/// Simpler models next to which the noise is taken.
 const SIMPLE: usize = 2;
 /// Steps of all fits of the first search, and as many to spare.
 const STEPS: usize = 300;
@@ -75,19 +75,19 @@ pub fn choose(
     None
 }
 
-/// What comes behind a search.
+/// What comes after a search.
 enum Next {
-    /// Another one, behind other noise, from these models.
+    /// Another one, after other noise, from these models.
     Noise(Noise, Vec<TransferFunction>),
     /// Nothing: what was found.
     Chosen(Box<Chosen>),
 }
 
-/// A search behind one noise.
+/// A search after one noise.
 struct Stage<'a> {
     /// The samples on which models are compared, as they were recorded.
     raw: Data<'a>,
-    /// All samples, and those, behind what holds the noise.
+    /// All samples, and those, after what holds the noise.
     data: Data<'a>,
     rows: Data<'a>,
     /// Fits of models that are compared, and whether to all samples.
@@ -149,7 +149,7 @@ impl Stage<'_> {
         }
     }
 
-    /// The noise beside a model, where it is clearly other noise than was supposed.
+    /// The noise next to a model, where it is clearly other noise than was supposed.
     fn other_noise(&self, found: &Estimate) -> Option<Noise> {
         let plain = as_it_is(&self.rows, &found.transfer)?;
         let left = residuals(&self.rows, &plain)?;
@@ -160,7 +160,7 @@ impl Stage<'_> {
         Noise::beside(&self.raw, &found.transfer, WHITENING_MAX, Some(self.noise))
     }
 
-    /// The same noise with taps that suit the model that was found, where those beside the
+    /// The same noise with taps that suit the model that was found, where those next to the
     /// one before do not make it white.
     fn other_taps(&self, found: &Estimate) -> Option<Noise> {
         if self.noise.taps.is_empty() {
@@ -176,7 +176,7 @@ impl Stage<'_> {
         })
     }
 
-    /// A simpler model with the noise beside it, where both together explain the
+    /// A simpler model with the noise next to it, where both together explain the
     /// recording better: slow modes may stand for what disturbs the axis, and lags for a
     /// part of a period of delay.
     fn simple(&self, best: &Estimate) -> Option<(Noise, TransferFunction)> {

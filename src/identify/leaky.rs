@@ -8,13 +8,13 @@
 //! input goes through the same integrators: the model between them stays as it is.
 //!
 //! What they held at the first sample (the position, the speed) fades with `aᵏ` and
-//! `k·aᵏ`; it is fitted beside the model.
+//! `k·aᵏ`; it is fitted next to the model.
 
 use super::data::{Data, Signals};
 use super::normal::Normal;
 use super::stretch::{Column, OVER, ROWS};
 
-/// The signals behind leaky integrators.
+/// The signals after leaky integrators.
 pub struct Leaky {
     signals: Signals,
     leak: f64,
@@ -100,7 +100,7 @@ impl Leaky {
                 }
             }
         }
-        // Before the first differences it ran on as behind them: a step would ring.
+        // Before the first differences it ran on as after them: a step would ring.
         for at in (0..skip).rev() {
             if let Some([before, next, other]) = self.signals.output.get_mut(at..at + 3) {
                 *before = 2.0 * *next - *other;

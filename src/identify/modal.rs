@@ -4,7 +4,7 @@
 //! in the weights of the sections (which the zeros follow from), the direct path,
 //! and the states at the ends. So only the poles are searched for, everything else
 //! being at its best for them (Golub & Pereyra 1973, "variable projection"): a
-//! search for zeros beside them comes to rest in many more wrong places.
+//! search for zeros next to them comes to rest in many more wrong places.
 
 use nalgebra::{Cholesky, Complex, Matrix4, Vector4};
 

@@ -137,7 +137,7 @@ pub fn neighbours(
     out
 }
 
-/// A pole and a zero so near, as a share, may stand for nothing beside one another.
+/// A pole and a zero so near, as a share, may stand for nothing next to one another.
 const NEAR: f64 = 0.2;
 
 /// Without a pole and a zero that are as near to each other as that.

@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn what_follows_from_before_is_foreseen() {
         // 1, ½, ¼ … and the same below zero, so that the mean is nil. Of each the products
-        // add up to ⅔, the squares to ⅓ behind and 4/3 before; between them there is a
+        // add up to ⅔, the squares to ⅓ after and 4/3 before; between them there is a
         // step to −1. −2·(2·⅔)/(2·(⅓ + 4/3) + 1).
         let half: Vec<f64> = (0..60).map(|k| libm::ldexp(1.0, -k)).collect();
         let x: Vec<f64> = half

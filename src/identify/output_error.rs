@@ -119,7 +119,7 @@ impl Effort {
     };
 }
 
-/// A signal behind the whitening filter, as long as it was; before its first
+/// A signal after the whitening filter, as long as it was; before its first
 /// sample there was nothing.
 fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; x.len()];
@@ -161,7 +161,7 @@ pub fn refine(
 /// Fits of models to one recording.
 pub struct Fitting<'a> {
     raw: Data<'a>,
-    /// What is filtered before and behind a model is the same: the signals are
+    /// What is filtered before and after a model is the same: the signals are
     /// filtered once.
     signals: Signals,
     taps: &'a [f64],
@@ -170,7 +170,7 @@ pub struct Fitting<'a> {
 }
 
 impl<'a> Fitting<'a> {
-    /// To these signals behind the filter of these taps.
+    /// To these signals after the filter of these taps.
     #[must_use]
     pub fn new(raw: Data<'a>, taps: &'a [f64]) -> Self {
         Self {
@@ -228,7 +228,7 @@ impl<'a> Fitting<'a> {
         }
         let mut estimate = task.finish(transfer, &normal, steps)?;
         if self.taps.is_empty() && raw.leak > 0.0 && raw.every == 1 {
-            // Beside what fades, squares have lost the digits of what is left.
+            // Next to what fades, squares have lost the digits of what is left.
             let left: f64 = residuals(raw, &estimate)?.iter().map(|x| x * x).sum();
             estimate.covariance *= left / estimate.rest;
             estimate.rest = left;
@@ -406,7 +406,7 @@ fn charge(transfer: &TransferFunction, samples: usize, period_s: f64, from_comma
     states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
 }
 
-/// Damped zeros that are no dampers' beside the fastest mode: they lead by more than
+/// Damped zeros that are no dampers' next to the fastest mode: they lead by more than
 /// such a one, whose time is `2ζ/ω`. A loop leads as it likes where it is slow: below
 /// what swings slowest.
 fn leads(transfer: &TransferFunction, from_command: bool) -> usize {
@@ -489,7 +489,7 @@ fn nuisance(solution: &Solution) -> (Vec<f64>, f64) {
 }
 
 /// Differences between measured and simulated output, offset and first state
-/// taken off, behind the samples that do not count.
+/// taken off, after the samples that do not count.
 #[must_use]
 pub fn residuals(data: &Data<'_>, estimate: &Estimate) -> Option<Vec<f64>> {
     let (transfer, state) = (&estimate.transfer, &estimate.state);

@@ -1,4 +1,4 @@
-//! A transfer function as a sum of sections beside one another, one for each
+//! A transfer function as a sum of sections next to one another, one for each
 //! factor of its poles, sampled exactly.
 //!
 //! `G(s) = d + Σ (a + b·s/ω)/(1 + 2ζ·s/ω + s²/ω²)`: each section runs by itself,
@@ -256,7 +256,7 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// For a hold whose knots come `late` of a period behind the samples.
+    /// For a hold whose knots come `late` of a period after the samples.
     #[must_use]
     pub fn new(measured: Measured, late: f64) -> Self {
         Self { measured, late }
@@ -302,7 +302,7 @@ impl Hold {
             degree: pole.degree(),
             ..Section::default()
         };
-        // Behind the knot, from its start.
+        // After the knot, from its start.
         for (slot, run) in section.gamma.iter_mut().zip(self.run(0.0)) {
             *slot = respond(&second, run);
         }

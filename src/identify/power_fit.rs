@@ -69,7 +69,7 @@ pub struct PowerModel {
     pub rows: usize,
 }
 
-/// Names whose units a maker fixes, behind the axis letter and the number: those
+/// Names whose units a maker fixes, after the axis letter and the number: those
 /// of the SMART lab of the University of Michigan; mm, s, kW.
 const KNOWN: [(&str, Quantity, f64); 3] = [
     ("actualvelocity", Quantity::Velocity, 1e-3),
@@ -222,7 +222,7 @@ fn electrical_slot(name: &str, axis: char) -> Option<usize> {
     }
 }
 
-/// Notices a bus voltage that swings about zero beside a current that stands
+/// Notices a bus voltage that swings about zero next to a current that stands
 /// still at hundreds.
 fn swapped(current: &Electrical, voltage: &Electrical) -> Option<String> {
     let spread = |x: &[f64]| -> Option<(f64, f64)> {

@@ -229,7 +229,7 @@ fn period(time: &[f64], lines: &Lines) -> Outcome<f64> {
             .count();
         if deviation > 0.5 && many * 50 < intervals.len() {
             return Err(Trouble::new(
-                format!("a gap behind line {before}: {interval:.6} s instead of {usual:.6} s"),
+                format!("a gap after line {before}: {interval:.6} s instead of {usual:.6} s"),
                 "cut the recording there, or record again without losses",
             ));
         }

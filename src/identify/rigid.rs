@@ -53,7 +53,7 @@ pub struct Rigid {
     pub directions: Option<[(Figure, Figure); 2]>,
     /// Norm of what is left by norm of the force.
     pub rel_error: f64,
-    /// Samples behind filter and decimation.
+    /// Samples after filter and decimation.
     pub samples: usize,
     /// The band, Hz.
     pub bandwidth_hz: f64,

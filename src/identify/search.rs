@@ -1,5 +1,5 @@
 //! How many poles and zeros, and how much delay: from models that grew by modes to
-//! their neighbours, and the one that Bayes' criterion prefers; behind a command the
+//! their neighbours, and the one that Bayes' criterion prefers; after a command the
 //! dead time by its profile.
 
 use nalgebra::Complex;
@@ -111,7 +111,7 @@ fn choose(
     };
     let mut noise = Noise::default();
     let mut best: Option<Chosen> = None;
-    // Noise that is not white shows only behind a model, and the model only
+    // Noise that is not white shows only after a model, and the model only
     // when the noise is known: a few rounds settle both, each from where the one
     // before came to.
     for _ in 0..ROUNDS_OF_NOISE {
@@ -240,7 +240,7 @@ fn reach(is_first: bool, from_command: bool) -> Reach {
     }
 }
 
-/// The model behind a command by the profile of its dead time, and how far that is in
+/// The model after a command by the profile of its dead time, and how far that is in
 /// doubt, s.
 fn by_profile(
     fitting: &Fitting<'_>,
@@ -314,7 +314,7 @@ fn as_held(response: &mut FrequencyResponse, times: usize, period_s: f64) {
     }
 }
 
-/// A signal behind the whitening filter, its beginning left out.
+/// A signal after the whitening filter, its beginning left out.
 #[must_use]
 pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
     let order = taps.len();

@@ -55,7 +55,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Of a recording as it is, behind what makes its noise white, up to a little
+    /// Of a recording as it is, after what makes its noise white, up to a little
     /// beyond a band. `None` when there is too little.
     #[must_use]
     pub fn new(data: &Data<'_>, noise: &Noise, band_rad_s: f64, most: usize) -> Option<Self> {

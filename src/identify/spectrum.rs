@@ -116,7 +116,7 @@ pub fn excited_rad_s(x: &[f64], period_s: f64) -> f64 {
     const BANDS: usize = 250;
     let lines = transform_of(x);
     let width = (lines.len() / BANDS).max(1);
-    // Without the mean, beside which the rest would seem little.
+    // Without the mean, next to which the rest would seem little.
     let powers: Vec<f64> = lines
         .get(1..)
         .unwrap_or_default()

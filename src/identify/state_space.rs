@@ -69,7 +69,7 @@ fn sections(transfer: &TransferFunction) -> Option<Vec<Section>> {
 }
 
 impl Continuous {
-    /// Sections in series, the gain first; `integrators` behind.
+    /// Sections in series, the gain first; `integrators` after.
     fn new(transfer: &TransferFunction, integrators: usize) -> Option<Self> {
         let sections = sections(transfer)?;
         let n = transfer.order() + integrators;
@@ -96,7 +96,7 @@ impl Continuous {
         Some(system)
     }
 
-    /// Puts one section behind the system.
+    /// Puts one section after the system.
     fn append(&mut self, at: &mut usize, numerator: &[f64], pole: Factor) {
         let i = *at;
         let n = |power: usize| numerator.get(power).copied().unwrap_or(0.0);

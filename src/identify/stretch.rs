@@ -261,7 +261,7 @@ impl Bank {
     }
 }
 
-/// The samples that come `late` before `next`, and each `every` behind; those before
+/// The samples that come `late` before `next`, and each `every` after; those before
 /// the first one are 0.
 fn delayed(column: &mut Column, input: &[f64], next: usize, late: usize, every: usize) {
     let missing = late.saturating_sub(next).div_ceil(every);
@@ -317,7 +317,7 @@ impl Free {
     }
 }
 
-/// Stretches of rows: those up to `first` in one, the others behind.
+/// Stretches of rows: those up to `first` in one, the others after.
 pub fn stretches(first: usize, end: usize) -> impl Iterator<Item = (usize, usize)> {
     let mut at = 0;
     std::iter::from_fn(move || {

@@ -76,7 +76,7 @@ impl Factor {
         matches!(self, Self::Pair { damping, .. } if damping.abs() < 1.0)
     }
 
-    /// True for complex roots beside others that leave next to nothing of them: half
+    /// True for complex roots next to others that leave next to nothing of them: half
     /// a decibel, where they ring.
     #[must_use]
     pub fn is_undone_by(self, other: Self) -> bool {
@@ -299,7 +299,7 @@ mod tests {
         }
     }
 
-    /// A pole beside a zero leaves nothing of it only where both ring alike.
+    /// A pole next to a zero leaves nothing of it only where both ring alike.
     #[test]
     fn what_is_undone() {
         let zero = pair(250.0, 0.03);

@@ -71,7 +71,7 @@ impl Control<'_> {
         if let Some(word) = &statement.corner {
             if block.words.is_empty() {
                 let message =
-                    "a chamfer or a rounded corner behind a block that is not one feed move";
+                    "a chamfer or a rounded corner after a block that is not one feed move";
                 report
                     .error("corner-word", message, word.span)
                     .help("write it in the block of a G1, G2 or G3, without M words that stop");
@@ -210,7 +210,7 @@ impl Control<'_> {
         if another {
             let span = run.words.span(b'O', run.block);
             let message = "a second program number ends the program; \
-                           programs behind it run where they are called";
+                           programs after it run where they are called";
             run.report.note_once("several-programs", message, span);
             self.ended = true;
         }

@@ -25,7 +25,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// The digit behind G; `None` where no word may be written.
+    /// The digit after G; `None` where no word may be written.
     #[must_use]
     pub fn digit(self) -> Option<u8> {
         match self {
@@ -112,7 +112,7 @@ impl GCode {
     /// The modal group, as a bit; words of one group exclude each other.
     pub(super) fn group(self) -> u32 {
         1 << match self {
-            // G80 may stand beside the word that takes over.
+            // G80 may stand next to the word that takes over.
             Self::Motion(Motion::None) => 24,
             Self::Motion(_) => 0,
             Self::Plane(_) => 1,

@@ -364,7 +364,7 @@ impl<'m> Interpreter<'m> {
 }
 
 impl Control<'_> {
-    /// Whether the block is deleted, a tape mark, or behind the end.
+    /// Whether the block is deleted, a tape mark, or after the end.
     fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
         let all = Span::new(0, block.text_end as usize);
         if self.ended {
@@ -378,7 +378,7 @@ impl Control<'_> {
             return true;
         }
         if block.tape && self.isg.is_none() {
-            // The first `%` opens the tape; one behind any block ends it.
+            // The first `%` opens the tape; one after any block ends it.
             self.ended = self.begun;
             return true;
         }

@@ -48,7 +48,7 @@ pub struct Facts {
     /// One of its values is the motion word or the F in force, which must be the
     /// original's then.
     pub reads_state: bool,
-    /// The block is executed: not deleted, not behind the end, not empty.
+    /// The block is executed: not deleted, not after the end, not empty.
     pub executed: bool,
     /// It moves straight on, and changes nothing else of the state: see
     /// [`Stance`](super::Stance).

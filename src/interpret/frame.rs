@@ -123,7 +123,7 @@ pub(super) fn keeps_circles(matrix: &[[f64; SPACE]; SPACE]) -> bool {
         })
 }
 
-/// How a plane appears behind the map: its own scale, and whether it is flipped.
+/// How a plane appears after the map: its own scale, and whether it is flipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PlaneMap {
     pub(super) scale: f64,

@@ -15,7 +15,7 @@ impl Control<'_> {
             .iter()
             .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other))
             && !self.is_siemens()
-            // Such words stand beside S and T: `S580 M13`.
+            // Such words stand next to S and T: `S580 M13`.
             && !self.dialect().other_m;
         if let Some(value) = run.words.take(b'S')
             && !other
@@ -142,7 +142,7 @@ impl Control<'_> {
         }
     }
 
-    /// Switches loads on. Those that go off do so behind the block's moves,
+    /// Switches loads on. Those that go off do so after the block's moves,
     /// since controllers differ in when they do.
     pub(super) fn switch_loads(&mut self, value: f64) {
         for (index, load) in self.machine.loads.iter().enumerate().take(32) {

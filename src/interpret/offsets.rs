@@ -165,7 +165,7 @@ impl Offsets {
         self.linear.contains(axis)
     }
 
-    /// Values of all axes at `first` and the numbers behind it, in mm.
+    /// Values of all axes at `first` and the numbers after it, in mm.
     pub(super) fn axes_from(&self, first: u32) -> AxisValues {
         std::array::from_fn(|axis| {
             if axis >= PARAMETER_AXES {

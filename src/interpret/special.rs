@@ -141,7 +141,7 @@ impl Control<'_> {
         }
     }
 
-    /// G80. Beside another motion word it does nothing.
+    /// G80. Next to another motion word it does nothing.
     fn cancel(&mut self, groups: u32) -> Option<Motion> {
         if groups & MOTION_GROUP != 0 {
             return None;

@@ -1,4 +1,4 @@
-//! What a plain straight block goes by, and what it leaves behind.
+//! What a plain straight block goes by, and what it leaves after.
 //!
 //! A block that takes the short way (see `direct`) and changes neither motion
 //! word nor feed reads no state but this one, and changes nothing but the place

@@ -150,7 +150,7 @@ impl Control<'_> {
                                    where that begins, LinuxCNC and its rs274 do not agree";
                     run.report
                         .error("compensation", message, span)
-                        .help("write a move in the plane behind G40 first");
+                        .help("write a move in the plane after G40 first");
                     return;
                 }
                 both[0].is_some() != both[1].is_some()
@@ -236,7 +236,7 @@ impl Control<'_> {
         if let Some(reason) = self.lost.take() {
             run.report
                 .error("saved-state", reason, span)
-                .help("write the words that are meant behind M72, or behind the call");
+                .help("write the words that are meant after M72, or after the call");
         }
     }
 

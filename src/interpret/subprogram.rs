@@ -69,7 +69,7 @@ impl Control<'_> {
                 }
             }
             (Family::Rs274 | Family::Iso, 990) => {
-                // LinuxCNC returns to behind the call only.
+                // LinuxCNC returns to after the call only.
                 let block = match family {
                     Family::Rs274 => None,
                     _ => run.words.take(b'P').map(|block| block.max(0.0) as u64),
@@ -96,7 +96,7 @@ impl Control<'_> {
         let Some(program) = program.and_then(whole) else {
             run.report
                 .error("subprogram", "a call without the number of a program", span)
-                .help("write the number behind P, as in M98 P1000");
+                .help("write the number after P, as in M98 P1000");
             return None;
         };
         let repeat = times;
@@ -182,7 +182,7 @@ impl Control<'_> {
                     "a macro call without the number of a program",
                     span,
                 )
-                .help("write the number behind P, as in G65 P9010");
+                .help("write the number after P, as in G65 P9010");
             return true;
         };
         let Some(times) = repetitions(times, span, run) else {

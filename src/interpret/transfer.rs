@@ -95,13 +95,13 @@ pub(crate) enum Siemens {
 pub(crate) enum Go {
     /// At the next line.
     Next,
-    /// Local subprograms stand before the main program: behind them.
+    /// Local subprograms stand before the main program: after them.
     Main,
     /// The program ends.
     End,
     /// $IF, or an $ELSEIF that decides.
     If(bool),
-    /// $ELSE and $ELSEIF behind a branch that was taken.
+    /// $ELSE and $ELSEIF after a branch that was taken.
     BehindIf,
     /// $WHILE and $FOR: whether the loop runs.
     Loop(bool),
@@ -119,7 +119,7 @@ pub(crate) enum Go {
     Local(String),
     /// A subprogram in a file of its own.
     File(String),
-    /// MODIN and MODOUT: a subprogram of OSP behind each block that moves.
+    /// MODIN and MODOUT: a subprogram of OSP after each block that moves.
     Modal(Option<String>),
     /// A subprogram of OSP, wherever it stands.
     Call {

@@ -69,7 +69,7 @@ pub(super) struct Words {
     pub(super) g: ArrayVec<(GCode, u16, Span), 16>,
     /// M words with their number × 10.
     pub(super) m: ArrayVec<(u16, Span), 16>,
-    /// Words that turn a knob: index in `controller.knobs`, value behind `=`.
+    /// Words that turn a knob: index in `controller.knobs`, value after `=`.
     pub(super) knobs: ArrayVec<(usize, Option<f64>, Span), 8>,
     /// Modal groups that have a word.
     pub(super) groups: u32,

@@ -2,25 +2,71 @@
 
 use super::change::{Change, feed_word, round_to_step};
 use super::lever::{Levers, NO_KNOB, Obstacle, SpeedLever};
-use super::options::Strategy;
+use super::options::{PresetElse, Strategy};
 use super::solver::{Case, Solver};
-use crate::interpret::MoveKind;
-use crate::machine::{AXES, AxisSet, AxisValues};
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{AXES, AxisSet, AxisValues, Machine, Preset};
 use crate::plan::{Caps, SpeedBound, speed_bound};
 
-/// The limits of the preset for exactly the axes that start together.
+/// The preset for exactly the axes that start together.
+pub(super) fn preset_for<'m>(machine: &'m Machine, mv: &Move) -> Option<&'m Preset> {
+    let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
+    machine.presets.iter().find(|preset| preset.axes == axes)
+}
+
+impl Solver<'_> {
+    /// What the preset for its axes says of a move, or what was asked for where there is none.
+    pub(super) fn by_preset(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+        if self.falls_back(case.mv) {
+            return self.by_speed(case, levers);
+        }
+        preset(self, case, levers)
+    }
+
+    /// Whether a move that does not fit gets a speed in the place of a preset.
+    pub(super) fn falls_back(&self, mv: &Move) -> bool {
+        self.how.strategy == Strategy::Preset
+            && self.how.preset_else == PresetElse::Speed
+            && preset_for(self.machine, mv).is_none()
+    }
+
+    /// What preset or law say of a move that fits as it is; `None`: nothing.
+    pub(super) fn anyway(
+        &self,
+        case: Case<'_>,
+        levers: Levers,
+    ) -> Result<Option<Change>, Obstacle> {
+        let Case { mv, assessment, .. } = case;
+        let presets = self.how.strategy == Strategy::Preset;
+        let stands = assessment.top_speed_mm_s == 0.0 && mv.unknown_start.is_empty();
+        let without = presets && preset_for(self.machine, mv).is_none();
+        if mv.kind == MoveKind::Dwell || stands || without {
+            return Ok(None);
+        }
+        let change = self.sooner_stopped(case, |case| {
+            let change = match self.how.strategy {
+                Strategy::Preset => preset(self, case, levers)?,
+                _ if squared_factor(self, case) >= 1.0 => Change::NONE,
+                strategy => squared_ratio(self, case, levers, strategy)?,
+            };
+            if assessment.ahead {
+                // The certificate plans it with its neighbours.
+                return self.respect_floor(case, &change).map(|()| change);
+            }
+            self.verify(case, change)
+        })?;
+        Ok((!change.is_none()).then_some(change))
+    }
+}
+
+/// The limits of the preset for the axes of a move.
 pub(super) fn preset(
     solver: &Solver<'_>,
     case: Case<'_>,
     levers: Levers,
 ) -> Result<Change, Obstacle> {
     let axes = AxisSet(case.mv.moving.0 | case.mv.unknown_start.0);
-    let Some(preset) = solver
-        .machine
-        .presets
-        .iter()
-        .find(|preset| preset.axes == axes)
-    else {
+    let Some(preset) = preset_for(solver.machine, case.mv) else {
         return Err(Obstacle::new(
             "no-preset",
             format!("the machine has no preset for the axes {axes}"),
@@ -29,7 +75,6 @@ pub(super) fn preset(
     };
     let mut change = Change::default();
     if preset.has_speed {
-        let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
         let bound = speed_bound(solver.machine, case.mv, solver.largest, Caps::default());
         let speeds = axis_speeds(&bound);
         let share = axes
@@ -37,16 +82,17 @@ pub(super) fn preset(
             .map(|axis| preset.speed_mm_s[axis] / speeds[axis])
             .fold(1.0, f64::min);
         if share < 1.0 {
+            let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
             scale_speed(solver, case, lever, share, &mut change)?;
         }
     }
     if preset.has_accel {
-        let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
         let mut accel = case.mv.accel_mm_s2;
         for axis in axes.iter() {
             accel[axis] = accel[axis].min(preset.accel_mm_s2[axis]);
         }
         if accel != case.mv.accel_mm_s2 {
+            let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
             let least = axes.iter().map(|axis| accel[axis]);
             let values = match solver.along_path(knob, case.mv) {
                 Some(own) => solver.path_values(knob, least.fold(own, f64::min)),
@@ -60,14 +106,9 @@ pub(super) fn preset(
     Ok(change)
 }
 
-/// V² on the nominal values: V is the limit by the sum of what the commanded
+/// V² on the nominal values, 1 at most: V is the limit by the sum of what the commanded
 /// axes take at their nominal speeds and accelerations.
-pub(super) fn squared_ratio(
-    solver: &Solver<'_>,
-    case: Case<'_>,
-    levers: Levers,
-    strategy: Strategy,
-) -> Result<Change, Obstacle> {
+fn squared_factor(solver: &Solver<'_>, case: Case<'_>) -> f64 {
     let mut bound = speed_bound(solver.machine, case.mv, solver.largest, Caps::default());
     if case.mv.kind == MoveKind::Rapid {
         // Nominal is the rapid speed of each axis, not its share of the path.
@@ -85,7 +126,17 @@ pub(super) fn squared_ratio(
     }
     let nominal = solver.model.robust(case.mv, &bound, &case.mv.accel_mm_s2);
     let ratio = solver.model.limit_w(nominal.converter) / nominal.peak_w;
-    let factor = (ratio * ratio).min(1.0);
+    (ratio * ratio).min(1.0)
+}
+
+/// Speed or acceleration by the square of that ratio.
+pub(super) fn squared_ratio(
+    solver: &Solver<'_>,
+    case: Case<'_>,
+    levers: Levers,
+    strategy: Strategy,
+) -> Result<Change, Obstacle> {
+    let factor = squared_factor(solver, case);
     let mut change = Change::default();
     if strategy == Strategy::Accel {
         let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;

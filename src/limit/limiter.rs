@@ -1,16 +1,16 @@
 //! All moves in their order: those with stops by themselves, blended ones
 //! together with their neighbours.
 //!
-//! A move waits until nothing behind it can change it any more: a blended one
+//! A move waits until nothing after it can change it any more: a blended one
 //! until the move after the next is known, all others not at all.
 
 use std::collections::VecDeque;
 
 use super::change::{Change, Permit};
 use super::depth::Depths;
-use super::lever::Obstacle;
+use super::lever::{Obstacle, levers};
 use super::options::{LimitOptions, Strategy};
-use super::solver::{Ends, Solver};
+use super::solver::{Case, Ends, Solver};
 use super::split::{SPLIT_TRIES, Split};
 use super::window;
 use crate::interpret::Move;
@@ -31,6 +31,20 @@ pub struct Outcome {
     pub unsplit: Option<&'static str>,
     /// Why a move that does not fit stays as it is.
     pub obstacle: Option<Box<Obstacle>>,
+    /// Why one that fits does, though its preset says less and counts always.
+    pub unset: Option<Box<Obstacle>>,
+}
+
+impl Outcome {
+    /// What comes of a move that fits, by preset or law.
+    pub(super) fn anyway(found: Result<Option<Change>, Obstacle>) -> Self {
+        let mut outcome = Self::default();
+        match found {
+            Ok(change) => outcome.change = change.map(Box::new),
+            Err(unset) => outcome.unset = Some(Box::new(unset)),
+        }
+        outcome
+    }
 }
 
 /// A move that waits for its decision, and what may be changed about its block.
@@ -63,7 +77,7 @@ pub struct Limiter<'m> {
     solver: Solver<'m>,
     slots: VecDeque<Slot>,
     depths: Depths,
-    /// A move has been changed since the spindle was steady last: those behind
+    /// A move has been changed since the spindle was steady last: those after
     /// it meet its run later than in the original.
     shifted: bool,
 }
@@ -79,6 +93,12 @@ impl<'m> Limiter<'m> {
             depths,
             shifted: false,
         }
+    }
+
+    /// Whether the change of a move stands for a preset that the machine does not have.
+    #[must_use]
+    pub fn fell_back(&self, mv: &Move, outcome: &Outcome) -> bool {
+        outcome.change.is_some() && self.solver.falls_back(mv)
     }
 
     /// Whether blocks may be written as several.
@@ -127,7 +147,13 @@ impl<'m> Limiter<'m> {
             return;
         }
         let previous = self.last_moving();
-        self.slots.push_back(Slot::new(mv, assessment));
+        let mut slot = Slot::new(mv, assessment);
+        if self.solver.how.always
+            && let Some(Waiting { permit, .. }) = find(self.slots.len())
+        {
+            window::put_anyway(&self.solver, &mut slot, mv, &permit);
+        }
+        self.slots.push_back(slot);
         let mut needed = self.slots.len() - 1;
         if let Some(center) = previous {
             self.slots[center].joined = joined;
@@ -146,6 +172,7 @@ impl<'m> Limiter<'m> {
         self.slots.is_empty()
             && !assessment.blended
             && !assessment.ahead
+            && !self.solver.how.always
             && (!self.shifted || !assessment.spindle.runs)
             && self.solver.model.fits(&assessment.demand)
     }
@@ -213,14 +240,28 @@ impl<'m> Limiter<'m> {
     ) -> Outcome {
         let deeper = assessment.ahead && self.depth(mv) > 0;
         let fits = self.solver.model.fits(&assessment.demand) && !deeper;
-        if fits && !(self.shifted && assessment.spindle.runs) {
+        let later = self.shifted && assessment.spindle.runs;
+        let always = self.solver.how.always;
+        if fits && !later && !always {
             return Outcome::default();
         }
         let Some(Waiting { permit, .. }) = find(self.slots.len()) else {
             return Outcome::default();
         };
-        if fits && self.solver.fits_later(mv, assessment, &permit, ends) {
-            return Outcome::default();
+        if fits && (!later || self.solver.fits_later(mv, assessment, &permit, ends)) {
+            return if always {
+                let case = Case {
+                    mv,
+                    assessment,
+                    permit: &permit,
+                    ends,
+                    exact_stop: false,
+                };
+                let levers = levers(self.solver.machine, self.solver.how, mv, &permit);
+                Outcome::anyway(self.solver.anyway(case, levers))
+            } else {
+                Outcome::default()
+            };
         }
         let solved = self.solver.solve(mv, assessment, &permit, ends);
         let mut outcome = Outcome::default();

@@ -5,6 +5,7 @@
 //! there is none. The limiter never sees text.
 
 mod along;
+mod bounds;
 mod by_axis;
 mod change;
 mod depth;
@@ -30,6 +31,6 @@ pub use depth::{Depths, Place};
 pub use first_feed::FirstFeed;
 pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
-pub use options::{Allowed, Law, LimitOptions, Strategy};
+pub use options::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 pub use solver::{Ends, Solver};
 pub use split::{Piece, Split};

@@ -16,6 +16,17 @@ pub enum Strategy {
     Split,
 }
 
+/// What the strategy `preset` does with a move that does not fit and for whose axes the
+/// machine has no preset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PresetElse {
+    /// It is refused.
+    #[default]
+    Refuse,
+    /// It gets the speed at which it fits, as by the strategy `speed`.
+    Speed,
+}
+
 /// How far the ratio V = limit/peak lowers speed or acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
@@ -34,6 +45,28 @@ pub struct LimitOptions {
     pub law: Law,
     /// What may be changed besides rapids and accelerations.
     pub allowed: Allowed,
+    /// What preset or law say counts for moves that fit without it too: the strategy
+    /// [`Strategy::Preset`] or [`Law::Patent`] alone.
+    pub always: bool,
+    /// Where there is no preset: the strategy [`Strategy::Preset`] alone.
+    pub preset_else: PresetElse,
+}
+
+impl LimitOptions {
+    /// What the command line does without options.
+    pub const USUAL: Self = Self {
+        strategy: Strategy::Optimal,
+        law: Law::Exact,
+        allowed: Allowed::NOTHING,
+        always: false,
+        preset_else: PresetElse::Refuse,
+    };
+}
+
+impl Default for LimitOptions {
+    fn default() -> Self {
+        Self::USUAL
+    }
 }
 
 /// What `limit` may change only with permission.
@@ -66,4 +99,19 @@ impl Allowed {
         pause: false,
         unverified: false,
     };
+
+    /// The names that the command line has for it, with commas.
+    #[must_use]
+    pub fn names(self) -> String {
+        let all = [
+            (self.feed, "feed"),
+            (self.expand, "expand"),
+            (self.straighten, "straighten"),
+            (self.stop, "stop"),
+            (self.pause, "pause"),
+            (self.unverified, "unverified"),
+        ];
+        let names = all.iter().filter(|(allowed, _)| *allowed);
+        names.map(|(_, name)| *name).collect::<Vec<_>>().join(",")
+    }
 }

@@ -367,7 +367,7 @@ impl<'a> Road<'a> {
     }
 
     /// Whether the top speed is reached before the brakes even where the control runs short
-    /// pieces at a lower F. Behind a slower one there would be room to speed up in a stretch
+    /// pieces at a lower F. After a slower one there would be room to speed up in a stretch
     /// that is meant for braking.
     pub(super) fn recovers(&self, way: &Way) -> bool {
         let at_feed_s = self.solver.machine.controller.planner.shortest_at_feed_s;

@@ -104,7 +104,7 @@ impl<'m> Solver<'m> {
     /// The change that the strategy says.
     fn by_strategy(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
         let change = match (self.how.strategy, self.how.law) {
-            (Strategy::Preset, _) => law::preset(self, case, levers)?,
+            (Strategy::Preset, _) => self.by_preset(case, levers)?,
             (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
             (Strategy::Speed, _) => self.by_speed(case, levers)?,
             (Strategy::Accel, _) => self.by_accel(case, levers)?,
@@ -139,7 +139,7 @@ impl<'m> Solver<'m> {
     }
 
     /// Nothing is proposed that does not fit, or that breaks a floor.
-    fn verify(&self, case: Case<'_>, change: Change) -> Result<Change, Obstacle> {
+    pub(super) fn verify(&self, case: Case<'_>, change: Change) -> Result<Change, Obstacle> {
         self.respect_floor(case, &change)?;
         let load = self.load(case, &change.apply(self.machine, case.mv, case.permit));
         if load <= 1.0 + 1e-9 {
@@ -183,7 +183,7 @@ impl<'m> Solver<'m> {
         load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
     }
 
-    /// Load of a move that begins and ends at rest, with the spindle beside it.
+    /// Load of a move that begins and ends at rest, with the spindle next to it.
     fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
         let halved = self.halved(case.mv, mv);
         let mv = halved.as_ref().unwrap_or(mv);

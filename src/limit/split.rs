@@ -26,7 +26,7 @@ const GAIN: f64 = 1e-3;
 const NO_LOOK_AHEAD: &str = "its pieces would not run on into each other as planned";
 const UNLIKE: &str = "an axis limits its jerk, has a curve of force, or runs for itself";
 const NOT_SOONER: &str = "one acceleration is as good";
-const BESIDE: &str = "beside its neighbours the pieces would exceed the limit";
+const BESIDE: &str = "next to its neighbours the pieces would exceed the limit";
 
 /// A block in several pieces.
 #[derive(Debug, Clone, PartialEq)]

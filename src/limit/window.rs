@@ -8,16 +8,17 @@ use std::collections::VecDeque;
 
 use arrayvec::ArrayVec;
 
+use super::bounds::{envelope, factor, path_speed, scale};
 use super::change::{Change, Permit, feed_word};
 use super::halt;
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
-use super::limiter::{Slot, Waiting};
+use super::limiter::{Outcome, Slot, Waiting};
 use super::options::{Law, Strategy};
 use super::root::largest;
 use super::solver::{Case, Ends, Solver};
 use crate::interpret::Move;
-use crate::machine::{AXES, AxisValues};
+use crate::machine::AxisValues;
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
 
 /// A move of a window.
@@ -89,19 +90,7 @@ pub(super) fn lower(
     }
     let found: Vec<Levers> = window
         .iter()
-        .map(|member| {
-            // Here moves run into each other: no knob for which the axes stand.
-            let permit = Permit {
-                stands: false,
-                ..member.permit
-            };
-            let mut found = levers(solver.machine, solver.how, member.mv, &permit);
-            // The bound knows of limits of the axes alone.
-            found.accel = found
-                .accel
-                .filter(|knob| solver.along_path(*knob, member.mv).is_none());
-            found
-        })
+        .map(|member| levers_joined(solver, member.mv, &member.permit))
         .collect();
     let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
     let by_accel = || found.iter().any(|levers| levers.accel.is_some());
@@ -120,7 +109,36 @@ pub(super) fn lower(
     }
 }
 
-/// Gives each move of the window what preset or law say for it alone.
+/// What may be used to bring a move down that runs into others.
+fn levers_joined(solver: &Solver<'_>, mv: &Move, permit: &Permit) -> Levers {
+    // No knob for which the axes stand.
+    let permit = Permit {
+        stands: false,
+        ..*permit
+    };
+    let mut found = levers(solver.machine, solver.how, mv, &permit);
+    // The bound knows of limits of the axes alone.
+    let by_axis = |knob: &usize| solver.along_path(*knob, mv).is_none();
+    found.accel = found.accel.filter(by_axis);
+    found
+}
+
+/// Gives a move that has just come what preset or law say for it, whether it fits or not.
+pub(super) fn put_anyway(solver: &Solver<'_>, slot: &mut Slot, mv: &Move, permit: &Permit) {
+    let case = Case {
+        mv,
+        assessment: &slot.assessment,
+        permit,
+        ends: Ends::Rest,
+        exact_stop: false,
+    };
+    slot.outcome = Outcome::anyway(solver.anyway(case, levers_joined(solver, mv, permit)));
+    let change = slot.outcome.change.as_deref();
+    slot.changed = change.map(|change| Box::new(change.apply(solver.machine, mv, permit)));
+}
+
+/// Gives each move of the window what preset or law say for it alone; where that is asked
+/// for, those without a preset the speed that is left.
 fn by_law(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
@@ -142,7 +160,20 @@ fn by_law(
             put(solver, slots, member, change);
         }
     }
-    load(solver, slots, window) <= 1.0 + 1e-9
+    if load(solver, slots, window) <= 1.0 + 1e-9 {
+        return true;
+    }
+    let others = window.iter().zip(found).map(|(member, levers)| {
+        let falls_back = solver.falls_back(member.mv);
+        if falls_back {
+            *levers
+        } else {
+            Levers::default()
+        }
+    });
+    let others: Vec<Levers> = others.collect();
+    let by_speed = others.iter().any(|levers| speed_lever(*levers).is_some());
+    by_speed && lower_speed(solver, slots, window, &others)
 }
 
 /// Changes a move.
@@ -188,21 +219,6 @@ fn speed_lever(levers: Levers) -> Option<SpeedLever> {
         .filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_)))
 }
 
-/// Largest speeds and accelerations over a window.
-fn envelope<'a>(
-    parts: impl Iterator<Item = (SpeedBound, &'a AxisValues)>,
-) -> (SpeedBound, AxisValues) {
-    let mut bound = SpeedBound::default();
-    let mut accel = [0.0_f64; AXES];
-    for (part, part_accel) in parts {
-        bound.include(&part);
-        for axis in 0..AXES {
-            accel[axis] = accel[axis].max(part_accel[axis]);
-        }
-    }
-    (bound, accel)
-}
-
 fn own_bound(solver: &Solver<'_>, slots: &VecDeque<Slot>, member: &Member<'_>) -> SpeedBound {
     blended_bound(solver.machine, member.changed(slots), solver.largest)
 }
@@ -234,13 +250,6 @@ fn window_load(
             solver.model.load_beside(&demand, share, path_speed(bound))
         })
         .fold(0.0, f64::max)
-}
-
-/// A path speed that X, Y and Z together do not exceed, mm/s.
-fn path_speed(bound: &SpeedBound) -> f64 {
-    let axes = bound.positive.iter().zip(&bound.negative).take(3);
-    let squares = axes.map(|(positive, negative)| positive.max(*negative).powi(2));
-    squares.sum::<f64>().sqrt()
 }
 
 /// Lowers the axis speeds of the window to a common cap.
@@ -295,27 +304,6 @@ fn lower_speed(
         }
     }
     load(solver, slots, window) <= 1.0 + 1e-9
-}
-
-/// The share of its speed at which a move stays under the cap on every axis.
-fn factor(bound: &SpeedBound, top: &SpeedBound, cap: f64) -> f64 {
-    let mut factor = 1.0_f64;
-    for axis in 0..AXES {
-        let largest = top.positive[axis].max(top.negative[axis]);
-        let own = bound.positive[axis].max(bound.negative[axis]);
-        if own > 0.0 {
-            factor = factor.min(cap * largest / own);
-        }
-    }
-    factor
-}
-
-fn scale(bound: &SpeedBound, factor: f64) -> SpeedBound {
-    SpeedBound {
-        positive: bound.positive.map(|speed| speed * factor),
-        negative: bound.negative.map(|speed| speed * factor),
-        ..*bound
-    }
 }
 
 /// Sets the F of one move, or its largest speed, to a share of the speed that it has now.

@@ -47,7 +47,7 @@ pub struct Language {
     /// `true`: G0 is in force at power-on; else no motion word is.
     pub rapid_at_power_on: bool,
     /// `true`: O words as FluidNC has them: a label may serve several branches and
-    /// loops, and a break leaves nothing behind.
+    /// loops, and a break leaves nothing over.
     pub loose_o_words: bool,
     /// `true`: metric at power-on.
     pub metric: bool,
@@ -176,7 +176,7 @@ impl Dialect {
 /// What a number without a decimal point means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Point {
-    /// The same as with a point behind it.
+    /// The same as with a point after it.
     Calculator,
     /// Least increments: 0.001 mm, 0.0001 inch, 0.001 degrees.
     LeastIncrement,
@@ -200,7 +200,7 @@ pub struct CutterCompensation {
     pub corner: CompensationCorner,
     /// Where the first move ends, and the last begins.
     pub lead: CompensationLead,
-    /// Blocks without motion in the plane, one behind the other, beyond which
+    /// Blocks without motion in the plane, one after the other, beyond which
     /// the control no longer sees the next corner.
     pub idle_blocks: u32,
 }
@@ -223,9 +223,9 @@ pub enum CompensationCorner {
 /// that switches it off begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CompensationLead {
-    /// Beside its own end; then round the corner like any other (LinuxCNC).
+    /// Next to its own end; then round the corner like any other (LinuxCNC).
     Beside,
-    /// Beside the start of the next move (Fanuc's type A, SINUMERIK NORM).
+    /// Next to the start of the next move (Fanuc's type A, SINUMERIK NORM).
     Perpendicular,
     /// As Perpendicular, but round outside corners like any other (Fanuc's type B).
     Corner,

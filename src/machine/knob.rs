@@ -13,7 +13,7 @@ pub struct Knob {
     pub name: String,
     /// What it acts on.
     pub target: KnobTarget,
-    /// What stands behind the word.
+    /// What stands after the word.
     pub argument: KnobArgument,
     /// Unit of the value.
     pub unit: KnobUnit,
@@ -76,18 +76,18 @@ pub enum KnobTarget {
     CruiseRatio,
 }
 
-/// What stands behind a knob's word.
+/// What stands after a knob's word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KnobArgument {
     /// `= value` for all axes (`G131 = 50`).
     Assign,
     /// A value for each axis letter (`G130 X70 Y60`).
     Axes,
-    /// One value behind any of these letters, the path's limit (`M204 P500 T500`).
+    /// One value after any of these letters, the path's limit (`M204 P500 T500`).
     Path(Vec<u8>),
     /// The number of an analog output, and a value for all axes (`M68 E0 Q0.5`).
     Output(u16),
-    /// One value right behind the word, the limit along the path of all moves that the
+    /// One value right after the word, the limit along the path of all moves that the
     /// extruder does not make alone (`SET_VELOCITY_LIMIT ACCEL=500`).
     Value,
 }

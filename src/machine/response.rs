@@ -12,7 +12,7 @@ pub struct Responses {
     pub corrections: Vec<(AxisId, CommandFilter)>,
 }
 
-/// From position command to load: gain 1, times zeros, by poles, behind a delay.
+/// From position command to load: gain 1, times zeros, by poles, after a delay.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Response {
     /// Roots of the numerator.

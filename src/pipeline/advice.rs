@@ -13,7 +13,7 @@ pub(super) const SPINDLE_HELP: &str = "a lower S, or a drive that runs up and br
 /// What helps where a move is not run by itself.
 const NEIGHBOURS_HELP: &str = "lower feed or acceleration here and in the neighbouring blocks";
 
-/// What advice depends on beside the move: the state of its block.
+/// What advice depends on next to the move: the state of its block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Circumstances {
     compensates: bool,
@@ -51,6 +51,7 @@ impl<'m> Adviser<'m> {
                 feed: true,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         Self {
             machine,

@@ -171,7 +171,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
         tally.check()
     }
 
-    /// The figures, behind the last line.
+    /// The figures, after the last line.
     fn finish<R: Read + Seek>(self, front: Front<'_, R>) -> Result<Summary, Failure> {
         let Self {
             machine,

@@ -11,12 +11,12 @@ pub(super) struct Batch {
     /// Whole lines.
     pub(super) bytes: Vec<u8>,
     pub(super) expected: Vec<Expected>,
-    /// The blocks of the original that the lines stand for, in order; behind
+    /// The blocks of the original that the lines stand for, in order; after
     /// the last one there may be further lines.
     pub(super) blocks: Vec<WrittenBlock>,
     /// The moves of plain blocks.
     pub(super) moves: Vec<Move>,
-    /// The original's state behind each other block.
+    /// The original's state after each other block.
     pub(super) stances: Vec<Stance>,
 }
 

@@ -40,7 +40,7 @@ pub(super) struct Certifier<'m, 'r> {
     steps: Vec<Step>,
     facts: Facts,
     line: u64,
-    /// The original's state behind the last block.
+    /// The original's state after the last block.
     original: Stance,
     /// The written program is in the same one.
     in_step: bool,

@@ -57,6 +57,11 @@ pub(super) fn conclude(
         let taken = "blocks before the first motion word are taken for rapids (G0)";
         after.conditions.push(taken.to_owned());
     }
+    if let Some(comment) = paths.first().and_then(|it| it.comment(machine)) {
+        let text = comment.text();
+        let taken = format!("feeds with the comment {text} stand for rapids: F may be lowered");
+        after.conditions.push(taken);
+    }
     let rooms = machine.path.clearance_mm.iter().zip(ALL_AXES);
     let rooms: Vec<String> = rooms
         .filter_map(|(room, axis)| Some(format!("{} {}", char::from(axis.letter()), (*room)?)))
@@ -79,6 +84,7 @@ pub(super) fn conclude(
         certified,
         slower,
         reasons: reasons.list,
+        price: None,
     }
 }
 

@@ -9,7 +9,7 @@ use crate::interpret::{
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
-use crate::rewrite::Mark;
+use crate::rewrite::{Comment, Mark};
 use crate::syntax::Block;
 
 /// Why a rapid is not written as a feed, where the program can help.
@@ -36,9 +36,11 @@ pub(super) struct Entry {
     pub(super) one_corner: bool,
     /// Where no F is in force, it may not have one either: another block cannot.
     pub(super) without_feed: bool,
-    /// The state behind it.
+    /// It has the comment that marks what stands for a rapid.
+    marked: bool,
+    /// The state after it.
     pub(super) mark: Mark,
-    /// The same, as far as plain blocks go by it; `None` behind a plain one.
+    /// The same, as far as plain blocks go by it; `None` after a plain one.
     pub(super) stance: Option<Stance>,
     pub(super) knobs: Option<KnobState>,
     pub(super) feed_mode: FeedMode,
@@ -65,6 +67,7 @@ impl Entry {
             skips: false,
             one_corner: true,
             without_feed: false,
+            marked: false,
             mark: Mark::of(modal),
             stance: None,
             knobs: None,
@@ -109,6 +112,21 @@ impl Entry {
         self.mm_per_unit_before = mm_per_unit_before;
         self.places = None;
         self.decided.clear();
+        self.marked = false;
+    }
+
+    /// Looks for the comment that marks what stands for a rapid.
+    pub(super) fn look_for(&mut self, comment: &Comment) {
+        self.marked = comment.is_in(&self.text);
+    }
+
+    /// Whether a move of it is a feed that stands for a rapid.
+    fn stands_for_rapid(&self, mv: &Move) -> bool {
+        self.marked
+            && mv.kind == MoveKind::Feed
+            && self.mark.motion == Motion::Linear
+            && self.facts.uses_motion
+            && self.key == (mv.text, mv.line)
     }
 
     /// Keeps the texts of the earlier lines that its moves belong to.
@@ -243,7 +261,9 @@ impl Entry {
             mm_per_unit: facts.feed_mm_per_unit,
             knob_mm_per_unit: self.mm_per_unit_before,
             feed_before: self.feed_before(),
-            positions: facts.homes || positions(machine, self.mark.motion, mv),
+            positions: facts.homes
+                || positions(machine, self.mark.motion, mv)
+                || self.stands_for_rapid(mv),
             feed_accel_mm_s2,
         }
     }

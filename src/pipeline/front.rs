@@ -30,7 +30,7 @@ pub(super) struct Line<'f, 'm> {
     pub(super) facts: &'f mut Facts,
     /// Names of the files of subprograms so far.
     pub(super) files: &'f [String],
-    /// The state behind it.
+    /// The state after it.
     pub(super) interpreter: &'f Interpreter<'m>,
 }
 
@@ -81,7 +81,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         }
     }
 
-    /// The state behind the last line.
+    /// The state after the last line.
     pub(super) fn interpreter(&self) -> &Interpreter<'m> {
         &self.interpreter
     }
@@ -214,7 +214,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         Ok(self.conclude(run))
     }
 
-    /// Lets the flow go on behind a line, and hands the line over.
+    /// Lets the flow go on after a line, and hands the line over.
     fn conclude(&mut self, run: u32) -> Option<Line<'_, 'm>> {
         let Self {
             block,
@@ -286,7 +286,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
             let (rule, message, help) = if self.interpreter.holds_corner() {
                 let message = "the program ends before the second move of a corner";
-                ("corner-word", message, "write the move behind the corner")
+                ("corner-word", message, "write the move after the corner")
             } else {
                 let message = "the program ends under cutter compensation: where its last move ends is not known";
                 let help = "write G40 and a move, or the end of the program: M2 or M30";

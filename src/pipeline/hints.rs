@@ -43,6 +43,7 @@ pub fn take_hints<R: Read + Seek + Send>(
                 expand: allow_expand,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let limited = limit(&mut input, machine, options, how, io::sink(), rows)?;
         let mut reasons = BTreeMap::new();

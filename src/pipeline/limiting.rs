@@ -14,6 +14,7 @@ use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand, in_fixed_blocks};
 use super::front::read_whole;
 use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
 use super::pause::limit_waiting;
+use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::relay::no_thread;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
@@ -181,10 +182,17 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         last = Some(next);
     }
     Ok(match last {
-        Some(last) => LimitSummary {
-            before: first.before,
-            ..last
-        },
+        Some(mut last) => {
+            // Presets are those of the program as it was written.
+            let of_presets = |note: &Diagnostic| [NO_PRESET, NOT_SET].contains(&note.rule);
+            let notes = &mut first.before.notes;
+            notes.retain(|note| !of_presets(note));
+            notes.extend(last.before.notes.drain(..).filter(of_presets));
+            LimitSummary {
+                before: first.before,
+                ..last
+            }
+        }
         None => first,
     })
 }
@@ -260,7 +268,7 @@ pub(super) fn last_round(depths: &Depths) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
         LAST_ROUND,
-        format!("blocks exceed the limit beside others that were lowered, after {rounds} rounds"),
+        format!("blocks exceed the limit next to others that were lowered, after {rounds} rounds"),
     )
     .help("another strategy, or --allow feed, may help")
 }

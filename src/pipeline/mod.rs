@@ -21,6 +21,8 @@ mod motion;
 mod options;
 mod over_time;
 mod pause;
+mod preset_notes;
+mod price;
 mod relay;
 mod restart;
 mod row;
@@ -48,9 +50,13 @@ pub use by_line::LineSummary;
 pub use hints::take_hints;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};
-pub use options::{Allowed, Law, LimitOptions, Limits, Options, Reading, Start, Strategy};
+pub use options::{
+    Allowed, Law, LimitOptions, Limits, Options, PresetElse, RapidMark, RapidMarkError, Reading,
+    Start, Strategy,
+};
 pub use over_time::OverTime;
 pub use pause::Pause;
+pub use price::{Price, price};
 pub use restart::{Restart, RestartRows};
 pub use row::{Certificate, Row, RowSink};
 pub use schedule::{Command, Schedule};

@@ -239,7 +239,7 @@ impl Mover<'_, '_> {
     fn pump(&mut self) -> Result<(), Failure> {
         while let Some(planned) = self.planner.as_mut().and_then(PathPlanner::pop) {
             self.take(&planned)?;
-            // The move of a blend and those behind it are still needed.
+            // The move of a blend and those after it are still needed.
             while self.first < planned.tag && self.open.len() > 1 {
                 self.open.pop_front();
                 self.first += 1;

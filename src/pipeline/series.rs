@@ -200,7 +200,7 @@ impl Sampler<'_> {
         Ok(())
     }
 
-    /// A stretch of the spindle, with the motion beside it.
+    /// A stretch of the spindle, with the motion next to it.
     fn turn(&mut self, turning: &Turning) -> Result<(), Failure> {
         if let Some(rest) = &turning.rest {
             return self.stretch(Stretch {
@@ -281,7 +281,7 @@ impl Sampler<'_> {
         }
         self.start_s += lasts_s;
         if stride > 1 {
-            // Back to the first step behind it.
+            // Back to the first step after it.
             self.next = libm::ceil(self.start_s / self.step_s) as u64;
         }
         Ok(())

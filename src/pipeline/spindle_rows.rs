@@ -1,4 +1,4 @@
-//! Rows of the spindle alone, on their way to the certifier beside the moves.
+//! Rows of the spindle alone, on their way to the certifier next to the moves.
 
 use std::collections::VecDeque;
 

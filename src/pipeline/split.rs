@@ -208,7 +208,7 @@ fn plain(word: &Word, places: &Places) -> bool {
 }
 
 /// Whether the value of a word is what its text says, and not worked out: from where the
-/// axes are, it would be another one behind the first piece.
+/// axes are, it would be another one after the first piece.
 fn written(word: &Word, text: &[u8]) -> bool {
     let number = std::str::from_utf8(word.number.of(text)).ok();
     number.and_then(|number| number.trim().parse::<f64>().ok()) == Some(word.value)
@@ -298,7 +298,7 @@ mod tests {
         let (start, end) = (place(10.0, 20.0), place(70.0, 100.0));
         assert!(holds(start, place(16.0, 28.0)));
         assert!(holds(place(16.0, 28.0), end));
-        // A millionth beside it is rounding, a thousandth is not.
+        // A millionth next to it is rounding, a thousandth is not.
         assert!(holds(start, place(16.000_001, 28.0)));
         assert!(!holds(start, place(16.001, 28.0)));
         assert!(!holds(place(16.001, 28.0), end));

@@ -3,8 +3,11 @@
 use super::Failure;
 use super::split::impossible;
 use crate::diagnostic::Diagnostic;
-use crate::limit::{Law, LimitOptions, Strategy};
+use crate::limit::{Law, LimitOptions, PresetElse, Strategy};
 use crate::machine::{Knob, Machine};
+
+/// Where there are no presets none can be missing.
+const PRESET_ELSE: &str = "--preset-else goes with --strategy preset";
 
 /// The words of a controller that no document confirms, such as `G131, G231`.
 fn unconfirmed(machine: &Machine) -> String {
@@ -40,6 +43,7 @@ pub(super) fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(),
         format!(" (--allow unverified permits {unconfirmed}, which no document confirms)")
     };
     let name = &machine.controller.name;
+    check_presets(how)?;
     let unsuitable = |message: String| Err(Failure::Unsuitable(message));
     match how.strategy {
         Strategy::Accel if !accel => unsuitable(format!(
@@ -62,4 +66,20 @@ pub(super) fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(),
         },
         _ => Ok(()),
     }
+}
+
+/// What is asked of presets needs a strategy that has them.
+fn check_presets(how: LimitOptions) -> Result<(), Failure> {
+    let presets = how.strategy == Strategy::Preset;
+    let message = if how.always && !presets && how.law != Law::Patent {
+        "--always goes with --strategy preset or --law patent: the others have no value for a \
+         move that fits"
+    } else if how.always && how.allowed.stop {
+        "--always does not go with --allow stop, which looks for what costs the least time"
+    } else if how.preset_else != PresetElse::Refuse && !presets {
+        PRESET_ELSE
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Unsuitable(message.to_owned()))
 }

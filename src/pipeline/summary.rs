@@ -9,6 +9,7 @@ use super::by_line::LineSummary;
 use super::front::ONLY_SUBPROGRAMS;
 use super::over_time::OverTime;
 use super::pause::Pause;
+use super::price::Price;
 use super::row::Certificate;
 
 /// Moves of a program that does not fit of which all is looked into that takes many times as
@@ -131,4 +132,6 @@ pub struct LimitSummary {
     pub slower: bool,
     /// Why it does not, each with its line; `Summary::KEPT` at most.
     pub reasons: Vec<Diagnostic>,
+    /// What would make it fit, where that was asked for: see [`price`](super::price).
+    pub price: Option<Price>,
 }

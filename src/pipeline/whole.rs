@@ -22,7 +22,7 @@ use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::{Depths, Limiter};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
-use crate::rewrite::{BlockView, Rewriter};
+use crate::rewrite::{BlockView, Comment, Rewriter};
 use crate::source::lines;
 
 /// Steps of the original that are held at a time while they are compared.
@@ -66,7 +66,8 @@ impl Whole<'_> {
         };
         let (decided, table) = self.decide(slice::from_ref(&source), 0, rows.is_some())?;
         let [decided] = <[Decided; 1]>::try_from(decided).map_err(|_| no_way())?;
-        let (text, edited_lines) = write(0, &program, self.machine, &table);
+        let comment = paths.first().and_then(|it| it.comment(self.machine));
+        let (text, edited_lines) = write(0, &program, self.machine, &table, comment);
         let certified = self.certify(&source, (&text, paths), &decided, &table, rows)?;
         output.write_all(&text).map_err(Failure::Output)?;
         output.flush().map_err(Failure::Output)?;
@@ -207,14 +208,16 @@ fn survey(
     Ok(())
 }
 
-/// A text, of that number, with its changes, and how many lines were edited.
+/// A text, of that number, with its changes, and how many lines were edited; `comment`
+/// marks what stands for a rapid.
 pub(super) fn write(
     number_of_text: u16,
     program: &[u8],
     machine: &Machine,
     table: &Table,
+    comment: Option<Comment>,
 ) -> (Vec<u8>, u64) {
-    let mut rewriter = Rewriter::new(machine);
+    let mut rewriter = Rewriter::new(machine).marking(comment);
     let mut out = Vec::with_capacity(program.len() + program.len() / 8);
     for (number, text) in lines(program).enumerate() {
         let Some(decision) = table.decision((number_of_text, number as u64 + 1)) else {

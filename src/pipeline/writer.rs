@@ -17,6 +17,7 @@ use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::pause::Pause;
+use super::preset_notes::PresetNotes;
 use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
 use super::table::Table;
@@ -27,7 +28,7 @@ use crate::interpret::{KnobState, Move, MoveKind, Step};
 use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel, Want};
-use crate::rewrite::{BlockView, Mark, Rewriter};
+use crate::rewrite::{BlockView, Comment, Mark, Rewriter};
 pub(super) use waiting::Plan;
 use waiting::Waits;
 
@@ -72,14 +73,15 @@ pub(super) struct Writer<'m, R, W> {
     decided: Vec<(Assessment, Outcome)>,
     /// Path mode of the last move that was read.
     mode: PathMode,
-    /// Millimetres in a program unit behind the last block that was read.
+    /// Millimetres in a program unit after the last block that was read.
     mm_per_unit: f64,
-    /// The original's state behind the last block that was written.
+    /// The original's state after the last block that was written.
     mark: Mark,
     knobs: Option<KnobState>,
     batch: Batch,
     reasons: Reasons,
     unsplit: Unsplit,
+    presets: PresetNotes,
     /// Every figure is wanted exactly: there are rows.
     exact: bool,
     model: PowerModel,
@@ -90,6 +92,8 @@ pub(super) struct Writer<'m, R, W> {
     spindle: SpindleRows,
     may_skip: bool,
     waits: Waits,
+    /// Marks what stands for a rapid.
+    comment: Option<Comment>,
     /// Decisions by line, for a program with calls or loops: nothing is written
     /// before all its runs are known.
     table: Option<Table>,
@@ -109,6 +113,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         model: PowerModel,
     ) -> Self {
         let front = Front::new(input, machine, options);
+        let comment = options.comment(machine);
         Self {
             machine,
             mark: Mark::of(front.interpreter().modal()),
@@ -121,7 +126,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             assessor: watching(machine, options),
             limiter,
             tally: Tally::new(machine, options, None),
-            rewriter: Rewriter::new(machine),
+            rewriter: Rewriter::new(machine).marking(comment.clone()),
             entries: VecDeque::new(),
             first: 0,
             ready: None,
@@ -133,6 +138,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             batch: Batch::default(),
             reasons: Reasons::default(),
             unsplit: Unsplit::default(),
+            presets: PresetNotes::default(),
             exact,
             model,
             start_s: 0.0,
@@ -140,6 +146,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             spindle: SpindleRows::default(),
             may_skip: false,
             waits: Waits::default(),
+            comment,
             table,
         }
     }
@@ -190,6 +197,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         before.lines = lines;
         before.notes = notes;
         before.notes.append(&mut self.unsplit.notes);
+        before.notes.extend(self.presets.notes());
         let written = Written {
             before,
             edited_lines: self.rewriter.edited_lines,
@@ -261,6 +269,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if self.limiter.splits() && self.table.is_none() {
             entry.keep_places(line.interpreter);
         }
+        if let Some(comment) = &self.comment {
+            entry.look_for(comment);
+        }
         self.mm_per_unit = entry.mark.mm_per_unit;
         self.may_skip |=
             entry.block.delete_level > 0 && self.machine.controller.language.block_delete;
@@ -301,7 +312,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let entries = &*entries;
         let Some(entry) = entries.back() else { return };
         let moved = entry.moves_on();
-        // Behind the last step the line ends.
+        // After the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
         for (index, step) in steps.enumerate() {
             assessor.want = if self.exact { Want::ALL } else { tally.want() };

@@ -51,7 +51,7 @@ pub struct Assessor<'m> {
     pub(super) eye: Eye,
     /// What is switched on.
     switched: Switched,
-    /// The spindle beside the axes, where the machine has one.
+    /// The spindle next to the axes, where the machine has one.
     pub(super) bus: Option<Box<SpindleBus<'m>>>,
     /// The same program at lower overrides, for limits over time.
     pub(super) lower: Vec<Assessor<'m>>,
@@ -288,7 +288,7 @@ impl<'m> Assessor<'m> {
         self.push_unmodelled(mv, text, sink);
     }
 
-    /// A move by itself, or beside others under the robust bound.
+    /// A move by itself, or next to others under the robust bound.
     #[inline]
     pub(super) fn push_unmodelled(
         &mut self,

@@ -22,7 +22,7 @@ use crate::plan::{Blend, Phase, PhaseKind, Profile};
 use arrayvec::ArrayVec;
 use std::f64::consts::PI;
 
-/// The converter's share of a blend behind the line `mv`.
+/// The converter's share of a blend after the line `mv`.
 pub(super) fn totals(
     model: &PowerModel,
     converter: &ConverterPower,

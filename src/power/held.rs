@@ -18,7 +18,7 @@ pub(super) struct Held {
     pub bound: SpeedBound,
     /// The move before it, or a dwell, has ended at rest.
     pub rested: bool,
-    /// Moves of no length behind it: controllers leave them out and blend
+    /// Moves of no length after it: controllers leave them out and blend
     /// across them.
     pub riders: Vec<Rider>,
 }
@@ -40,7 +40,7 @@ pub(super) struct Rider {
     pub assessment: Assessment,
 }
 
-/// What stands behind a move that waits.
+/// What stands after a move that waits.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Behind<'a> {
     /// A stop: a dwell, or a move that begins at rest.

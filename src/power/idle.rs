@@ -1,7 +1,7 @@
 //! Programs that go on for long without moving an axis.
 //!
 //! While the axes run, a controller may read across any number of such lines and
-//! blend what comes behind them; or its queue is empty before, and it stops. Nobody
+//! blend what comes after them; or its queue is empty before, and it stops. Nobody
 //! knows which, and nobody can wait for ever.
 
 use super::assess::Assessor;
@@ -9,7 +9,7 @@ use super::assessment::Assessment;
 use super::held::{Behind, Held};
 use crate::interpret::{Move, MoveKind};
 
-/// Lines in a row that move no axis behind which what waits is judged.
+/// Lines in a row that move no axis after which what waits is judged.
 const IDLE_LINES: u64 = 4096;
 
 /// How long nothing has moved.
@@ -30,7 +30,7 @@ impl Idle {
 
 impl Assessor<'_> {
     /// Takes the end of a line whose steps have been taken; `moved`: some axis moves
-    /// in it, or it only turns a knob. Behind some thousands of lines in a row that move none, what waits is
+    /// in it, or it only turns a knob. After some thousands of lines in a row that move none, what waits is
     /// handed on with the robust bound, and what follows begins in doubt.
     #[inline]
     pub fn end_line(&mut self, moved: bool, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {

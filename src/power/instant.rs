@@ -192,7 +192,7 @@ impl Motion {
         let [t, inside] = [t, inside].map(|t| t + self.from_s);
         let at = |phases: &[Phase], instants| {
             let state = states(phases, instants).map(|[state, _]| state.position_mm);
-            // Behind the last phase.
+            // After the last phase.
             state.unwrap_or_else(|| {
                 let last = phases.last();
                 last.map_or(0.0, |last| last.position_mm + last.length_mm())

@@ -1,4 +1,4 @@
-//! Which moves wait for what comes behind them.
+//! Which moves wait for what comes after them.
 
 use super::ahead::{Role, role};
 use super::assess::Assessor;
@@ -7,7 +7,7 @@ use crate::interpret::{Move, MoveKind};
 use crate::machine::{PathMode, RapidJoint};
 
 impl Assessor<'_> {
-    /// Whether what comes behind a move may change how it runs: it may be blended with
+    /// Whether what comes after a move may change how it runs: it may be blended with
     /// that, or be an arc that `LinuxCNC` runs otherwise where nothing comes.
     pub(super) fn may_blend(&self, mv: &Move) -> bool {
         if !mv.moves_axes() {

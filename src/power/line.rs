@@ -20,7 +20,7 @@ use crate::plan::{Overrides, is_independent};
 
 /// Blocks that are planned together at most.
 const BLOCKS_MAX: usize = 256;
-/// How far the end of a block may lie beside the line, mm: places are rounded.
+/// How far the end of a block may lie next to the line, mm: places are rounded.
 const BESIDE_MM: f64 = 3e-6;
 
 /// Straight on every joint is passed at the speed of the slower block.
@@ -43,12 +43,12 @@ pub(super) struct Line {
     blocks: Vec<(Move, Vec<u8>)>,
     /// The move before the first, or a dwell, has ended at rest.
     rested: bool,
-    /// Something stands behind the last move that may stop it.
+    /// Something stands after the last move that may stop it.
     closed: bool,
 }
 
 /// Whether blocks of one line are planned together though corners are not modelled. What
-/// runs beside the axes, and limits over time, know nothing of such lines.
+/// runs next to the axes, and limits over time, know nothing of such lines.
 #[must_use]
 pub fn plans_lines(machine: &Machine, model: &PowerModel) -> bool {
     let modelled = machine.controller.planner.look_ahead.is_some();
@@ -67,7 +67,7 @@ impl Line {
 }
 
 impl Assessor<'_> {
-    /// Takes a move that goes straight on behind what waits; false, and nothing done, for
+    /// Takes a move that goes straight on after what waits; false, and nothing done, for
     /// all others.
     #[inline]
     pub(super) fn goes_straight_on(&mut self, mv: &Move, text: &[u8]) -> bool {

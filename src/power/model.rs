@@ -142,7 +142,7 @@ impl PowerModel {
 }
 
 impl PowerModel {
-    /// The load ratio of a demand of the axes with the spindle beside them, at a
+    /// The load ratio of a demand of the axes with the spindle next to them, at a
     /// speed of the path of `speed_mm_s`.
     #[must_use]
     pub fn load_beside(&self, demand: &Demand, share: &SpindleShare, speed_mm_s: f64) -> f64 {

@@ -114,7 +114,7 @@ impl Motion {
     }
 
     /// This motion and the next one, which may begin before this one ends: one
-    /// behind the other, with what they do at once between them. Of this one
+    /// after the other, with what they do at once between them. Of this one
     /// `done_s` seconds are over.
     #[must_use]
     pub fn followed_by(self, next: Self, done_s: f64) -> Vec<Self> {

@@ -7,7 +7,7 @@
 use super::blend;
 use super::demand::{Demand, Want};
 use super::model::PowerModel;
-use super::slower::speeds_mm_s;
+use super::slower::{BETWEEN, speeds_mm_s};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet};
 use crate::plan::lookahead::{Piece, Planned, Speeds2};
@@ -37,12 +37,14 @@ pub(super) fn piece_demand(
 }
 
 /// What a piece that turns asks for at its own speeds or at lower ones, if that is of
-/// interest. `None` for lines; of an S-curve that others share, too.
+/// interest. `None` for lines; of an S-curve that others share, too. What it asks for below
+/// `found` is of no interest: the same moves ask for that already.
 pub(super) fn slower_demand(
     model: &PowerModel,
     mv: &Move,
     planned: &Planned<u64>,
     want: Want,
+    found: Option<&Demand>,
 ) -> Option<Demand> {
     let turns = match planned.piece {
         Piece::Along { .. } => mv.arc.is_some(),
@@ -52,38 +54,56 @@ pub(super) fn slower_demand(
     if !turns || is_quiet(model, mv, planned, want) {
         return None;
     }
-    let want = Want {
-        energy: false,
-        ..Want::PEAKS
-    };
     planned.slowed(1.0)?;
+    let mut demand = piece_demand(model, mv, planned, EXACT);
+    let want = below(model, &demand, found);
     let mut slower = Demand::NONE;
     let top_mm_s = planned.top_speed_mm_s();
     for speed_mm_s in speeds_mm_s(top_mm_s) {
         let Some(piece) = planned.slowed(speed_mm_s / top_mm_s) else {
             continue;
         };
-        slower.include(&piece_demand(model, mv, &piece, want));
+        if !is_quiet(model, mv, &piece, want) {
+            slower.include(&piece_demand(model, mv, &piece, want));
+        }
     }
-    let mut demand = piece_demand(model, mv, planned, want);
     demand.include_slower(slower);
     Some(demand)
+}
+
+/// Exact peaks.
+const EXACT: Want = Want {
+    energy: false,
+    ..Want::PEAKS
+};
+
+/// What is wanted of lower speeds where so much is found already: nothing below that. Of
+/// several converters all counts, since one demand speaks of one of them.
+fn below(model: &PowerModel, own: &Demand, found: Option<&Demand>) -> Want {
+    if model.converters.len() != 1 {
+        return EXACT;
+    }
+    let found = found.unwrap_or(own);
+    Want {
+        floor_w: own.peak_w.max(found.peak_w) / BETWEEN,
+        regen_floor_w: own.regen_w.max(found.regen_w) / BETWEEN,
+        ..EXACT
+    }
 }
 
 /// What a chord of an arc asks for that is sped up or braked as planned, but from or to
 /// any lower speed: at lower overrides each place is passed with `v² = x − δ`, x the
 /// square of the planned speed, or a little more where it began to brake.
-/// `sides`: whether it is sped up so, and braked.
+/// `sides`: whether it is sped up so, and braked; `found` as in [`slower_demand`].
 pub(super) fn shifted_demand(
     model: &PowerModel,
     mv: &Move,
     planned: &Planned<u64>,
     sides: [bool; 2],
+    found: Option<&Demand>,
 ) -> Demand {
-    let want = Want {
-        energy: false,
-        ..Want::PEAKS
-    };
+    let mut demand = piece_demand(model, mv, planned, EXACT);
+    let want = below(model, &demand, found);
     let Speeds2 { start, end, top } = planned.speeds2;
     let ramp2 = 2.0 * planned.accel_mm_s2 * planned.length_mm;
     let mut lower = Demand::NONE;
@@ -104,10 +124,11 @@ pub(super) fn shifted_demand(
                 },
                 ..planned.clone()
             };
-            lower.include(&piece_demand(model, mv, &piece, want));
+            if !is_quiet(model, mv, &piece, want) {
+                lower.include(&piece_demand(model, mv, &piece, want));
+            }
         }
     }
-    let mut demand = piece_demand(model, mv, planned, want);
     demand.include_slower(lower);
     demand
 }
@@ -139,7 +160,7 @@ impl PowerModel {
         self.demand(mv, &plan, want)
     }
 
-    /// The peaks and the energy of a blend behind the move `mv`.
+    /// The peaks and the energy of a blend after the move `mv`.
     pub(super) fn blend_demand(
         &self,
         mv: &Move,

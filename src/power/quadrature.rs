@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 1e-10;
 /// Evaluations of the rule on one interval, then the estimate is taken.
 const BUDGET: u32 = 200;
 
-/// Points of the Kronrod rule on [0, 1] beside the centre.
+/// Points of the Kronrod rule on [0, 1] next to the centre.
 const NODES: [f64; 7] = [
     0.991_455_371_120_812_6,
     0.949_107_912_342_758_5,

@@ -20,7 +20,7 @@ const NEAREST: f64 = 0.96;
 /// The least that a share of a speed may be here.
 pub(super) const LEAST: f64 = 1e-3;
 /// What may lie between two of them.
-const BETWEEN: f64 = 1.01;
+pub(super) const BETWEEN: f64 = 1.01;
 
 /// Speeds below `top_mm_s` at which a path that turns is looked at. They are the same for
 /// every path, so that what a lower top leaves out is nothing but what lies above it.

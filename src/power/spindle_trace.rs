@@ -2,7 +2,7 @@
 //! span of time.
 //!
 //! Input: a [`Ramp`] from the instant of the command on. Output: [`SpindleSpan`],
-//! exact. Behind the ramp the spindle holds its speed. The base load of its
+//! exact. After the ramp the spindle holds its speed. The base load of its
 //! drive is not in these figures.
 
 use super::spindle::SpindlePower;

@@ -1,4 +1,4 @@
-//! Results as workflow commands: annotations beside the lines of a change on
+//! Results as workflow commands: annotations next to the lines of a change on
 //! GitHub.
 
 use std::io::{self, Write};

@@ -11,7 +11,7 @@ use super::finding::{Finding, UnfitMove};
 use super::over_time::OverTimeRecord;
 use super::record::Record;
 use crate::pipeline::{
-    Certificate, Failure, LimitSummary, Row, RowSink, SetFile, SetSummary, Summary,
+    Certificate, Failure, LimitSummary, Price, Row, RowSink, SetFile, SetSummary, Summary,
 };
 
 /// Writes rows as JSON objects with commas between them.
@@ -127,12 +127,33 @@ struct LimitTail<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pauses: Vec<PauseRecord>,
     reasons: Vec<Finding<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    price: Option<PriceRecord>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time: Vec<OverTimeRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time_after: Vec<OverTimeRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     files: Vec<WrittenFile<'a>>,
+}
+
+/// What would make a program fit that does not.
+#[derive(Serialize)]
+struct PriceRecord {
+    allow: String,
+    duration_s: Figure,
+    duration_after_s: Figure,
+}
+
+impl From<&Price> for PriceRecord {
+    fn from(price: &Price) -> Self {
+        let [before_s, after_s] = price.duration_s;
+        Self {
+            allow: price.allowed.names(),
+            duration_s: Figure(before_s),
+            duration_after_s: Figure(after_s),
+        }
+    }
 }
 
 /// A file that the certificate is for.
@@ -278,6 +299,7 @@ fn limited<'a>(
         certified: summary.certified,
         pauses: PauseRecord::list(summary),
         reasons: summary.reasons.iter().map(Finding::from).collect(),
+        price: summary.price.as_ref().map(PriceRecord::from),
         over_time: OverTimeRecord::list(&summary.before),
         over_time_after: OverTimeRecord::list(&summary.after),
         files: Vec::new(),

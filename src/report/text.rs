@@ -152,10 +152,11 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
         let count = summary.reasons.len();
         let noun = if count == 1 { "reason" } else { "reasons" };
         return format!(
-            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}{}",
+            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}{}{}",
             figures(before, machine),
             worst(after),
-            over_time_text(after)
+            over_time_text(after),
+            price_text(summary)
         );
     }
     let mut text = if summary.edited_lines == 0 {
@@ -178,6 +179,20 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
         let _ = writeln!(text, "  {condition}");
     }
     text
+}
+
+/// What would make the program fit; nothing where that is not known.
+fn price_text(summary: &LimitSummary) -> String {
+    let Some(price) = &summary.price else {
+        return String::new();
+    };
+    let [before_s, after_s] = price.duration_s;
+    format!(
+        "with --allow {} it fits, in {} instead of {}\n",
+        price.allowed.names(),
+        duration(after_s),
+        duration(before_s)
+    )
 }
 
 /// Where the written program waits though the original does not; nothing where it does not.
@@ -209,14 +224,15 @@ fn pauses_text(summary: &LimitSummary) -> String {
 pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) -> String {
     let (before, after) = (&summary.before, &summary.after);
     format!(
-        "{program}: not certified: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}",
+        "{program}: not certified: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}{}",
         moves(after.unfit_count),
         figures(after, machine),
         power(before.peak_w),
         duration(before.duration_s),
         lines(summary.edited_lines),
         worst(after),
-        over_time_text(after)
+        over_time_text(after),
+        price_text(summary)
     )
 }
 

@@ -1,13 +1,15 @@
 //! One block at a time: its edits, and the lines before it.
 
 mod pieces;
+mod words;
 
 use std::fmt::Write as _;
 
 pub use pieces::PieceWords;
 
-use super::number::{Style, decimal, feed_again, has_point, with_blanks, with_digit};
-use super::state::{FeedValue, Mark, Written, motion_word};
+use super::number::{Style, feed_again, with_blanks};
+use super::rapid_mark::Comment;
+use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion};
@@ -30,7 +32,7 @@ pub struct BlockView<'a> {
     pub facts: &'a Facts,
     /// The original's modal state before it.
     pub before: &'a Mark,
-    /// The original's modal state behind it.
+    /// The original's modal state after it.
     pub after: &'a Mark,
     /// The original's limits in force for it; needed where the controller has
     /// knobs.
@@ -72,6 +74,8 @@ pub struct Rewriter<'m> {
     /// G1 was written where no motion word was in force: it holds for all blocks up to the
     /// first motion word of the program.
     feeds_from_here: bool,
+    /// Marks feeds that stand for rapids.
+    comment: Option<Comment>,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
 }
@@ -97,8 +101,15 @@ impl<'m> Rewriter<'m> {
             stopped: false,
             blend_words: None,
             feeds_from_here: false,
+            comment: None,
             edited_lines: 0,
         }
+    }
+
+    /// Puts this comment into each block in which a rapid becomes a feed.
+    #[must_use]
+    pub fn marking(self, comment: Option<Comment>) -> Self {
+        Self { comment, ..self }
     }
 
     /// Whether blocks that came before any motion word of the program run as feeds, since
@@ -160,6 +171,7 @@ impl<'m> Rewriter<'m> {
         }
         self.motion_word(view);
         self.feed_word(view);
+        self.mark_rapid(view);
         let fine = if self.edits.is_empty() {
             out.extend_from_slice(view.text);
             true
@@ -257,7 +269,7 @@ impl<'m> Rewriter<'m> {
         }
     }
 
-    /// Writes a block by itself: what it changes is put back right behind it, so
+    /// Writes a block by itself: what it changes is put back right after it, so
     /// that it does not matter where the program comes from or goes on, nor whether the
     /// block is skipped. False when its edits contradict each other.
     #[must_use]
@@ -293,98 +305,6 @@ impl<'m> Rewriter<'m> {
             lines.truncate(lines.len() - self.line_end.len());
         }
         out.append(&mut lines);
-    }
-
-    /// The motion word: G1 for a rapid that becomes a feed, and back.
-    fn motion_word(&mut self, view: &BlockView<'_>) {
-        let facts = view.facts;
-        self.feeds_from_here |= facts.no_motion_word && view.change.as_feed;
-        if let Some(word) = facts.motion_word {
-            self.feeds_from_here = false;
-            self.written.motion = view.after.motion;
-            if view.change.as_feed {
-                self.edits.push(Edit::replace(
-                    word.number,
-                    with_digit(word.number.of(view.text), b'1'),
-                ));
-                self.written.motion = Motion::Linear;
-            }
-            return;
-        }
-        if !facts.uses_motion {
-            return;
-        }
-        let wanted = if view.change.as_feed {
-            Motion::Linear
-        } else {
-            view.after.motion
-        };
-        if wanted == self.written.motion {
-            return;
-        }
-        if let Some(digit) = wanted.digit() {
-            let style = Style::of(view.text, view.block);
-            let mut text = vec![style.letter(b'G'), digit];
-            if let Some(first) = first_word(view) {
-                text.extend(style.spaced.then_some(b' '));
-                self.edits.push(Edit::insert(first.span.start, text));
-            } else {
-                // A block of assignments to axes.
-                text.insert(0, b' ');
-                self.edits.push(Edit::insert(view.block.words_end, text));
-            }
-        }
-        self.written.motion = wanted;
-    }
-
-    /// F: changed, inserted, or put back.
-    fn feed_word(&mut self, view: &BlockView<'_>) {
-        let facts = view.facts;
-        let original = view.after.feed_value();
-        let wanted = match view.change.feed {
-            Some(value) => Some(FeedValue {
-                value,
-                mm_per_unit: facts.feed_mm_per_unit,
-            }),
-            None => original,
-        };
-        if let Some(word) = facts.feed_word {
-            self.written.feed = original;
-            if let (Some(value), Some(_)) = (view.change.feed, wanted) {
-                let text = decimal(value, has_point(word.number.of(view.text)));
-                self.edits.push(Edit::replace(word.number, text));
-                self.written.feed = wanted;
-            }
-            return;
-        }
-        if view.after.feed.is_none() && view.change.feed.is_none() {
-            // G93, G94 and G95 forget the feed of another meaning.
-            self.written.feed = if view.after.per_minute {
-                self.written.feed
-            } else {
-                None
-            };
-            return;
-        }
-        let counts = facts.uses_motion && (facts.uses_feed || view.change.as_feed);
-        if !counts || wanted == self.written.feed {
-            return;
-        }
-        let number = match (view.change.feed, &view.after.feed) {
-            (Some(value), feed) => decimal(
-                value,
-                feed.is_some_and(|feed| has_point(feed.text.as_bytes())),
-            ),
-            (None, Some(feed)) => feed_again(feed, facts.feed_mm_per_unit),
-            (None, None) => return,
-        };
-        let style = Style::of(view.text, view.block);
-        let mut text = Vec::with_capacity(number.len() + 2);
-        text.extend(style.spaced.then_some(b' '));
-        text.push(style.letter(b'F'));
-        text.extend_from_slice(number.as_bytes());
-        self.edits.push(Edit::insert(view.block.words_end, text));
-        self.written.feed = wanted;
     }
 
     /// A line that gives motion word and feed their original values, and lines

@@ -1,7 +1,7 @@
 //! Adjustments to bytes: the fewest edits that give each block its values and
 //! leave the modal state of every other block as it was.
 //!
-//! Input: blocks in program order, each with the modal state before and behind
+//! Input: blocks in program order, each with the modal state before and after
 //! it and the [`Change`](crate::limit::Change) of its moves. Output: the bytes
 //! of the block, with words changed or inserted and lines inserted before it.
 //! The rewriter never sees watts.
@@ -16,6 +16,7 @@ mod block;
 mod contour;
 mod knob_line;
 mod number;
+mod rapid_mark;
 mod single;
 mod state;
 mod turned;
@@ -23,5 +24,6 @@ mod turned;
 pub use beforehand::Return;
 pub use block::{BlockView, PieceWords, Rewriter};
 pub use contour::contour_as_comment;
+pub use rapid_mark::{Comment, RapidMark, RapidMarkError};
 pub use single::{CycleBlock, Singles};
 pub use state::Mark;

@@ -59,7 +59,7 @@ fn until_comment(input: &[u8]) -> Parsed<'_, &[u8]> {
 }
 
 /// A variable or an expression, with the letter before it and the operators and
-/// operands behind it: `#1=5`, `X#<a>`, `X[1+2]`, `sqrt[2]`, `X=AC`.
+/// operands after it: `#1=5`, `X#<a>`, `X[1+2]`, `sqrt[2]`, `X=AC`.
 pub(super) fn expression(input: &[u8]) -> Parsed<'_, &[u8]> {
     let assigned = (
         take_while1(|byte: u8| byte.is_ascii_alphabetic()),

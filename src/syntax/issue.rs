@@ -17,7 +17,7 @@ pub struct Issue {
 pub enum IssueKind {
     /// A byte that begins nothing known; also N, `/` or `%` out of place.
     UnknownText,
-    /// A letter without a number behind it.
+    /// A letter without a number after it.
     MissingNumber,
     /// A number without a letter before it.
     MissingLetter,
@@ -56,8 +56,8 @@ impl IssueKind {
             Self::UnknownText => describe_unknown(text, &shown),
             Self::MissingNumber => (
                 "missing-number",
-                format!("`{shown}` has no number behind it"),
-                "write the number right behind the letter, as in `X12.5`",
+                format!("`{shown}` has no number after it"),
+                "write the number right after the letter, as in `X12.5`",
             ),
             Self::MissingLetter => (
                 "missing-letter",
@@ -103,7 +103,7 @@ fn describe_unknown(text: &[u8], shown: &str) -> (&'static str, String, &'static
         [b'/', ..] => (
             "misplaced-block-delete",
             format!("block delete `{shown}` is not at the beginning of its block"),
-            "write `/` before the first word, or right behind the N word",
+            "write `/` before the first word, or right after the N word",
         ),
         [b'%', ..] => (
             "misplaced-tape-mark",
@@ -187,7 +187,7 @@ mod tests {
         12 | G1 /2 X1
            |    ^^
            |
-           = help: write `/` before the first word, or right behind the N word
+           = help: write `/` before the first word, or right after the N word
         "##);
     }
 
@@ -207,13 +207,13 @@ mod tests {
     #[test]
     fn missing_number() {
         assert_snapshot!(shown(b"G1 X Y2"), @r##"
-        error[missing-number]: `X` has no number behind it
+        error[missing-number]: `X` has no number after it
           --> part.ngc:12:4
            |
         12 | G1 X Y2
            |    ^
            |
-           = help: write the number right behind the letter, as in `X12.5`
+           = help: write the number right after the letter, as in `X12.5`
         "##);
     }
 

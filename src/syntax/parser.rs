@@ -75,7 +75,7 @@ enum Place {
     Beginning,
     /// Block delete or comments, and no word so far.
     BeforeWords,
-    /// Right behind the N word.
+    /// Right after the N word.
     BehindNumber,
     /// Anywhere else.
     Inside,
@@ -121,7 +121,7 @@ fn enabled<'a>(
     cond(!yes, fail())
 }
 
-/// A letter without a number, with what is left of a number behind it.
+/// A letter without a number, with what is left of a number after it.
 fn lone_letter(input: &[u8]) -> Parsed<'_, &[u8]> {
     let remains = take_while(|byte| matches!(byte, b'+' | b'-' | b'.'));
     recognize((not(token::name), token::letter, remains)).parse(input)
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     /// The pieces of a line, blanks left out: words as they are written, the
-    /// rest behind the name of its kind or fault.
+    /// rest after the name of its kind or fault.
     fn pieces(line: &[u8]) -> Vec<String> {
         let (mut pieces, mut block) = <(Vec<Piece>, Block)>::default();
         parse_line(line, true, &mut pieces, &mut block);

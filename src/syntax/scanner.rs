@@ -72,7 +72,7 @@ fn skip_blanks(text: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// Enters the block delete at `at`; gives the offset behind it.
+/// Enters the block delete at `at`; gives the offset after it.
 #[cold]
 fn block_delete(text: &[u8], at: usize, block: &mut Block) -> usize {
     let level = text.get(at + 1).filter(|byte| byte.is_ascii_digit());
@@ -82,8 +82,8 @@ fn block_delete(text: &[u8], at: usize, block: &mut Block) -> usize {
     end
 }
 
-/// Enters the N word, which must be the first, and a block delete behind it;
-/// gives the offset behind them.
+/// Enters the N word, which must be the first, and a block delete after it;
+/// gives the offset after them.
 fn block_number(text: &[u8], word: Word, block: &mut Block) -> Option<usize> {
     if block.number.is_some() || !block.words.is_empty() {
         return None;
@@ -126,7 +126,7 @@ fn scan_word(line: &[u8], text: &[u8], start: usize, letter: u8) -> Option<Word>
 /// A number without its sign.
 struct Scanned {
     value: f64,
-    /// Offset behind it.
+    /// Offset after it.
     end: usize,
 }
 
@@ -166,14 +166,14 @@ fn long_number(text: &[u8], start: usize) -> Option<Scanned> {
 #[inline]
 fn short_number(line: &[u8], start: usize) -> Option<Scanned> {
     // The last eight bytes of the line serve for a number that is nearer to its
-    // end: zeros come behind it.
+    // end: zeros come after it.
     let from = start.min(line.len().checked_sub(8)?);
     let bytes = line.get(from..from + 8)?.try_into().ok()?;
     let word = u64::from_le_bytes(bytes).checked_shr(8 * (start - from) as u32)?;
     // A digit's byte becomes its value; the first byte is the lowest one.
     let values = word ^ 0x3030_3030_3030_3030;
     // The highest bit of each byte that is 10 or more. A carry reaches only
-    // bytes behind one of 0x8A and more, which ends the number.
+    // bytes after one of 0x8A and more, which ends the number.
     let others = (values.wrapping_add(0x7676_7676_7676_7676) | values) & 0x8080_8080_8080_8080;
     let mut bytes = others.trailing_zeros() / 8;
     let (mut digits, mut decimals) = (values, 0);

@@ -19,7 +19,7 @@ pub(super) fn is_letter(byte: u8) -> bool {
     byte.is_ascii_alphabetic() || matches!(byte, b'=' | b'*' | b'@' | b'^')
 }
 
-/// True for the bytes of a name behind its first.
+/// True for the bytes of a name after its first.
 fn is_name(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
@@ -77,7 +77,7 @@ pub(super) fn letter(input: &[u8]) -> Parsed<'_, &[u8]> {
 }
 
 /// A name of two bytes or more, as `GOTO`, `SET_LIMIT` or `R_1`: a letter with
-/// a letter or an underscore right behind it; or anything after an underscore.
+/// a letter or an underscore right after it; or anything after an underscore.
 pub(super) fn name(input: &[u8]) -> Parsed<'_, &[u8]> {
     let begins = match input {
         [b'_', ..] => true,
@@ -115,7 +115,7 @@ pub(super) fn quoted(input: &[u8]) -> Parsed<'_, &[u8]> {
     recognize(delimited(tag("\""), opt(is_not("\"")), tag("\""))).parse(input)
 }
 
-/// `/` with its level: the digit right behind it, 1 without one and for `/0`.
+/// `/` with its level: the digit right after it, 1 without one and for `/0`.
 pub(super) fn block_delete(input: &[u8]) -> Parsed<'_, u8> {
     let digit = take_while_m_n(1, 1, |byte: u8| byte.is_ascii_digit());
     let (rest, level) = preceded(tag("/"), opt(digit)).parse(input)?;

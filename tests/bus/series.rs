@@ -143,7 +143,7 @@ fn a_tap_turns_the_spindle_round() {
 }
 
 /// The integral of the bus power is the report's energy, its largest value the
-/// reported peak, and the time is the same: run-ups beside rapids and in waits,
+/// reported peak, and the time is the same: run-ups next to rapids and in waits,
 /// cutting, brakings, reversals and G96 in one program each.
 #[test]
 fn a_series_adds_up_to_the_report() {
@@ -276,7 +276,7 @@ impl SeriesSink for Counted {
 }
 
 /// A dwell of a month at 1 ms would be 2.6e9 rows: they are farther apart, which is
-/// said, and behind it they are a step apart as before.
+/// said, and after it they are a step apart as before.
 #[test]
 fn a_month_costs_no_more_rows_than_an_hour() {
     let iso = machine("iso", "", "", "");

@@ -46,7 +46,7 @@ fn paths_that_a_tool_cannot_follow() {
 6 compensation: the arc before this inside corner is too short for the tool | use a smaller tool, or round the corner by an arc larger than the tool
 4 compensation: no arc leads the tool from where it is to the side of this arc's end | lead in with a straight move
 7 compensation: the first move under cutter compensation must be straight here | lead in with a straight move
-7 compensation: the move that leaves cutter compensation must be straight | lead out with a straight move behind G40
+7 compensation: the move that leaves cutter compensation must be straight | lead out with a straight move after G40
 "#);
 }
 
@@ -121,7 +121,7 @@ fn how_it_is_switched_on() {
 5 compensation: an orientation without G18 | L goes with the plane of a lathe: G18
 6 compensation: L must be the orientation of the tool | write a whole number from 0 to 9
 6 compensation: cutter compensation works in the planes XY and ZX only | choose the plane before: G17 or G18
-7 compensation: the tool has not left the compensation before this one | write a straight move in the plane behind G40
+7 compensation: the tool has not left the compensation before this one | write a straight move in the plane after G40
 "#);
     let found = shown("grbl", &Options::default(), "G41 D1 G1 X10 F100\n");
     assert!(

@@ -95,7 +95,7 @@ fn chamfers_and_roundings_of_sinumerik() {
 ");
     assert_eq!(
         moves("siemens", program),
-        "8 corner-word: behind a chamfer or a rounded corner comes no feed move\n"
+        "8 corner-word: after a chamfer or a rounded corner comes no feed move\n"
     );
 }
 
@@ -121,14 +121,14 @@ fn corners_that_cannot_be() {
         all.push_str(&moves("fanuc", &format!("G1 F600\n{rest}\n")));
     }
     assert_snapshot!(all, @r"
-3 corner-word: behind a chamfer or a rounded corner comes no feed move
+3 corner-word: after a chamfer or a rounded corner comes no feed move
 3 corner-word: a chamfer or a rounded corner that does not fit between its moves
 3 corner-word: a chamfer or a rounded corner where the path goes straight on or back
 3 corner-word: a chamfer or a rounded corner where the path goes straight on or back
-2 corner-word: a chamfer or a rounded corner behind a block that is not one feed move
-2 corner-word: a chamfer or a rounded corner behind a block that is not one feed move
-2 corner-word: a chamfer or a rounded corner behind a block that is not one feed move
-3 corner-word: behind a chamfer or a rounded corner comes no feed move
+2 corner-word: a chamfer or a rounded corner after a block that is not one feed move
+2 corner-word: a chamfer or a rounded corner after a block that is not one feed move
+2 corner-word: a chamfer or a rounded corner after a block that is not one feed move
+3 corner-word: after a chamfer or a rounded corner comes no feed move
 3 corner-word: a chamfer or a rounded corner where a move leaves the plane
 3 corner-word: a chamfer where an arc begins or ends
 2 corner-word: a block takes one chamfer or rounded corner, from 0 on

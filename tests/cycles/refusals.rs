@@ -98,7 +98,7 @@ fn each_refusal_once() {
     3 cycle-word: G81 without Z | write Z in the first block of the cycle
     3 cycle-word: G83 without Q | write Q in the first block of the cycle
     3 cycle-word: G76 without Q, or I and J | write Q, or I and J in the first block of the cycle
-    3 cycle-word: G87 cannot return to R (G99) | write G98: the way back is beside the hole, to the initial level
+    3 cycle-word: G87 cannot return to R (G99) | write G98: the way back is next to the hole, to the initial level
     3 unused-word: nothing in this block uses the I word | take it out, or write the word that it belongs to
     3 unsupported-code: G99 without a canned cycle: it may mean the feed per revolution of a lathe | write it in the block of the cycle, or G95 for a feed per revolution
     3 cycle-word: R is below the bottom of the hole | check the number

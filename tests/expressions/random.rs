@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::{BOTH, end, value};
 
-/// An operand and what comes behind it.
+/// An operand and what comes after it.
 #[derive(Debug, Clone)]
 struct Chain {
     first: Operand,

@@ -170,6 +170,7 @@ proptest! {
                 feed: true,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let mut text = Vec::new();
         let summary = limit(Cursor::new(&program), &machine, &options, how, &mut text, None).expect("a program");

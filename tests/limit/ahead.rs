@@ -44,7 +44,7 @@ fn peak(row: &Row, speed_m_s: f64) {
     assert!(off < 1e-6 * expected, "{} {expected}", row.peak_w);
 }
 
-/// G61.1 behind moves that are planned together: the planner holds the rapid
+/// G61.1 after moves that are planned together: the planner holds the rapid
 /// back until it knows the next move.
 #[test]
 fn a_stop_at_the_end_of_a_move_does_not_lose_it() {
@@ -279,7 +279,7 @@ fn overrides_above_one_hundred_percent_count() {
         ..LINUXCNC
     };
     let rows = report(rig, "G21 G90 G61\nG1 X100 F6000\nY100\nM2\n");
-    // G61 leaves 0.9 of the acceleration beside a corner.
+    // G61 leaves 0.9 of the acceleration next to a corner.
     let expected = 0.15 * 500.0 * 4.5;
     assert!(
         (rows[0].peak_w - expected).abs() < 1e-6 * expected,

@@ -14,7 +14,7 @@ const WITH_FRICTION: Rig = Rig {
     ..RIG
 };
 
-/// The number behind `word` in the text.
+/// The number after `word` in the text.
 fn number(text: &str, word: &str) -> f64 {
     let at = text.find(word).expect("the word") + word.len();
     let rest = text[at..].trim_start();
@@ -125,7 +125,7 @@ fn loads_count_while_they_are_on() {
         ..RIG
     };
     let text = rig.fits("G0 X400\nM8\nX0\nM9 X400\nX0\n");
-    // 1000 W leave 24 000 mm/min, 500 W half of it; M9 takes effect behind
+    // 1000 W leave 24 000 mm/min, 500 W half of it; M9 takes effect after
     // the motion of its block.
     let feeds: Vec<f64> = text
         .lines()

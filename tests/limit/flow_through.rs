@@ -13,6 +13,7 @@ const HOW: LimitOptions = LimitOptions {
         feed: true,
         ..Allowed::NOTHING
     },
+    ..LimitOptions::USUAL
 };
 
 /// Bytes that a run has read and written, and the most that lay between.

@@ -39,6 +39,7 @@ fn how(strategy: Strategy, feed: bool) -> LimitOptions {
             feed,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     }
 }
 

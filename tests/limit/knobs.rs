@@ -68,7 +68,7 @@ fn independent_axes_arrive_together() {
 }
 
 /// Where arriving together is not enough all arrive later: 1250 W of X are 950 W with
-/// 76 % of its acceleration, and Y draws a little beside it.
+/// 76 % of its acceleration, and Y draws a little next to it.
 #[test]
 fn independent_axes_arrive_together_a_little_later() {
     let rig = Rig {
@@ -191,6 +191,7 @@ fn unconfirmed_words_are_written_on_request() {
                 unverified,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let mut text = Vec::new();
         let program = std::io::Cursor::new(b"G0 X400\nM30\n");

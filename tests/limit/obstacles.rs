@@ -232,7 +232,7 @@ fn strategies_without_their_word() {
     assert!(matches!(failure, Err(Failure::Unsuitable(_))));
 }
 
-/// Of `P` and `X` beside G4 one may be meant as motion.
+/// Of `P` and `X` next to G4 one may be meant as motion.
 #[test]
 fn two_times_of_one_dwell() {
     for program in ["G0 G4 P1 X400\n", "G4 F2 X1\n"] {

@@ -70,7 +70,7 @@ fn text(blocks: &[Block], style: Style) -> String {
     let mut lines = Vec::new();
     let units = if style.inch { "G20" } else { "G21" };
     let distance = if style.relative { "G91" } else { "G90" };
-    // LinuxCNC reads an F beside G20 in the unit before.
+    // LinuxCNC reads an F next to G20 in the unit before.
     lines.push(vec![units.to_owned()]);
     lines.push(vec![distance.to_owned()]);
     lines.push(vec!["F500".to_owned()]);

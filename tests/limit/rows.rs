@@ -28,6 +28,7 @@ fn peaks_are_exact_in_every_row() {
             feed: true,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     limit(
         std::io::Cursor::new(program),

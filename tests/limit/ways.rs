@@ -187,6 +187,7 @@ fn limited(program: &str) -> (String, LimitSummary) {
             feed: true,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let mut text = Vec::new();
     let summary = limit(

@@ -28,7 +28,7 @@ M30
     assert!(summary.after.fits());
     let text = String::from_utf8(text).expect("text");
     let words: Vec<&str> = text.lines().collect();
-    // Behind each changed line stands what puts its words back.
+    // After each changed line stands what puts its words back.
     assert_eq!(words[0..3], ["O1", "#1=3", "WHILE [#1 GT 0] DO1"]);
     assert!(words[3].starts_with("G1 X[400-#1*10] F"), "{text}");
     assert_eq!(words[4], "F60000");

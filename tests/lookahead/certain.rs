@@ -51,7 +51,7 @@ fn behind_a_stop_nothing_is_left_of_what_is_not_certain() {
     assert_eq!(rapids(&moving), rapids(&dwelling));
 }
 
-/// Lines behind which a controller's queue may be empty, or not.
+/// Lines after which a controller's queue may be empty, or not.
 const IDLE: [&str; 4] = ["X20\n", "(a remark)\n", "F1200\n", "T1\n"];
 
 #[test]

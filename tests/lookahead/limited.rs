@@ -27,6 +27,7 @@ const HOW: LimitOptions = LimitOptions {
         feed: true,
         ..Allowed::NOTHING
     },
+    ..LimitOptions::USUAL
 };
 
 /// What is asked of a program, and what it was planned to come to.

@@ -262,7 +262,7 @@ fn parabolic_blends_are_chosen_as_recorded() {
     // acceleration.
     let decided_twice = "G64 P0.05 Q0\nG91 F4000\nG3 X-9.40799 Y-7.62254 I-8.65398 J1.06393\n\
         G1 X0.4095 Y-0.0326\nX1.1973 Y-0.0452\nM2\n";
-    // With nothing behind it the line gets to less until it is run.
+    // With nothing after it the line gets to less until it is run.
     let last = "G64\nG91 F6000\nG2 X10.30608 Y-21.74059 I4.22459 J-11.31042 Z2.1897\n\
         F8000\nG1 X-19.6491 Y-11.7835\nM2\n";
     // Only the mode of the next element itself takes half of what that accelerates by.
@@ -288,7 +288,7 @@ fn parabolic_blends_are_chosen_as_recorded() {
 #[test]
 fn a_lower_feed_behind_a_blend_is_seen_too_late() {
     // The planner looks back with the speeds that the machine permits: recorded were
-    // 92.3 mm/s less than a cycle of braking behind the start of the line, and then
+    // 92.3 mm/s less than a cycle of braking after the start of the line, and then
     // its F of 10 mm/s.
     let (pieces, _) = planned(SLOWER_BEHIND_A_BLEND);
     let line = pieces.iter().find(|piece| piece.tag == 3).unwrap();

@@ -62,7 +62,7 @@ fn a_feed_that_the_axes_cap_behind_one_that_is_not() {
         near(single(0.7), 6.0);
         let found = peaks(&machine, program);
         near(found[1][0], 6.0);
-        // Far behind it nothing changes: the speed is reached after 5 mm at most.
+        // Far after it nothing changes: the speed is reached after 5 mm at most.
         near(found[2][0], 1.0);
     }
 }
@@ -92,7 +92,7 @@ fn what_a_short_block_can_reach_counts() {
     near(found[2][0], 6.0);
 }
 
-/// Rapids have a knob of their own: at a low one the feed behind speeds up to F.
+/// Rapids have a knob of their own: at a low one the feed after speeds up to F.
 #[test]
 fn a_feed_behind_a_rapid() {
     let machine = plain("grbl");
@@ -249,6 +249,7 @@ fn sweep(seed: u64, programs: usize) -> [usize; 2] {
                 feed: true,
                 ..Allowed::NOTHING
             },
+            ..LimitOptions::USUAL
         };
         let mut out = Vec::new();
         let input = Cursor::new(text.as_bytes());

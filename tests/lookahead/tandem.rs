@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 use crate::rows::Rows;
 
-/// 200 mm/s, 1 m/s² and 100 kg; the table beside them weighs nothing.
+/// 200 mm/s, 1 m/s² and 100 kg; the table next to them weighs nothing.
 fn machine() -> Machine {
     let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
          [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n\
@@ -100,7 +100,7 @@ proptest! {
         for (line, drawn_w, regen_w) in shown.0 {
             let at = rows.iter().position(|row| row.line == line).expect("its row");
             prop_assert_eq!(rows[at].certificate, Certificate::Planned);
-            // Half of a blend belongs to the move behind it.
+            // Half of a blend belongs to the move after it.
             let near = &rows[at.saturating_sub(1)..(at + 2).min(rows.len())];
             let most = |of: fn(&Row) -> f64| near.iter().map(of).fold(0.0, f64::max);
             let slack = 1.0 + 1e-6;

@@ -141,7 +141,7 @@ fn kind_follows_the_letter() {
     assert_eq!(machine(&text).axes, machine(super::BASE).axes);
 }
 
-/// Lead 10 mm: 3000 rpm are 500 mm/s, and 2 N·m are 2·628.3185 N. A table behind
+/// Lead 10 mm: 3000 rpm are 500 mm/s, and 2 N·m are 2·628.3185 N. A table after
 /// a gear of 90 turns with 3000/90 rpm = 200 degrees/s, with 90 times the torque.
 #[test]
 fn torque_curves_at_the_motor() {

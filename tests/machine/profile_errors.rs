@@ -191,7 +191,7 @@ fn knob_incomplete() {
     line 19, error machine-missing: `target` is missing in `knob` / What it acts on
       | [[knob]]
       | ^^^^^^^^
-    line 19, error machine-missing: `argument` is missing in `knob` / What stands behind it: `= value`, a value per axis, the path's value behind a letter, or right behind the word, or the number of an analog output ([outputs] of the machine file) with its value
+    line 19, error machine-missing: `argument` is missing in `knob` / What stands after it: `= value`, a value per axis, the path's value after a letter, or right after the word, or the number of an analog output ([outputs] of the machine file) with its value
       | [[knob]]
       | ^^^^^^^^
     line 19, error machine-missing: `unit` is missing in `knob` / Unit of the value

@@ -64,7 +64,7 @@ impl Axis {
     }
 }
 
-/// What the spindle draws beside the axes: as `AxisPower`; base load in `idle_w`.
+/// What the spindle draws next to the axes: as `AxisPower`; base load in `idle_w`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Beside {
     pub power_w: f64,

@@ -40,6 +40,7 @@ fn limited(machine: &Machine, program: &str) -> Result<(LimitSummary, String), F
             feed: true,
             ..Allowed::NOTHING
         },
+        ..LimitOptions::USUAL
     };
     let (mut out, input) = (Vec::new(), Cursor::new(program.as_bytes()));
     let summary = limit(input, machine, &Options::default(), how, &mut out, None)?;

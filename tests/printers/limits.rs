@@ -99,7 +99,7 @@ fn raised_limits_raise_the_peak() {
 }
 
 /// Between the moves of homing the axes stand: each axis draws
-/// (200 kg · 3 m/s² + 100 N) · 0.05 m/s / 0.8 = 43.75 W beside 100 W, with those that home
+/// (200 kg · 3 m/s² + 100 N) · 0.05 m/s / 0.8 = 43.75 W next to 100 W, with those that home
 /// together, whatever comes before and after.
 #[test]
 fn moves_of_homing_do_not_blend() {

@@ -39,7 +39,7 @@ fn free_text_is_no_fault() {
     assert_snapshot!(marlin("M106 S{x}\n"), @"expression: expressions in `{ }` are not supported");
     assert_snapshot!(marlin("M999.3 ?\nM106 hello\n"), @"unknown-text: this is no parameter of the command");
     assert_snapshot!(marlin("M1234\n"), @"unknown-code: M1234 is not known to this controller profile");
-    assert_snapshot!(marlin("G1 X10 Y\n"), @"missing-number: `Y` has no number behind it");
+    assert_snapshot!(marlin("G1 X10 Y\n"), @"missing-number: `Y` has no number after it");
 }
 
 /// Marlin and Klipper read one command a line; RepRapFirmware reads all.

@@ -101,7 +101,7 @@ M30
 ");
 }
 
-/// "Subprogram technique": in the same file, behind `%_N_NAME_SPF`.
+/// "Subprogram technique": in the same file, after `%_N_NAME_SPF`.
 #[test]
 fn subprograms_in_the_same_file() {
     let program = "\

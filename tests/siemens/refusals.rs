@@ -161,7 +161,7 @@ fn refusals_name_the_construct() {
         ),
         (
             "X10 P5",
-            "1 syntax: P repeats a call, and stands behind its name",
+            "1 syntax: P repeats a call, and stands after its name",
         ),
         ("G2 F=AC(3)", "1 syntax: F takes a plain value"),
         ("CR 5", "1 syntax: CR has no value"),

@@ -27,7 +27,7 @@ fn estimated(letter: char, truth: &(TransferFunction, f64), seed: u64) -> AxisRe
     axis
 }
 
-/// The true mismatch behind filters that were made from noisy recordings, 16 s
+/// The true mismatch after filters that were made from noisy recordings, 16 s
 /// of each axis.
 #[test]
 fn estimated_zeros_make_axes_alike() {

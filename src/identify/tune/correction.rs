@@ -1,7 +1,7 @@
 //! Correction filters: each axis' command through the zeros of all the others.
 //!
 //! With the loops alike, axis n answers `N_n(s)·H(s)`, its own zeros times what
-//! all have in common. Behind the filter `F(s)·Π N_m(s)`, m over the *other*
+//! all have in common. After the filter `F(s)·Π N_m(s)`, m over the *other*
 //! axes, every axis answers `F·H·Π N`: the path is no longer distorted. F is a
 //! low-pass, the same for all, of at least the degree of the largest numerator,
 //! or else the filter would not be causal.

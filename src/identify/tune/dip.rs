@@ -9,7 +9,7 @@ pub struct Dip {
     pub frequency_hz: f64,
     /// The smoothed gain there.
     pub gain: f64,
-    /// How far below the lower of the two shoulders beside it, dB.
+    /// How far below the lower of the two shoulders next to it, dB.
     pub depth_db: f64,
 }
 

@@ -8,7 +8,7 @@
 //!
 //! *Matched*: the denominator as by Tustin, in the numerator
 //! `(1 + 10·z⁻¹ + z⁻²)/12` for 1, and second differences for s². Near ω·T = 0
-//! Tustin's pair of zeros is `N(ω)·(1 − ω²T²/12)` behind its own delay of one
+//! Tustin's pair of zeros is `N(ω)·(1 − ω²T²/12)` after its own delay of one
 //! period, for any N, and so is this 1 (Numerov's weights): axes with and
 //! without zeros stay alike to the fourth order. It needs no denominator, so it
 //! serves without a low-pass too.

@@ -1,4 +1,4 @@
-//! How far the axes' responses lie apart, before and behind the filters.
+//! How far the axes' responses lie apart, before and after the filters.
 
 use std::f64::consts::{PI, TAU};
 

@@ -90,7 +90,7 @@ impl Fault {
             ),
             Self::ArcAfterExit => (
                 "the move that leaves cutter compensation must be straight",
-                "lead out with a straight move behind G40",
+                "lead out with a straight move after G40",
             ),
             Self::InverseTime => (
                 "inverse-time feed (G93) under cutter compensation is not supported",
@@ -106,7 +106,7 @@ impl Fault {
                 "take them together, or write them outside of the compensation",
             ),
             Self::NothingBetween => (
-                "the compensation ends with no move in the plane behind the one that began it",
+                "the compensation ends with no move in the plane after the one that began it",
                 "write the contour between G41 or G42 and G40",
             ),
             Self::Intersection => ("an outside corner with an arc under G451", "write G450"),
@@ -126,11 +126,11 @@ impl Fault {
     fn corner_words(self) -> (&'static str, &'static str) {
         match self {
             Self::NoFirstMove => (
-                "a chamfer or a rounded corner behind a block that is not one feed move",
+                "a chamfer or a rounded corner after a block that is not one feed move",
                 "write it in the block of a G1, G2 or G3, without M words that stop",
             ),
             Self::NoSecondMove => (
-                "behind a chamfer or a rounded corner comes no feed move",
+                "after a chamfer or a rounded corner comes no feed move",
                 "write the second move, G1, G2 or G3, in the next block",
             ),
             Self::CornerPlane => (

@@ -1,4 +1,4 @@
-//! The tool's centre beside the programmed moves.
+//! The tool's centre next to the programmed moves.
 
 use super::corner::{Bend, Circle, SMOOTH_RAD, Track, bend, meet};
 use super::hold::Guard;
@@ -135,7 +135,7 @@ impl Compensation {
         }
     }
 
-    /// The first move: from where the tool is to beside its programmed end.
+    /// The first move: from where the tool is to next to its programmed end.
     fn enter(&mut self, mv: Move, from: Vector, to: Vector) -> Result<(), Fault> {
         if self.style.lead != CompensationLead::Beside {
             return self.lead_in(mv, from, to);
@@ -147,7 +147,7 @@ impl Compensation {
             None => {
                 let direction = unit(sub(to, from)).ok_or(Fault::ShortEntry)?;
                 let end = along(to, left(direction), self.side * self.radius_mm);
-                // Its real direction is another one; the corner behind it goes
+                // Its real direction is another one; the corner after it goes
                 // by the programmed one.
                 let track = Track::Line {
                     through: end,
@@ -184,7 +184,7 @@ impl Compensation {
         Ok(())
     }
 
-    /// An arc as first move: from the tool's place to beside the programmed
+    /// An arc as first move: from the tool's place to next to the programmed
     /// end, where it runs in the programmed direction (measured with LinuxCNC).
     fn enter_by_arc(&self, arc: &Arc, from: Vector, to: Vector) -> Result<(Track, Vector), Fault> {
         let shifted = self.element_of_arc(arc, from, to)?;

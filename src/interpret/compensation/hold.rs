@@ -19,7 +19,7 @@ const SWEEP_TOLERANCE_RAD: [f64; 2] = [0.0254, 0.001];
 /// The moves that wait, and where the tool is.
 #[derive(Debug)]
 pub(super) struct Hold {
-    /// The first is a move along `track`; all behind it stay in their place.
+    /// The first is a move along `track`; all after it stay in their place.
     pub(super) steps: Vec<Step>,
     /// Something was handed on since this was last asked.
     pub(super) handed_on: bool,
@@ -29,7 +29,7 @@ pub(super) struct Hold {
     guard: Guard,
     /// Where it ends if nothing shortens it.
     pub(super) end: Vector,
-    /// The tool's centre behind what was handed on.
+    /// The tool's centre after what was handed on.
     from: Vector,
     /// The same as the machine sees it.
     pub(super) tool: Vector,

@@ -53,7 +53,7 @@ impl Corners {
         self.waits.is_some()
     }
 
-    /// Whether the present block holds a corner with the moves beside it.
+    /// Whether the present block holds a corner with the moves next to it.
     pub(super) fn is_cut(&self) -> bool {
         self.cut
     }
@@ -66,7 +66,7 @@ impl Corners {
 }
 
 impl Control<'_> {
-    /// Asks for something in the corner behind the present block.
+    /// Asks for something in the corner after the present block.
     pub(in crate::interpret) fn ask_corner(&mut self, insert: Insert) {
         self.corners.get_or_insert_default().ask = Some(insert);
     }
@@ -244,7 +244,7 @@ impl Element {
         })
     }
 
-    /// What lies `radius_mm` beside it, to the left for a `side` of 1.
+    /// What lies `radius_mm` next to it, to the left for a `side` of 1.
     fn beside(&self, side: f64, radius_mm: f64) -> Result<Track, Fault> {
         let [direction, _] = self.directions;
         let Some(arc) = &self.arc else {

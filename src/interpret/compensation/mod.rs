@@ -1,6 +1,6 @@
 //! Cutter radius compensation: G40, G41, G42, G41.1 and G42.1.
 //!
-//! The tool's centre runs beside the programmed path, and where a move ends
+//! The tool's centre runs next to the programmed path, and where a move ends
 //! depends on the next one. Each move is therefore held back, with what follows
 //! it without leaving its place in the plane, until the next is known.
 //!
@@ -43,9 +43,9 @@ const TEXT_MAX: usize = 256;
 enum State {
     /// On, but nothing has moved yet.
     Entry,
-    /// The tool is beside the path.
+    /// The tool is next to the path.
     On,
-    /// G40 was read: the next move begins beside the path and ends on it.
+    /// G40 was read: the next move begins next to the path and ends on it.
     Leaving,
     /// Off.
     Off,
@@ -76,7 +76,7 @@ pub(super) struct Compensation {
     /// From the centre of a lathe tool's nose to the point that the machine
     /// moves.
     nose: Vector,
-    /// Where it was switched on the tool was still beside an earlier path: the
+    /// Where it was switched on the tool was still next to an earlier path: the
     /// first move must be straight.
     straight_first: bool,
     hold: Hold,
@@ -145,7 +145,7 @@ impl Compensation {
         }
     }
 
-    /// Whether a move behind G40 takes the tool back: in LinuxCNC any, elsewhere
+    /// Whether a move after G40 takes the tool back: in LinuxCNC any, elsewhere
     /// the first in the plane.
     fn leaves_by(&self, mv: &Move) -> bool {
         self.style.lead == CompensationLead::Beside
@@ -156,7 +156,7 @@ impl Compensation {
                 .any(|&axis| mv.start[axis] != mv.end[axis])
     }
 
-    /// The first move behind G40 begins where the tool is. True where its
+    /// The first move after G40 begins where the tool is. True where its
     /// length is one of linear axes.
     fn leave(&mut self, mv: &mut Move) -> bool {
         self.state = State::Off;
@@ -199,9 +199,9 @@ impl Interpreter<'_> {
 }
 
 impl Control<'_> {
-    /// LinuxCNC asks the machine where it is behind a tool change: what was left
+    /// LinuxCNC asks the machine where it is after a tool change: what was left
     /// of a compensation that G40 has switched off is forgotten, and the axes are
-    /// where they are, beside the path.
+    /// where they are, next to the path.
     pub(super) fn forget_way_back(&mut self) {
         let Some(compensation) = &mut self.compensation else {
             return;
@@ -218,7 +218,7 @@ impl Control<'_> {
         }
     }
 
-    /// Whether the tool is still beside the path of a compensation that was
+    /// Whether the tool is still next to the path of a compensation that was
     /// switched off.
     pub(super) fn is_on_way_back(&self) -> bool {
         let compensation = self.compensation.as_ref();

@@ -59,7 +59,7 @@ impl Control<'_> {
         }
     }
 
-    /// Words that come behind it.
+    /// Words that come after it.
     pub(super) fn refuse_behind(&self, run: &mut Run<'_, '_>) {
         let rs274 = self.machine.controller.language.family == Family::Rs274;
         for index in 0..run.words.g.len() {

@@ -4,7 +4,7 @@
 //! to 90° the tool's centre goes on to where the shifted tangents meet; where it
 //! bends by more, it goes on by the radius, across, and comes back by the
 //! radius. Ends of arcs are left and met along their tangents. What is more than
-//! the shifted moves themselves belongs to the block behind the corner.
+//! the shifted moves themselves belongs to the block after the corner.
 
 use super::Compensation;
 use super::Fault;

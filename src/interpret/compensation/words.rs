@@ -189,7 +189,7 @@ impl Control<'_> {
                 let message = "the tool has not left the compensation before this one";
                 run.report
                     .error("compensation", message, span)
-                    .help("write a straight move in the plane behind G40");
+                    .help("write a straight move in the plane after G40");
                 return;
             }
             Some(before) => (before.hold.tool, true),
@@ -300,7 +300,7 @@ impl Control<'_> {
 
 impl Compensation {
     /// G40 before any move: as if there had been nothing, unless the tool is
-    /// still beside the path of a compensation before.
+    /// still next to the path of a compensation before.
     fn behind_entry(&self) -> State {
         if self.straight_first {
             State::Leaving

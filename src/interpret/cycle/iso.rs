@@ -350,14 +350,14 @@ impl Control<'_> {
         true
     }
 
-    /// G87: down beside the hole's axis to R, then a bore upwards to Z.
+    /// G87: down next to the hole's axis to R, then a bore upwards to Z.
     fn iso_back_bore(&mut self, hole: &Hole, place: &AxisValues, run: &mut Run<'_, '_>) {
         use MoveKind::{Feed, Rapid};
         if !self.special.to_initial {
             let whole = run.whole();
             run.report
                 .error("cycle-word", "G87 cannot return to R (G99)", whole)
-                .help("write G98: the way back is beside the hole, to the initial level");
+                .help("write G98: the way back is next to the hole, to the initial level");
             return;
         }
         let [first, second, normal] = self.modal.plane;

@@ -424,7 +424,7 @@ impl Control<'_> {
         end
     }
 
-    /// G87: through the hole beside its axis, then a counterbore from below.
+    /// G87: through the hole next to its axis, then a counterbore from below.
     fn rs274_back_bore(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) {
         use MoveKind::{Feed, Rapid};
         let [first, second, normal] = self.modal.plane;

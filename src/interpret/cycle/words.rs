@@ -72,7 +72,7 @@ impl Run<'_, '_> {
             .help(format!("write {what} in the first block of the cycle"));
     }
 
-    /// The number of repeats behind `letter`: whole, and not negative.
+    /// The number of repeats after `letter`: whole, and not negative.
     pub(super) fn repeats(&mut self, letter: u8) -> Option<u64> {
         let Some(value) = self.words.take(letter) else {
             return Some(1);

@@ -32,7 +32,7 @@ enum Of {
     Macro,
 }
 
-/// A name that another begins with stands behind it.
+/// A name that another begins with stands after it.
 const NAMES: [(&[u8], Function, Of); 20] = [
     (b"ABS", Function::Abs, Of::Both),
     (b"ACOS", Function::Acos, Of::Both),

@@ -75,7 +75,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The next byte behind blanks and comments, upper case; it stays.
+    /// The next byte after blanks and comments, upper case; it stays.
     pub(in crate::interpret) fn peek(&mut self) -> Option<u8> {
         loop {
             match self.text.get(self.at)? {
@@ -153,7 +153,7 @@ impl<'t> Reader<'t> {
     }
 
     /// A number, a parameter, a function or brackets, with signs before it: what
-    /// may stand behind the letter of a word.
+    /// may stand after the letter of a word.
     pub(in crate::interpret) fn value(&mut self, variables: &impl Variables) -> Outcome<Value> {
         let start = self.at;
         self.depth += 1;
@@ -228,7 +228,7 @@ impl<'t> Reader<'t> {
         let mut left = self.value(variables)?;
         let fanuc = variables.fanuc();
         loop {
-            // Most values have nothing behind them.
+            // Most values have nothing after them.
             let may_follow =
                 |byte: u8| byte.is_ascii_alphabetic() || matches!(byte, b'*' | b'/' | b'+' | b'-');
             if !self.peek().is_some_and(may_follow) {
@@ -435,7 +435,7 @@ impl<'t> Reader<'t> {
                 (Ok(libm::atan2(x, across).to_degrees()), Op::Angle)
             }
             (Function::Atan, None) if !fanuc => {
-                return Err(self.impossible("ATAN[…] without /[…] behind it", start));
+                return Err(self.impossible("ATAN[…] without /[…] after it", start));
             }
             (function, None) => (function.apply(x, fanuc), Op::Of(function)),
         };

@@ -49,7 +49,7 @@ impl Flow {
                 .map(|text| text.line(place.line));
             let Some(text) = text else {
                 let message = format!(
-                    "there is no block N{} behind N{} to end the contour",
+                    "there is no block N{} after N{} to end the contour",
                     contour.last, contour.first
                 );
                 let help = "give the contour's first and last block as P and Q";

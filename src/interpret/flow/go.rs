@@ -23,7 +23,7 @@ impl Flow {
             Go::Main => {
                 let text = self.now.text;
                 let Some(line) = self.landmarks(text)?.main() else {
-                    let message = "local subprograms without a main program behind them";
+                    let message = "local subprograms without a main program after them";
                     let help = "write % and a name before the main program";
                     return Err(Trouble::new("subprogram", message, help));
                 };
@@ -169,7 +169,7 @@ impl Flow {
         self.enter_named(begin, times, interpreter)
     }
 
-    /// Calls the subprogram that MODIN has set, behind a block that moved.
+    /// Calls the subprogram that MODIN has set, after a block that moved.
     pub(super) fn modal_call(&mut self, interpreter: &mut Interpreter<'_>) -> Result<(), Trouble> {
         match self.modal_named.clone() {
             // Moves of the subprogram itself do not call it.

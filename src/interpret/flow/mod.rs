@@ -279,7 +279,7 @@ impl Flow {
         Ok(())
     }
 
-    /// Calls the macro that G66 has set, behind a block that moved.
+    /// Calls the macro that G66 has set, after a block that moved.
     pub(crate) fn after_move(
         &mut self,
         interpreter: &mut Interpreter<'_>,

@@ -34,7 +34,7 @@ impl Flow {
             Verb::EndSub(value) | Verb::Return(value) => self.return_from(value, interpreter),
             Verb::Call(arguments) => {
                 let mut begin = self.find_sub(label)?;
-                // Behind its `sub`.
+                // After its `sub`.
                 begin.line += 1;
                 self.enter(begin, 1, Some(arguments), Style::Sub, interpreter)
             }
@@ -131,7 +131,7 @@ impl Flow {
     }
 
     /// Each branch and loop of a subroutine has its own label, and what belongs
-    /// to it comes behind it.
+    /// to it comes after it.
     fn check_label(&mut self, label: &Label, verb: &Verb, repeat: bool) -> Result<(), Trouble> {
         let keyword = verb.keyword();
         let text = self.texts.get(self.now.text);
@@ -162,7 +162,7 @@ impl Flow {
         }
     }
 
-    /// Goes on behind one of these O-words.
+    /// Goes on after one of these O-words.
     fn behind(
         &mut self,
         label: &Label,
@@ -198,7 +198,7 @@ impl Flow {
             Some((_, Keyword::Sub)) => Err(nested()),
             Some(_) => Err(duplicate(label, self.now.line)),
             None => {
-                let message = format!("there is no `{label} {name}` behind this");
+                let message = format!("there is no `{label} {name}` after this");
                 Err(Trouble::new(
                     "o-word",
                     message,
@@ -329,7 +329,7 @@ impl Flow {
         let text = self.texts.get(self.now.text);
         if text.and_then(|text| text.keyword(line)) == Some(Keyword::Break) {
             // It goes on at the next line with the label, whatever that says.
-            let message = "behind this continue stands a break of the same do loop, \
+            let message = "after this continue stands a break of the same do loop, \
                            which LinuxCNC would take";
             let help = "write the break before the continue, or the loop with while and endwhile";
             return Err(Trouble::new("o-word", message, help));

@@ -126,7 +126,7 @@ impl Outline {
         self.borders(line, usize::MAX).0
     }
 
-    /// The next line of a label behind `line`.
+    /// The next line of a label after `line`.
     pub(super) fn forwards(&self, label: &str, line: usize, len: usize) -> Option<usize> {
         let (_, end) = self.borders(line, len);
         let lines = self.labels.get(label)?;

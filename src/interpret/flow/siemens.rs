@@ -118,7 +118,7 @@ impl Flow {
             None if quiet => {}
             None => {
                 let message = format!("there is no {to} to jump to in this direction");
-                let help = "write the label with `:` behind it, or the block's number";
+                let help = "write the label with `:` after it, or the block's number";
                 return Err(Trouble::new("no-such-block", message, help));
             }
         }
@@ -143,7 +143,7 @@ impl Flow {
         };
         let missing = |label: &str| {
             let message = format!("there is no {label} to repeat");
-            let help = "write the label with `:` behind it";
+            let help = "write the label with `:` after it";
             Trouble::new("no-such-block", message, help)
         };
         let first = find(from).ok_or_else(|| missing(from))?;
@@ -180,7 +180,7 @@ impl Flow {
         Ok(())
     }
 
-    /// At the end of a repeated section: again, or behind its REPEAT.
+    /// At the end of a repeated section: again, or after its REPEAT.
     pub(super) fn end_section(&mut self) {
         while let Some(section) = self.sections.last_mut() {
             if section.depth > self.calls.len() {

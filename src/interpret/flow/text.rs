@@ -283,7 +283,7 @@ fn block_number(line: &[u8]) -> Option<u64> {
         .ok()
 }
 
-/// Taking off what may stand behind the slash of a block delete.
+/// Taking off what may stand after the slash of a block delete.
 trait TrimDigit {
     fn trim_start_with_digit(&self) -> &Self;
 }

@@ -41,7 +41,7 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// The next byte behind blanks and comments; it stays. `None` at the end.
+    /// The next byte after blanks and comments; it stays. `None` at the end.
     pub(in crate::interpret) fn peek(&mut self) -> Option<u8> {
         loop {
             match self.text.get(self.at)? {

@@ -83,7 +83,7 @@ impl Reading<'_, '_, '_> {
             }
             "TIME" => {
                 if !block.words.is_empty() {
-                    let message = "#TIME behind other words";
+                    let message = "#TIME after other words";
                     let help = "write it in a block of its own";
                     return Err(self.cursor.fault("dwell-time", message, help, start));
                 }

@@ -33,10 +33,10 @@ pub(super) fn parameter_name(cursor: &mut Cursor<'_>) -> Outcome<Ident> {
 }
 
 impl Reading<'_, '_, '_> {
-    /// What stands in brackets behind `L CYCLE` and `LL CYCLE`.
+    /// What stands in brackets after `L CYCLE` and `LL CYCLE`.
     pub(super) fn cycle(&mut self, local: bool, start: usize, block: &Block) -> Outcome<Go> {
         if !block.words.is_empty() {
-            let message = "a cycle behind other words";
+            let message = "a cycle after other words";
             let help = "call it in a block of its own";
             return Err(self.cursor.fault("subprogram", message, help, start));
         }
@@ -59,11 +59,11 @@ impl Reading<'_, '_, '_> {
                 self.cursor.expect(b'=')?;
                 file = Some(self.file_name());
             } else if self.cursor.name().starts_with("MODAL") {
-                let reason = "a cycle behind each block that moves";
+                let reason = "a cycle after each block that moves";
                 return Err(self.cursor.refused("MODAL", reason, from));
             } else {
                 self.cursor.at = self.cursor.at.max(from + 1);
-                let message = "behind CYCLE stand NAME= and the parameters @P1= and so on";
+                let message = "after CYCLE stand NAME= and the parameters @P1= and so on";
                 let help = "write L CYCLE [NAME=drill.cyc @P1=5]";
                 return Err(self.cursor.fault("subprogram", message, help, from));
             }
@@ -75,7 +75,7 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.fault("subprogram", message, help, start));
         };
         if self.cursor.peek().is_some() {
-            let message = "words behind a cycle";
+            let message = "words after a cycle";
             let help = "call it in a block of its own";
             return Err(self.cursor.fault("subprogram", message, help, start));
         }

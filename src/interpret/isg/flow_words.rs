@@ -20,7 +20,7 @@ impl Reading<'_, '_, '_> {
         self.cursor.at += word.len();
         let pending = std::mem::take(&mut self.state.pending);
         if word != "GOTO" && !block.words.is_empty() {
-            let message = format!("${word} behind other words");
+            let message = format!("${word} after other words");
             let help = "write it in a block of its own";
             return Err(self.cursor.fault("flow", message, help, start));
         }
@@ -58,7 +58,7 @@ impl Reading<'_, '_, '_> {
         if word != "GOTO" && self.cursor.peek().is_some() {
             let start = self.cursor.at;
             self.cursor.pass_over_rest();
-            let message = format!("what stands behind ${word} is not understood");
+            let message = format!("what stands after ${word} is not understood");
             let help = "write it in a block of its own";
             return Err(self.cursor.fault("flow", message, help, start));
         }
@@ -83,7 +83,7 @@ impl Reading<'_, '_, '_> {
     fn goto_behind_if(&mut self, holds: bool, start: usize) -> Outcome<Go> {
         self.cursor.at += 1;
         if !self.cursor.take_name("GOTO") {
-            let message = "behind $IF stands $GOTO or nothing";
+            let message = "after $IF stands $GOTO or nothing";
             let help = "write what depends on it in blocks of its own, to $ENDIF";
             return Err(self.cursor.fault("flow", message, help, start));
         }

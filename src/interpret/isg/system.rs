@@ -28,7 +28,7 @@ impl Systems {
     }
 }
 
-/// What stands in brackets behind a command.
+/// What stands in brackets after a command.
 enum Given {
     Nothing,
     Number(u32),

@@ -65,7 +65,7 @@ impl Reading<'_, '_, '_> {
         Ok(Some(name))
     }
 
-    /// The number behind P.
+    /// The number after P.
     fn index_of_p(&mut self, cursor: &mut Cursor<'_>) -> Outcome<i64> {
         match cursor.byte(0) {
             b'[' => {
@@ -144,7 +144,7 @@ impl Reading<'_, '_, '_> {
         if !(adds || self.cursor.assigns()) {
             self.settable(&name, start)?;
             let message = format!("{name} stands alone");
-            let help = "write its value behind `=`, or the address that it is for before it";
+            let help = "write its value after `=`, or the address that it is for before it";
             return Err(self.cursor.fault("assignment", message, help, start));
         }
         self.settable(&name, start)?;
@@ -234,7 +234,7 @@ impl Reading<'_, '_, '_> {
         })
     }
 
-    /// What stands behind the name: lengths of an array, a type, values.
+    /// What stands after the name: lengths of an array, a type, values.
     fn declare(&mut self, name: &Ident, start: usize) -> Outcome<()> {
         let mut lengths = Vec::new();
         while lengths.len() < DIMENSIONS && self.cursor.take(b'[') {

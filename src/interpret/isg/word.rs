@@ -25,7 +25,7 @@ impl Reading<'_, '_, '_> {
             _ => {
                 self.cursor.at += 1;
                 let message = format!("`{}` has no meaning here", byte as char);
-                let help = "write comments in ( ) or behind `;`";
+                let help = "write comments in ( ) or after `;`";
                 return Err(self.cursor.fault("syntax", message, help, start));
             }
         }
@@ -236,7 +236,7 @@ impl Reading<'_, '_, '_> {
         }
         if self.cursor.peek() == Some(b'[') {
             self.cursor.pass_over_rest();
-            let message = "parameters behind the name of a subprogram";
+            let message = "parameters after the name of a subprogram";
             let help = "call a cycle by L CYCLE [NAME=… @P1=…]";
             return Err(self.cursor.fault("subprogram", message, help, start));
         }

@@ -55,7 +55,7 @@ enum Cycle {
     Rough {
         facing: bool,
         pockets: Pockets,
-        /// What is left for finishing, beside the contour and in Z and X.
+        /// What is left for finishing, next to the contour and in Z and X.
         left: f64,
         shift: Vector,
         depth: f64,
@@ -63,7 +63,7 @@ enum Cycle {
     },
 }
 
-/// What happens to valleys behind the first.
+/// What happens to valleys after the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Pockets {
     /// G71, G72.
@@ -129,7 +129,7 @@ impl Control<'_> {
             return fault("Q is no number of a subroutine", span, run);
         }
         if run.facts.motion_word.is_some() {
-            return fault("another motion word beside the cycle", span, run);
+            return fault("another motion word next to the cycle", span, run);
         }
         if let Some(message) = self.lathe_cycle_forbidden(run) {
             return fault(&message, span, run);
@@ -209,7 +209,7 @@ impl Control<'_> {
         } else if self.feed_mode_is(super::FeedMode::InverseTime) {
             "the cycle under G93"
         } else if self.special.left.is_some() {
-            "the cycle behind G88"
+            "the cycle after G88"
         } else {
             return None;
         };

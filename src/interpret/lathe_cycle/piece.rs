@@ -52,7 +52,7 @@ pub(super) enum Way {
     Past,
     /// To this place on it.
     To(Vector),
-    /// To this place, behind which the piece goes the other way.
+    /// To this place, after which the piece goes the other way.
     ToTop(Vector),
 }
 
@@ -179,7 +179,7 @@ impl Piece {
         if found.is_empty() {
             found = self.crossings(level - SAME);
         }
-        // Counter-clockwise it falls behind its top, clockwise before its bottom.
+        // Counter-clockwise it falls after its top, clockwise before its bottom.
         let rises = if round.ccw {
             at[Z] - SAME > middle
         } else {

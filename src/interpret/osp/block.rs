@@ -126,7 +126,7 @@ impl Reading<'_, '_> {
             return Err(self.cursor.fault("subprogram", message, help, start));
         }
         let message = "a second program name ends the program; \
-                       programs behind it run where they are called";
+                       programs after it run where they are called";
         self.note("several-programs", message, start);
         Ok(Some(Go::End))
     }

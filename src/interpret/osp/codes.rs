@@ -116,7 +116,7 @@ impl Control<'_> {
                         "a work coordinate system for one block is not supported",
                         span,
                     )
-                    .help("write G15 before the block and behind it");
+                    .help("write G15 before the block and after it");
             }
             (false, system @ 1..=6) => self.select_system(system, span, run),
             (false, system) => self.select_system(FURTHER + system, span, run),

@@ -65,7 +65,7 @@ impl Reading<'_, '_> {
         if letters > 1 {
             self.cursor.at += name.len();
             let message = format!("{name} is no word of this language");
-            let help = "write `=` behind the name of a variable; words are one letter and a number";
+            let help = "write `=` after the name of a variable; words are one letter and a number";
             return Err(self.cursor.fault("unknown-word", message, help, start));
         }
         self.address(block)?;
@@ -200,7 +200,7 @@ impl Reading<'_, '_> {
             } else {
                 self.cursor.at += word.len().max(1);
             }
-            let message = "behind CALL stand Q with repetitions and variables by name";
+            let message = "after CALL stand Q with repetitions and variables by name";
             let help = "write CALL O100 Q3 NAME=5";
             return Err(self.cursor.fault("subprogram", message, help, from));
         }

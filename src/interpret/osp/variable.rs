@@ -87,7 +87,7 @@ impl Reading<'_, '_> {
     }
 
     /// `V1=…`, `VC1=…`, `NAME=…`, where a name of at least two letters or a V
-    /// begins and `=` stands behind it; false otherwise.
+    /// begins and `=` stands after it; false otherwise.
     pub(super) fn assignment(&mut self) -> Outcome<bool> {
         let start = self.cursor.at;
         let mut cursor = self.cursor.clone();

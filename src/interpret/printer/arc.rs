@@ -14,7 +14,7 @@ impl Control<'_> {
     ///
     /// Source: Marlin `G2_G3.cpp`, Klipper `gcode_arcs.py`. Without an angle
     /// between start and end, Marlin 2 stays where it is and the others run
-    /// straight: it counts as a straight line, and the place behind it as
+    /// straight: it counts as a straight line, and the place after it as
     /// unknown.
     pub(in crate::interpret) fn loose_arc(
         &mut self,

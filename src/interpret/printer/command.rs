@@ -362,10 +362,10 @@ fn text_command(run: &mut Run<'_, '_>, number: u16) {
 fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
     for parameter in parameters.iter().filter(|one| one.value.is_none()) {
         let letter = parameter.letter as char;
-        let message = format!("`{letter}` has no number behind it");
+        let message = format!("`{letter}` has no number after it");
         run.report
             .error("missing-number", message, parameter.span)
-            .help("write the number right behind the letter, as in `X12.5`");
+            .help("write the number right after the letter, as in `X12.5`");
     }
 }
 
@@ -405,5 +405,5 @@ fn odd_text(report: &mut Report<'_, '_>, odd: Span) {
     }
     report
         .error("unknown-text", "this is no parameter of the command", odd)
-        .help("parameters are a letter and a number each; put other text behind `;`");
+        .help("parameters are a letter and a number each; put other text after `;`");
 }

@@ -90,7 +90,7 @@ impl Control<'_> {
         known
     }
 
-    /// Takes heaters or fans off a load; it is off behind the block's moves
+    /// Takes heaters or fans off a load; it is off after the block's moves
     /// when none is left.
     fn put_out(&mut self, load: usize, bits: u32) {
         self.printer.lit[load] &= !bits;

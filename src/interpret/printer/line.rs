@@ -5,7 +5,7 @@ use arrayvec::ArrayVec;
 use crate::source::Span;
 use crate::syntax::Word;
 
-/// M words behind which stands free text or the name of a file.
+/// M words after which stands free text or the name of a file.
 ///
 /// Marlin: M117 and M118 (text), M16, M20, M23, M30, M33, M928 (names),
 /// M0 and M1 (text on the display); `RepRapFirmware`: M36, M38, M39, M291.
@@ -206,7 +206,7 @@ impl<'t> Text<'t> {
         (Head::Other, start)
     }
 
-    /// Whether free text stands behind a word.
+    /// Whether free text stands after a word.
     pub(super) fn is_text(letter: u8, number: u16) -> bool {
         letter == b'M' && TEXT.contains(&number)
     }
@@ -255,7 +255,7 @@ impl<'t> Text<'t> {
                 Some(b'"') => self.behind(number, b'"'),
                 _ => start + 1,
             };
-            // A letter right behind a letter is a word of text, not a flag.
+            // A letter right after a letter is a word of text, not a flag.
             let joined = self
                 .byte(start + 1)
                 .is_some_and(|byte| byte.is_ascii_alphabetic());
@@ -271,7 +271,7 @@ impl<'t> Text<'t> {
         }
     }
 
-    /// Behind further values of a list, as in `E300:300` (`RepRapFirmware`), of
+    /// After further values of a list, as in `E300:300` (`RepRapFirmware`), of
     /// which the largest counts.
     fn behind_list(&self, mut at: usize, largest: &mut Option<f64>) -> usize {
         while self.byte(at) == Some(b':') {
@@ -286,7 +286,7 @@ impl<'t> Text<'t> {
         at
     }
 
-    /// Behind the next `close` after `at`, or the end.
+    /// After the next `close` after `at`, or the end.
     fn behind(&self, at: usize, close: u8) -> usize {
         let mut end = at + 1;
         while self.byte(end).is_some_and(|byte| byte != close) {
@@ -295,7 +295,7 @@ impl<'t> Text<'t> {
         (end + 1).min(self.end)
     }
 
-    /// The value of `KEY=value` behind an extended command.
+    /// The value of `KEY=value` after an extended command.
     ///
     /// Source: Klipper, "G-Codes": `COMMAND PARAMETER=value`.
     pub(super) fn argument(&self, at: usize, key: &str) -> Option<&'t [u8]> {

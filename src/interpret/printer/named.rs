@@ -165,7 +165,7 @@ impl Control<'_> {
             match text.number_argument(at, key) {
                 Ok(None) => {}
                 Ok(Some(value)) => *field = value,
-                Err(_) => return Self::bad_value(run, span, "write numbers behind the keys"),
+                Err(_) => return Self::bad_value(run, span, "write numbers after the keys"),
             }
         }
         self.take_retract(run, retract, span);

@@ -314,7 +314,7 @@ impl Control<'_> {
         self.modal.path_mode = if exact { PathMode::ExactStop } else { asked };
     }
 
-    /// MCALL: behind each block that moves.
+    /// MCALL: after each block that moves.
     fn modal_call(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
         let Some(modal) = &state.modal_call else {
             return;

@@ -13,7 +13,7 @@ use crate::interpret::formula::Outcome;
 const SINGLE: [usize; 3] = [1; 3];
 
 impl Reading<'_, '_, '_> {
-    /// `DEF REAL A, B=3, C[10,3]=SET(…)`, behind DEF.
+    /// `DEF REAL A, B=3, C[10,3]=SET(…)`, after DEF.
     pub(super) fn definition(&mut self) -> Outcome<()> {
         // Where it holds and who may change it: no matter here.
         while ["NCK", "CHAN", "PHU", "SYNR", "SYNW", "SYNRW"]
@@ -93,7 +93,7 @@ impl Reading<'_, '_, '_> {
         self.cursor.fault("assignment", message, help, start)
     }
 
-    /// Behind `NAME[i] =`: a value, or SET and REP for the elements from there.
+    /// After `NAME[i] =`: a value, or SET and REP for the elements from there.
     pub(super) fn fill(&mut self, name: &str, index: [usize; 3], start: usize) -> Outcome<()> {
         let set = self.cursor.take_name("SET");
         let lists = set || self.cursor.take_name("REP") || self.cursor.peek() == Some(b'(');
@@ -199,7 +199,7 @@ impl Reading<'_, '_, '_> {
         }
     }
 
-    /// `PROC NAME(REAL A, VAR INT B, BOOL C=TRUE) SAVE …`, behind PROC: the
+    /// `PROC NAME(REAL A, VAR INT B, BOOL C=TRUE) SAVE …`, after PROC: the
     /// parameters get the arguments of the call.
     pub(super) fn procedure(&mut self) -> Outcome<()> {
         let name = self.cursor.name();

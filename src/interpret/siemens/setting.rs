@@ -118,7 +118,7 @@ impl Reading<'_, '_, '_> {
             return Ok(());
         }
         let message = format!("{name} has no value");
-        let help = "write `=` and the value behind it";
+        let help = "write `=` and the value after it";
         Err(self.cursor.fault("syntax", message, help, start))
     }
 

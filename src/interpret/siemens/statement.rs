@@ -25,7 +25,7 @@ impl Reading<'_, '_, '_> {
                 self.cursor.at += 1;
                 let shown = crate::diagnostic::excerpt(&[byte], 1);
                 let message = format!("`{shown}` has no meaning here");
-                let help = "write comments behind `;`, and `=` before values that are worked out";
+                let help = "write comments after `;`, and `=` before values that are worked out";
                 return Err(self.cursor.fault("syntax", message, help, start));
             }
             if let Some(found) = self.word(block)? {
@@ -230,7 +230,7 @@ impl Reading<'_, '_, '_> {
             self.cursor.at += 1;
             return self.extended(name, letter, number, start, block);
         }
-        // The letter and its number; what stands behind comes next.
+        // The letter and its number; what stands after comes next.
         self.cursor.at = start + 1;
         if letter == b'L' {
             self.cursor.at = start + name.len();
@@ -241,7 +241,7 @@ impl Reading<'_, '_, '_> {
         Ok(true)
     }
 
-    /// A letter alone, behind it `=` or a number.
+    /// A letter alone, after it `=` or a number.
     fn letter(
         &mut self,
         letter: u8,
@@ -384,7 +384,7 @@ impl Reading<'_, '_, '_> {
         let refused = match letter {
             b'N' | b'O' => Some("a block number stands at the beginning of its block"),
             b'R' => Some("an R parameter needs `=` and its value"),
-            b'P' => Some("P repeats a call, and stands behind its name"),
+            b'P' => Some("P repeats a call, and stands after its name"),
             _ => None,
         };
         if let Some(message) = refused {

@@ -70,7 +70,7 @@ impl Control<'_> {
         Ok(true)
     }
 
-    /// What stands behind THEN: an assignment.
+    /// What stands after THEN: an assignment.
     fn then<'t>(
         &self,
         holds: bool,
@@ -149,7 +149,7 @@ impl Control<'_> {
     }
 }
 
-/// Whether `THEN #3000=` stands behind a condition.
+/// Whether `THEN #3000=` stands after a condition.
 fn raises_alarm(text: &[u8], from: usize) -> bool {
     let bare: Vec<u8> = text
         .iter()
@@ -160,7 +160,7 @@ fn raises_alarm(text: &[u8], from: usize) -> bool {
     memchr::memmem::find(&bare, b"]THEN#3000=").is_some()
 }
 
-/// Takes IF with a condition behind it; `IFIX[#1]` is an I word.
+/// Takes IF with a condition after it; `IFIX[#1]` is an I word.
 fn takes_if(reader: &mut Reader<'_>) -> bool {
     let before = reader.at;
     if reader.take_name(b"IF") && reader.peek() == Some(b'[') {

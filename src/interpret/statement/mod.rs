@@ -82,7 +82,7 @@ fn corner_word(
     let Some(letter @ (b'C' | b'R')) = letter else {
         let what = match letter {
             Some(b'A') => "an angle of a drawing (,A)",
-            _ => "a word behind a comma",
+            _ => "a word after a comma",
         };
         reader.at += 1;
         let message = format!("{what} is not supported");

@@ -21,7 +21,7 @@ impl Control<'_> {
     ) -> Result<(), Unread> {
         let start = reader.at;
         if !block.words.is_empty() || !statement.assignments.is_empty() {
-            let message = "an O-word stands behind other words";
+            let message = "an O-word stands after other words";
             let help = "write it first in a block of its own";
             reader.at += 1;
             return Err(reader.fault("o-word", message, help, start).into());
@@ -53,7 +53,7 @@ impl Control<'_> {
         }
         let Some(verb) = self.verb(reader, statement)? else {
             let message = "this O-word says nothing that is known";
-            let help = "write sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue behind it";
+            let help = "write sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue after it";
             reader.at = reader.text.len();
             return Err(reader.fault("o-word", message, help, start).into());
         };
@@ -198,7 +198,7 @@ impl Keyword {
     }
 }
 
-// What begins like another stands behind it.
+// What begins like another stands after it.
 const KEYWORDS: [(&str, Keyword); 15] = [
     ("sub", Keyword::Sub),
     ("endsub", Keyword::EndSub),

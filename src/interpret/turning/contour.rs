@@ -3,7 +3,7 @@
 //! Repeating (G73)", "Finishing Cycle (G70)").
 //!
 //! These blocks are executed where the cycle stands, and what they do is kept:
-//! it is the contour. The program then goes on behind them; behind G70 it goes
+//! it is the contour. The program then goes on after them; after G70 it goes
 //! on at the next block.
 
 use super::{Control, Run, X, Z, note_parameter, turning_needs};

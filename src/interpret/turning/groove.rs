@@ -64,7 +64,7 @@ impl Control<'_> {
         self.part(run, Rapid, &at);
     }
 
-    /// Down to the bottom in steps, with a return behind each but the last.
+    /// Down to the bottom in steps, with a return after each but the last.
     fn pecks(
         &mut self,
         deep: usize,

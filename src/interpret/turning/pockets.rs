@@ -2,7 +2,7 @@
 //! one way along the cut (B-63604EN, "Stock Removal in Turning (G71)", "Type
 //! II"; Haas lathe operator's manual, "G71 Type 2").
 //!
-//! A valley is cut level by level until it divides; then one valley behind the
+//! A valley is cut level by level until it divides; then one valley after the
 //! other. How the tool gets from one to the next is a matter of the control's
 //! parameters: here it rises at rapid by the escape above the level before, goes
 //! along, and feeds down.
@@ -101,7 +101,7 @@ impl Stock {
 }
 
 impl Control<'_> {
-    /// The passes; the tool stands at the corner before and behind.
+    /// The passes; the tool stands at the corner before and after.
     pub(super) fn pockets(&mut self, stock: &Stock, rest: &[Piece], run: &mut Run<'_, '_>) {
         let along = X + Z - stock.deep;
         let pieces: Vec<Piece> = rest.iter().flat_map(Piece::quarters).collect();

@@ -4,7 +4,7 @@
 //! Screw with lead `h` (m) and `i` motor revolutions per screw revolution:
 //! one metre of travel turns the motor by `k = 2π·i/h` radians, so
 //! `mass = J·k²`, `force = T·k`, `viscous = d·k²`, and a loss `r·T²` is
-//! `r/k²·F²`. A rotary table behind a gear is the same with `k = i`.
+//! `r/k²·F²`. A rotary table after a gear is the same with `k = i`.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

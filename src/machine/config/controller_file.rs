@@ -44,7 +44,7 @@ pub(crate) struct LanguageTable {
     /// The motion word in force at power-on is G0; default false: none is.
     pub(crate) rapid_at_power_on: Option<bool>,
     /// O words as FluidNC has them: a label may serve several branches and loops,
-    /// and a break leaves nothing behind; default false.
+    /// and a break leaves nothing over; default false.
     pub(crate) loose_o_words: Option<bool>,
     /// Unit at power-on; default mm.
     pub(crate) units: Option<UnitsName>,
@@ -128,7 +128,7 @@ pub(crate) struct CompensationTable {
     /// Where the first move ends and the last begins.
     #[schemars(required)]
     pub(crate) lead: Option<LeadName>,
-    /// Blocks without motion in the plane, one behind the other, that the
+    /// Blocks without motion in the plane, one after the other, that the
     /// control looks beyond; default 1.
     pub(crate) idle_blocks: Option<u32>,
 }
@@ -141,8 +141,8 @@ pub(crate) enum CornerName {
     Line,
 }
 
-/// Where the first move under compensation ends: beside its own end (LinuxCNC),
-/// beside the start of the next move (Fanuc's type A), or as at other corners
+/// Where the first move under compensation ends: next to its own end (LinuxCNC),
+/// next to the start of the next move (Fanuc's type A), or as at other corners
 /// (type B).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -263,7 +263,7 @@ pub(crate) struct PlannerTable {
 }
 
 /// What waits for the spindle's speed: nothing, moves that cut, or whatever
-/// comes behind M3, M4 and S.
+/// comes after M3, M4 and S.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum SpindleWaitName {
@@ -310,8 +310,8 @@ pub(crate) struct KnobTable {
     /// What it acts on.
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
-    /// What stands behind it: `= value`, a value per axis, the path's value behind a
-    /// letter, or right behind the word, or the number of an analog output ([outputs] of the
+    /// What stands after it: `= value`, a value per axis, the path's value after a
+    /// letter, or right after the word, or the number of an analog output ([outputs] of the
     /// machine file) with its value.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
@@ -348,7 +348,7 @@ pub(crate) enum TargetName {
     CruiseRatio,
 }
 
-/// What stands behind a knob's word.
+/// What stands after a knob's word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ArgumentName {

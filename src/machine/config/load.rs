@@ -23,7 +23,7 @@ pub type Loaded<T> = Result<(T, Vec<Diagnostic>), Vec<Diagnostic>>;
 
 impl Machine {
     /// Reads a machine from text. `name` is the file's path: a controller
-    /// profile is looked for beside it.
+    /// profile is looked for next to it.
     ///
     /// # Errors
     ///

@@ -293,7 +293,7 @@ pub(crate) struct AxisTable {
 }
 
 /// How the load of an axis follows its position command: gain 1, times zeros,
-/// by poles, behind a delay. An empty table: at once.
+/// by poles, after a delay. An empty table: at once.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ResponseTable {

@@ -70,7 +70,7 @@ fn remove_null(schema: &mut Value) {
     }
 }
 
-/// Words with a description each come as a list of constants: beside them,
+/// Words with a description each come as a list of constants: next to them,
 /// the plain list of words that the structure check looks for.
 fn list_words(schema: &mut Value) {
     match schema {

@@ -13,6 +13,10 @@ impl Expanded {
         for reason in summary.reasons.iter_mut().filter(|it| it.file.is_none()) {
             here(&mut reason.line);
         }
+        let notes = summary.before.notes.iter_mut();
+        for note in notes.filter(|it| it.file.is_none() && it.line > 0) {
+            here(&mut note.line);
+        }
         for pause in &mut summary.pauses {
             here(&mut pause.line);
         }

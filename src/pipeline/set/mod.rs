@@ -121,6 +121,12 @@ pub fn limit_set(
         let message = "--allow pause does not go with --with-subprograms";
         return Err(Failure::Unsuitable(message.to_owned()).into());
     }
+    let mut marks = programs.iter().map(|program| &program.options.rapid_mark);
+    let first = marks.next();
+    if marks.any(|mark| Some(mark) != first) {
+        let message = "programs that share files take one mark for rapids";
+        return Err(Failure::Unsuitable(message.to_owned()).into());
+    }
     let mut asked = Vec::with_capacity(programs.len());
     for (place, program) in programs.iter().enumerate() {
         asked.push(if has_ways(&program.options) {

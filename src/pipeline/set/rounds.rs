@@ -161,9 +161,13 @@ impl<'a> Job<'a> {
                 })
                 .collect();
             let (decided, table) = whole.decide(&sources, count as u16, rows.is_some())?;
+            let first = paths.iter().flatten().next();
+            let comment = first.and_then(|it| it.comment(self.machine));
             let files = self.shelf.files().enumerate().map(|(number, (path, _))| {
+                let text = self.text(number);
+                let comment = comment.clone();
                 let (text, edited_lines) =
-                    write(number as u16, self.text(number), self.machine, &table);
+                    write(number as u16, text, self.machine, &table, comment);
                 let expanded = self.expanded.get(number).and_then(Option::as_ref);
                 SetFile {
                     name: self.name(number).to_owned(),

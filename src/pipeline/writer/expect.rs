@@ -38,6 +38,9 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             self.expect_spindle();
             self.spindle.write();
             let hopeless = outcome.obstacle.is_some();
+            let found = (mv, &*outcome);
+            self.presets
+                .take(&self.limiter, found, entry.text_of(mv), false);
             let split = outcome.split.as_deref();
             if self.limiter.splits() && change.is_some() && split.is_none() {
                 let reason = outcome.unsplit.unwrap_or(BLENDED);

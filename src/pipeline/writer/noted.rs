@@ -65,6 +65,10 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
                 self.unsplit.stays(mv, SEVERAL_RUNS, entry.text_of(mv));
             }
         }
+        for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
+            let text = entry.text_of(mv);
+            self.presets.take(&self.limiter, (mv, outcome), text, true);
+        }
         let own = if entry.facts.no_motion_word {
             self.own_feed(entry, change)
         } else {

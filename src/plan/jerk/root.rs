@@ -25,7 +25,7 @@ pub(super) struct Sample {
 
 /// Calls `found` with each root of `f` between `low` and `high`, and with how
 /// far from 0 the function is there, relative to its terms. The ends are
-/// handed out too, since rounding may have put a root just beside one.
+/// handed out too, since rounding may have put a root just next to one.
 pub(super) fn roots(
     (low, high): (f64, f64),
     critical: [f64; 2],

@@ -86,7 +86,7 @@ impl Peak {
         let change = j * (speed - from.velocity_mm_s);
         let direct = 0.5 * (a1 + a0) * (a1 - a0).abs();
         let squares = 0.5 * (a0 * a0 + a1 * a1);
-        // Just beside the direct way the fastest one may be much longer:
+        // Just next to the direct way the fastest one may be much longer:
         // rounding must not decide for it.
         let size = j * (speed.abs() + from.velocity_mm_s.abs()) + squares;
         if (change - direct).abs() <= ROUNDING * size {

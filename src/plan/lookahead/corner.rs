@@ -55,7 +55,7 @@ impl Before {
 /// Whether X, Y or Z move, and whether the extruder feeds.
 type Prints = (bool, bool);
 
-/// The element behind a joint.
+/// The element after a joint.
 #[derive(Debug)]
 pub(super) struct After<'e, T> {
     element: &'e Element<T>,

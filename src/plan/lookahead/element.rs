@@ -14,7 +14,7 @@ use crate::machine::{AXES, AxisValues, Machine};
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Joint {
     /// A stop: exact stop mode, or a dwell, a tool change or another word
-    /// behind it for which the controller waits. Where the stop has such a
+    /// after it for which the controller waits. Where the stop has such a
     /// reason the planner is told with [`super::PathPlanner::stop`].
     #[default]
     Stop,

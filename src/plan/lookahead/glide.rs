@@ -39,7 +39,7 @@ pub(crate) struct LineStart {
     pub kink: f64,
 }
 
-/// A straight feed in X, Y and Z, and beside them of an extruder, whose start is
+/// A straight feed in X, Y and Z, and next to them of an extruder, whose start is
 /// known.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Line {
@@ -75,7 +75,7 @@ pub(crate) struct Passed {
     pub curvature_per_mm: f64,
     /// Share of the least acceleration of both that all this permits.
     pub accel_share: f64,
-    /// Where the line behind it begins.
+    /// Where the line after it begins.
     pub next: LineStart,
 }
 

@@ -77,9 +77,9 @@ pub(super) fn permits(rule: &CornerRule, before: &Line, after: &Line, speed_mm_s
 /// A joint that is to be passed at a speed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passage {
-    /// Lowest acceleration of the axes and along the element behind, mm/s².
+    /// Lowest acceleration of the axes and along the element after, mm/s².
     pub accel_mm_s2: f64,
-    /// Of the element behind.
+    /// Of the element after.
     pub length_mm: f64,
     /// The speed, squared.
     pub speed2: f64,

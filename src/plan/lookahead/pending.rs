@@ -30,7 +30,7 @@ pub(super) struct Pending<T> {
     /// F at the largest feed override, mm/s: how joints are passed is decided for that,
     /// wherever the knob stands.
     pub expected_mm_s: f64,
-    /// Share of the acceleration given up to the kinks before and behind.
+    /// Share of the acceleration given up to the kinks before and after.
     pub kink_before: f64,
     pub kink_behind: f64,
     /// A parabolic blend before it, and one after it, which take half of its
@@ -38,7 +38,7 @@ pub(super) struct Pending<T> {
     /// one before it takes none, though the elements overlap.
     pub blended_before: bool,
     pub blended_after: bool,
-    /// Behind it there is a stop.
+    /// After it there is a stop.
     pub rests: bool,
     /// The element before it, where it begins while that brakes.
     pub braking: Option<Braking>,
@@ -289,7 +289,7 @@ impl<T: Copy> Pending<T> {
     }
 
     /// How long it runs while the element before it brakes, s. It is the `last` where
-    /// nothing waits behind it: then it has not been looked at closely.
+    /// nothing waits after it: then it has not been looked at closely.
     pub fn overlap_s(&self, last: bool) -> f64 {
         let Some(braking) = &self.braking else {
             return 0.0;

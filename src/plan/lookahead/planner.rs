@@ -80,7 +80,7 @@ pub struct Planned<T> {
     pub rests: bool,
     /// How long it runs already while the piece before it comes to rest, s.
     pub overlap_s: f64,
-    /// True where it or the piece behind it may do so: beside a parabolic blend.
+    /// True where it or the piece after it may do so: next to a parabolic blend.
     pub overlaps: bool,
 }
 
@@ -195,10 +195,10 @@ pub(super) enum Rule<T> {
 ///
 /// Elements are given with [`Self::push`], stops that other words cause with
 /// [`Self::stop`], and the finished pieces are taken with [`Self::pop`], in
-/// order. An element is final once nothing behind it can change it.
+/// order. An element is final once nothing after it can change it.
 ///
 /// What changes with the limits of one element: a clone taken before it, given
-/// the changed element and those behind it, plans them anew. From the first
+/// the changed element and those after it, plans them anew. From the first
 /// piece on that begins as before at a joint that the change did not reach, all
 /// is as it was; under limits of jerk that is a joint that limits the speed.
 #[derive(Debug, Clone)]
@@ -310,7 +310,7 @@ impl<T: Copy> PathPlanner<T> {
         Some(limited)
     }
 
-    /// An element behind its first joint, and as the window sees it, where it
+    /// An element after its first joint, and as the window sees it, where it
     /// begins at rest.
     #[inline]
     pub(super) fn node<'e>(
@@ -372,13 +372,13 @@ impl<T: Copy> PathPlanner<T> {
         }
     }
 
-    /// The motion stops behind the last element: a dwell, a tool change, the
+    /// The motion stops after the last element: a dwell, a tool change, the
     /// end of the program.
     pub fn stop(&mut self) {
         self.stop_before(false);
     }
 
-    /// The same where the controller sees another element behind that, which begins
+    /// The same where the controller sees another element after that, which begins
     /// at rest.
     pub fn stop_between(&mut self) {
         self.stop_before(true);
@@ -392,7 +392,7 @@ impl<T: Copy> PathPlanner<T> {
         self.window.stop();
     }
 
-    /// Makes all pieces final that nothing behind can change, at once: by
+    /// Makes all pieces final that nothing after can change, at once: by
     /// itself the planner looks for them now and then.
     pub fn settle(&mut self) {
         self.window.settle();

@@ -48,7 +48,7 @@ impl Stretch {
 /// The envelope over ascending cells up to a rest at their end, ascending.
 pub(super) fn envelope(cells: &[Cell]) -> Vec<Stretch> {
     let mut stretches = Vec::with_capacity(2 * cells.len() + 1);
-    // What the stretch behind allows where it begins.
+    // What the stretch after allows where it begins.
     let mut end = 0.0;
     for cell in cells.iter().rev() {
         let mut push = |low: f64, high: f64, bound: Bound| {

@@ -98,7 +98,7 @@ impl PositionPlanner {
             let (motion, ran) = run.at(runs);
             let stop = Ramp::new(motion, 0.0, planned);
             let (motion, stopped) = stop.at(period_s - runs);
-            // The whole way to the rest, where it may turn behind the target.
+            // The whole way to the rest, where it may turn after the target.
             let mut passing = 0.0;
             let brakes = start.speed * start.accel < 0.0 || side * start.speed < 0.0;
             if runs < period_s || brakes {

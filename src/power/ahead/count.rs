@@ -159,7 +159,7 @@ impl Ahead {
             }
         }
         let certain = !peaks || self.is_certain(eye, planned, from, to);
-        // Half of a blend belongs to what is behind it, if that is another move: it
+        // Half of a blend belongs to what is after it, if that is another move: it
         // may lie between two chords of one arc.
         let halves = if to == own { 1.0 } else { 0.5 };
         let lengths: f64 = (from..=own)
@@ -269,7 +269,7 @@ impl Ahead {
             if let Some(open) = self.open.get_mut(number)
                 && open.in_doubt
             {
-                // Behind a stop there is no blend: the line begins at rest.
+                // After a stop there is no blend: the line begins at rest.
                 open.in_doubt = blend;
                 self.reach2 = Some(0.0);
             }

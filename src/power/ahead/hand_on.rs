@@ -14,7 +14,7 @@ use crate::power::robust::{Extremes, Part};
 
 impl Ahead {
     /// Hands on the moves that are finished, and whose neighbours are. All, when
-    /// nothing moves behind the last one.
+    /// nothing moves after the last one.
     #[inline]
     pub fn hand_on(
         &mut self,
@@ -122,7 +122,7 @@ impl Ahead {
 }
 
 impl Open {
-    /// Gives it the robust bound, with those before and behind it. `unwaited` stands in
+    /// Gives it the robust bound, with those before and after it. `unwaited` stands in
     /// place of the one before, where that did not wait for it, and is then what this
     /// bound covers.
     fn bound(

@@ -1,15 +1,15 @@
 //! Moves that a controller plans together: what each of them asks for.
 //!
 //! Input: moves and stops in program order. Output: an [`Assessment`] for each
-//! move, once nothing behind it can change it any more.
+//! move, once nothing after it can change it any more.
 //!
 //! ```text
 //! moves ─→ elements ─PathPlanner→ pieces of path ─PowerModel→ demand of each move
 //! ```
 //!
-//! A piece that the planner is not certain of, and the moves beside it, get the
+//! A piece that the planner is not certain of, and the moves next to it, get the
 //! robust bound; and so does all whose speed depends on what happens there: the
-//! moves before it that may have to brake for it, and those behind it until they
+//! moves before it that may have to brake for it, and those after it until they
 //! run as fast as planned even from rest.
 
 mod count;
@@ -50,9 +50,9 @@ pub(super) struct Ahead {
     nominal: Option<Side>,
     /// Moves that are not handed on.
     open: Queue,
-    /// Nothing moves behind the last move.
+    /// Nothing moves after the last move.
     at_rest: bool,
-    /// Something stands behind the last move that may or may not stop it.
+    /// Something stands after the last move that may or may not stop it.
     in_doubt: bool,
     /// What the motion reaches at least, from rest where it was in doubt last,
     /// mm²/s²; nothing once that is as fast as planned.
@@ -140,7 +140,7 @@ impl Ahead {
         }
     }
 
-    /// Whether an arc that ends at rest runs otherwise with nothing behind it.
+    /// Whether an arc that ends at rest runs otherwise with nothing after it.
     pub fn slows_last_arcs(&self) -> bool {
         self.largest.planner.slows_last_arcs()
     }
@@ -251,7 +251,7 @@ impl Ahead {
         eye.show(machine, mv, side.overrides);
     }
 
-    /// Where the motion stops behind the last move, or whether it does, cannot be
+    /// Where the motion stops after the last move, or whether it does, cannot be
     /// waited for.
     pub fn run_dry(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
         if self.at_rest {
@@ -265,14 +265,14 @@ impl Ahead {
         self.in_doubt = !stops;
     }
 
-    /// The motion stops behind the last move.
+    /// The motion stops after the last move.
     pub fn stop(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
         self.catch_up(machine);
         self.stop_planners();
         self.rest(model, eye);
     }
 
-    /// The motion stops behind the last move; the controller sees that another one
+    /// The motion stops after the last move; the controller sees that another one
     /// comes.
     pub fn stop_between(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
         self.catch_up(machine);

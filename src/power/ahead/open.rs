@@ -1,4 +1,4 @@
-//! A move that waits for what is planned behind it, and how moves take part.
+//! A move that waits for what is planned after it, and how moves take part.
 
 use super::glide::Glided;
 use super::pace::Pace;

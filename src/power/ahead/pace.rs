@@ -13,7 +13,7 @@
 //!
 //! and the axes speed up where the least p lies before s. Of an element with F
 //! `C = min(o²·F², r²)` at the override o, r what axes and curvature permit; joints do
-//! not depend on o but through the elements beside them. So x grows with o, and
+//! not depend on o but through the elements next to them. So x grows with o, and
 //!
 //! * what starts at a joint, or at rest, does the same at the largest overrides, and
 //!   goes on for longer;
@@ -23,10 +23,10 @@
 //!   knobs of their own;
 //! * at the largest overrides i speeds up there as well, to a higher x, if its F is
 //!   its cap: `o²·(F_i² − F_j²)` grows with o. It does not where r is the cap, or
-//!   where it brakes from its start on, since something behind it is slower.
+//!   where it brakes from its start on, since something after it is slower.
 //!
 //! In these cases the move counts as if it sped up to its own largest speed, or to what
-//! is reached from `F_j²` where that is lower. Braking is the same from behind.
+//! is reached from `F_j²` where that is lower. Braking is the same from after.
 
 use arrayvec::ArrayVec;
 
@@ -139,8 +139,8 @@ pub(super) struct Slow {
     pub at2: f64,
 }
 
-/// The elements behind the motion since it was at rest last, as far as they matter:
-/// of each knob those that are slower than all behind them.
+/// The elements after the motion since it was at rest last, as far as they matter:
+/// of each knob those that are slower than all after them.
 #[derive(Debug, Default)]
 pub(super) struct Past {
     now2: f64,

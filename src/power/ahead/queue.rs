@@ -14,7 +14,7 @@ const RING_MIN: usize = 8;
 #[derive(Debug)]
 pub(super) struct Queue {
     /// The move of number n lies at n modulo the size of the ring, a power of two;
-    /// behind the ring there is room for a larger one.
+    /// after the ring there is room for a larger one.
     slots: Vec<Option<Box<Open>>>,
     ring: usize,
     /// The first that waits, and the next that comes.

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use super::pace::{Course, Pace, SUM_ROUNDING, Slow};
 
-/// Runs that are looked at; behind them anything may be.
+/// Runs that are looked at; after them anything may be.
 const RUNS_MAX: usize = 64;
 /// Elements in a row with one knob and one speed.
 #[derive(Debug)]

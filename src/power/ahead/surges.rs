@@ -13,7 +13,7 @@ use crate::power::model::PowerModel;
 use crate::power::piece::{piece_demand, shifted_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
 
-/// What is known of the path before and behind a piece.
+/// What is known of the path before and after a piece.
 #[derive(Debug)]
 pub(super) struct Surges {
     past: Past,
@@ -170,7 +170,9 @@ impl Ahead {
             };
             piece_demand(lossless, &open.mv, planned, want)
         });
-        let slower = slower_demand(model, &open.mv, planned, open.want);
+        let is_own = planned.next.is_none() && planned.first == planned.tag;
+        let found = is_own.then_some(&open.assessment.demand);
+        let slower = slower_demand(model, &open.mv, planned, open.want, found);
         // From a lower speed a ramp lasts longer, unless all speeds fall together.
         let longer = !open.pace.is_asked() || !surges.are_one(open.pace.rapid, course.top2);
         surges.runs.forget(planned.first);
@@ -215,12 +217,13 @@ impl Ahead {
         }
         let open = self.open.get(planned.tag)?;
         let shift = (shifted != [false; 2]).then(|| {
-            let mut demand = shifted_demand(model, &open.mv, planned, shifted);
+            let found = is_own.then_some(&open.assessment.demand);
+            let mut demand = shifted_demand(model, &open.mv, planned, shifted, found);
             if model.has_copper(&open.mv)
                 && let Some(surges) = self.surges.as_mut()
             {
                 let lossless = surges.lossless(model);
-                demand.include(&shifted_demand(lossless, &open.mv, planned, shifted));
+                demand.include(&shifted_demand(lossless, &open.mv, planned, shifted, found));
             }
             demand
         });

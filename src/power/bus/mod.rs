@@ -1,4 +1,4 @@
-//! The spindle beside the axes on the bus.
+//! The spindle next to the axes on the bus.
 //!
 //! Input: actions in program order, and the judged moves in the same order.
 //! Output: the assessments with the spindle in them, and before a move a row of

@@ -50,7 +50,7 @@ enum Course {
 /// What is shown.
 #[derive(Debug)]
 pub(in crate::power) struct Shown {
-    /// Where the spindle is: behind a tap's reversal, which its axis does not
+    /// Where the spindle is: after a tap's reversal, which its axis does not
     /// wait for to the end, a little later than for the figures.
     pub(super) state: SpindleState,
     pub(super) turnings: Vec<Turning>,

@@ -1,4 +1,4 @@
-//! What the spindle draws beside the axes, move by move.
+//! What the spindle draws next to the axes, move by move.
 //!
 //! Input: slices of the moves, which come when a move is planned, and the levels
 //! of the spindle, which come when it is through. Output: their sums.

@@ -20,7 +20,7 @@
 //! because more was fed back than is taken, H the heat that the resistor has
 //! taken and not given off yet. All limits are less the margin.
 //!
-//! What the spindle draws beside the axes comes on top, slice by slice
+//! What the spindle draws next to the axes comes on top, slice by slice
 //! ([`Level`]).
 //!
 //! Of a move that may be blended in a way that is not modelled only the largest

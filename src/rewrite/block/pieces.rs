@@ -38,6 +38,11 @@ impl Rewriter<'_> {
                 let _ = write!(words, " F{number}");
                 self.written.feed = Some(feed);
             }
+            // A piece of what stands for a rapid does so too.
+            let comment = self.comment.as_ref();
+            if let Some(comment) = comment.filter(|comment| comment.is_in(view.text)) {
+                let _ = write!(words, " {}", comment.text());
+            }
             self.written.motion = view.after.motion;
             self.insert_line(&words, out);
             self.stopped = false;

@@ -175,7 +175,7 @@ fn onto_arcs(
 }
 
 impl Side {
-    /// Where it is so far behind the joint, mm of a line, rad of an arc, and its
+    /// Where it is so far after the joint, mm of a line, rad of an arc, and its
     /// direction there.
     fn along(&self, by: f64) -> (Vector, Vector) {
         let tangent = self.leg.tangent;

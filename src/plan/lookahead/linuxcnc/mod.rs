@@ -149,7 +149,7 @@ impl<T: Copy> LinuxCnc<T> {
         }
     }
 
-    /// The motion stops behind the last element; nothing comes behind it unless it is
+    /// The motion stops after the last element; nothing comes after it unless it is
     /// `followed`.
     pub fn stop(&mut self, window: &mut Window<Load<T>>, followed: bool) {
         self.part(window);
@@ -328,7 +328,7 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let mut entry2 = of.entry2.min(max2);
         if last {
-            // With nothing behind it F counts.
+            // With nothing after it F counts.
             entry2 = entry2.min(accel * of.length_mm).min(top2);
         }
         let entry2 = if entry2 > 0.0 {

@@ -150,7 +150,7 @@ impl<P> Runs<P> {
         };
         self.unseen.push_back(node);
         while self.unseen.len() > blocks {
-            // A blend enters the queue together with the line behind it.
+            // A blend enters the queue together with the line after it.
             let mut seen = 0;
             let mut length = 0.0;
             let mut steepness = Steepness::NONE;
@@ -290,7 +290,7 @@ impl<P> Runs<P> {
         }
     }
 
-    /// The path stops behind the last element: all are final.
+    /// The path stops after the last element: all are final.
     pub fn stop(&mut self) {
         while let Some(node) = self.unseen.pop_front() {
             self.take(node);

@@ -60,7 +60,7 @@ pub(super) struct Node<P> {
     /// Squared speed at which it begins where what is before it ends at rest.
     pub step2: f64,
     /// False for a blend, which enters the controller's queue together with
-    /// the block behind it.
+    /// the block after it.
     pub block: bool,
     /// It may be entered faster than its own speed, to which it then brakes.
     pub overruns: bool,
@@ -240,7 +240,7 @@ impl<P: Copy> Window<P> {
         self.settle_at = self.open_min;
     }
 
-    /// The path stops behind the last element: all are final.
+    /// The path stops after the last element: all are final.
     pub fn stop(&mut self) {
         if let Some(runs) = &mut self.runs {
             return runs.stop();
@@ -263,7 +263,7 @@ impl<P: Copy> Window<P> {
         if let Some(blocks) = self.blocks
             && !self.smooth
         {
-            // The sum behind it bounds all that is further behind.
+            // The sum after it bounds all that is further after.
             self.ready = self.ready.max(self.nodes.len().saturating_sub(blocks + 3));
         }
         let open = self.nodes.len() - self.ready;
@@ -309,13 +309,13 @@ impl<P: Copy> Window<P> {
         anchor.unwrap_or(0)
     }
 
-    /// As [`Self::backward`], with the smoothed pass beside it: a hill of speed
+    /// As [`Self::backward`], with the smoothed pass next to it: a hill of speed
     /// is cut at the height that the lower acceleration reaches (Klipper's
     /// minimum cruise ratio).
     ///
     /// Going back, the elements in which the smoothed speed falls all through
     /// wait for the peak that stands before them. Final is what stands before a
-    /// peak behind which both passes have met their limits.
+    /// peak after which both passes have met their limits.
     fn backward_smooth(&mut self) -> usize {
         let (mut e2, mut s2, mut peak2) = (0.0, 0.0, f64::INFINITY);
         let (mut anchored, mut smooth_anchored) = (false, false);
@@ -425,7 +425,7 @@ impl<P: Copy> Window<P> {
         let Some(first) = self.nodes.get(i) else {
             return f64::INFINITY;
         };
-        // A blend enters the queue together with the line behind it.
+        // A blend enters the queue together with the line after it.
         let mut last = i + blocks;
         if self.nodes.get(last).is_some_and(|node| !node.block) {
             last -= 1;

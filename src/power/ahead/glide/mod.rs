@@ -2,12 +2,12 @@
 //!
 //! Input: moves in program order. Output: the same as by way of the planner, at a
 //! small part of its cost. A joint is passed at the full speed v if the rules
-//! permit that and the path behind it is long enough to brake, Σ 2·a·L ≥ v², with
+//! permit that and the path after it is long enough to brake, Σ 2·a·L ≥ v², with
 //! no more blocks than the controller sees. What is not final when that ends is
 //! given to the planner.
 //!
 //! How much of the path is a line's own, and how much a blend, is known with the
-//! line behind it.
+//! line after it.
 
 mod terms;
 
@@ -34,7 +34,7 @@ const PAUSE_MAX: usize = 8;
 #[derive(Debug)]
 pub(super) struct Glider {
     terms: Terms,
-    /// Moves that pass before another look, and before the one behind that.
+    /// Moves that pass before another look, and before the one after that.
     wait: usize,
     pause: usize,
     /// The planner does not know of the last moves.
@@ -59,7 +59,7 @@ struct Glide {
     start: LineStart,
     /// The planner still keeps pieces of path before that.
     keeps: bool,
-    /// Σ 2·a·L, at least, of the moves behind the first one; while the planner
+    /// Σ 2·a·L, at least, of the moves after the first one; while the planner
     /// keeps pieces, of that too.
     ramp2: f64,
 }
@@ -98,7 +98,7 @@ impl Glider {
 }
 
 /// Whether nothing but the time and the largest speed of a move is of interest,
-/// which has this speed all along, and behind it on a curve.
+/// which has this speed all along, and after it on a curve.
 #[inline]
 fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, per_mm: f64, want: Want) -> bool {
     let accel_mm_s2 = per_mm * speed_mm_s * speed_mm_s;

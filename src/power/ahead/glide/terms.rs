@@ -10,7 +10,7 @@ const EXTRUDER: usize = AxisId::E as usize;
 /// What may glide.
 #[derive(Debug)]
 pub(super) struct Terms {
-    /// The axes that do: those of X, Y and Z, and an extruder beside them.
+    /// The axes that do: those of X, Y and Z, and an extruder next to them.
     axes: AxisSet,
     linear: AxisSet,
     /// Their speeds, mm/s.

@@ -140,7 +140,7 @@ fn a_slice_of_days_costs_no_more_than_its_ends() {
         found >= exact - 1e-6 && found <= exact + 4e6 / 4096.0,
         "{found} {exact}"
     );
-    // The same behind a ramp that falls from 900 W.
+    // The same after a ramp that falls from 900 W.
     let slices = [
         Slice::linear(1e5, 900.0, 500.0),
         Slice::constant(5.0, 2000.0),
@@ -164,7 +164,7 @@ fn a_curve_over_days_counts_as_steps() {
         to: 1.0,
         power: crate::power::polynomial::Polynomial([0.0, 4000.0, -4000.0, 0.0, 0.0]),
     };
-    // 1 kW in the middle, where the two steps beside it meet, and one cell.
+    // 1 kW in the middle, where the two steps next to it meet, and one cell.
     let most = 1.0 + 1.0 / 4096.0 + 1e-9;
     let share = rms_w(10.0, &[parabola]).powi(2) / 1e6;
     assert!(share >= 1.0 && share <= most, "{share}");

@@ -1,0 +1,77 @@
+//! What `limit` says it would take where it cannot make a program fit.
+
+use crate::shop::Shop;
+
+/// Feeds at 0.417 m/s and a cycle, whose ways from hole to hole draw the most.
+const PART: &str = "G21 G90 G40 G80\nG0 X0 Y0 Z50.\nG1 X200. F25000\nG1 X0\n\
+    G81 X10. Z-5. R2. F500.\nX200. Y100.\nG80\nM30\n";
+
+fn mill(peak_w: f64) -> Shop {
+    let shop = Shop::mill(
+        "fanuc",
+        &format!("peak_power_w = {peak_w}"),
+        "[path]\nrapid = \"linear\"",
+        "",
+    );
+    shop.put("part.nc", PART);
+    shop
+}
+
+/// The last line but blank ones.
+fn last(told: &str) -> &str {
+    told.lines().last().unwrap_or_default()
+}
+
+/// The permissions that are named are enough, and it takes as long as is said.
+#[test]
+fn the_price_is_what_limit_asks_for() {
+    let feeds = "G21 G90\nG1 X200. F25000\nG0 Y0\nM30\n";
+    for (part, expected) in [(PART, "feed,expand"), (feeds, "feed")] {
+        let shop = mill(450.0);
+        shop.put("part.nc", part);
+        let (code, _, told) = shop.run("limit part.nc -o fit.nc --json refused.json");
+        assert_eq!(code, 1, "{told}");
+        let price = last(&told).strip_prefix("with --allow ").expect(&told);
+        let (allow, times) = price.split_once(" it fits, in ").expect(price);
+        let refused: serde_json::Value = serde_json::from_str(&shop.get("refused.json")).unwrap();
+        assert_eq!(allow, expected);
+        assert_eq!(refused["price"]["allow"], allow);
+        let (code, _, told) = shop.run(&format!(
+            "limit part.nc -o fit.nc --allow {allow} --json fit.json"
+        ));
+        assert_eq!(code, 0, "{told}");
+        let fit: serde_json::Value = serde_json::from_str(&shop.get("fit.json")).unwrap();
+        assert_eq!(
+            fit["duration_after_s"],
+            refused["price"]["duration_after_s"]
+        );
+        assert_eq!(fit["price"], serde_json::Value::Null);
+        assert!(told.contains(times.split(' ').next().unwrap()), "{told}");
+    }
+}
+
+/// Where coolant alone draws too much no permission helps, and none is named.
+#[test]
+fn no_price_where_nothing_helps() {
+    let load = "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 500";
+    let shop = Shop::mill("fanuc", "peak_power_w = 450", load, "");
+    shop.put("part.nc", &format!("M8\n{PART}"));
+    for more in ["", " --allow feed,expand", " --partial"] {
+        let (code, _, told) = shop.run(&format!("limit part.nc -o fit.nc{more}"));
+        assert_eq!(code, 1, "{told}");
+        assert!(!told.contains("it fits, in"), "{told}");
+    }
+}
+
+/// What has been read from a pipe is tried again too.
+#[test]
+fn programs_from_standard_input_have_a_price() {
+    let shop = super::Shop::new();
+    shop.put("mill.toml", &mill(450.0).get("mill.toml"));
+    shop.put("part.nc", PART);
+    let from_file = shop.run(&["limit", "part.nc", "-m", "mill.toml"]);
+    assert!(last(&from_file.stderr).starts_with("with --allow feed,expand it fits"));
+    let ran = shop.run_with_input(&["limit", "-", "-m", "mill.toml"], PART);
+    assert_eq!(ran.code, 1);
+    assert_eq!(last(&ran.stderr), last(&from_file.stderr));
+}
