@@ -298,3 +298,47 @@ fn a_lower_feed_behind_a_blend_is_seen_too_late() {
     assert_close(profile.phases[1].velocity_mm_s, 10.0);
     assert_close(profile.length_mm(), line.length_mm);
 }
+
+/// Y 150 kg on an arc of 100 mm, then lines of 0.3 mm at 140 mm/s, which takes 4.9 mm to stop:
+/// recorded were 42.75 W, since LinuxCNC keeps the speed from which it could stop where its
+/// queue ended within these lines. Lines of 3 mm are planned, and so are short ones at a feed
+/// from which five of them are enough to stop.
+#[test]
+fn runs_of_short_lines_may_be_slowed_down() {
+    let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n[limits]\nmargin = 0\n\
+         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n"
+        .to_owned();
+    for (axis, mass_kg) in [("X", 50), ("Y", 150), ("Z", 50)] {
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = 12000\naccel_mm_s2 = 2000\nmass_kg = {mass_kg}\ncoulomb_n = 50\n"
+        );
+    }
+    let machine = gwatt::machine::Machine::from_toml("m.toml", &text)
+        .unwrap()
+        .0;
+    let check = |step_mm: f64, feed: u32| {
+        let mut program =
+            format!("G21 G90 G17 G94 G64 P0.01 Q0\nF{feed}\nG1 X30\nG3 X130 Y100 I0 J100\n");
+        for number in 1..=7 {
+            let _ = writeln!(program, "G1 Y{:.3}", 100.0 + step_mm * f64::from(number));
+        }
+        program.push_str("G1 Y182.1\nM2\n");
+        let input = std::io::Cursor::new(program);
+        let options = gwatt::pipeline::Options::default();
+        let summary = gwatt::pipeline::analyze(input, &machine, &options, None).unwrap();
+        (summary.certificate, summary.peak_w)
+    };
+    use gwatt::pipeline::Certificate;
+    let (certificate, peak_w) = check(0.3, 8400);
+    assert_eq!(certificate, Some(Certificate::Robust));
+    // Full acceleration of Y at its speed, at most.
+    assert!(
+        peak_w >= 42.75 && peak_w < 0.14 * (150.0 * 2.0 + 50.0) * 1.6,
+        "{peak_w}"
+    );
+    assert_eq!(check(3.0, 8400).0, Some(Certificate::Planned));
+    // Five lines of 0.3 mm are enough to stop from 77.5 mm/s.
+    assert_eq!(check(0.3, 4600).0, Some(Certificate::Planned));
+    assert_eq!(check(0.3, 4700).0, Some(Certificate::Robust));
+}

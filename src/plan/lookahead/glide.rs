@@ -6,6 +6,7 @@
 
 use super::corner::Before;
 use super::element::Element;
+use super::linuxcnc::RENEWED;
 use super::passage;
 use super::planner::{PathPlanner, Planned, Rule};
 
@@ -88,8 +89,9 @@ impl<T: Copy> PathPlanner<T> {
         let blocks = self.window.blocks().unwrap_or(usize::MAX);
         let blocks = match self.rule {
             Rule::Corner(_) => blocks,
-            // A blend counts as well.
-            Rule::LinuxCnc(_) => blocks.saturating_sub(1) / 2,
+            // A blend counts as well; the first one is not among those that come after it, and
+            // the last one is not known yet.
+            Rule::LinuxCnc(_) => (blocks.saturating_sub(1) / 2).min(RENEWED / 2 + 2),
         };
         blocks.min(BLOCKS_MAX)
     }

@@ -10,7 +10,7 @@ use super::blend::Axes;
 use super::chord::Chords;
 use super::corner::{self, After, Before};
 use super::element::{Element, Joint};
-use super::linuxcnc::LinuxCnc;
+use super::linuxcnc::{LinuxCnc, RENEWED};
 use super::ramp::Speeds2;
 use super::window::{Node, Span, Window};
 use crate::machine::{AxisValues, CornerRule, LookAhead, Machine};
@@ -226,6 +226,9 @@ impl<T: Copy> PathPlanner<T> {
             _ => Rule::Corner(None),
         };
         let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead));
+        if matches!(rule, Rule::LinuxCnc(_)) {
+            window = window.renewing(RENEWED);
+        }
         if machine
             .axes
             .iter()

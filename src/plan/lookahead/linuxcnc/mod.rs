@@ -23,6 +23,11 @@ use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, dot, scale, sub};
 use super::window::{Node, Window};
 
+/// Elements after one over which `tpRunOptimization` comes back to it: it goes on until it
+/// has met more than four that have had the largest speed of their joint once, be it with a
+/// successor that was not planned yet. What is further back keeps the speed from which it
+/// could stop where the queue ended then. Recorded: six lines shorter than the way to stop.
+pub(super) const RENEWED: usize = 5;
 /// Cycles that an element lasts at least.
 const CYCLES_MIN: f64 = 1.02;
 /// A reversal within two degrees is a stop.

@@ -36,6 +36,8 @@ pub(super) const OPEN_MAX: usize = 1 << 14;
 /// Squared speeds and accelerations beyond this (a million km/s) are no limits;
 /// sums with it stay finite.
 const UNLIMITED: f64 = 1e24;
+/// What rounding may make of sums, as a share.
+const ROUNDING: f64 = 1e-9;
 /// Elements after which a first backward pass is worth its start.
 const OPEN_MIN: usize = 8;
 
@@ -154,6 +156,9 @@ pub(super) struct Window<P> {
     blocks: Option<usize>,
     /// Hills are smoothed: `Node::smooth_accel` counts.
     smooth: bool,
+    /// Elements after one over which its speeds are surely planned again as these come;
+    /// `None`: over all.
+    renewed: Option<usize>,
     /// Open elements at which a first backward pass runs, and at most.
     open_min: usize,
     open_max: usize,
@@ -170,10 +175,18 @@ impl<P: Copy> Window<P> {
             now2: 0.0,
             blocks: blocks.map(|blocks| blocks.max(1) as usize),
             smooth,
+            renewed: None,
             open_min: OPEN_MIN,
             open_max: OPEN_MAX,
             runs: None,
         }
+    }
+
+    /// The same where the controller plans an element again only while so many come after it:
+    /// where these are shorter than it takes to stop, it may keep a lower speed at its end.
+    pub fn renewing(mut self, elements: usize) -> Self {
+        self.renewed = Some(elements);
+        self
     }
 
     /// The same where elements limit their jerk; how that goes together with
@@ -405,7 +418,7 @@ impl<P: Copy> Window<P> {
             top2,
             length: node.length,
             accel: node.accel,
-            certain: !node.forced,
+            certain: !node.forced && self.is_renewed(end2),
             section: None,
             payload: node.payload,
         };
@@ -413,6 +426,23 @@ impl<P: Copy> Window<P> {
         self.ready -= 1;
         self.now2 = end2;
         Some(span)
+    }
+
+    /// Whether the first element surely gets this speed at its end, squared.
+    #[inline]
+    fn is_renewed(&self, end2: f64) -> bool {
+        let Some(elements) = self.renewed else {
+            return true;
+        };
+        let needed2 = end2 * (1.0 - ROUNDING);
+        let mut sum2 = 0.0;
+        for node in self.nodes.iter().skip(1).take(elements) {
+            sum2 += node.ramp2();
+            if sum2 >= needed2 {
+                return true;
+            }
+        }
+        end2 == 0.0
     }
 
     /// Speed, squared, from which the controller can stop within the blocks
