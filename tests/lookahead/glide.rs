@@ -146,7 +146,10 @@ fn pass() -> String {
 fn a_finishing_pass_glides() {
     for machine in machines() {
         let share = glided(&machine, &pass(), 1e9);
-        assert!(share > 0.8, "{share}");
+        // LinuxCNC plans again over few lines alone: its planner is asked about each.
+        let planned = machine.controller.name == "linuxcnc";
+        let expected = if planned { 0.0..=0.0 } else { 0.8..=1.0 };
+        assert!(expected.contains(&share), "{share}");
     }
 }
 

@@ -6,7 +6,6 @@
 
 use super::corner::Before;
 use super::element::Element;
-use super::linuxcnc::RENEWED;
 use super::passage;
 use super::planner::{PathPlanner, Planned, Rule};
 
@@ -89,9 +88,9 @@ impl<T: Copy> PathPlanner<T> {
         let blocks = self.window.blocks().unwrap_or(usize::MAX);
         let blocks = match self.rule {
             Rule::Corner(_) => blocks,
-            // A blend counts as well; the first one is not among those that come after it, and
-            // the last one is not known yet.
-            Rule::LinuxCnc(_) => (blocks.saturating_sub(1) / 2).min(RENEWED / 2 + 2),
+            // It plans again over few elements alone: whether it keeps its speed the window
+            // says of each.
+            Rule::LinuxCnc(_) => 0,
         };
         blocks.min(BLOCKS_MAX)
     }
