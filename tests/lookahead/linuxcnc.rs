@@ -1,6 +1,7 @@
 //! The rules of LinuxCNC, by hand; 200 mm/s and 1000 mm/s² in each axis.
 
 use super::{Run, machine, plan_program, total_s};
+use gwatt::pipeline::Certificate;
 use gwatt::plan::lookahead::{Blend, Piece, Planned};
 use std::fmt::Write as _;
 
@@ -329,7 +330,6 @@ fn runs_of_short_lines_may_be_slowed_down() {
         let summary = gwatt::pipeline::analyze(input, &machine, &options, None).unwrap();
         (summary.certificate, summary.peak_w)
     };
-    use gwatt::pipeline::Certificate;
     let (certificate, peak_w) = check(0.3, 8400);
     assert_eq!(certificate, Some(Certificate::Robust));
     // Full acceleration of Y at its speed, at most.
