@@ -67,7 +67,7 @@ fn no_price_where_nothing_helps() {
 #[test]
 fn programs_from_standard_input_have_a_price() {
     let shop = super::Shop::new();
-    shop.put("mill.toml", &mill(450.0).get("mill.toml"));
+    shop.put("mill.toml", mill(450.0).get("mill.toml"));
     shop.put("part.nc", PART);
     let from_file = shop.run(&["limit", "part.nc", "-m", "mill.toml"]);
     assert!(last(&from_file.stderr).starts_with("with --allow feed,expand it fits"));

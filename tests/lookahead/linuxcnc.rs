@@ -334,7 +334,7 @@ fn runs_of_short_lines_may_be_slowed_down() {
     assert_eq!(certificate, Some(Certificate::Robust));
     // Full acceleration of Y at its speed, at most.
     assert!(
-        peak_w >= 42.75 && peak_w < 0.14 * (150.0 * 2.0 + 50.0) * 1.6,
+        (42.75..0.14 * (150.0 * 2.0 + 50.0) * 1.6).contains(&peak_w),
         "{peak_w}"
     );
     assert_eq!(check(3.0, 8400).0, Some(Certificate::Planned));
