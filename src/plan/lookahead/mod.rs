@@ -21,6 +21,6 @@ mod window;
 
 pub(crate) use element::common_accel;
 pub use element::{Curve, Element, Joint};
-pub(crate) use glide::{Gliding, Line, LineStart, Passed};
+pub(crate) use glide::{Gliding, Line};
 pub use planner::{Blend, PathPlanner, Piece, Planned};
 pub use ramp::Speeds2;

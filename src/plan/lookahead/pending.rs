@@ -129,11 +129,25 @@ impl<T: Copy> Pending<T> {
     }
 
     /// The share that it keeps while nothing waits after it.
-    pub fn unseen_share(&self) -> f64 {
+    fn unseen_share(&self) -> f64 {
         match self.element.joint {
             Joint::Blend { .. } => self.unbent_share(),
             _ => self.straight_share(),
         }
+    }
+
+    /// The speed, squared, with which the planner enters it while nothing waits after it: half
+    /// of it is enough to stop.
+    pub fn unseen2(&self) -> f64 {
+        let share = match self.element.joint {
+            Joint::Blend { .. } => 0.5,
+            _ if self.blended_before => 0.5,
+            _ => 1.0,
+        };
+        let along = self.element.curve.map_or(1.0, |_| TANGENTIAL_SHARE);
+        let accel = share * along * (1.0 - self.kink_before) * self.accel();
+        let length_mm = self.element.length_mm - self.from_mm;
+        lower(accel * length_mm, self.expected_mm_s * self.expected_mm_s)
     }
 
     /// Whether it overlaps with the element before or after it: its path is known

@@ -212,6 +212,9 @@ impl<T: Copy> PathPlanner<T> {
     /// A planner at rest.
     #[must_use]
     pub fn new(machine: &Machine, look_ahead: LookAhead) -> Self {
+        let mut axes = machine.axes.iter().flatten();
+        let has_jerk = axes.any(|axis| axis.jerk_mm_s3 > 0.0);
+        let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead));
         let rule = match look_ahead.corner {
             CornerRule::LinuxCnc {
                 cycle_s,
@@ -219,24 +222,22 @@ impl<T: Copy> PathPlanner<T> {
                 gap_cycles,
             } => {
                 let axes = Axes::of(machine);
-                Rule::LinuxCnc(Box::new(LinuxCnc::new(
-                    axes, cycle_s, kink_ratio, gap_cycles,
-                )))
+                let mut rule = LinuxCnc::new(axes, cycle_s, kink_ratio, gap_cycles);
+                if has_jerk {
+                    window = window.with_jerk(Some(RENEWED));
+                } else {
+                    window = window.given();
+                    rule = rule.optimised(look_ahead.blocks);
+                }
+                Rule::LinuxCnc(Box::new(rule))
             }
-            _ => Rule::Corner(None),
+            _ => {
+                if has_jerk {
+                    window = window.with_jerk(None);
+                }
+                Rule::Corner(None)
+            }
         };
-        let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead));
-        if matches!(rule, Rule::LinuxCnc(_)) {
-            window = window.renewing(RENEWED);
-        }
-        if machine
-            .axes
-            .iter()
-            .flatten()
-            .any(|axis| axis.jerk_mm_s3 > 0.0)
-        {
-            window = window.with_jerk();
-        }
         Self {
             look_ahead,
             rule,
