@@ -15,6 +15,10 @@
 //! ask for more than that over τ: these are looked at too, up to 2·τ; one over a
 //! longer time has no more acceleration than one of its parts.
 //!
+//! `LinuxCNC` takes what a step at a joint asks of an axis from its acceleration along the path,
+//! and its commands pass a spline: τ is that of two servo cycles. Between such joints arcs and
+//! blends turn as they do.
+//!
 //! Input: the planned motion as [`Span`]s in the order of time. Output: the largest
 //! power of these means where there is a step within. It comes on top of what the
 //! plan itself asks for, which has no steps.

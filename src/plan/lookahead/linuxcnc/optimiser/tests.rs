@@ -143,10 +143,13 @@ fn random_parts(seed: u64, count: usize) -> Vec<Part> {
             // Not more than the blend in its place: speeds do not fall.
             let taken2 = (blend && blended).then(|| ramp2 * random.next());
             blended = blend;
-            let limit2 = match stop {
-                true => 0.0,
-                false if random.next() < 0.2 => 500.0 * random.next(),
-                false => 500.0,
+            let low = random.next() < 0.2;
+            let limit2 = if stop {
+                0.0
+            } else if low {
+                500.0 * random.next()
+            } else {
+                500.0
             };
             Part {
                 ramp2,
