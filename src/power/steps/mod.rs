@@ -193,6 +193,9 @@ impl Steps {
         }
         let [from, to] = &span.axes_mm_s;
         let per_s = 1.0 / span.duration_s;
+        // Where it comes to rest, rounding is that of what was before.
+        let last_mm_s = (self.spans.back()).map_or(0.0, |last| last.span.top_mm_s);
+        let rounding_mm_s = ROUNDING * larger(span.top_mm_s, last_mm_s);
         let most = &mut self.most[0];
         let place_mm = self.end_mm;
         let mut steps = false;
@@ -201,7 +204,7 @@ impl Steps {
             let (from, to) = (from[axis], to[axis]);
             step_mm_s[axis] = from - self.end_mm_s[axis];
             let step = step_mm_s[axis].abs();
-            steps |= step > ROUNDING * span.top_mm_s;
+            steps |= step > rounding_mm_s;
             most.step_mm_s[axis] += step;
             let top = larger(from.abs(), to.abs());
             most.speed_mm_s[axis] = larger(most.speed_mm_s[axis], top);
