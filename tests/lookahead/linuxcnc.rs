@@ -357,6 +357,23 @@ fn runs_of_short_lines_are_slowed_down() {
     assert_close(check(0.3, 5200)[0], speeding_up(5200.0 * 5200.0 / 3600.0));
 }
 
+/// An arc at 100 mm/s before lines at 57 mm/s, which it brakes for later at lower overrides: what
+/// it draws is what its turn takes, 0.1 m/s² at most, and friction. Sped up with 1 m/s² it drew
+/// 37 W.
+#[test]
+fn an_arc_that_brakes_is_not_sped_up() {
+    let program = "G21 G90 G17 G94 G64 P0.01 Q0\nF7999\nG1 X30\nG3 X130 Y100 I0 J100 F6000\n\
+         G1 Y100.3 F3428\nG1 Y100.6\nG1 Y100.9\nG1 Y182.1\nM2\n";
+    let found = rows(&rig([50, 150, 50], 50, ""), program);
+    let diagonal = 0.5_f64.sqrt();
+    let turning_w = 0.1 * diagonal * ((50.0 + 150.0) * 0.1 * diagonal + 2.0 * 50.0);
+    let peak_w = found[1].peak_w;
+    assert!(
+        peak_w > 0.1 * 2.0 * diagonal * 50.0 && peak_w < 1.3 * turning_w,
+        "{peak_w}"
+    );
+}
+
 /// With limits of jerk what the optimiser leaves is not known: the robust bound counts where five
 /// lines are shorter than it takes to stop.
 #[test]
