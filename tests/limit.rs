@@ -25,6 +25,7 @@ mod rewriting;
 mod rows;
 mod split;
 mod stops;
+mod turned;
 mod waits;
 mod ways;
 mod whole;

@@ -79,6 +79,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             rapid_override_max: 1.0,
             spindle_override_max: 1.0,
             override_at: None,
+            override_from: None,
             min_feed_mm_s: 0.0,
             min_feed_ratio: 0.0,
         },

@@ -224,6 +224,13 @@ impl<'m> Interpreter<'m> {
         facts: &mut Facts,
         diagnostics: &mut Diagnostics,
     ) {
+        let control = &self.control;
+        if control.may_hide_words(text, block)
+            && control.refuses_hidden_words(line, text, block, diagnostics)
+        {
+            *facts = Facts::default();
+            return;
+        }
         let noted = self.control.note_message(line, text, block, steps);
         if block.issues.is_empty()
             && let Some(()) = self.control.direct(line, text, block, steps, facts)

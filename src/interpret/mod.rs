@@ -17,6 +17,7 @@ mod direct;
 mod execute;
 mod expression;
 mod facts;
+mod hidden_words;
 mod flow;
 mod formula;
 mod given;

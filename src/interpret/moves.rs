@@ -68,6 +68,17 @@ impl MoveKind {
             Self::Spindle => "spindle",
         }
     }
+
+    /// Which knobs make it last longer: that of feeds, that of rapids.
+    #[must_use]
+    pub fn knobs(self) -> [bool; 2] {
+        match self {
+            Self::Rapid => [false, true],
+            Self::Feed | Self::Arc => [true, false],
+            Self::Dwell | Self::Spindle => [false, false],
+            Self::Thread | Self::Tap | Self::Probe => [true, true],
+        }
+    }
 }
 
 /// How F is meant.

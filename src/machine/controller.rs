@@ -118,6 +118,8 @@ pub struct Dialect {
     pub osp: bool,
     /// M words from M10 on that are not known move no axis.
     pub other_m: bool,
+    /// A `;` ends a block.
+    pub semicolon_ends_block: bool,
     /// F is a feed per revolution at power-on.
     pub per_revolution: bool,
     /// G12 and G13 mill circular pockets.

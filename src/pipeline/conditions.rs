@@ -4,7 +4,6 @@ use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
 use crate::machine::{CornerRule, Knob, Machine, PathMode, Spindle, SpindleWait};
-use crate::power::lowest_share;
 
 /// How the spindle counts.
 fn spindle_condition(spindle: &Spindle) -> &'static str {
@@ -68,12 +67,9 @@ fn over_time_condition(machine: &Machine, summary: &Summary) -> String {
          at the largest"
             .to_owned()
     } else if looked_at {
-        let lowest = lowest_share() * 100.0;
-        format!(
-            "limits over time at lower overrides: where a bound over all of them leaves one open, feed \
-             and rapid together and each alone are looked at down to {lowest:.0} % of the largest, so \
-             closely that nothing in between exceeds it if it lasts longer in proportion"
-        )
+        "limits over time at lower overrides: where a bound over all of them leaves one open, ranges \
+         of feed and rapid overrides have bounds of their own, small enough to keep it in each"
+            .to_owned()
     } else {
         "limits over time hold at every lower override too, by a bound over all of them".to_owned()
     };

@@ -55,6 +55,8 @@ pub struct Summary {
     pub lines: u64,
     /// Number of moves, dwells and runs of the spindle that do not fit included.
     pub moves: u64,
+    /// Whether overrides of feeds and of rapids change anything.
+    pub knobs: [bool; 2],
     /// Cycle time in s.
     pub duration_s: f64,
     /// Largest bus power in W, and where (0: no move).

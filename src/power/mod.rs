@@ -71,7 +71,7 @@ pub use bus::{SpindleShare, Turning};
 pub use demand::{Demand, Want};
 pub(crate) use effect::{Effect, Switched};
 pub use instant::{AxisInstant, Instant, SpindleInstant};
-pub(crate) use ladder::{Ladder, lowest_share};
+pub(crate) use ladder::Ladder;
 pub use line::plans_lines;
 pub use model::PowerModel;
 pub use motion::Motion;

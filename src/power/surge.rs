@@ -11,7 +11,7 @@ use super::piece::straight_line;
 use super::robust::Part;
 use crate::interpret::Move;
 use crate::machine::AxisValues;
-use crate::plan::lookahead::{Piece, Planned};
+use crate::plan::lookahead::{Piece, Planned, Speeds2};
 use crate::plan::{Blend, PathShares, Plan, Section, SpeedBound, Trajectory};
 use std::f64::consts::PI;
 
@@ -116,15 +116,23 @@ impl Surge {
         (self.rises_mm_s.is_some() || self.falls_mm_s.is_some()).then_some(self)
     }
 
-    /// How long its ramps last at most, s.
-    pub fn lasts_s(&self) -> f64 {
-        let ramps = [(self.rises_mm_s, false), (self.falls_mm_s, true)];
-        let lasts = ramps.into_iter().filter_map(|(speed_mm_s, last)| {
+    /// How long its ramps last at most, s, where no place of the piece is passed at less than
+    /// a share of its speed at the largest overrides.
+    pub fn lasts_s(&self, planned: Speeds2, least_share: f64) -> f64 {
+        let ramps = [
+            (self.rises_mm_s, planned.start, false),
+            (self.falls_mm_s, planned.end, true),
+        ];
+        let lasts = ramps.into_iter().filter_map(|(speed_mm_s, end2, last)| {
             let speed_mm_s = speed_mm_s.filter(|speed| *speed > 0.0)?;
             Some(match &self.section {
-                // As part of another curve it may be gentler.
-                Some(section) => 2.0 * section.ramp(speed_mm_s, last).duration_s(),
-                None => speed_mm_s / self.accel_mm_s2,
+                // As part of another curve it may be gentler, and its own ramp is no longer
+                // than that.
+                Some(section) => {
+                    let change_mm_s = speed_mm_s * (1.0 - least_share);
+                    2.0 * section.ramp(change_mm_s, last).duration_s()
+                }
+                None => (speed_mm_s - least_share * end2.sqrt()).max(0.0) / self.accel_mm_s2,
             })
         });
         lasts.sum()

@@ -241,6 +241,7 @@ fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {
         rapid_override_max: value(overrides.and_then(|o| o.rapid.as_ref()), 100.0) / 100.0,
         spindle_override_max: value(overrides.and_then(|o| o.spindle.as_ref()), 100.0) / 100.0,
         override_at: None,
+        override_from: None,
         min_feed_mm_s: value(floor, 0.0) / SECONDS_PER_MINUTE,
         min_feed_ratio: value(ratio, 0.0),
     }

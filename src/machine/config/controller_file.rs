@@ -107,6 +107,9 @@ pub(crate) struct LanguageTable {
     /// Whether M words from M10 on that are not known move no axis, which is
     /// then said once; default false: they are refused.
     pub(crate) other_m: Option<bool>,
+    /// Whether `;` ends a block, so that words after it are another one, which is refused;
+    /// default false: a comment begins there.
+    pub(crate) semicolon_ends_block: Option<bool>,
     /// The F in force at power-on, in mm/min: where the first moves come before any F, none
     /// above it is written for them. Default: none is known.
     pub(crate) power_on_feed_mm_min: Option<Positive>,

@@ -159,6 +159,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         diameter: table.diameter.unwrap_or(false),
         osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
+        semicolon_ends_block: table.semicolon_ends_block.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
         circular_pocket: table.circular_pocket.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),

@@ -131,11 +131,7 @@ impl Ahead {
             reach2: None,
             unwaited: None,
             driven: false,
-            surges: machine
-                .limits
-                .override_at
-                .is_none()
-                .then(|| Surges::new(&rules)),
+            surges: machine.limits.counts_lower().then(|| Surges::new(&rules)),
             steps: joints::steps_of(machine, &rules),
         }
     }
