@@ -45,6 +45,9 @@ impl Control<'_> {
         if !self.may_go_direct() || block.tape || block.delete_level > 0 {
             return None;
         }
+        if self.may_hide_words(text, block) {
+            return None;
+        }
         let mut straight = Straight {
             motion: self.modal.motion,
             motion_word: None,

@@ -224,13 +224,6 @@ impl<'m> Interpreter<'m> {
         facts: &mut Facts,
         diagnostics: &mut Diagnostics,
     ) {
-        let control = &self.control;
-        if control.may_hide_words(text, block)
-            && control.refuses_hidden_words(line, text, block, diagnostics)
-        {
-            *facts = Facts::default();
-            return;
-        }
         let noted = self.control.note_message(line, text, block, steps);
         if block.issues.is_empty()
             && let Some(()) = self.control.direct(line, text, block, steps, facts)
@@ -371,38 +364,6 @@ impl<'m> Interpreter<'m> {
 }
 
 impl Control<'_> {
-    /// Whether the block is deleted, a tape mark, or after the end.
-    fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
-        let all = Span::new(0, block.text_end as usize);
-        if self.ended {
-            if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
-                report.note_once(
-                    "behind-the-end",
-                    "what follows the end of the program is not executed",
-                    all,
-                );
-            }
-            return true;
-        }
-        if block.tape && self.isg.is_none() {
-            // The first `%` opens the tape; one after any block ends it.
-            self.ended = self.begun;
-            return true;
-        }
-        if block.delete_level == 0 {
-            return false;
-        }
-        if !self.machine.controller.language.block_delete {
-            report.note_once(
-                "no-block-delete",
-                "this controller executes blocks that begin with `/`",
-                all,
-            );
-            return false;
-        }
-        self.block_delete.passes(block.delete_level)
-    }
-
     /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").
     fn abort(&self, block: &Block, report: &mut Report<'_, '_>) {
         let text = report.text.get(..block.text_end as usize);

@@ -2,7 +2,7 @@
 //! another block of the same line, and firmware of printers may know no parentheses.
 
 use super::execute::Control;
-use super::report::{Diagnostics, Report};
+use super::report::Report;
 use crate::machine::Family;
 use crate::source::Span;
 use crate::syntax::{Block, Word};
@@ -20,21 +20,11 @@ impl Control<'_> {
 
     /// Whether words stand in it that the control would execute, which is an error.
     #[cold]
-    pub(super) fn refuses_hidden_words(
-        &self,
-        line: u64,
-        text: &[u8],
-        block: &Block,
-        diagnostics: &mut Diagnostics,
-    ) -> bool {
-        if self.ended || self.block_delete.passes(block.delete_level) {
+    pub(super) fn refuses_hidden_words(&self, block: &Block, report: &mut Report<'_, '_>) -> bool {
+        let text = report.text;
+        if !self.may_hide_words(text, block) {
             return false;
         }
-        let mut report = Report {
-            diagnostics,
-            line,
-            text,
-        };
         if self.machine.controller.language.family == Family::Marlin {
             let moves = |word: &Word| word.letter == b'G' && (0.0..4.0).contains(&word.value);
             let words = words_in_parentheses(text).filter(|_| block.words.iter().any(moves));

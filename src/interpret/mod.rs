@@ -36,6 +36,7 @@ mod offsets;
 mod operator;
 mod osp;
 mod output_knob;
+mod passed_over;
 mod parameter_file;
 mod parameters;
 mod pocket;

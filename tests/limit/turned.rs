@@ -38,7 +38,7 @@ fn machine(seed: u64, controller: &str, path: &str, ratings: &str) -> Machine {
 
 /// Feeds, with rapids between in pairs.
 fn program(random: &mut Random) -> String {
-    let mut text = "G21 G90\n".to_owned();
+    let mut text = "G90\n".to_owned();
     let at = |text: &mut String, random: &mut Random, head: &str, feed: &str| {
         let [x, y] = [(); 2].map(|()| random.within(-300.0, 300.0));
         let _ = writeln!(text, "{head} X{x:.3} Y{y:.3}{feed}");
