@@ -27,7 +27,8 @@ impl Control<'_> {
         }
         if self.machine.controller.language.family == Family::Marlin {
             let moves = |word: &Word| word.letter == b'G' && (0.0..4.0).contains(&word.value);
-            let words = words_in_parentheses(text).filter(|_| block.words.iter().any(moves));
+            let words =
+                words_in_parentheses(text).filter(|_| block.words.first().is_some_and(moves));
             let Some(span) = words else {
                 return false;
             };
@@ -53,17 +54,23 @@ impl Control<'_> {
 /// Where a letter with a number stands in parentheses before a `;`.
 fn words_in_parentheses(text: &[u8]) -> Option<Span> {
     let end = memchr::memchr(b';', text).unwrap_or(text.len());
-    let text = text.get(..end)?;
-    let start = memchr::memchr(b'(', text)?;
-    let inside = text.get(start..)?;
-    let holds = inside.windows(2).any(|pair| match pair {
-        [letter, number] => {
-            letter.is_ascii_alphabetic()
-                && (number.is_ascii_digit() || matches!(number, b'+' | b'-' | b'.'))
+    let (mut start, mut before) = (None, b' ');
+    for (at, byte) in text.get(..end)?.iter().enumerate() {
+        match byte {
+            b'(' => start = start.or(Some(at)),
+            b')' => start = None,
+            _ => {}
         }
-        _ => false,
-    });
-    holds.then(|| Span::new(start, text.trim_ascii_end().len()))
+        let number = byte.is_ascii_digit() || matches!(byte, b'+' | b'-' | b'.');
+        if let Some(start) = start
+            && number
+            && before.is_ascii_alphabetic()
+        {
+            return Some(Span::new(start, at + 1));
+        }
+        before = *byte;
+    }
+    None
 }
 
 /// Where words stand after a `;`.
