@@ -11,6 +11,7 @@ mod halts;
 mod knobs;
 mod klipper;
 mod lathe;
+mod levels;
 mod lines;
 mod marked;
 mod no_word;

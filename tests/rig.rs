@@ -107,6 +107,7 @@ fn controller() -> Controller {
             exact_stop_word: None,
             rapid_uses_feed: false,
             ignored_g: Vec::new(),
+            levels: Vec::new(),
             ignored_m: Vec::new(),
             block_delete: true,
             compensation: None,

@@ -1,7 +1,9 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
 use super::moves::MoveKind;
-use crate::machine::{AXES, AxisValues, CornerRule, Knob, KnobTarget, Machine};
+use crate::machine::{
+    AXES, AxisValues, CornerRule, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine,
+};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +26,11 @@ pub struct KnobState {
     pub speed_mm_s: AxisValues,
     /// How the look-ahead planner takes corners and hills; `None`: as the profile says.
     pub square: Option<Square>,
+    /// The level in force of each group of words that select one; `None`: any of them may be.
+    pub levels: [Option<u8>; LEVEL_GROUPS],
+    /// Accelerations of feed moves and of rapids that the levels in force give, of which
+    /// percentages are taken, mm/s².
+    base_accel_mm_s2: [AxisValues; 2],
 }
 
 /// What Klipper's `SET_VELOCITY_LIMIT` sets for its look-ahead.
@@ -56,7 +63,7 @@ impl KnobState {
     pub fn new(machine: &Machine) -> Self {
         let accel =
             std::array::from_fn(|axis| machine.axes[axis].map_or(0.0, |axis| axis.accel_mm_s2));
-        Self {
+        let mut state = Self {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
             path_accel_mm_s2: [
@@ -69,7 +76,79 @@ impl KnobState {
             path_speed_mm_s: f64::INFINITY,
             speed_mm_s: [f64::INFINITY; AXES],
             square: None,
+            levels: [None; LEVEL_GROUPS],
+            base_accel_mm_s2: [accel; 2],
+        };
+        for knob in &machine.controller.knobs {
+            if let Some(levels) = &knob.levels {
+                state.select(machine, knob, Some(levels.power_on));
+            }
         }
+        state
+    }
+
+    /// Puts a level in force; `None`: any of them may be, so that the largest of all count.
+    /// Percentages that the program has set stay.
+    pub(super) fn select(&mut self, machine: &Machine, knob: &Knob, level: Option<usize>) {
+        let Some(levels) = &knob.levels else {
+            return;
+        };
+        let found = level.and_then(|level| levels.list.get(level));
+        let (accel_mm_s2, rapid_factor) = match found {
+            Some(level) => (level.accel_mm_s2, level.rapid_factor),
+            None => levels.largest(),
+        };
+        if let Some(slot) = self.levels.get_mut(levels.group) {
+            *slot = level.and_then(|level| u8::try_from(level).ok());
+        }
+        if levels.list.iter().any(|level| level.rapid_factor != 1.0) {
+            self.rapid_factor = rapid_factor;
+        }
+        let [feed_base, rapid_base] = &mut self.base_accel_mm_s2;
+        let limits = [
+            (
+                KnobTarget::RapidAccel,
+                feed_base,
+                &mut self.feed_accel_mm_s2,
+            ),
+            (
+                KnobTarget::FeedAccel,
+                rapid_base,
+                &mut self.rapid_accel_mm_s2,
+            ),
+        ];
+        for (other, base, limit) in limits {
+            if knob.target == other || !knob.sets_accel() {
+                continue;
+            }
+            for axis in machine.axis_set.iter() {
+                // Exact where no percentage is in force.
+                if limit[axis] == base[axis] {
+                    limit[axis] = accel_mm_s2[axis];
+                } else {
+                    limit[axis] *= accel_mm_s2[axis] / base[axis];
+                }
+                base[axis] = accel_mm_s2[axis];
+            }
+        }
+    }
+
+    /// Puts the levels of an earlier state in force again.
+    pub(super) fn select_all(&mut self, machine: &Machine, saved: [Option<u8>; LEVEL_GROUPS]) {
+        for knob in &machine.controller.knobs {
+            let group = knob.levels.as_ref().map(|levels| levels.group);
+            if let Some(level) = group.and_then(|group| saved.get(group)) {
+                self.select(machine, knob, level.map(usize::from));
+            }
+        }
+    }
+
+    /// Whether it is known which level of each group is in force.
+    #[must_use]
+    pub fn knows_levels(&self, machine: &Machine) -> bool {
+        let knobs = machine.controller.knobs.iter();
+        let mut groups = knobs.filter_map(|knob| Some(knob.levels.as_ref()?.group));
+        groups.all(|group| self.levels.get(group).is_some_and(Option::is_some))
     }
 
     /// Sets the limit of acceleration along the path of moves that the extruder does not
@@ -153,11 +232,17 @@ impl KnobState {
                 continue;
             };
             let accel = knob.unit.accel_mm_s2(data, value, mm_per_unit);
+            let of_base = matches!(knob.unit, KnobUnit::Percent | KnobUnit::Share);
+            let share = |base: &AxisValues| match of_base && base[axis] != data.accel_mm_s2 {
+                true => base[axis] / data.accel_mm_s2,
+                false => 1.0,
+            };
+            let [feed, rapid] = self.base_accel_mm_s2.each_ref().map(share);
             if knob.target != KnobTarget::RapidAccel {
-                self.feed_accel_mm_s2[axis] = accel;
+                self.feed_accel_mm_s2[axis] = accel * feed;
             }
             if knob.target != KnobTarget::FeedAccel {
-                self.rapid_accel_mm_s2[axis] = accel;
+                self.rapid_accel_mm_s2[axis] = accel * rapid;
             }
         }
     }

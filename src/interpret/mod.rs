@@ -25,6 +25,7 @@ mod frame;
 mod isg;
 mod knob;
 mod knob_words;
+mod level_words;
 mod lathe_cycle;
 mod m_words;
 mod modal;

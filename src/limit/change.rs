@@ -1,5 +1,6 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
+use super::level::level_of;
 use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
 use crate::machine::{AxisKind, AxisSet, AxisValues, Knob, KnobArgument, Machine, PathMode};
 use crate::units::SECONDS_PER_MINUTE;
@@ -21,6 +22,10 @@ pub struct Permit {
     /// A word in the block can let it end at rest where the control would blend it with
     /// the next one.
     pub stop_word: bool,
+    /// Lines with words for levels may stand before it and after it.
+    pub levels: bool,
+    /// It starts and ends at rest as it is.
+    pub rests: bool,
     /// Why the block may not be written as several; `None`: it may.
     pub unsplit: Option<&'static str>,
     /// Why not, for a person; empty when all is permitted.
@@ -66,7 +71,8 @@ pub struct Change {
     pub stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
-    /// The knob for acceleration, and its value for each axis, in its unit.
+    /// The knob for acceleration, and its value for each axis, in its unit; of one with
+    /// levels, which may be those of the rapid speed, the index of the level.
     pub accel: Option<(usize, AxisValues)>,
     /// The same for the largest speed.
     pub speed: Option<(usize, AxisValues)>,
@@ -184,7 +190,9 @@ impl Change {
         if let Some((_, percent)) = self.rapid_percent {
             changed.rapid_factor = percent / 100.0;
         }
-        if let Some((knob, values)) = self.accel
+        if let Some((knob, level)) = level_of(machine, self.accel) {
+            super::level::put(knob, level, &mut changed);
+        } else if let Some((knob, values)) = self.accel
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
             if knob.argument == KnobArgument::Value {

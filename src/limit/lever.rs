@@ -1,6 +1,7 @@
 //! Levers: which words may bring one move down, and what stands in the way.
 
 use super::change::Permit;
+use super::level::{Groups, groups};
 use super::options::LimitOptions;
 use crate::interpret::{Move, MoveKind, own_path_speed};
 use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
@@ -25,11 +26,25 @@ pub(super) enum SpeedLever {
 }
 
 /// The levers of one move.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Levers {
     pub(super) speed: Option<SpeedLever>,
-    /// Index of the knob for acceleration.
+    /// Index of the knob for acceleration, of those without levels.
     pub(super) accel: Option<usize>,
+    /// Knobs with levels for the move as it is.
+    pub(super) levels: Groups,
+    /// The same for a rapid that is written as a feed.
+    pub(super) feed_levels: Groups,
+}
+
+impl Levers {
+    /// The knob for acceleration, with levels or without.
+    pub(super) fn accel_word(&self, machine: &Machine) -> Option<usize> {
+        let knobs = &machine.controller.knobs;
+        let mut levels = self.levels.iter().copied();
+        self.accel
+            .or_else(|| levels.find(|index| knobs.get(*index).is_some_and(Knob::sets_accel)))
+    }
 }
 
 /// Why a move cannot be brought down.
@@ -59,19 +74,24 @@ impl Obstacle {
 
 /// The first verified knob with this target (or `Accel`), in whatever form.
 pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize> {
+    let knobs = &machine.controller.knobs;
+    // Where there are levels, they are the accelerations that percentages are taken of.
+    let has_levels = knobs
+        .iter()
+        .any(|knob| knob.levels.is_some() && knob.sets_accel());
     let suits = |knob: &Knob| {
-        knob.lowers_accel() && (knob.target == target || knob.target == KnobTarget::Accel)
+        !has_levels
+            && knob.lowers_accel()
+            && (knob.target == target || knob.target == KnobTarget::Accel)
     };
-    machine.controller.knobs.iter().position(suits)
+    knobs.iter().position(suits)
 }
 
 /// The knob for the speed of rapids.
 fn rapid_knob(machine: &Machine) -> Option<usize> {
-    machine
-        .controller
-        .knobs
-        .iter()
-        .position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
+    machine.controller.knobs.iter().position(|knob| {
+        knob.verified && knob.target == KnobTarget::RapidSpeed && knob.levels.is_none()
+    })
 }
 
 /// The knob for the largest speed that acts on a move, where it can be put back.
@@ -84,7 +104,10 @@ pub(super) fn speed_knob(machine: &Machine, mv: &Move) -> Option<usize> {
                     && own_path_speed(machine).is_some()
             }
             KnobArgument::Axes => mv.arc.is_none(),
-            KnobArgument::Assign | KnobArgument::Path(_) | KnobArgument::Output(_) => false,
+            KnobArgument::Assign
+            | KnobArgument::Path(_)
+            | KnobArgument::Output(_)
+            | KnobArgument::Level => false,
         };
         knob.verified && knob.target == KnobTarget::Speed && acts
     };
@@ -123,6 +146,8 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         return Levers {
             speed: speed.filter(|_| how.allowed.feed || permit.positions),
             accel: accel_lever(machine, mv, KnobTarget::FeedAccel).filter(acts),
+            levels: groups(machine, permit, true),
+            feed_levels: Groups::new(),
         };
     }
     let speed = match rapid_knob(machine) {
@@ -138,6 +163,8 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     Levers {
         speed,
         accel: accel.filter(|index| speed != Some(SpeedLever::AsFeed) || both(index)),
+        levels: groups(machine, permit, false),
+        feed_levels: groups(machine, permit, true),
     }
 }
 

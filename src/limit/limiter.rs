@@ -258,7 +258,7 @@ impl<'m> Limiter<'m> {
                     exact_stop: false,
                 };
                 let levers = levers(self.solver.machine, self.solver.how, mv, &permit);
-                Outcome::anyway(self.solver.anyway(case, levers))
+                Outcome::anyway(self.solver.anyway(case, &levers))
             } else {
                 Outcome::default()
             };

@@ -12,6 +12,7 @@ mod depth;
 mod first_feed;
 mod halt;
 mod law;
+mod level;
 mod lever;
 mod limiter;
 mod optimum;

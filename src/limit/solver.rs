@@ -98,11 +98,11 @@ impl<'m> Solver<'m> {
                 "no feed and no acceleration changes that: a larger converter is needed",
             ));
         }
-        self.sooner_stopped(case, |case| self.by_strategy(case, levers))
+        self.sooner_stopped(case, |case| self.by_strategy(case, &levers))
     }
 
     /// The change that the strategy says.
-    fn by_strategy(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    fn by_strategy(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         let change = match (self.how.strategy, self.how.law) {
             (Strategy::Preset, _) => self.by_preset(case, levers)?,
             (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
@@ -215,7 +215,15 @@ impl<'m> Solver<'m> {
         known && (open || mv.stray.is_far())
     }
 
-    pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    pub(super) fn by_speed(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        let found = self.by_speed_word(case, levers);
+        match self.how.strategy {
+            Strategy::Speed => self.with_levels(case, levers, found),
+            _ => found,
+        }
+    }
+
+    fn by_speed_word(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
         self.speed(case, lever, &Change::default())
             .ok_or_else(|| too_much(case))
@@ -290,7 +298,12 @@ impl<'m> Solver<'m> {
         None
     }
 
-    fn by_accel(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    fn by_accel(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        let found = self.by_accel_word(case, levers);
+        self.with_levels(case, levers, found)
+    }
+
+    fn by_accel_word(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         let knob = levers.accel.ok_or_else(|| self.no_accel_lever(case))?;
         // A block that is too short for its speed reaches less of it the more slowly it
         // accelerates, so that friction alone at full speed decides nothing.
@@ -365,6 +378,9 @@ impl<'m> Solver<'m> {
         permit: &Permit,
     ) -> Option<AxisValues> {
         let data = self.machine.controller.knobs.get(knob)?;
+        if data.levels.is_some() {
+            return self.level_values(data, accel_mm_s2);
+        }
         let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
             let Some(own) = &self.machine.axes[axis] else {
@@ -390,8 +406,13 @@ impl<'m> Solver<'m> {
         Some(values)
     }
 
-    fn optimal(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
-        match levers {
+    fn optimal(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        let found = self.optimal_words(case, levers);
+        self.with_levels(case, levers, found)
+    }
+
+    fn optimal_words(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        match *levers {
             // Steps do not fall with the acceleration.
             Levers { speed: Some(_), .. } if steps::load(self, case, case.mv).is_some() => {
                 self.by_speed(case, levers)
@@ -399,9 +420,10 @@ impl<'m> Solver<'m> {
             Levers {
                 speed: Some(speed),
                 accel: Some(accel),
+                ..
             } => optimum::best_pair(self, case, speed, accel).ok_or_else(|| too_much(case)),
             Levers { speed: Some(_), .. } => self.by_speed(case, levers),
-            Levers { accel: Some(_), .. } => self.by_accel(case, levers),
+            Levers { accel: Some(_), .. } => self.by_accel_word(case, levers),
             _ => Err(self.no_speed_lever(case)),
         }
     }

@@ -72,7 +72,9 @@ impl Solver<'_> {
             return Ok(between_dwells);
         }
         let halved = self.halved(case.mv, &changed);
-        if halved.is_none() && between_dwells.accel.is_none() {
+        let knob = between_dwells.accel.map(|(knob, _)| knob);
+        let knob = knob.and_then(|knob| self.machine.controller.knobs.get(knob));
+        if halved.is_none() && !knob.is_some_and(Knob::stands) {
             return Ok(Change {
                 exact_stop: changed.path_mode == PathMode::LookAhead,
                 ..between_dwells

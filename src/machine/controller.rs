@@ -73,6 +73,8 @@ pub struct Language {
     pub ignored_g: Vec<u16>,
     /// Further M numbers without motion that are passed over.
     pub ignored_m: Vec<u16>,
+    /// Words whose levels a document of the vendor describes, such as `G187`.
+    pub levels: Vec<String>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
     /// How G41 and G42 shift the path; `None`: not known, or they do not exist.

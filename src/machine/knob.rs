@@ -1,6 +1,7 @@
 //! Knobs: words that limit speed or acceleration, as the controller profile describes them.
 
 use super::axis::{Axis, AxisKind};
+use super::levels::Levels;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// A word that limits speed or acceleration until it is taken back.
@@ -29,6 +30,8 @@ pub struct Knob {
     pub wait: Option<String>,
     /// How long the axes stand for a change of it, s.
     pub change_s: f64,
+    /// The levels that its words select, for `KnobArgument::Level`.
+    pub levels: Option<Levels>,
 }
 
 impl Knob {
@@ -47,15 +50,19 @@ impl Knob {
         }
     }
 
+    /// Whether it acts on accelerations.
+    #[must_use]
+    pub fn sets_accel(&self) -> bool {
+        matches!(
+            self.target,
+            KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel
+        )
+    }
+
     /// Whether it may be written to lower an acceleration.
     #[must_use]
     pub fn lowers_accel(&self) -> bool {
-        self.verified
-            && matches!(
-                self.target,
-                KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel
-            )
-            && !matches!(self.argument, KnobArgument::Path(_))
+        self.verified && self.sets_accel() && !matches!(self.argument, KnobArgument::Path(_))
     }
 }
 
@@ -90,6 +97,9 @@ pub enum KnobArgument {
     /// One value right after the word, the limit along the path of all moves that the
     /// extruder does not make alone (`SET_VELOCITY_LIMIT ACCEL=500`).
     Value,
+    /// Nothing: each word selects a level (`DYNFINISH`, `G187 P3`). Values are the indices of
+    /// these.
+    Level,
 }
 
 /// Unit of a knob's value.

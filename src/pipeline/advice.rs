@@ -3,7 +3,7 @@
 use super::entry::{positions, turns_apart};
 use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
-use crate::machine::{AxisSet, AxisValues, Machine};
+use crate::machine::{AxisSet, AxisValues, Machine, RapidJoint};
 use crate::power::Assessment;
 
 /// What helps where the spindle alone is too much.
@@ -80,6 +80,10 @@ impl<'m> Adviser<'m> {
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
             stop_word: false,
+            levels: true,
+            rests: mv.path_mode == crate::machine::PathMode::ExactStop
+                || mv.kind == MoveKind::Rapid
+                    && self.machine.controller.planner.rapid_joint == RapidJoint::Stop,
             unsplit: None,
             reason: "",
             reason_help: "",
@@ -122,10 +126,7 @@ impl<'m> Adviser<'m> {
         // An infinite value leaves the axes that move here as they are.
         let settings = settings.into_iter().flatten();
         for (knob, value) in settings.filter(|(_, value)| value.is_finite()) {
-            words.push(format!(
-                "{} {value}",
-                super::describe::knob_name(self.machine, knob)
-            ));
+            words.push(super::describe::knob_words(self.machine, knob, value));
         }
         if words.is_empty() {
             return NEIGHBOURS_HELP.to_owned();

@@ -114,6 +114,19 @@ fn output_conditions(machine: &Machine) -> impl Iterator<Item = String> {
     })
 }
 
+/// Which levels hold when a program begins.
+fn level_conditions(machine: &Machine) -> impl Iterator<Item = String> {
+    let knobs = machine.controller.knobs.iter();
+    let levels = knobs.filter_map(|knob| knob.levels.as_ref());
+    levels.filter_map(|levels| {
+        let level = levels.list.get(levels.power_on)?;
+        Some(format!(
+            "{} holds when the program begins, and each level acts as the machine file has it",
+            level.text()
+        ))
+    })
+}
+
 /// What the figures rest on, in plain sentences; `paths` are the ways through the program.
 pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary) -> Vec<String> {
     let Some(options) = paths.first() else {
@@ -165,6 +178,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
     ));
     conditions.extend(assumptions(machine));
     conditions.extend(output_conditions(machine));
+    conditions.extend(level_conditions(machine));
     conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),

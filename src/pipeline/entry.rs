@@ -242,6 +242,11 @@ impl Entry {
             .knobs
             .as_ref()
             .map_or(mv.accel_mm_s2, |knobs| knobs.feed_accel_mm_s2);
+        let stopping = planner.rapid_joint == RapidJoint::Stop && mv.kind == MoveKind::Rapid;
+        let knows_levels = self
+            .knobs
+            .as_ref()
+            .is_some_and(|it| it.knows_levels(machine));
         let may_stop = self.between_stops(machine) && self.may_stop_exactly(machine);
         let blended_rapid = mv.kind == MoveKind::Rapid && mv.path_mode == PathMode::LookAhead;
         Permit {
@@ -250,6 +255,8 @@ impl Entry {
             as_feed: reasons == [None; 3],
             exact_stop: may_stop,
             stands: !facts.compensated && (stops || blended_rapid && may_stop),
+            levels: !facts.compensated && knows_levels,
+            rests: !facts.compensated && (stops || stopping && self.moves == 1),
             stop_word: reasons[0].is_none()
                 && self.moves == 1
                 && !self.block.words.is_empty()

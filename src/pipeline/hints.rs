@@ -92,7 +92,7 @@ pub fn take_hints<R: Read + Seek + Send>(
 
 /// The words that each line gets, with the lowest value of the first of them.
 struct Written {
-    lines: BTreeMap<u64, Option<(f64, String)>>,
+    lines: BTreeMap<u64, Option<(Option<f64>, String)>>,
 }
 
 impl RowSink for Written {
@@ -100,10 +100,16 @@ impl RowSink for Written {
         let Some(known) = self.lines.get_mut(&row.line) else {
             return Ok(());
         };
-        let (Some(value), true) = (row.value_after, row.file.is_empty()) else {
+        let value = row.value_after;
+        if !row.file.is_empty() || value.is_none() && row.knob.is_empty() {
             return Ok(());
+        }
+        // A level has no value.
+        let lower = |lowest: Option<f64>| match (value, lowest) {
+            (Some(value), Some(lowest)) => value < lowest,
+            (value, _) => value.is_some(),
         };
-        if known.as_ref().is_none_or(|(lowest, _)| value < *lowest) {
+        if known.as_ref().is_none_or(|(lowest, _)| lower(*lowest)) {
             *known = Some((value, words(row, value)));
         }
         Ok(())
@@ -118,7 +124,7 @@ impl Restart for Written {
 }
 
 /// What the limiter writes for a move: its words, with the value of the first.
-fn words(row: &Row, value: f64) -> String {
+fn words(row: &Row, value: Option<f64>) -> String {
     let mut names = row.knob.split(' ');
     let first = names.next().unwrap_or_default();
     let (before, blank) = match first {
@@ -126,7 +132,8 @@ fn words(row: &Row, value: f64) -> String {
         "F" => ("", ""),
         _ => ("", " "),
     };
-    let mut words = format!("fits with {before}{first}{blank}{value}");
+    let value = value.map_or_else(String::new, |value| format!("{blank}{value}"));
+    let mut words = format!("fits with {before}{first}{value}");
     for name in names {
         words.push_str(" and ");
         words.push_str(name);

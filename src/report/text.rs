@@ -284,7 +284,7 @@ pub fn axis_table(machine: &Machine) -> String {
 }
 
 /// A number of the machine file: six digits show it, and hide how it was made.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     round_to_digits(value, 6)
 }
 

@@ -32,6 +32,10 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
             knob.name,
             decimal(first, false)
         )),
+        KnobArgument::Level => {
+            let level = knob.levels.as_ref()?.list.get(first as usize)?;
+            Some(level.text().to_owned())
+        }
         KnobArgument::Output(_) | KnobArgument::Path(_) => None,
         KnobArgument::Value => Some(format!("{}{}", knob.name, decimal(first, false))),
     }

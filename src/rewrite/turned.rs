@@ -113,6 +113,10 @@ impl<'m> Turned<'m> {
         self.knobs.retain(|(turned, _)| *turned != knob);
         let state = in_force.knobs?;
         let data = self.machine.controller.knobs.get(knob)?;
+        if let Some(levels) = &data.levels {
+            let level = state.levels.get(levels.group).copied().flatten()?;
+            return knob_line::lines(self.machine, knob, &[f64::from(level); AXES]);
+        }
         if data.argument == KnobArgument::Value {
             let value = match data.target {
                 KnobTarget::Speed if state.path_speed_mm_s.is_finite() => state.path_speed_mm_s,

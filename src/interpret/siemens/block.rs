@@ -109,6 +109,8 @@ impl Control<'_> {
         if let Some(dwell_s) = dwell_s {
             self.dwell(run, dwell_s);
         }
+        self.turn_knobs(run);
+        self.dynamic_mode(state, run);
         self.siemens_settings(state, run);
         if run.report.diagnostics.errors != errors {
             return;
@@ -307,6 +309,26 @@ impl Control<'_> {
             }
         }
         run.words.take(b'H');
+    }
+
+    /// DYNNORM and its kin act in their block ("Dynamic response").
+    fn dynamic_mode(&mut self, state: &Siemens, run: &mut Run<'_, '_>) {
+        let Some((group, level)) = state.extra.level else {
+            return;
+        };
+        run.facts.turns_knob = true;
+        if self.compensation.is_some() {
+            let span = run.whole();
+            run.report
+                .error(
+                    "compensation",
+                    "a dynamic mode under tool radius compensation is not followed",
+                    span,
+                )
+                .help("write it before G41 or G42, or after G40 and the move after that");
+            return;
+        }
+        self.turn_to_level(group, level, run);
     }
 
     fn choose_path_mode(&mut self, asked: PathMode) {

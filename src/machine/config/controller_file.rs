@@ -72,6 +72,9 @@ pub(crate) struct LanguageTable {
     pub(crate) rapid_uses_feed: Option<bool>,
     /// Further G and M words that certainly move nothing and are passed over.
     pub(crate) ignored: Option<Vec<At<String>>>,
+    /// Words that select accelerations, as a document of the vendor has it, such as `G187`
+    /// or `DYNFINISH`; what each makes of them, the machine file says ([[levels]]).
+    pub(crate) levels: Option<Vec<String>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
     /// How G41 and G42 shift the path by the tool's radius; default: not known,

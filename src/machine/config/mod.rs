@@ -13,6 +13,8 @@ mod document;
 mod drive_curve;
 mod findings;
 mod hints;
+mod level_words;
+mod levels;
 mod load;
 mod look_ahead;
 mod machine_file;

@@ -86,6 +86,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
         ignored_g,
         ignored_m,
+        levels: table.levels.clone().unwrap_or_default(),
         block_delete: table.block_delete.unwrap_or(true),
         compensation: table.cutter_compensation.as_ref().and_then(compensation),
         printer: super::printer::printer(findings, table),
@@ -393,6 +394,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         between_moves: knob.between_moves.unwrap_or(false),
         wait: knob.wait.clone(),
         change_s: 0.0,
+        levels: None,
     })
 }
 
