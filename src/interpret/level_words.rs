@@ -53,6 +53,20 @@ impl Control<'_> {
         }
     }
 
+    /// Makes moves for which the control may choose a dynamic mode of its own (SINUMERIK:
+    /// "DYNPOS: positioning mode, tapping"): the highest accelerations of all of them count.
+    pub(super) fn at_any_mode(&mut self, act: impl FnOnce(&mut Self)) {
+        let Some((which, _)) = named(self.machine, "DYNPOS") else {
+            return act(self);
+        };
+        let before = self.knobs.levels;
+        if let Some(knob) = self.machine.controller.knobs.get(which) {
+            self.knobs.select(self.machine, knob, None);
+        }
+        act(self);
+        self.knobs.select_all(self.machine, before);
+    }
+
     /// Puts a level in force; `None`: any of them may be.
     pub(super) fn turn_to_level(
         &mut self,

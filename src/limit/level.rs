@@ -27,6 +27,9 @@ const SOONER: f64 = 1.0 - 1e-6;
 /// The same where a rapid becomes a feed by it.
 const SOONER_AS_FEED: f64 = 1.0 - 1e-3;
 
+/// Up to how many levels below the one in force are tried with the speeds of a window.
+pub(super) const DEEPEST: usize = 6;
+
 /// The groups whose levels may be written for moves of this kind, as feeds (true) or rapids.
 pub(super) fn groups(machine: &Machine, permit: &Permit, as_feed: bool) -> Groups {
     let mut found = Groups::new();

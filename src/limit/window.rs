@@ -461,7 +461,7 @@ fn faster_of_both(
         (best, best_time) = (Some(save(slots)), speed_time);
     }
     // A level that is not gentle enough by itself leaves more speed than none.
-    for depth in 1..LEVELS {
+    for depth in 1..level::DEEPEST {
         restore(slots, before.clone());
         if !level::step_down(solver, slots, window, found, depth) {
             break;
@@ -477,9 +477,6 @@ fn faster_of_both(
     restore(slots, best.unwrap_or(before));
     done
 }
-
-/// Levels below the one in force that are tried together with speeds.
-const LEVELS: usize = 6;
 
 /// Time of the window's moves with a stop at each, s.
 fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64 {

@@ -4,6 +4,7 @@
 use std::io::Cursor;
 
 use super::{RIG, Rig};
+use gwatt::diagnostic::Severity;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Allowed, Failure, LimitOptions, Options, Strategy, analyze, limit, moves};
 use proptest::prelude::*;
@@ -106,10 +107,7 @@ fn a_program_s_own_levels_count() {
     // Half the speed with the same acceleration, on rapids alone.
     let run = |program: &str| figures(OVERRIDE, program);
     close(run("M132\nG0 X400.\nM30\n"), (625.0, 1.65));
-    close(
-        run("M131\nG0 X400.\nM133\nG0 X0.\nM30\n"),
-        (1250.0, 4.1375 - 0.6375 + 0.65),
-    );
+    close(run("M131\nG0 X400.\nM133\nG0 X0.\nM30\n"), (1250.0, 4.125));
 }
 
 /// Without a level 1250 W are 1000 W with F24000, which takes 1.08 s; with P3 they are
@@ -122,7 +120,7 @@ fn a_level_that_is_sooner_is_taken() {
     );
     assert_eq!(
         HAAS.fits("G1 F100.\nG0 X400.\nG1 X401.\nM30\n"),
-        "G1 F100.\nG187 P3\nG1 X400. F30000\nG187 P2\nX401. F100.\nM30\n"
+        "G1 F100.\nG187 P3\nG1 X400. F30000.\nG187 P2\nG1 X401. F100.\nM30\n"
     );
     let (_, summary) = HAAS
         .limit(b"G1 X400. F30000.\nX0 F100.\nM30\n")
@@ -134,7 +132,7 @@ fn a_level_that_is_sooner_is_taken() {
     );
 }
 
-/// 82 % of 1250 W are 1025 W: with F29260 next to it they are 1000 W, in 0.8202 s + 0.1189 s;
+/// 82 % of 1250 W are 1025 W: with F29268 next to it they are 1000 W, in 0.82 s + 0.119 s;
 /// the next level alone takes 1 s.
 #[test]
 fn a_level_and_a_lower_feed_go_together() {
@@ -144,7 +142,7 @@ fn a_level_and_a_lower_feed_go_together() {
     assert!(summary.certified, "{:?}", summary.reasons);
     assert_eq!(
         String::from_utf8(text).expect("text"),
-        "DYNSEMIFIN\nG1 X400 F29268.2\nDYNNORM\nX0 F100\nM30\n"
+        "DYNSEMIFIN\nG1 X400 F29268\nDYNNORM\nX0 F100\nM30\n"
     );
     // Rapids stay rapids, since the levels act on them.
     assert_eq!(
@@ -207,7 +205,7 @@ fn the_time_of_a_change_counts() {
     };
     assert_eq!(
         with("0.3").fits("G1 X400. F30000.\nM30\n"),
-        "G1 X400. F24000.\nM30\n"
+        "G1 X400. F24000.\nF30000.\nM30\n"
     );
     let (text, summary) = with("0.01")
         .limit(b"G1 X400. F30000.\nX401. F100.\nM30\n")
@@ -243,7 +241,7 @@ fn between_moving_blocks_only_where_that_is_said() {
     let text = GRBL
         .strategy(Strategy::Accel)
         .fits("G1 X400 F30000\nX0\nX1 F100\nM2\n");
-    assert_eq!(text, "G187 P3\nG1 X400 F30000\nX0\nG187 P1\nX1 F100\nM2\n");
+    assert_eq!(text, "G187 P2\nG1 X400 F30000\nX0\nG187 P1\nX1 F100\nM2\n");
 }
 
 /// Words that no document confirms are read, and written only on request.
@@ -320,7 +318,8 @@ fn where_nothing_may_be_written_nothing_is() {
 fn what_is_not_known_is_refused_or_counts_higher() {
     let said = |rig: Rig, program: &str| {
         let found = rig.refusal(program);
-        let first = found.first().expect("a reason");
+        let mut errors = found.iter().filter(|it| it.severity == Severity::Error);
+        let first = errors.next().expect("a reason");
         format!("{}: {}", first.rule, first.message)
     };
     assert_eq!(
@@ -344,10 +343,6 @@ fn what_is_not_known_is_refused_or_counts_higher() {
         ),
         "compensation: a dynamic mode under tool radius compensation is not followed"
     );
-    assert_eq!(
-        said(HAAS, "G41 D1 X10. Y10. G1 F30000.\nG187 P3\nX400.\nM30\n"),
-        "compensation: a change of limits under cutter compensation: the controller stops here"
-    );
     let open = "G187 P3\nG187 E0.01\nG1 X400. F30000.\nM30\n";
     close(figures(HAAS, open), (2500.0, 0.85));
     assert!(!HAAS.fits(open).contains("G187 P2"));
@@ -355,6 +350,18 @@ fn what_is_not_known_is_refused_or_counts_higher() {
     close(figures(SINUMERIK, open), (1500.0, 0.8 + 0.5 / 6.0));
     let text = SINUMERIK.fits(open);
     assert!(text.contains("F20000"), "{text}");
+}
+
+/// "DYNPOS: positioning mode, tapping": a thread may run under any mode, so that the highest
+/// acceleration counts, here 6 m/s² of DYNROUGH, and the mode is what it was afterwards.
+#[test]
+fn threads_count_with_the_highest_acceleration() {
+    let program = |thread: &str| format!("DYNFINISH\nS600 M3\n{thread}\nG1 X800 F30000\nM30\n");
+    let (plain_w, _) = figures(SINUMERIK, &program("G1 X400 F30000"));
+    assert!((plain_w - 625.0).abs() < 1e-6, "{plain_w}");
+    // 10 1/s with 50 mm a turn: 0.5 m/s.
+    let (thread_w, _) = figures(SINUMERIK, &program("G33 X400 I50"));
+    assert!((thread_w - 1500.0).abs() < 1e-6, "{thread_w}");
 }
 
 /// A subprogram with SAVE gives the mode of its caller back, another one leaves its own.
@@ -415,8 +422,8 @@ fn ends(machine: &Machine, text: &[u8]) -> Vec<[f64; 2]> {
 /// A block of a random program: a rapid, X, Y, F, and a level that comes before it.
 type Block = (bool, i16, i16, u16, Option<u8>);
 
-fn text(blocks: &[Block], words: &[&str], exact: bool) -> String {
-    let mut text = String::from(if exact { "G61\n" } else { "G64\n" });
+fn text(blocks: &[Block], words: &[&str], mode: &str) -> String {
+    let mut text = format!("{mode}\n");
     for (rapid, x, y, feed, level) in blocks {
         if let Some(word) = level.and_then(|level| words.get(usize::from(level))) {
             text.push_str(word);
@@ -469,7 +476,8 @@ proptest! {
             rest: Box::leak(rest[which].clone().into_boxed_str()),
             ..rigs[which]
         };
-        let text = text(&blocks, words[which], exact);
+        let stops = if which == 1 { "G60" } else { "G61" };
+        let text = text(&blocks, words[which], if exact { stops } else { "G64" });
         let machine = rig.machine();
         let (written, summary) = rig.limit(text.as_bytes()).expect("a program");
         if summary.certified {

@@ -74,10 +74,12 @@ impl Control<'_> {
         };
         let tapping = GCode::Siemens(Code::Tapping);
         if run.words.g.iter().any(|(code, ..)| *code == tapping) {
-            return self.floating_tap(state, &target, run);
+            return self.at_any_mode(|control| control.floating_tap(state, &target, run));
         }
         if let Motion::Special(number) = self.modal.motion {
-            return self.siemens_thread(number, state, &target, run);
+            return self.at_any_mode(|control| {
+                control.siemens_thread(number, state, &target, run);
+            });
         }
         if arc {
             run.facts.uses_feed = true;
