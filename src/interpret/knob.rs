@@ -233,9 +233,12 @@ impl KnobState {
             };
             let accel = knob.unit.accel_mm_s2(data, value, mm_per_unit);
             let of_base = matches!(knob.unit, KnobUnit::Percent | KnobUnit::Share);
-            let share = |base: &AxisValues| match of_base && base[axis] != data.accel_mm_s2 {
-                true => base[axis] / data.accel_mm_s2,
-                false => 1.0,
+            let share = |base: &AxisValues| {
+                if of_base && base[axis] != data.accel_mm_s2 {
+                    base[axis] / data.accel_mm_s2
+                } else {
+                    1.0
+                }
             };
             let [feed, rapid] = self.base_accel_mm_s2.each_ref().map(share);
             if knob.target != KnobTarget::RapidAccel {

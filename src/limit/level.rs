@@ -216,9 +216,13 @@ pub(super) fn step_down(
     let mut any = false;
     for (member, levers) in window.iter().zip(found) {
         let changes = solver.candidates(member.case(slots), &levers.levels, false);
+        // None that takes back what another window needs.
+        let now = member.changed(slots);
         let accels = changes.filter(|change| {
             let level = level_of(solver.machine, change.accel);
-            level.is_some_and(|(knob, _)| knob.sets_accel())
+            level.is_some_and(|(knob, level)| {
+                knob.sets_accel() && level.is_within(now.moving, &now.accel_mm_s2, f64::INFINITY)
+            })
         });
         let change: Option<Change> = accels.take(depth).last();
         let Some(accel) = change.and_then(|change| change.accel) else {

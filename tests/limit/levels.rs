@@ -1,6 +1,7 @@
 //! Words with levels: what each makes of the accelerations stands in the machine file, and
 //! the limiter chooses among them.
 
+use std::fmt::Write as _;
 use std::io::Cursor;
 
 use super::{RIG, Rig};
@@ -244,6 +245,24 @@ fn between_moving_blocks_only_where_that_is_said() {
     assert_eq!(text, "G187 P2\nG1 X400 F30000\nX0\nG187 P1\nX1 F100\nM2\n");
 }
 
+/// What one window has given a move, the next one does not take back: here the same three
+/// feeds are in four windows.
+#[test]
+fn windows_agree_about_levels() {
+    let rest = SINUMERIK
+        .rest
+        .replace("[path]\nmode = \"exact-stop\"\n", "")
+        .replace("level =", "between_moves = true\nlevel =");
+    let rig = Rig {
+        rest: Box::leak(rest.into_boxed_str()),
+        ..SINUMERIK
+    };
+    for peak_w in [300.0, 500.0, 700.0, 900.0, 1100.0] {
+        let rig = Rig { peak_w, ..rig };
+        rig.fits("G64 G1 F5000\nX120 Y30\nX240 Y-60 F28000\nX120 Y0\nX0 F9000\nM30\n");
+    }
+}
+
 /// Words that no document confirms are read, and written only on request.
 #[test]
 fn levels_without_a_document_need_a_permission() {
@@ -430,7 +449,7 @@ fn text(blocks: &[Block], words: &[&str], mode: &str) -> String {
             text.push('\n');
         }
         let motion = if *rapid { "G0" } else { "G1" };
-        text.push_str(&format!("{motion} X{x}. Y{y}. F{}.\n", feed % 30_000 + 100));
+        let _ = writeln!(text, "{motion} X{x}. Y{y}. F{}.", feed % 30_000 + 100);
     }
     text.push_str("M30\n");
     text
@@ -508,6 +527,14 @@ proptest! {
         } else {
             // Friction alone, or rapids that no word lowers.
             prop_assert!(!summary.reasons.is_empty());
+            // What fits by F alone fits with levels too.
+            let (without, _) = rest[which].split_once("[[levels]]").unwrap_or_default();
+            let plain = Rig { rest: Box::leak(without.to_owned().into_boxed_str()), ..rig };
+            let selects = blocks.iter().any(|block| block.4.is_some());
+            if !selects {
+                let (_, plain) = plain.limit(text.as_bytes()).expect("a program");
+                prop_assert!(!plain.certified, "{text}");
+            }
         }
     }
 }
