@@ -135,6 +135,8 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         as_feed: false,
         exact_stop: false,
         stands: false,
+        levels: false,
+        rests: false,
         stop_word: false,
         unsplit: None,
         reason: "",

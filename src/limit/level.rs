@@ -53,10 +53,10 @@ pub(super) fn groups(machine: &Machine, permit: &Permit, as_feed: bool) -> Group
 }
 
 /// The level that a change puts in force.
-pub(super) fn level_of<'m>(
-    machine: &'m Machine,
+pub(super) fn level_of(
+    machine: &Machine,
     accel: Option<(usize, AxisValues)>,
-) -> Option<(&'m Knob, &'m Level)> {
+) -> Option<(&Knob, &Level)> {
     let (knob, values) = accel?;
     let knob = machine.controller.knobs.get(knob)?;
     let index = values.first().copied()?;
