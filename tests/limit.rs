@@ -28,6 +28,7 @@ mod stops;
 mod waits;
 mod ways;
 mod whole;
+mod words_by_axis;
 
 use gwatt::diagnostic::Diagnostic;
 use gwatt::machine::Machine;

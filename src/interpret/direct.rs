@@ -18,7 +18,9 @@ use crate::syntax::{Block, Word};
 pub(super) fn is_direct(machine: &Machine) -> bool {
     let language = &machine.controller.language;
     let dialect = &language.dialect;
-    language.family != Family::Siemens && !dialect.active && !dialect.adapts()
+    !matches!(language.family, Family::Siemens | Family::Nci)
+        && !dialect.active
+        && !dialect.adapts()
 }
 
 /// What the words of a straight move say.

@@ -31,6 +31,7 @@ mod modal;
 mod motion;
 mod moves;
 mod named_parameters;
+mod nci;
 mod offsets;
 mod operator;
 mod osp;

@@ -105,7 +105,7 @@ impl Control<'_> {
         match self.machine.controller.language.family {
             Family::Rs274 => tens && matches!(number, 190 | 480..=530 | 610..=680 | 700..=730),
             Family::Iso | Family::Isg => number == 190,
-            Family::Marlin | Family::Siemens => false,
+            Family::Marlin | Family::Siemens | Family::Nci => false,
         }
     }
 

@@ -84,7 +84,10 @@ pub(super) fn speed_knob(machine: &Machine, mv: &Move) -> Option<usize> {
                     && own_path_speed(machine).is_some()
             }
             KnobArgument::Axes => mv.arc.is_none(),
-            KnobArgument::Assign | KnobArgument::Path(_) | KnobArgument::Output(_) => false,
+            KnobArgument::Assign
+            | KnobArgument::Index
+            | KnobArgument::Path(_)
+            | KnobArgument::Output(_) => false,
         };
         knob.verified && knob.target == KnobTarget::Speed && acts
     };
@@ -129,11 +132,14 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         Some(knob) => Some(SpeedLever::RapidPercent(knob)),
         None => rapid_as_feed(machine, how, mv, permit).then_some(SpeedLever::AsFeed),
     };
-    // A rapid written as a feed is under the knobs of feeds, which differ.
+    // A rapid written as a feed is under the knobs of feeds, which may differ.
     let accel = accel_lever(machine, mv, KnobTarget::RapidAccel).filter(acts);
     let both = |index: &usize| {
         let knob = machine.controller.knobs.get(*index);
-        knob.is_some_and(|knob| knob.stands() && knob.target == KnobTarget::Accel)
+        let one_for_all = |knob: &Knob| {
+            knob.stands() || matches!(knob.argument, KnobArgument::Index | KnobArgument::Assign)
+        };
+        knob.is_some_and(|knob| knob.target == KnobTarget::Accel && one_for_all(knob))
     };
     Levers {
         speed,

@@ -11,7 +11,7 @@ use super::refusal::too_much;
 use super::root::largest;
 use super::steps;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisValues, Machine};
+use crate::machine::{AXES, AxisValues, KnobArgument, Machine};
 use crate::plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
@@ -332,7 +332,17 @@ impl<'m> Solver<'m> {
         } else {
             largest(1.0, load_top, load_at)?
         };
-        self.accel_change(case, knob, factor, with)
+        // The root lies a hair below the whole percentage that it may be.
+        let whole = self.machine.controller.knobs.get(knob);
+        let whole = whole.filter(|knob| knob.argument == KnobArgument::Index);
+        let whole = whole.and_then(|_| self.accel_change(case, knob, factor * (1.0 + 1e-6), with));
+        let fits = |change: &Change| {
+            let changed = change.apply(self.machine, case.mv, case.permit);
+            self.load(case, &changed) <= 1.0 + 1e-9
+        };
+        whole
+            .filter(fits)
+            .or_else(|| self.accel_change(case, knob, factor, with))
     }
 
     /// Acceleration knobs at `factor` of what is in force, rounded down;
@@ -379,7 +389,7 @@ impl<'m> Solver<'m> {
                 return None;
             }
         }
-        if data.output().is_some() {
+        if data.output().is_some() || data.is_named_for_all() {
             // One value for all axes, whatever their rounding.
             let axes = || self.machine.axis_set.iter();
             let least = axes()

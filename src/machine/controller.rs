@@ -1,7 +1,7 @@
 //! Controller profiles: what a controller reads, how it plans, and which words
 //! lower speed and acceleration. Profiles are data (TOML).
 
-use super::knob::{Knob, KnobArgument};
+use super::knob::Knob;
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
 use super::queue::Queue;
@@ -244,6 +244,8 @@ pub enum Family {
     Isg,
     /// Siemens SINUMERIK 840D and its kin.
     Siemens,
+    /// Beckhoff `TwinCAT` NC I, classic dialect.
+    Nci,
 }
 
 /// What happens at the joint of two blocks.
@@ -341,7 +343,7 @@ impl Controller {
             knob.verified
                 && knob.target == like.target
                 && knob.unit == like.unit
-                && knob.argument == KnobArgument::Axes
+                && knob.is_by_axis()
         })
     }
 }

@@ -47,6 +47,18 @@ impl Knob {
         }
     }
 
+    /// Whether it takes a value for each axis.
+    #[must_use]
+    pub fn is_by_axis(&self) -> bool {
+        matches!(self.argument, KnobArgument::Axes | KnobArgument::Index)
+    }
+
+    /// Whether it is a name with one value for all axes (`DynOvr=0.5`).
+    #[must_use]
+    pub fn is_named_for_all(&self) -> bool {
+        self.code.is_none() && self.argument == KnobArgument::Assign
+    }
+
     /// Whether it may be written to lower an acceleration.
     #[must_use]
     pub fn lowers_accel(&self) -> bool {
@@ -79,7 +91,7 @@ pub enum KnobTarget {
 /// What stands after a knob's word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KnobArgument {
-    /// `= value` for all axes (`G131 = 50`).
+    /// `= value` for all axes (`G131 = 50`, `DynOvr=0.5`).
     Assign,
     /// A value for each axis letter (`G130 X70 Y60`).
     Axes,
@@ -87,6 +99,8 @@ pub enum KnobArgument {
     Path(Vec<u8>),
     /// The number of an analog output, and a value for all axes (`M68 E0 Q0.5`).
     Output(u16),
+    /// A value for each axis, with the axis in brackets after the word (`ACC[X]=70`).
+    Index,
     /// One value right after the word, the limit along the path of all moves that the
     /// extruder does not make alone (`SET_VELOCITY_LIMIT ACCEL=500`).
     Value,

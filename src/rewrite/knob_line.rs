@@ -11,6 +11,10 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
     let first = values[axes.next()?];
     let uniform = axes.all(|axis| values[axis] == first);
     match &knob.argument {
+        KnobArgument::Assign if knob.is_named_for_all() => {
+            // No blanks: NC I's words end at one.
+            uniform.then(|| format!("{}={}", knob.name, decimal(first, false)))
+        }
         KnobArgument::Assign if uniform => {
             Some(format!("{} = {}", knob.name, decimal(first, false)))
         }
@@ -26,6 +30,13 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
                 text.push_str(&decimal(values[axis], false));
             }
             Some(text)
+        }
+        KnobArgument::Index => {
+            let written = machine.axis_set.iter().map(|axis| {
+                let letter = ALL_AXES[axis].letter() as char;
+                format!("{}[{letter}]={}", knob.name, decimal(values[axis], false))
+            });
+            Some(written.collect::<Vec<_>>().join(" "))
         }
         KnobArgument::Output(number) if uniform => Some(format!(
             "{} E{number} Q{}",

@@ -272,6 +272,31 @@ fn knobs_with_a_value() {
 }
 
 #[test]
+fn knobs_with_names() {
+    let knob = |word: &str, target: &str, argument: &str, unit: &str| {
+        with(&format!(
+            "[[knob]]\nword = \"{word}\"\ntarget = \"{target}\"\nargument = \"{argument}\"\n\
+             unit = \"{unit}\"\nstep = 0.01\nmin = 0.01\n"
+        ))
+    };
+    assert_eq!(findings(&knob("ACC", "accel", "index", "percent")), "");
+    assert_eq!(findings(&knob("DynOvr", "accel", "assign", "share")), "");
+    for (word, target, argument, unit) in [
+        ("VELOLIM", "speed", "index", "percent"),
+        ("ACC", "feed-accel", "index", "percent"),
+        ("ACC", "accel", "index", "per-second-squared"),
+        ("DynOvr", "accel", "index", "percent"),
+        ("DynOvr", "accel", "assign", "percent"),
+    ] {
+        let found = findings(&knob(word, target, argument, unit));
+        let message = format!("\"{word}\" is not read back in this form");
+        assert!(found.contains(&message), "{word} {argument}: {found}");
+    }
+    let found = findings(&knob("ACC", "accel", "assign", "percent"));
+    assert!(found.contains("\"ACC\" is not a program word"), "{found}");
+}
+
+#[test]
 fn knobs_of_outputs() {
     let knob = |word: &str, target: &str, unit: &str, wait: &str| {
         with(&format!(

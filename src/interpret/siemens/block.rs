@@ -78,6 +78,7 @@ impl Control<'_> {
             || state.feed_in_mm
             || state.feed_factor != 1.0
             || state.rounds.is_some()
+            || state.limits.are_due()
             || matches!(self.modal.motion, Motion::None | Motion::Special(_));
         if let Some(shift) = shift {
             self.position.set_shifts(&shift);
@@ -113,6 +114,10 @@ impl Control<'_> {
         if run.report.diagnostics.errors != errors {
             return;
         }
+        if state.extra.turns_limit {
+            run.facts.turns_knob = true;
+            self.raise_limits(&state.limits);
+        }
         let mode = self.modal.path_mode;
         let g9 = GCode::Siemens(Code::ExactOnce);
         if run.words.g.iter().any(|(code, ..)| *code == g9) {
@@ -132,6 +137,9 @@ impl Control<'_> {
             self.cycle(state, &call, run);
         } else if moved && run.report.diagnostics.errors == errors {
             self.modal_call(state, run);
+        }
+        if state.extra.turns_limit || state.limits.are_due() {
+            self.settle_limits(&mut state.limits);
         }
         self.modal.path_mode = mode;
         if state.extra.blends {

@@ -19,6 +19,7 @@ mod flow_words;
 mod frame;
 mod frame_words;
 mod function;
+mod limits;
 mod names;
 mod pattern;
 mod polar;
@@ -80,6 +81,8 @@ struct Extra {
     cycle: Option<cycle::Call>,
     /// CHF, CHR, RND.
     corner: Option<Insert>,
+    /// It changes a limit of the axes.
+    turns_limit: bool,
 }
 
 /// What MCALL has set.
@@ -164,6 +167,7 @@ pub(super) struct Siemens {
     rounds: Option<Insert>,
     /// I, J and K of G331.
     tap_lead: [Option<f64>; 3],
+    limits: limits::Limits,
 }
 
 impl Siemens {
@@ -198,6 +202,7 @@ impl Siemens {
             radius: radius::Radius::default(),
             rounds: None,
             tap_lead: [None; 3],
+            limits: limits::Limits::new(),
         }
     }
 

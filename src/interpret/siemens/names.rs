@@ -24,8 +24,6 @@ const DATA: &[&str] = &[
     "SOFTA",
     "BRISKA",
     "DRIVEA",
-    "JERKLIM",
-    "JERKLIMA",
     "FFWON",
     "FFWOF",
     "COMPON",

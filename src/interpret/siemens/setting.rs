@@ -61,9 +61,8 @@ impl Reading<'_, '_, '_> {
                 self.state.spindle_limit = Some(value.abs());
             }
             "OVR" => self.feed_override(start)?,
-            "OVRRAP" | "OVRA" | "ACC" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" => {
-                self.limit(name, start)?;
-            }
+            "ACC" | "OVRRAP" | "OVRA" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" | "JERKLIM"
+            | "JERKLIMA" => self.limit(name, start)?,
             // "Three, four and five axis transformation (TRAORI)".
             "TRAORI" => {
                 self.cursor.pass_over_parentheses()?;
@@ -138,30 +137,6 @@ impl Reading<'_, '_, '_> {
         let message = format!("OVR of {percent} %");
         let help = "write a value above 0 and up to 200";
         Err(self.cursor.fault("override", message, help, start))
-    }
-
-    /// Percentages of the machine's limits: what lowers them is not counted,
-    /// which leaves the estimate higher.
-    fn limit(&mut self, name: &str, start: usize) -> Outcome<()> {
-        if self.cursor.take(b'[') {
-            while !self.cursor.take(b']') {
-                if self.cursor.peek().is_none() {
-                    self.cursor.expect(b']')?;
-                }
-                self.cursor.at += 1;
-            }
-        }
-        let percent = self.value_behind(name, start)?;
-        if percent > 100.0 || percent <= 0.0 {
-            let message = format!("{name} of {percent} %");
-            let help = "only values above 0 and up to 100 are read: the machine's limits hold";
-            return Err(self.cursor.fault("override", message, help, start));
-        }
-        if percent < 100.0 {
-            let message = "a limit that the program lowers by a percentage is counted at 100 %";
-            self.note("limit-not-lowered", message, start);
-        }
-        Ok(())
     }
 
     /// CYCLE832 ("High Speed Settings") chooses a path mode that blends.

@@ -185,6 +185,7 @@ pub(crate) enum FamilyName {
     Marlin,
     Isg,
     Siemens,
+    Nci,
 }
 
 /// A word of G4.
@@ -310,9 +311,9 @@ pub(crate) struct KnobTable {
     /// What it acts on.
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
-    /// What stands after it: `= value`, a value per axis, the path's value after a
-    /// letter, or right after the word, or the number of an analog output ([outputs] of the
-    /// machine file) with its value.
+    /// What stands after it: `= value`, a value per axis, the same with the axis in brackets
+    /// (`ACC[X]=70`), the path's value after a letter, or right after the word, or the number
+    /// of an analog output ([outputs] of the machine file) with its value.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
     /// Letters of the value, for `argument = "path"`.
@@ -354,6 +355,7 @@ pub(crate) enum TargetName {
 pub(crate) enum ArgumentName {
     Assign,
     Axes,
+    Index,
     Path,
     Output,
     Value,

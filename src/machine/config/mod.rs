@@ -16,6 +16,7 @@ mod hints;
 mod load;
 mod look_ahead;
 mod machine_file;
+mod named_knob;
 mod offsets;
 mod outputs;
 mod own_language;

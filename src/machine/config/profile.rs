@@ -8,6 +8,7 @@ use super::controller_file::{
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
+use super::named_knob;
 use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
@@ -60,6 +61,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         FamilyName::Marlin => Family::Marlin,
         FamilyName::Isg => Family::Isg,
         FamilyName::Siemens => Family::Siemens,
+        FamilyName::Nci => Family::Nci,
     };
     Some(Language {
         name: String::new(),
@@ -315,6 +317,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     let argument = argument(findings, knob)?;
     let output = argument == KnobArgument::Output(0);
     let suits = match target {
+        _ if named_knob::is_read_back(knob.word.as_ref()?, &argument, target, unit) => true,
         KnobTarget::Accel if output => unit == KnobUnit::Share,
         _ if output => false,
         KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
@@ -350,24 +353,11 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         findings.error("machine-word", &text.span, message, help);
         return None;
     }
-    let code = if argument == KnobArgument::Value {
-        let read = match target {
-            KnobTarget::Accel => Some("SET_VELOCITY_LIMIT ACCEL="),
-            KnobTarget::Speed => Some("SET_VELOCITY_LIMIT VELOCITY="),
-            KnobTarget::CruiseRatio => Some("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO="),
-            KnobTarget::FeedAccel | KnobTarget::RapidAccel | KnobTarget::RapidSpeed => None,
-        };
-        if read != Some(text.value.as_str()) || unit == KnobUnit::Percent {
-            let message = format!(
-                "\"{}\" with argument = \"value\" is not read back",
-                text.value
-            );
-            let help = "\"SET_VELOCITY_LIMIT ACCEL=\" in mm/s² with target = \"accel\", \
-                        \"SET_VELOCITY_LIMIT VELOCITY=\" in mm/s with target = \"speed\", or \
-                        \"SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=\" with target = \"cruise-ratio\"";
-            findings.error("machine-word", &text.span, message, Some(help.to_owned()));
-            return None;
-        }
+    let code = if named_knob::is_named(text, &argument) {
+        named_knob::check(findings, text, &argument, target, unit)?;
+        None
+    } else if argument == KnobArgument::Value {
+        named_knob::check_value(findings, text, target, unit)?;
         None
     } else {
         let code = word::code(&text.value);
@@ -407,6 +397,7 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
     Some(match argument.value {
         ArgumentName::Assign => KnobArgument::Assign,
         ArgumentName::Axes => KnobArgument::Axes,
+        ArgumentName::Index => KnobArgument::Index,
         // Which one, the machine file says.
         ArgumentName::Output => KnobArgument::Output(0),
         ArgumentName::Value => KnobArgument::Value,
