@@ -215,11 +215,11 @@ fn feeds_of_another_kind_keep_their_numbers() {
         );
     }
     // A line that runs again gets it each time.
-    let program = "FOR R1=1 TO 3\nG0 X400\nG1 X0 F100\nENDFOR\nM30\n";
+    let program = "FOR R1=1 TO 3\nG0 X400\nG0 X0\nENDFOR\nM30\n";
     assert_eq!(
         fits(&SINUMERIK, How::Optimal, program),
-        "FOR R1=1 TO 3\nACC[X]=80 ACC[Y]=80\nG0 X400\nACC[X]=100 ACC[Y]=100\nG1 X0 F100\n\
-         ENDFOR\nM30\n"
+        "FOR R1=1 TO 3\nACC[X]=80 ACC[Y]=80\nG0 X400\nACC[X]=100 ACC[Y]=100\n\
+         ACC[X]=80 ACC[Y]=80\nG0 X0\nACC[X]=100 ACC[Y]=100\nENDFOR\nM30\n"
     );
 }
 
