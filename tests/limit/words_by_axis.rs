@@ -322,9 +322,9 @@ impl Drives {
         let length = libm::hypot(way[0], way[1]);
         let share = way.map(|way| way.abs() / length);
         let (mut v, mut a) = (line.feed, f64::INFINITY);
-        for n in 0..2 {
-            v = v.min(self.speed[n] / share[n]);
-            a = a.min(self.accel[n] * line.acc[n] / 100.0 / share[n]);
+        for (n, share) in share.iter().enumerate() {
+            v = v.min(self.speed[n] / share);
+            a = a.min(self.accel[n] * line.acc[n] / 100.0 / share);
         }
         let top = v.min((a * length / 1e3).sqrt());
         let axis = |n: usize| top * share[n] * (self.mass[n] * a * share[n] + self.coulomb[n]);
