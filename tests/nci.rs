@@ -247,5 +247,5 @@ fn a_long_block_is_split() {
     };
     let text = rig.strategy(Strategy::Split).fits("G0 X2000\nM30\n");
     assert!(text.matches("DynOvr=").count() > 2, "{text}");
-    assert!(text.ends_with("DynOvr=1\nM30\n"), "{text}");
+    assert!(text.ends_with("DynOvr=1\nG0 X2000\nM30\n"), "{text}");
 }

@@ -87,7 +87,7 @@ fn a_rapid_keeps_its_speed() {
         "{longer_s}"
     );
     let note = summary
-        .after
+        .before
         .notes
         .iter()
         .find(|note| note.rule == "unverified");

@@ -113,13 +113,13 @@ fn under_compensation_what_is_lower_waits() {
     assert!((peak_w(&program("", "ACC[X]=50", "")) - 1250.0).abs() < 0.1);
     assert!((peak_w(&program("", "ACC[X]=150", "")) - 1875.0).abs() < 0.1);
     // Out of it, it acts.
-    let inside = program("ACC[X]=40", "ACC[X]=20\nACC[X]=40", "Y31\nG0 X0");
+    let inside = program("ACC[X]=40", "ACC[X]=20\nACC[X]=40", "Y31\nG0 X0\nX400");
     assert!((peak_w(&inside) - 500.0).abs() < 0.1, "{}", peak_w(&inside));
-    let lower = program("ACC[X]=50", "ACC[X]=20", "Y31\nG0 X0");
+    let lower = program("ACC[X]=50", "ACC[X]=20", "Y31\nG0 X0\nX400");
     assert!((peak_w(&lower) - 625.0).abs() < 0.1, "{}", peak_w(&lower));
     let found = summary(&RIG_840D, &lower);
-    let before = summary(&RIG_840D, &program("ACC[X]=50", "", "Y31\nG0 X0"));
-    // 0.5 m/s at 1 m/s² and at 2.5 m/s²: X0 takes 0.3 s longer.
+    let before = summary(&RIG_840D, &program("ACC[X]=50", "", "Y31\nG0 X0\nX400"));
+    // 0.5 m/s at 1 m/s² and at 2.5 m/s²: X400 takes 0.3 s longer.
     assert!((found.duration_s - before.duration_s - 0.3).abs() < 1e-6);
 }
 
