@@ -86,7 +86,7 @@ fn unknown_key() {
 #[test]
 fn unknown_family() {
     assert_snapshot!(findings(&edited("family = \"iso\"", "family = \"fanuc\"")), @r#"
-    line 6, error machine-value: `family` must be "iso", "rs274", "marlin", "isg" or "siemens", not "fanuc"
+    line 6, error machine-value: `family` must be "iso", "rs274", "marlin", "isg", "siemens" or "nci", not "fanuc"
       | family = "fanuc"
       |          ^^^^^^^
     "#);
@@ -191,7 +191,7 @@ fn knob_incomplete() {
     line 19, error machine-missing: `target` is missing in `knob` / What it acts on
       | [[knob]]
       | ^^^^^^^^
-    line 19, error machine-missing: `argument` is missing in `knob` / What stands after it: `= value`, a value per axis, the path's value after a letter, or right after the word, or the number of an analog output ([outputs] of the machine file) with its value
+    line 19, error machine-missing: `argument` is missing in `knob` / What stands after it: `= value`, a value per axis, the same with the axis in brackets (`ACC[X]=70`), the path's value after a letter, or right after the word, or the number of an analog output ([outputs] of the machine file) with its value
       | [[knob]]
       | ^^^^^^^^
     line 19, error machine-missing: `unit` is missing in `knob` / Unit of the value
