@@ -26,6 +26,8 @@ take a tenth of an axis' acceleration for a cycle; that is not in the plan. Line
 tolerance of their own for it, LINE_TOLERANCE. Lines that draw less than a hundredth of
 the program's peak count as that hundredth.
 
+--outputs declares the adaptive feed at an analog output, so that --limited lowers rapids by it.
+
 --fine adds runs of very short lines before a long block. LinuxCNC's optimiser stops after five
 blocks that reach their limit, and leaves the blocks before them at the speeds that they had
 as the last of the queue: it brakes and speeds up where the plan goes on evenly. The plan
@@ -81,9 +83,23 @@ def fixed_machine(axes):
     return machine
 
 
-def machine_file(machine, peak_w):
+# The adaptive feed at an analog output, as the controller profile says it.
+OUTPUTS = "[outputs]\nspeed = 1\nchange_s = 0.01\n"
+PACE = """loadrt comp names=pace-given
+loadrt mux2 names=pace
+addf pace-given servo-thread
+addf pace servo-thread
+setp pace-given.in0 0.000001
+setp pace.in0 1
+net pace-asked motion.analog-out-01 => pace-given.in1 pace.in1
+net pace-is-given pace-given.out => pace.sel
+net pace-now pace.out => motion.adaptive-feed
+"""
+
+
+def machine_file(machine, peak_w, outputs=""):
     text = ('schema = 1\nname = "recorded"\ncontroller = "linuxcnc"\n[limits]\nmargin = 0.0\n'
-            f"[converter]\npeak_power_w = {peak_w!r}\nbase_load_w = 0\n")
+            f"[converter]\npeak_power_w = {peak_w!r}\nbase_load_w = 0\n{outputs}")
     for axis, values in machine.items():
         rotary = axis in ROTARY
         text += f'[axes.{axis}]\nkind = "{"rotary" if rotary else "linear"}"\n'
@@ -161,6 +177,7 @@ net inpos motion.in-position => sampler.0.pin.1
         hal += f"net pos-{joint} joint.{joint}.motor-pos-cmd => joint.{joint}.motor-pos-fb\n"
         hal += f"net at-{joint} joint.{joint}.pos-cmd => sampler.0.pin.{2 + 2 * joint}\n"
         hal += f"net speed-{joint} joint.{joint}.vel-cmd => sampler.0.pin.{3 + 2 * joint}\n"
+    hal += PACE
     (folder / "lab.ini").write_text(ini)
     (folder / "lab.hal").write_text(hal)
 
@@ -384,20 +401,24 @@ def limited_programs(given, table, folder):
         files += sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
     machine = fixed_machine(given.axes)
     file = folder / "machine.toml"
+    outputs = OUTPUTS if given.outputs else ""
     for original in files:
         name = str(original)
         options = ["-m", file, "--sub-path", original.resolve().parent, "--tool-table", given.tools / "lab.tbl"]
-        file.write_text(machine_file(machine, 1e9))
+        file.write_text(machine_file(machine, 1e9, outputs))
         planned, why = plan(given.gwatt, original, options, folder)
         if planned is None or planned.peak_w <= 0.0 or planned.whole_s > given.longest:
             table.skip(name, why or ("nothing moves" if planned.peak_w <= 0.0 else f"{planned.whole_s:.0f} s"))
             continue
         limit_w = given.share * planned.peak_w
-        file.write_text(machine_file(machine, limit_w))
+        file.write_text(machine_file(machine, limit_w, outputs))
         written = folder / "limited.ngc"
         code, error = run([given.gwatt, "limit", original, *options, "--allow", "feed,expand", "-o", written])
         if code != 0:
             table.skip(name, "not limited: " + error)
+            continue
+        if given.outputs and b"M67" not in written.read_bytes():
+            table.skip(name, "nothing is set by an output")
             continue
         planned, why = plan(given.gwatt, written, options, folder)
         if planned is None:
@@ -417,6 +438,7 @@ def main():
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--fine", action="store_true", help="with runs of very short lines, which the plan does not follow yet")
     parser.add_argument("--limited", type=pathlib.Path, nargs="+", metavar="PATH", help="programs, or folders of them, to limit")
+    parser.add_argument("--outputs", action="store_true", help="with the adaptive feed at an output, and only programs that use it")
     parser.add_argument("--share", type=float, default=0.6)
     parser.add_argument("--longest", type=float, default=60.0, help="longest planned time in s, with --limited")
     parser.add_argument("--speedup", type=int, default=10)

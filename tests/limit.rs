@@ -16,6 +16,7 @@ mod marked;
 mod no_word;
 mod obstacles;
 mod outputs;
+mod pace;
 mod partial;
 mod presets;
 mod random;

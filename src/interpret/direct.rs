@@ -99,6 +99,7 @@ impl Control<'_> {
             accel_mm_s2: *self.knobs.accel(kind),
             path_accel_mm_s2: self.path_accel(*moving),
             rapid_factor: self.knobs.rapid_factor,
+            pace: 1.0,
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,
@@ -198,6 +199,7 @@ impl Control<'_> {
             && self.special.left.is_none()
             && self.debts.is_empty()
             && self.knobs.pending.is_none()
+            && !self.knobs.is_paced()
             && self.callee.is_none()
             && self.transfer.is_none()
     }

@@ -335,6 +335,7 @@ impl<'m> Interpreter<'m> {
             self.control.compensate(&mut run, before, errors);
         }
         self.control.refuse_too_early(&mut run, before);
+        self.control.pace_moves(&mut run, before);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;

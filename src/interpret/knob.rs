@@ -15,6 +15,14 @@ pub struct KnobState {
     pub path_accel_mm_s2: [f64; 3],
     /// Share of the rapid speed.
     pub rapid_factor: f64,
+    /// Share of the speed of all moves that an output sets, where it acts.
+    pub speed_share: f64,
+    /// The same, set and not in force before the next move.
+    pub speed_share_next: Option<f64>,
+    /// It acts (`LinuxCNC`'s M52).
+    pub adaptive: bool,
+    /// What acted on the last move; 0 after a stop.
+    pub(super) speed_share_last: f64,
     /// A knob that is set and does not act yet, with its value.
     pub(super) pending: Option<(usize, f64)>,
     /// Largest speed along the path of moves that the extruder does not make alone, mm/s
@@ -65,6 +73,10 @@ impl KnobState {
                 f64::INFINITY,
             ],
             rapid_factor: 1.0,
+            speed_share: 1.0,
+            speed_share_next: None,
+            adaptive: false,
+            speed_share_last: 0.0,
             pending: None,
             path_speed_mm_s: f64::INFINITY,
             speed_mm_s: [f64::INFINITY; AXES],
@@ -132,6 +144,10 @@ impl KnobState {
         mm_per_unit: f64,
     ) {
         if knob.target == KnobTarget::CruiseRatio {
+            return;
+        }
+        if knob.target == KnobTarget::SpeedShare {
+            self.speed_share = value;
             return;
         }
         if knob.target == KnobTarget::RapidSpeed {

@@ -55,6 +55,7 @@ mod subprogram;
 mod system_parameters;
 mod thread;
 mod thread_cycle;
+mod speed_share;
 mod spindle_speed;
 mod spindle_told;
 mod stance;

@@ -84,6 +84,7 @@ impl Control<'_> {
                 self.switches.feed_override = number == 480;
                 self.switches.speed_override = number == 480;
             }
+            520 if self.adapts(span, run) => return true,
             500..=530 => self.override_word(number, span, run),
             610 => {
                 self.load_tool(number, span, run);

@@ -1,7 +1,7 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
 use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
-use crate::machine::{AxisKind, AxisSet, AxisValues, Knob, KnobArgument, Machine, PathMode};
+use crate::machine::{AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.
@@ -18,6 +18,10 @@ pub struct Permit {
     /// The axes stand before and after it, or may be made to by exact stop: a knob may be
     /// turned for which they have to.
     pub stands: bool,
+    /// A line may come between it and the block before it.
+    pub line_before: bool,
+    /// What it changes is put back right after it, since other blocks may come then.
+    pub apart: bool,
     /// A word in the block can let it end at rest where the control would blend it with
     /// the next one.
     pub stop_word: bool,
@@ -181,8 +185,8 @@ impl Change {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);
         }
         changed.corner = self.corner(machine, mv);
-        if let Some((_, percent)) = self.rapid_percent {
-            changed.rapid_factor = percent / 100.0;
+        if let Some((knob, percent)) = self.rapid_percent {
+            set_rapid_share(machine, &mut changed, knob, percent);
         }
         if let Some((knob, values)) = self.accel
             && let Some(knob) = machine.controller.knobs.get(knob)
@@ -200,6 +204,15 @@ impl Change {
             }
         }
         under_cap(machine, changed, self.speed, permit)
+    }
+}
+
+/// Sets a rapid's share of the rapid speed, in %, by a knob.
+pub(super) fn set_rapid_share(machine: &Machine, mv: &mut Move, knob: usize, percent: f64) {
+    mv.rapid_factor = percent / 100.0;
+    let knob = machine.controller.knobs.get(knob);
+    if knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare) {
+        mv.pace = mv.rapid_factor;
     }
 }
 

@@ -5,7 +5,7 @@ use super::lever::{Levers, NO_KNOB, Obstacle, SpeedLever};
 use super::options::{PresetElse, Strategy};
 use super::solver::{Case, Solver};
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisSet, AxisValues, Machine, Preset};
+use crate::machine::{AXES, AxisSet, AxisValues, Knob, Machine, Preset};
 use crate::plan::{Caps, SpeedBound, speed_bound};
 
 /// The preset for exactly the axes that start together.
@@ -163,7 +163,7 @@ fn scale_speed(
             .controller
             .knobs
             .get(knob)
-            .map_or(1.0, |knob| knob.step);
+            .map_or(1.0, Knob::percent_step);
         let percent = round_to_step(case.mv.rapid_factor * share * 100.0, step);
         change.rapid_percent = (percent > 0.0).then_some((knob, percent));
         return if percent > 0.0 {

@@ -66,12 +66,22 @@ pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize>
 }
 
 /// The knob for the speed of rapids.
-fn rapid_knob(machine: &Machine) -> Option<usize> {
-    machine
-        .controller
-        .knobs
-        .iter()
-        .position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
+fn rapid_knob(machine: &Machine, permit: &Permit) -> Option<usize> {
+    let suits = |knob: &Knob| {
+        knob.verified
+            && match knob.target {
+                KnobTarget::RapidSpeed => true,
+                KnobTarget::SpeedShare => permit.line_before,
+                _ => false,
+            }
+    };
+    machine.controller.knobs.iter().position(suits)
+}
+
+/// Whether the axes stand for a knob where its word is put back right away: a feed costs less.
+fn costs_stops(machine: &Machine, permit: &Permit, knob: usize) -> bool {
+    let knob = machine.controller.knobs.get(knob);
+    permit.apart && knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare)
 }
 
 /// The knob for the largest speed that acts on a move, where it can be put back.
@@ -125,9 +135,12 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
             accel: accel_lever(machine, mv, KnobTarget::FeedAccel).filter(acts),
         };
     }
-    let speed = match rapid_knob(machine) {
-        Some(knob) => Some(SpeedLever::RapidPercent(knob)),
-        None => rapid_as_feed(machine, how, mv, permit).then_some(SpeedLever::AsFeed),
+    let as_feed = || rapid_as_feed(machine, how, mv, permit);
+    let speed = match rapid_knob(machine, permit) {
+        Some(knob) if !(costs_stops(machine, permit, knob) && as_feed()) => {
+            Some(SpeedLever::RapidPercent(knob))
+        }
+        _ => as_feed().then_some(SpeedLever::AsFeed),
     };
     // A rapid written as a feed is under the knobs of feeds, which differ.
     let accel = accel_lever(machine, mv, KnobTarget::RapidAccel).filter(acts);

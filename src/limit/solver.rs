@@ -2,6 +2,7 @@
 
 use super::change::{
     Change, Permit, feed_unit, feed_word, limit_path_accel, round_feed_down, round_to_step,
+    set_rapid_share,
 };
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
@@ -233,7 +234,9 @@ impl<'m> Solver<'m> {
         let mut moved = base.clone();
         let mut load_at = |lever: SpeedLever, value: f64| {
             match lever {
-                SpeedLever::RapidPercent(_) => moved.rapid_factor = value / 100.0,
+                SpeedLever::RapidPercent(knob) => {
+                    set_rapid_share(self.machine, &mut moved, knob, value);
+                }
                 _ => moved.feed_mm_s = value / self.largest.feed,
             }
             self.load(case, &moved)
@@ -260,7 +263,7 @@ impl<'m> Solver<'m> {
         };
         match lever {
             SpeedLever::RapidPercent(knob) => {
-                let step = self.machine.controller.knobs.get(knob)?.step;
+                let step = self.machine.controller.knobs.get(knob)?.percent_step();
                 let percent = round_to_step(value, step);
                 trial.rapid_percent = (percent > 0.0).then_some((knob, percent));
                 trial.rapid_percent?;

@@ -114,6 +114,7 @@ fn levers_joined(solver: &Solver<'_>, mv: &Move, permit: &Permit) -> Levers {
     // No knob for which the axes stand.
     let permit = Permit {
         stands: false,
+        line_before: false,
         ..*permit
     };
     let mut found = levers(solver.machine, solver.how, mv, &permit);

@@ -47,6 +47,25 @@ impl Knob {
         }
     }
 
+    /// Smallest step of a share of the rapid speed, %.
+    #[must_use]
+    pub fn percent_step(&self) -> f64 {
+        match self.unit {
+            KnobUnit::Share => self.step * 100.0,
+            _ => self.step,
+        }
+    }
+
+    /// The value that leaves a share of the rapid speed, given in %.
+    #[must_use]
+    pub fn of_percent(&self, percent: f64) -> f64 {
+        match self.unit {
+            // The quotient of two whole numbers is the decimal number that is written.
+            KnobUnit::Share => (percent * 10.0).round() / 1000.0,
+            _ => percent,
+        }
+    }
+
     /// Whether it may be written to lower an acceleration.
     #[must_use]
     pub fn lowers_accel(&self) -> bool {
@@ -72,6 +91,8 @@ pub enum KnobTarget {
     RapidSpeed,
     /// Speed of all moves.
     Speed,
+    /// Share of the speed of all moves, as an override sets it while they run.
+    SpeedShare,
     /// Share of each hill of speed that is cruised at least.
     CruiseRatio,
 }

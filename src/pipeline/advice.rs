@@ -79,6 +79,8 @@ impl<'m> Adviser<'m> {
             as_feed: per_minute || apart,
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
+            line_before: true,
+            apart: false,
             stop_word: false,
             unsplit: None,
             reason: "",
@@ -115,7 +117,10 @@ impl<'m> Adviser<'m> {
             (knob, least.fold(f64::INFINITY, f64::min))
         };
         let settings = [
-            change.rapid_percent,
+            change.rapid_percent.map(|(knob, percent)| {
+                let data = self.machine.controller.knobs.get(knob);
+                (knob, data.map_or(percent, |data| data.of_percent(percent)))
+            }),
             change.accel.map(least),
             change.speed.map(least),
         ];

@@ -3,7 +3,7 @@
 use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
-use crate::machine::{CornerRule, Knob, Machine, PathMode, Spindle, SpindleWait};
+use crate::machine::{CornerRule, KnobTarget, Machine, PathMode, Spindle, SpindleWait};
 use crate::power::lowest_share;
 
 /// How the spindle counts.
@@ -105,12 +105,19 @@ fn ways_conditions(paths: &[Options]) -> impl Iterator<Item = String> {
 
 /// Which outputs act on the motion.
 fn output_conditions(machine: &Machine) -> impl Iterator<Item = String> {
-    let outputs = machine.controller.knobs.iter().filter_map(Knob::output);
-    outputs.map(|number| {
-        format!(
-            "analog output {number} sets the share of all accelerations (M68 E{number}), and is 1 \
-             or was never set before the program"
-        )
+    let knobs = machine.controller.knobs.iter();
+    knobs.filter_map(|knob| {
+        let number = knob.output()?;
+        let share = match knob.target {
+            KnobTarget::SpeedShare => {
+                format!("the speed of all moves (M67 E{number} under M52 P1)")
+            }
+            _ => format!("all accelerations (M68 E{number})"),
+        };
+        Some(format!(
+            "analog output {number} sets the share of {share}, and is 1 or was never set before \
+             the program"
+        ))
     })
 }
 

@@ -76,8 +76,10 @@ pub(super) fn describe(
     }
     if let Some((knob, percent)) = change.rapid_percent {
         names.push(knob_name(machine, knob));
-        row.value_before = Some(mv.rapid_factor * 100.0);
-        row.value_after = Some(percent);
+        let data = machine.controller.knobs.get(knob);
+        let value = |percent: f64| data.map_or(percent, |data| data.of_percent(percent));
+        row.value_before = Some(value(mv.rapid_factor * 100.0));
+        row.value_after = Some(value(percent));
     }
     if let Some((knob, values)) = &change.speed {
         names.push(knob_name(machine, *knob));

@@ -32,6 +32,8 @@ pub(super) struct Entry {
     pub(super) steps: Vec<Step>,
     /// The certificate holds with it and without it, where it may be skipped.
     pub(super) skips: bool,
+    /// What is changed in it is put back right after it.
+    pub(super) apart: bool,
     /// Corners are taken in one way each time that it runs.
     pub(super) one_corner: bool,
     /// Where no F is in force, it may not have one either: another block cannot.
@@ -65,6 +67,7 @@ impl Entry {
             facts: Facts::default(),
             steps: Vec::new(),
             skips: false,
+            apart: false,
             one_corner: true,
             without_feed: false,
             marked: false,
@@ -250,6 +253,8 @@ impl Entry {
             as_feed: reasons == [None; 3],
             exact_stop: may_stop,
             stands: !facts.compensated && (stops || blended_rapid && may_stop),
+            line_before: !facts.compensated,
+            apart: self.apart,
             stop_word: reasons[0].is_none()
                 && self.moves == 1
                 && !self.block.words.is_empty()

@@ -34,6 +34,7 @@ mod interval;
 mod joining;
 mod knob;
 mod ladder;
+mod late;
 mod line;
 mod model;
 mod motion;

@@ -43,3 +43,8 @@ pub(super) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Opt
     lines.extend(machine.controller.knobs.get(index)?.wait.clone());
     Some(lines)
 }
+
+/// The line that sets an analog output of `LinuxCNC` as soon as the axes stand.
+pub(super) fn at_once(number: u16, value: f64) -> String {
+    format!("M68 E{number} Q{}", decimal(value, false))
+}

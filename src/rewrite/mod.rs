@@ -16,6 +16,7 @@ mod block;
 mod contour;
 mod knob_line;
 mod number;
+mod placed;
 mod rapid_mark;
 mod single;
 mod state;

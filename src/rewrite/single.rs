@@ -9,9 +9,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::number::{decimal, rounded, with_blanks};
+use super::placed;
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Lathe, Machine};
+use crate::machine::{ALL_AXES, AXES, AxisValues, Family, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
@@ -175,19 +176,22 @@ impl<'m> Singles<'m> {
         if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
             return Err("all its moves follow from each other");
         }
-        let repeats = |word: &Word| matches!(word.letter, b'K' | b'L') && word.value != 1.0;
-        if !of.modal.absolute || of.block.words.iter().any(repeats) {
+        let ways = placed::ways(of.steps);
+        if !of.modal.absolute {
+            return self.place_increments(of, &ways, returns_to_r, place);
+        }
+        if of.block.words.iter().any(placed::repeats) {
             return Err("its places are increments, or it repeats");
         }
         let mut lines = Lines::new(of, &place);
-        let mut across = AxisSet::default();
-        of.modal.plane[..2]
-            .iter()
-            .for_each(|axis| across.insert(*axis));
-        let way = of.steps.iter().find_map(as_move);
-        let way = way.filter(|mv| mv.kind == MoveKind::Rapid && mv.moving.0 & !across.0 == 0);
-        let way = way.ok_or("its first move is not the way to the hole")?;
-        self.one_move(way, of, &place, &mut lines)?;
+        let way = ways.first().map(Vec::as_slice).unwrap_or_default();
+        let way = placed::before(way, of.modal.plane, returns_to_r && self.may_write_out(of.number).is_err());
+        if way.is_empty() {
+            return Err("its first move is not the way to the hole");
+        }
+        for mv in way {
+            self.one_move(mv, of, &place, &mut lines)?;
+        }
         let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
         let mut edits = Vec::new();
         let first = of.block.words.first().map_or(0, |word| word.span.start);
@@ -210,6 +214,39 @@ impl<'m> Singles<'m> {
             return Err("its words overlap");
         }
         lines.out.extend_from_slice(lines.line_end);
+        Ok(lines.finish(of.text))
+    }
+
+    /// The same of a block of increments, once for each of its repetitions: it goes on from
+    /// where the ways have led, at the level of R.
+    fn place_increments(
+        &self,
+        of: &CycleBlock<'_>,
+        ways: &[Vec<&Move>],
+        returns_to_r: bool,
+        place: impl Fn(&AxisValues) -> AxisValues,
+    ) -> Result<Vec<u8>, &'static str> {
+        const WHY: &str = "its places are increments, or it repeats";
+        let words = &of.block.words;
+        let count = words.iter().find(|word| placed::repeats(word));
+        let count = count.map_or(1.0, |word| word.value);
+        let has = |letter| words.iter().any(|word| word.letter == letter);
+        let whole = of.cycle_word.is_some() && has(b'R') && returns_to_r;
+        if !whole || ways.len() as f64 != count || ways.iter().any(Vec::is_empty) {
+            return Err(WHY);
+        }
+        let again = placed::again(of).ok_or(WHY)?;
+        let mut lines = Lines::new(of, &place);
+        for way in ways {
+            let start = way.first().map_or([0.0; AXES], |mv| mv.start);
+            lines.at = place(&start).map(rounded);
+            // What leads there counts by increments too.
+            lines.motion = None;
+            for mv in way {
+                self.one_move(mv, of, &place, &mut lines)?;
+            }
+            lines.push(&again);
+        }
         Ok(lines.finish(of.text))
     }
 

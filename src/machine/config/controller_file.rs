@@ -345,6 +345,7 @@ pub(crate) enum TargetName {
     Accel,
     RapidSpeed,
     Speed,
+    SpeedShare,
     CruiseRatio,
 }
 

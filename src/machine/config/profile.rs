@@ -303,6 +303,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         TargetName::Accel => KnobTarget::Accel,
         TargetName::RapidSpeed => KnobTarget::RapidSpeed,
         TargetName::Speed => KnobTarget::Speed,
+        TargetName::SpeedShare => KnobTarget::SpeedShare,
         TargetName::CruiseRatio => KnobTarget::CruiseRatio,
     };
     let unit = match knob.unit? {
@@ -315,8 +316,9 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     let argument = argument(findings, knob)?;
     let output = argument == KnobArgument::Output(0);
     let suits = match target {
-        KnobTarget::Accel if output => unit == KnobUnit::Share,
+        KnobTarget::Accel | KnobTarget::SpeedShare if output => unit == KnobUnit::Share,
         _ if output => false,
+        KnobTarget::SpeedShare => false,
         KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
             matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
         }
@@ -333,7 +335,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         let message = "`unit` does not go with `target`";
         let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
                     \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
-                    cruise-ratio is a \"share\", as is accel with argument = \"output\"";
+                    cruise-ratio is a \"share\", as are accel and speed-share with argument = \"output\"";
         findings.error("machine-kind", &table.span, message, Some(help.to_owned()));
     }
     let text = knob.word.as_ref()?;
@@ -341,12 +343,17 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         .wait
         .as_deref()
         .is_some_and(|it| it.starts_with("M66 "));
-    if output && !(text.value == "M68" && waits) {
+    let read_back = match target {
+        KnobTarget::SpeedShare => text.value == "M67" && knob.wait.is_none(),
+        _ => text.value == "M68" && waits,
+    };
+    if output && !read_back {
         let message = format!(
             "\"{}\" with argument = \"output\" is not read back",
             text.value
         );
-        let help = Some("\"M68\" with wait = \"M66 P0 L0\"".to_owned());
+        let help = "\"M68\" with wait = \"M66 P0 L0\" for accel, \"M67\" alone for speed-share";
+        let help = Some(help.to_owned());
         findings.error("machine-word", &text.span, message, help);
         return None;
     }
@@ -355,7 +362,10 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
             KnobTarget::Accel => Some("SET_VELOCITY_LIMIT ACCEL="),
             KnobTarget::Speed => Some("SET_VELOCITY_LIMIT VELOCITY="),
             KnobTarget::CruiseRatio => Some("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO="),
-            KnobTarget::FeedAccel | KnobTarget::RapidAccel | KnobTarget::RapidSpeed => None,
+            KnobTarget::FeedAccel
+            | KnobTarget::RapidAccel
+            | KnobTarget::RapidSpeed
+            | KnobTarget::SpeedShare => None,
         };
         if read != Some(text.value.as_str()) || unit == KnobUnit::Percent {
             let message = format!(

@@ -30,6 +30,9 @@ use super::window::{Node, Window};
 pub(super) const RENEWED: usize = 5;
 /// Cycles that an element lasts at least.
 const CYCLES_MIN: f64 = 1.02;
+/// Cycles after which a change of pace acts: HAL hands it on within one, and the planner takes
+/// it in the next.
+pub(crate) const LATE_CYCLES: f64 = 2.0;
 /// A reversal within two degrees is a stop.
 const REVERSAL2: f64 = 0.034_906_585_039_886_59 * 0.034_906_585_039_886_59;
 
@@ -110,7 +113,11 @@ impl<T: Copy> LinuxCnc<T> {
             self.pending = Some(next);
             return;
         };
-        match self.way(&mut before, &mut next) {
+        let way = self.way(&mut before, &mut next);
+        if before.element.pace != next.element.pace {
+            self.change_pace(&before, &mut next, &way);
+        }
+        match way {
             Way::Stop => {
                 before.rests = true;
                 self.hand_over(&before, window, false);
@@ -131,6 +138,20 @@ impl<T: Copy> LinuxCnc<T> {
         }
         self.pending = Some(next);
         self.spare = Some(before);
+    }
+
+    /// The pace changes at a joint that is not a stop: up to there the next element is seen
+    /// at the pace before. A lower one comes into force after some cycles, in which the
+    /// motion may still speed up.
+    fn change_pace(&self, before: &Pending<T>, next: &mut Pending<T>, way: &Way) {
+        let joint_mm_s = match way {
+            Way::Stop | Way::Parabolic => return,
+            Way::Pass(speed) => *speed,
+            Way::Blend(fit) => fit.speed,
+        };
+        next.pace_before = before.element.pace;
+        let late_mm_s = joint_mm_s + LATE_CYCLES * self.cycle_s * next.accel();
+        next.lags = next.pace_before > next.element.pace && late_mm_s > next.run_speed();
     }
 
     /// An element that nothing has changed yet.
@@ -261,7 +282,7 @@ impl<T: Copy> LinuxCnc<T> {
         if length_mm > 0.0 {
             max = max.min(length_mm / (self.cycle_s * CYCLES_MIN));
         }
-        let top = max.min(before.run_speed().max(next.run_speed()));
+        let top = max.min(before.run_speed().max(next.seen_speed()));
         let piece = Piece::Blend(Blend {
             lead_mm,
             radius_mm: fit.radius,
@@ -333,8 +354,9 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let mut entry2 = of.entry2.min(max2);
         if last {
-            // With nothing after it F counts.
-            entry2 = entry2.min(accel * of.length_mm).min(top2);
+            // With nothing after it F counts, whatever the pace.
+            let asked = (of.element.feed_mm_s / of.element.pace).min(max_speed);
+            entry2 = entry2.min(accel * of.length_mm).min(asked * asked);
         }
         let entry2 = if entry2 > 0.0 {
             entry2.min(self.last_max2)
@@ -347,12 +369,14 @@ impl<T: Copy> LinuxCnc<T> {
             next: None,
             piece: of.piece(),
             // With limits of jerk it is not modelled.
-            certain: !of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY,
+            certain: !of.lags && (!of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY),
             rests: of.rests,
             overlap_s: of.overlap_s(last),
             overlaps: of.overlaps(),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
+        let seen = of.seen_speed().min(max_speed);
+        node.seen2 = seen * seen;
         node.jerk = of.element.jerk_mm_s3;
         node.tail2 = unseen * of.length_mm;
         self.push_node(node, max2, window);

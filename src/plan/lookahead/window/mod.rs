@@ -48,6 +48,8 @@ pub(super) struct Node<P> {
     pub length: f64,
     /// Largest speed inside, squared.
     pub top2: f64,
+    /// The same as it is seen from the element before it, squared.
+    pub seen2: f64,
     /// Acceleration along it.
     pub accel: f64,
     /// Jerk along it; infinite: no limit.
@@ -88,6 +90,7 @@ impl<P> Node<P> {
         Self {
             length,
             top2: lower(top2, UNLIMITED),
+            seen2: lower(top2, UNLIMITED),
             accel,
             jerk: f64::INFINITY,
             smooth_accel: accel,
@@ -387,10 +390,10 @@ impl<P: Copy> Window<P> {
         if self.ready == 0 {
             return None;
         }
-        let (end2, next_top2) = match self.nodes.get(1) {
+        let (end2, seen2) = match self.nodes.get(1) {
             Some(next) => {
                 let cap2 = lower(next.e2, self.rest2(1));
-                (lower(cap2, next.hill2), next.top2)
+                (lower(cap2, next.hill2), next.seen2)
             }
             None => (0.0, 0.0),
         };
@@ -403,7 +406,7 @@ impl<P: Copy> Window<P> {
         let (ramp2, mut top2) = (node.ramp2(), lower(node.hill2, node.top2));
         let end2 = lower(end2, start2 + ramp2);
         let most2 = if node.overruns {
-            lower(top2, next_top2)
+            lower(top2, seen2)
         } else {
             top2
         };
