@@ -334,8 +334,7 @@ impl<'m> Interpreter<'m> {
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
         }
-        self.control.refuse_too_early(&mut run, before);
-        self.control.pace_moves(&mut run, before);
+        self.control.let_knobs_act(&mut run, before);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;

@@ -95,9 +95,16 @@ impl Control<'_> {
         true
     }
 
+    /// What outputs do to the moves of a block.
+    #[inline]
+    pub(super) fn let_knobs_act(&mut self, run: &mut Run<'_, '_>, before: usize) {
+        self.refuse_too_early(run, before);
+        self.pace_moves(run, before);
+    }
+
     /// Gives the moves of a block the share of their speed.
     #[inline]
-    pub(super) fn pace_moves(&mut self, run: &mut Run<'_, '_>, before: usize) {
+    fn pace_moves(&mut self, run: &mut Run<'_, '_>, before: usize) {
         // M72 may have put it back too.
         self.knobs.adaptive = self.switches.adaptive_feed;
         if !self.knobs.is_paced() {

@@ -1,7 +1,9 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
 use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
-use crate::machine::{AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode};
+use crate::machine::{
+    AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
+};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.

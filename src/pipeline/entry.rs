@@ -322,7 +322,7 @@ impl Entry {
                 "it may be skipped (block delete)",
             ),
             (
-                facts.boundary,
+                facts.boundary && facts.tool_words[1].is_none(),
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),

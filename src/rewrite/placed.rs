@@ -1,21 +1,192 @@
 //! The way to the holes of a canned cycle, and the block that goes on from there.
 
-use super::single::CycleBlock;
+use std::collections::BTreeMap;
+
+use super::number::rounded;
+use super::single::{CycleBlock, Lines, Singles, TURNING};
+use crate::edit::{Edit, apply};
 use crate::interpret::{Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AxisSet};
+use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues};
+use crate::source::split_line_end;
 use crate::syntax::Word;
 
 /// Letters that a block may say more than once without doing more.
 const AGAIN: &[u8] = b"GXYZUVWRPQFNIJ";
 
+impl Singles<'_> {
+    /// The block with its way to the hole on a line before it, and with the words of the
+    /// cycle that such a line ends: `held` gives the last of each in this series of blocks.
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    pub fn place_before(
+        &self,
+        of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        returns_to_r: bool,
+        place: impl Fn(&AxisValues) -> AxisValues,
+    ) -> Result<Vec<u8>, &'static str> {
+        if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
+            return Err("all its moves follow from each other");
+        }
+        let ways = ways(of.steps);
+        if !of.modal.absolute {
+            return self.place_increments(of, &ways, returns_to_r, place);
+        }
+        if of.block.words.iter().any(repeats) {
+            return Err("its places are increments, or it repeats");
+        }
+        let mut lines = Lines::new(of, &place);
+        let way = ways.first().map(Vec::as_slice).unwrap_or_default();
+        let way = before(way, of.modal.plane);
+        if way.is_empty() {
+            return Err("its first move is not the way to the hole");
+        }
+        lines.out.extend_from_slice(distance(of));
+        for mv in way {
+            self.one_move(mv, of, &place, &mut lines)?;
+        }
+        let level = self.lacks_level(of, returns_to_r).then_some("G99 ");
+        self.restate(of, held, level, &mut lines)?;
+        Ok(lines.finish(of.text))
+    }
+
+    /// The block with all rapids before it, down to R too, and with that back to the level
+    /// from which it began as lines of their own.
+    pub(super) fn place_around(
+        &self,
+        of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        returns_to_r: bool,
+        place: impl Fn(&AxisValues) -> AxisValues,
+    ) -> Result<Vec<u8>, &'static str> {
+        const WHY: &str = "its rapids are not those before and after it";
+        if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
+            return Err("all its moves follow from each other");
+        }
+        let ways = ways(of.steps);
+        if !of.modal.absolute {
+            return self.place_increments(of, &ways, returns_to_r, place);
+        }
+        let (way, back) = match ways.as_slice() {
+            [way] => (way, None),
+            [way, back] if !returns_to_r && back.len() == 1 => (way, back.first()),
+            _ => return Err(WHY),
+        };
+        if way.is_empty() || of.block.words.iter().any(repeats) {
+            return Err(WHY);
+        }
+        let mut lines = Lines::new(of, &place);
+        lines.out.extend_from_slice(distance(of));
+        for mv in way {
+            self.one_move(mv, of, &place, &mut lines)?;
+        }
+        let back_to_r = back.is_some() || self.lacks_level(of, returns_to_r);
+        self.restate(of, held, back_to_r.then_some("G99 "), &mut lines)?;
+        if let Some(back) = back {
+            lines.at = place(&back.start).map(rounded);
+            lines.out.extend_from_slice(b"G98 ");
+            self.one_move(back, of, &place, &mut lines)?;
+        }
+        Ok(lines.finish(of.text))
+    }
+
+    /// The block with the words of the cycle that a line before it ends, and with the level
+    /// to return to.
+    fn restate(
+        &self,
+        of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        level: Option<&str>,
+        lines: &mut Lines<'_>,
+    ) -> Result<(), &'static str> {
+        let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
+        let mut edits = Vec::new();
+        let first = of.block.words.first().map_or(0, |word| word.span.start);
+        if of.cycle_word.is_none() {
+            edits.push(Edit::insert(
+                first,
+                format!("G{} ", f64::from(of.number) / 10.0),
+            ));
+        }
+        let mut words = of.block.words.iter();
+        let said = words.find(|word| word.letter == b'G' && word.value == 98.0);
+        match (level, said) {
+            (Some(level), Some(said)) => {
+                edits.push(Edit::replace(said.span, level.trim_ascii_end()));
+            }
+            (Some(level), None) => edits.push(Edit::insert(first, level)),
+            (None, _) => {}
+        }
+        for (_, word) in held.iter().filter(|(letter, _)| !has(**letter)) {
+            let mut text = vec![b' '];
+            text.extend_from_slice(word);
+            edits.push(Edit::insert(of.block.words_end, text));
+        }
+        let (text, _) = split_line_end(of.text);
+        if !apply(text, &mut edits, &mut lines.out) {
+            return Err("its words overlap");
+        }
+        lines.out.extend_from_slice(lines.line_end);
+        Ok(())
+    }
+
+    /// The same of a block of increments, once for each of its repetitions: it goes on from
+    /// where the ways have led, at the level of R.
+    fn place_increments(
+        &self,
+        of: &CycleBlock<'_>,
+        ways: &[Vec<&Move>],
+        returns_to_r: bool,
+        place: impl Fn(&AxisValues) -> AxisValues,
+    ) -> Result<Vec<u8>, &'static str> {
+        const WHY: &str = "its places are increments, or it repeats";
+        let words = &of.block.words;
+        let count = words.iter().find(|word| repeats(word));
+        let count = count.map_or(1.0, |word| word.value);
+        let has = |letter| words.iter().any(|word| word.letter == letter);
+        let whole = of.cycle_word.is_some() && has(b'R') && returns_to_r;
+        if !whole || ways.len() as f64 != count || ways.iter().any(Vec::is_empty) {
+            return Err(WHY);
+        }
+        let again = again(of).ok_or(WHY)?;
+        let mut lines = Lines::new(of, &place);
+        for way in ways {
+            let start = way.first().map_or([0.0; AXES], |mv| mv.start);
+            lines.at = place(&start).map(rounded);
+            // What leads there counts by increments too.
+            lines.motion = None;
+            lines.out.extend_from_slice(distance(of));
+            for mv in way {
+                self.one_move(mv, of, &place, &mut lines)?;
+            }
+            lines.push(&again);
+        }
+        Ok(lines.finish(of.text))
+    }
+}
+
+/// G90 or G91 where the block says so: what is gone before it obeys it too.
+fn distance(of: &CycleBlock<'_>) -> &'static [u8] {
+    let says = |value: f64| {
+        let mut words = of.block.words.iter();
+        words.any(|word| word.letter == b'G' && word.value == value)
+    };
+    match (says(90.0), says(91.0)) {
+        (true, false) => b"G90 ",
+        (false, true) => b"G91 ",
+        _ => b"",
+    }
+}
+
 /// Whether a word has a cycle repeated.
-pub(super) fn repeats(word: &Word) -> bool {
+fn repeats(word: &Word) -> bool {
     matches!(word.letter, b'K' | b'L') && word.value != 1.0
 }
 
 /// The rapids before each run of other moves: those that lead to a hole, and those that lead
 /// on from it.
-pub(super) fn ways(steps: &[Step]) -> Vec<Vec<&Move>> {
+fn ways(steps: &[Step]) -> Vec<Vec<&Move>> {
     let mut ways = vec![Vec::new()];
     let mut leads = true;
     for step in steps {
@@ -34,16 +205,12 @@ pub(super) fn ways(steps: &[Step]) -> Vec<Vec<&Move>> {
     ways
 }
 
-/// What of a way may be gone before its block: up to R and to the hole; down to R only
-/// where the cycle comes back to R. Where it begins in the plane, no more is gone than need
-/// be, unless `all` is asked for.
-pub(super) fn before<'w, 'm>(way: &'w [&'m Move], plane: [usize; 3], all: bool) -> &'w [&'m Move] {
+/// What of a way may be gone before its block, whatever level it returns to: up to R and to
+/// the hole.
+fn before<'w, 'm>(way: &'w [&'m Move], plane: [usize; 3]) -> &'w [&'m Move] {
     let [first, second, normal] = plane;
     let across = AxisSet(1 << first | 1 << second);
     let in_plane = |mv: &&Move| mv.moving.0 & !across.0 == 0;
-    if all {
-        return way;
-    }
     match way {
         [to_hole, ..] if in_plane(to_hole) => &way[..1],
         [up, to_hole, ..] if up.end[normal] > up.start[normal] && in_plane(to_hole) => &way[..2],
@@ -53,7 +220,7 @@ pub(super) fn before<'w, 'm>(way: &'w [&'m Move], plane: [usize; 3], all: bool) 
 
 /// The words of a block of increments that does the same from its hole, at the level of R;
 /// `None` where it does more than that.
-pub(super) fn again(of: &CycleBlock<'_>) -> Option<String> {
+fn again(of: &CycleBlock<'_>) -> Option<String> {
     let [first, second, _] = of.modal.plane;
     let letters = [first, second].map(|axis| ALL_AXES[axis].letter());
     let mut words = Vec::new();

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::number::{decimal, rounded, with_blanks};
-use super::placed;
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
 use crate::machine::{ALL_AXES, AXES, AxisValues, Family, Language, Lathe, Machine};
@@ -20,7 +19,7 @@ use crate::units::SECONDS_PER_MINUTE;
 /// Cycles of plain moves, times ten: drilling, pecking, counterboring and boring.
 const PLAIN: [u16; 7] = [730, 810, 820, 830, 850, 860, 890];
 /// Turning cycles along a contour of `LinuxCNC`, times ten.
-const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
+pub(super) const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
 /// Drilling and boring along X of Fanuc's lathes, times ten; along Z they have the numbers of
 /// milling machines.
 const ACROSS: [u16; 2] = [870, 890];
@@ -56,7 +55,7 @@ pub struct CycleBlock<'a> {
 /// Writes blocks of cycles out.
 #[derive(Debug, Clone)]
 pub struct Singles<'m> {
-    language: &'m Language,
+    pub(super) language: &'m Language,
     /// The block at which the axes stop, where there is one.
     stop: Option<String>,
 }
@@ -65,9 +64,9 @@ pub struct Singles<'m> {
 pub(super) struct Lines<'a> {
     pub(super) out: Vec<u8>,
     pub(super) line_end: &'a [u8],
-    at: AxisValues,
+    pub(super) at: AxisValues,
     /// The last motion word that was written.
-    motion: Option<Motion>,
+    pub(super) motion: Option<Motion>,
     /// The last line is a dwell.
     stopped: bool,
     /// The feed in force, mm/s, as soon as one is known.
@@ -86,17 +85,29 @@ impl<'m> Singles<'m> {
         }
     }
 
+    /// Whether the language is that of Fanuc and its relatives.
+    #[must_use]
+    pub fn is_iso(&self) -> bool {
+        self.language.family == Family::Iso
+    }
+
     /// The lines that do what a block of a canned cycle does; `place` gives a place of the
-    /// machine in coordinates and units of the program.
+    /// machine in coordinates and units of the program. Of a tap these are the positioning
+    /// moves before and after it; `held` and `returns_to_r` as in [`Self::place_before`].
     ///
     /// # Errors
     /// Why it cannot be said in single blocks.
     pub fn write_out(
         &self,
         of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        returns_to_r: bool,
         place: impl Fn(&AxisValues) -> AxisValues,
     ) -> Result<Vec<u8>, &'static str> {
-        self.may_write_out(of.number)?;
+        if let Err(why) = self.may_write_out(of.number) {
+            let around = self.place_around(of, held, returns_to_r, place);
+            return around.map_err(|_| why);
+        }
         let lathe = self.language.dialect.lathe.is_some();
         if lathe && OUT_FASTER.contains(&of.number) && of.modal.feed_mode != FeedMode::PerMinute {
             return Err("its way out is faster than its F, which is per revolution");
@@ -161,97 +172,8 @@ impl<'m> Singles<'m> {
         Ok(())
     }
 
-    /// The block with its way to the hole on a line before it, and with the words of the
-    /// cycle that such a line ends: `held` gives the last of each in this series of blocks.
-    ///
-    /// # Errors
-    /// Why that cannot be.
-    pub fn place_before(
-        &self,
-        of: &CycleBlock<'_>,
-        held: &BTreeMap<u8, Vec<u8>>,
-        returns_to_r: bool,
-        place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
-        if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
-            return Err("all its moves follow from each other");
-        }
-        let ways = placed::ways(of.steps);
-        if !of.modal.absolute {
-            return self.place_increments(of, &ways, returns_to_r, place);
-        }
-        if of.block.words.iter().any(placed::repeats) {
-            return Err("its places are increments, or it repeats");
-        }
-        let mut lines = Lines::new(of, &place);
-        let way = ways.first().map(Vec::as_slice).unwrap_or_default();
-        let way = placed::before(way, of.modal.plane, returns_to_r && self.may_write_out(of.number).is_err());
-        if way.is_empty() {
-            return Err("its first move is not the way to the hole");
-        }
-        for mv in way {
-            self.one_move(mv, of, &place, &mut lines)?;
-        }
-        let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
-        let mut edits = Vec::new();
-        let first = of.block.words.first().map_or(0, |word| word.span.start);
-        if of.cycle_word.is_none() {
-            edits.push(Edit::insert(
-                first,
-                format!("G{} ", f64::from(of.number) / 10.0),
-            ));
-        }
-        if self.lacks_level(of, returns_to_r) {
-            edits.push(Edit::insert(first, "G99 "));
-        }
-        for (_, word) in held.iter().filter(|(letter, _)| !has(**letter)) {
-            let mut text = vec![b' '];
-            text.extend_from_slice(word);
-            edits.push(Edit::insert(of.block.words_end, text));
-        }
-        let (text, _) = split_line_end(of.text);
-        if !apply(text, &mut edits, &mut lines.out) {
-            return Err("its words overlap");
-        }
-        lines.out.extend_from_slice(lines.line_end);
-        Ok(lines.finish(of.text))
-    }
-
-    /// The same of a block of increments, once for each of its repetitions: it goes on from
-    /// where the ways have led, at the level of R.
-    fn place_increments(
-        &self,
-        of: &CycleBlock<'_>,
-        ways: &[Vec<&Move>],
-        returns_to_r: bool,
-        place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
-        const WHY: &str = "its places are increments, or it repeats";
-        let words = &of.block.words;
-        let count = words.iter().find(|word| placed::repeats(word));
-        let count = count.map_or(1.0, |word| word.value);
-        let has = |letter| words.iter().any(|word| word.letter == letter);
-        let whole = of.cycle_word.is_some() && has(b'R') && returns_to_r;
-        if !whole || ways.len() as f64 != count || ways.iter().any(Vec::is_empty) {
-            return Err(WHY);
-        }
-        let again = placed::again(of).ok_or(WHY)?;
-        let mut lines = Lines::new(of, &place);
-        for way in ways {
-            let start = way.first().map_or([0.0; AXES], |mv| mv.start);
-            lines.at = place(&start).map(rounded);
-            // What leads there counts by increments too.
-            lines.motion = None;
-            for mv in way {
-                self.one_move(mv, of, &place, &mut lines)?;
-            }
-            lines.push(&again);
-        }
-        Ok(lines.finish(of.text))
-    }
-
     /// Whether a block returns to R only because an earlier block says so.
-    fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
+    pub(super) fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
         let says = |word: &Word| word.letter == b'G' && [98.0, 99.0].contains(&word.value);
         let iso = self.language.family == Family::Iso && self.language.dialect.lathe.is_none();
         iso && returns_to_r && !of.block.words.iter().any(says)
@@ -315,7 +237,7 @@ impl<'m> Singles<'m> {
         }
     }
 
-    fn one_move(
+    pub(super) fn one_move(
         &self,
         mv: &Move,
         of: &CycleBlock<'_>,

@@ -60,7 +60,7 @@ fn each_rapid_has_its_own_share() {
     let text = rig.fits("G64 P0.01\nG0 X400\nX500 Y100\nX100\nG1 X101 F100\nM2\n");
     assert_eq!(
         text,
-        "G64 P0.01\nG0 X400\nM52 P1\nM67 E1 Q0.6\nX500 Y100\nM67 E1 Q1\nX100\nG1 X101 F100\n\
+        "G64 P0.01\nG0 X400\nM52 P1\nM67 E1 Q0.599\nX500 Y100\nM67 E1 Q1\nX100\nG1 X101 F100\n\
          M68 E1 Q1\nM52 P0\nM2\n"
     );
 }
@@ -71,18 +71,22 @@ fn a_share_of_the_program_comes_back() {
     let text = HAL.fits("M52 P1\nM67 E1 Q0.9\nG0 X400\nG1 X401 F100\nG0 X401.5\nM2\n");
     assert_eq!(
         text,
-        "M52 P1\nM67 E1 Q0.9\nM67 E1 Q0.8\nG0 X400\nM67 E1 Q0.9\nG1 X401 F100\nG0 X401.5\nM68 E1 Q0.9\nM2\n"
+        "M52 P1\nM67 E1 Q0.9\nM67 E1 Q0.8\nG0 X400\nM67 E1 Q0.9\nG1 X401 F100\nG0 X401.5\nM2\n"
     );
 }
 
 /// Where lines run again and again a feed costs less than words for each run.
 #[test]
 fn a_line_that_runs_again_becomes_a_feed() {
-    let text = HAL.fits("G64\nF100\no1 repeat [3]\nG0 X400\nG1 X401\nG0 X0\nG1 X1\no1 endrepeat\nM2\n");
-    assert!(!text.contains("M67") && text.contains("G1 X400 F"), "{text}");
+    let text =
+        HAL.fits("G64\nF100\no1 repeat [3]\nG0 X400\nG1 X401\nG0 X0\nG1 X1\no1 endrepeat\nM2\n");
+    assert!(
+        !text.contains("M67") && text.contains("G1 X400 F"),
+        "{text}"
+    );
     // G28 cannot become one.
-    let text = HAL.fits("F100\no1 repeat [2]\nG28 X400\nG1 X400\no1 endrepeat\nM2\n");
-    let words = "M52 P1\nM67 E1 Q0.8\nG28 X400\nM68 E1 Q1\nM52 P0\n";
+    let text = HAL.fits("G1 F100 X1\no1 repeat [2]\nG0 G28\nG1 X400\no1 endrepeat\nM2\n");
+    let words = "M52 P1\nM67 E1 Q0.8\nG0 G28\nM68 E1 Q1\nM52 P0\n";
     assert!(text.contains(words), "{text}");
 }
 
@@ -99,18 +103,34 @@ fn under_compensation_a_rapid_is_no_other_way_lowered() {
 fn a_share_is_followed() {
     let free = Rig { peak_w: 1e6, ..HAL };
     for (program, duration_s, peak_w) in [
-        ("M52 P1\nM67 E1 Q0.5\nG0 X400\nM2\n", 1.66, 625.0),
+        ("G61.1\nM52 P1\nM67 E1 Q0.5\nG0 X400\nM2\n", 1.66, 625.0),
         // M68 sets it too, and stops the axes once more.
-        ("M52 P1\nM68 E1 Q0.5\nG0 X400\nM2\n", 1.67, 625.0),
+        ("G61.1\nM52 P1\nM68 E1 Q0.5\nG0 X400\nM2\n", 1.67, 625.0),
         // Another output, or none that is switched on, changes nothing.
-        ("M52 P1\nM67 E0 Q0.5\nG0 X400\nM2\n", 0.91, 1250.0),
-        ("M67 E1 Q0.5\nG0 X400\nM2\n", 0.9, 1250.0),
-        ("M52 P1\nM67 E1 Q0.5\nM52 P0\nG0 X400\nM2\n", 0.92, 1250.0),
+        ("G61.1\nM52 P1\nM67 E0 Q0.5\nG0 X400\nM2\n", 0.91, 1250.0),
+        ("G61.1\nM67 E1 Q0.5\nG0 X400\nM2\n", 0.9, 1250.0),
+        (
+            "G61.1\nM52 P1\nM67 E1 Q0.5\nM52 P0\nG0 X400\nM2\n",
+            0.92,
+            1250.0,
+        ),
         // It waits for a move that moves.
-        ("M52 P1\nM67 E1 Q0.5\nG0 X0\nG4 P1\nG0 X400\nM2\n", 2.66, 625.0),
+        (
+            "G61.1\nM52 P1\nM67 E1 Q0.5\nG0 X0\nG4 P1\nG0 X400\nM2\n",
+            2.66,
+            625.0,
+        ),
         // Of a feed the axes' limit counts: 0.5 m/s of 1 m/s, and half of that.
-        ("G61.1\nM52 P1\nM67 E1 Q0.5\nG1 X400 F60000\nM2\n", 1.66, 625.0),
-        ("G61.1\nM52 P1\nM67 E1 Q0.5\nG1 X400 F12000\nM2\n", 4.03, 250.0),
+        (
+            "G61.1\nM52 P1\nM67 E1 Q0.5\nG1 X400 F60000\nM2\n",
+            1.66,
+            625.0,
+        ),
+        (
+            "G61.1\nM52 P1\nM67 E1 Q0.5\nG1 X400 F12000\nM2\n",
+            4.03,
+            250.0,
+        ),
     ] {
         let (found_s, found_w) = figures(free, program);
         assert!((found_s - duration_s).abs() < 1e-6, "{program}: {found_s}");
@@ -130,7 +150,10 @@ fn a_share_changes_after_the_joint() {
     let first_s = 0.08 + 0.184 / 0.4;
     let (braking_mm, end_mm) = ((0.16 - 0.01) / 5.0, 0.01 / 5.0);
     let second_s = 0.3 / 2.5 + (0.2 - braking_mm - end_mm) / 0.1 + 0.1 / 2.5;
-    assert!((found_s - 0.01 - first_s - second_s).abs() < 1e-6, "{found_s}");
+    assert!(
+        (found_s - 0.01 - first_s - second_s).abs() < 1e-6,
+        "{found_s}"
+    );
     assert!((found_w - 1000.0).abs() < 1e-6, "{found_w}");
     // With F in its place it brakes before the joint.
     let (by_feed_s, _) = figures(free, "G64\nG1 X200 F24000\nX400 F6000\nM2\n");
@@ -151,7 +174,8 @@ fn words_that_leave_the_speed_open_are_refused() {
     let free = Rig { peak_w: 1e6, ..HAL };
     let share = "knob-value: the share of the speed is not from above 0 to 1";
     let held = "knob-value: the share of the speed changes under cutter compensation";
-    let under = |words: &str| format!("G1 F1000 X0 Y0\nG41.1 D6\nG1 X10 Y10\n{words}\nG1 X20\nG40\nM2\n");
+    let under =
+        |words: &str| format!("G1 F1000 X0 Y0\nG41.1 D6\nG1 X10 Y10\n{words}\nG1 X20\nG40\nM2\n");
     for (program, reason) in [
         ("M67 E1 Q0\nG0 X400\nM2\n".to_owned(), share),
         ("M67 E1 Q1.5\nG0 X400\nM2\n".to_owned(), share),
@@ -181,12 +205,18 @@ fn the_machine_file_says_what_is_wired() {
             "schema = 1\nname = \"m\"\ncontroller = \"linuxcnc\"\n[converter]\npeak_power_w = 1000\n{outputs}\
              [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n"
         );
-        let found = format!("{:?}", Machine::from_toml("m.toml", &text).expect_err("a mistake"));
+        let found = format!(
+            "{:?}",
+            Machine::from_toml("m.toml", &text).expect_err("a mistake")
+        );
         assert!(found.contains(reason), "{found}");
     }
     let text = "schema = 1\nname = \"m\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 1000\n[outputs]\n\
                 speed = 1\n[axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n";
-    let found = format!("{:?}", Machine::from_toml("m.toml", text).expect_err("a mistake"));
+    let found = format!(
+        "{:?}",
+        Machine::from_toml("m.toml", text).expect_err("a mistake")
+    );
     assert!(
         found.contains("the controller `iso` has no word for an output that acts on the speed"),
         "{found}"

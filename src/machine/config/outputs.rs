@@ -42,7 +42,12 @@ pub(crate) fn take(
     if acceleration.is_none() && speed.is_none() {
         let message = "no output is named".to_owned();
         let help = "acceleration = 0, or speed = 1: the number of the output";
-        findings.error("machine-missing", &table.span, message, Some(help.to_owned()));
+        findings.error(
+            "machine-missing",
+            &table.span,
+            message,
+            Some(help.to_owned()),
+        );
     }
     if let (Some(one), Some(other)) = (acceleration, speed)
         && one.value == other.value

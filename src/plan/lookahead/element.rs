@@ -192,7 +192,9 @@ impl<T> Element<T> {
 
     /// Takes in what the drives leave at speeds up to the element's.
     fn drive(&mut self, machine: &Machine, mv: &Move) {
-        let top = self.top_mm_s();
+        // It may be entered at its whole speed.
+        let axes = lower(self.speed_mm_s, self.curve_speed_mm_s);
+        let top = lower(axes, self.feed_mm_s / self.pace);
         self.drive_accel_mm_s2 = drive::lowest_on_path(machine, mv, top);
         let plane = self.curve.map(|curve| curve.plane);
         let axes = self.axis_accel_mm_s2.iter_mut().zip(&self.start);
