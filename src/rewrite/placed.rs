@@ -6,12 +6,9 @@ use super::number::rounded;
 use super::single::{CycleBlock, Lines, Singles, TURNING};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues};
+use crate::machine::{AxisSet, AxisValues};
 use crate::source::split_line_end;
 use crate::syntax::Word;
-
-/// Letters that a block may say more than once without doing more.
-const AGAIN: &[u8] = b"GXYZUVWRPQFNIJ";
 
 impl Singles<'_> {
     /// The block with its way to the hole on a line before it, and with the words of the
@@ -30,10 +27,7 @@ impl Singles<'_> {
             return Err("all its moves follow from each other");
         }
         let ways = ways(of.steps);
-        if !of.modal.absolute {
-            return self.place_increments(of, &ways, returns_to_r, place);
-        }
-        if of.block.words.iter().any(repeats) {
+        if !of.modal.absolute || of.block.words.iter().any(repeats) {
             return Err("its places are increments, or it repeats");
         }
         let mut lines = Lines::new(of, &place);
@@ -47,7 +41,7 @@ impl Singles<'_> {
             self.one_move(mv, of, &place, &mut lines)?;
         }
         let level = self.lacks_level(of, returns_to_r).then_some("G99 ");
-        self.restate(of, held, level, &mut lines)?;
+        restate(of, held, level, &mut lines)?;
         Ok(lines.finish(of.text))
     }
 
@@ -66,7 +60,7 @@ impl Singles<'_> {
         }
         let ways = ways(of.steps);
         if !of.modal.absolute {
-            return self.place_increments(of, &ways, returns_to_r, place);
+            return Err(WHY);
         }
         let (way, back) = match ways.as_slice() {
             [way] => (way, None),
@@ -82,7 +76,7 @@ impl Singles<'_> {
             self.one_move(mv, of, &place, &mut lines)?;
         }
         let back_to_r = back.is_some() || self.lacks_level(of, returns_to_r);
-        self.restate(of, held, back_to_r.then_some("G99 "), &mut lines)?;
+        restate(of, held, back_to_r.then_some("G99 "), &mut lines)?;
         if let Some(back) = back {
             lines.at = place(&back.start).map(rounded);
             lines.out.extend_from_slice(b"G98 ");
@@ -90,93 +84,52 @@ impl Singles<'_> {
         }
         Ok(lines.finish(of.text))
     }
-
-    /// The block with the words of the cycle that a line before it ends, and with the level
-    /// to return to.
-    fn restate(
-        &self,
-        of: &CycleBlock<'_>,
-        held: &BTreeMap<u8, Vec<u8>>,
-        level: Option<&str>,
-        lines: &mut Lines<'_>,
-    ) -> Result<(), &'static str> {
-        let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
-        let mut edits = Vec::new();
-        let first = of.block.words.first().map_or(0, |word| word.span.start);
-        if of.cycle_word.is_none() {
-            edits.push(Edit::insert(
-                first,
-                format!("G{} ", f64::from(of.number) / 10.0),
-            ));
-        }
-        let mut words = of.block.words.iter();
-        let said = words.find(|word| word.letter == b'G' && word.value == 98.0);
-        match (level, said) {
-            (Some(level), Some(said)) => {
-                edits.push(Edit::replace(said.span, level.trim_ascii_end()));
-            }
-            (Some(level), None) => edits.push(Edit::insert(first, level)),
-            (None, _) => {}
-        }
-        for (_, word) in held.iter().filter(|(letter, _)| !has(**letter)) {
-            let mut text = vec![b' '];
-            text.extend_from_slice(word);
-            edits.push(Edit::insert(of.block.words_end, text));
-        }
-        let (text, _) = split_line_end(of.text);
-        if !apply(text, &mut edits, &mut lines.out) {
-            return Err("its words overlap");
-        }
-        lines.out.extend_from_slice(lines.line_end);
-        Ok(())
-    }
-
-    /// The same of a block of increments, once for each of its repetitions: it goes on from
-    /// where the ways have led, at the level of R.
-    fn place_increments(
-        &self,
-        of: &CycleBlock<'_>,
-        ways: &[Vec<&Move>],
-        returns_to_r: bool,
-        place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
-        const WHY: &str = "its places are increments, or it repeats";
-        let words = &of.block.words;
-        let count = words.iter().find(|word| repeats(word));
-        let count = count.map_or(1.0, |word| word.value);
-        let has = |letter| words.iter().any(|word| word.letter == letter);
-        let whole = of.cycle_word.is_some() && has(b'R') && returns_to_r;
-        if !whole || ways.len() as f64 != count || ways.iter().any(Vec::is_empty) {
-            return Err(WHY);
-        }
-        let again = again(of).ok_or(WHY)?;
-        let mut lines = Lines::new(of, &place);
-        for way in ways {
-            let start = way.first().map_or([0.0; AXES], |mv| mv.start);
-            lines.at = place(&start).map(rounded);
-            // What leads there counts by increments too.
-            lines.motion = None;
-            lines.out.extend_from_slice(distance(of));
-            for mv in way {
-                self.one_move(mv, of, &place, &mut lines)?;
-            }
-            lines.push(&again);
-        }
-        Ok(lines.finish(of.text))
-    }
 }
 
-/// G90 or G91 where the block says so: what is gone before it obeys it too.
-fn distance(of: &CycleBlock<'_>) -> &'static [u8] {
-    let says = |value: f64| {
-        let mut words = of.block.words.iter();
-        words.any(|word| word.letter == b'G' && word.value == value)
-    };
-    match (says(90.0), says(91.0)) {
-        (true, false) => b"G90 ",
-        (false, true) => b"G91 ",
-        _ => b"",
+/// The block with the words of the cycle that a line before it ends, and with the level
+/// to return to.
+fn restate(
+    of: &CycleBlock<'_>,
+    held: &BTreeMap<u8, Vec<u8>>,
+    level: Option<&str>,
+    lines: &mut Lines<'_>,
+) -> Result<(), &'static str> {
+    let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
+    let mut edits = Vec::new();
+    let first = of.block.words.first().map_or(0, |word| word.span.start);
+    if of.cycle_word.is_none() {
+        edits.push(Edit::insert(
+            first,
+            format!("G{} ", f64::from(of.number) / 10.0),
+        ));
     }
+    let mut words = of.block.words.iter();
+    let said = words.find(|word| word.letter == b'G' && word.value == 98.0);
+    match (level, said) {
+        (Some(level), Some(said)) => {
+            edits.push(Edit::replace(said.span, level.trim_ascii_end()));
+        }
+        (Some(level), None) => edits.push(Edit::insert(first, level)),
+        (None, _) => {}
+    }
+    for (_, word) in held.iter().filter(|(letter, _)| !has(**letter)) {
+        let mut text = vec![b' '];
+        text.extend_from_slice(word);
+        edits.push(Edit::insert(of.block.words_end, text));
+    }
+    let (text, _) = split_line_end(of.text);
+    if !apply(text, &mut edits, &mut lines.out) {
+        return Err("its words overlap");
+    }
+    lines.out.extend_from_slice(lines.line_end);
+    Ok(())
+}
+
+/// G90 where the block says so: what is gone before it obeys it too.
+fn distance(of: &CycleBlock<'_>) -> &'static [u8] {
+    let mut words = of.block.words.iter();
+    let says = words.any(|word| word.letter == b'G' && word.value == 90.0);
+    if says { b"G90 " } else { b"" }
 }
 
 /// Whether a word has a cycle repeated.
@@ -216,26 +169,4 @@ fn before<'w, 'm>(way: &'w [&'m Move], plane: [usize; 3]) -> &'w [&'m Move] {
         [up, to_hole, ..] if up.end[normal] > up.start[normal] && in_plane(to_hole) => &way[..2],
         _ => &[],
     }
-}
-
-/// The words of a block of increments that does the same from its hole, at the level of R;
-/// `None` where it does more than that.
-fn again(of: &CycleBlock<'_>) -> Option<String> {
-    let [first, second, _] = of.modal.plane;
-    let letters = [first, second].map(|axis| ALL_AXES[axis].letter());
-    let mut words = Vec::new();
-    for word in &of.block.words {
-        match word.letter {
-            _ if repeats(word) => {}
-            b'N' => {}
-            letter if letters.contains(&letter) || letter == b'R' => {
-                words.push(format!("{}0", char::from(letter)));
-            }
-            letter if AGAIN.contains(&letter) => {
-                words.push(String::from_utf8_lossy(word.span.of(of.text)).into_owned());
-            }
-            _ => return None,
-        }
-    }
-    Some(words.join(" "))
 }

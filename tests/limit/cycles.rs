@@ -242,13 +242,7 @@ fn the_rapids_of_a_tap_are_written_out() {
     G0 F1000.
     M30
     ");
-    // Increments go on from each hole at the level of R.
     let linuxcnc = shop("linuxcnc", 300.0);
-    let program =
-        "G21 G90 G0 Z50\nM3 S100\nG91 G99 G84 X200 Y100 Z-10 R-48 L2 F100\nG80 G90\nG0 Z50\nM2\n";
-    let text = limited(&linuxcnc, program, "feed,expand");
-    same_moves(&linuxcnc, &text);
-    assert_snapshot!(text, @"");
     // A hole below its level R is left upwards first.
     let program = "G21 G90 G0 Z1\nM3 S100\nG99 G84 X400 Y300 Z-10 R50 F100\nG80\nM2\n";
     let text = limited(&linuxcnc, program, "feed,expand");

@@ -315,23 +315,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     };
     let argument = argument(findings, knob)?;
     let output = argument == KnobArgument::Output(0);
-    let suits = match target {
-        KnobTarget::Accel | KnobTarget::SpeedShare if output => unit == KnobUnit::Share,
-        _ if output => false,
-        KnobTarget::SpeedShare => false,
-        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
-            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
-        }
-        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
-        KnobTarget::Speed => {
-            matches!(
-                unit,
-                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
-            )
-        }
-        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
-    };
-    if !suits {
+    if !goes_with(target, unit, output) {
         let message = "`unit` does not go with `target`";
         let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
                     \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
@@ -404,6 +388,26 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         wait: knob.wait.clone(),
         change_s: 0.0,
     })
+}
+
+/// Whether values in a unit can act so; `output`: set by an analog output.
+fn goes_with(target: KnobTarget, unit: KnobUnit, output: bool) -> bool {
+    match target {
+        KnobTarget::Accel | KnobTarget::SpeedShare if output => unit == KnobUnit::Share,
+        _ if output => false,
+        KnobTarget::SpeedShare => false,
+        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
+            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
+        }
+        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
+        KnobTarget::Speed => {
+            matches!(
+                unit,
+                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
+            )
+        }
+        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
+    }
 }
 
 fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgument> {

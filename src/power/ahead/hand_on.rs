@@ -76,8 +76,9 @@ impl Ahead {
             if own.mv.pace < 1.0 {
                 let of_plan = [own.assessment.speed_mm_s, own.assessment.accel_mm_s2];
                 let late = model.late(machine, &own.mv, of_plan, self.largest.overrides);
-                late.iter()
-                    .for_each(|late| own.assessment.demand.include(late));
+                if let Some(late) = late {
+                    own.assessment.demand.include(&late);
+                }
             }
             if own.mv.stray.strays() && own.assessment.ahead {
                 let top_speed_mm_s = own.assessment.top_speed_mm_s;
