@@ -66,6 +66,8 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
         let how = self::options(args);
         let input = program.open()?;
         summary.price = pipeline::price(input, &setup.machine, &options, how, &summary)?;
+        let input = program.open()?;
+        summary.ideal = pipeline::ideal(input, &setup.machine, &options, how, &summary)?;
         Ok(summary)
     });
     let summary = match done {

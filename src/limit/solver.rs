@@ -321,7 +321,11 @@ impl<'m> Solver<'m> {
         let along_mm_s2 = self.along_path(knob, &base);
         let mut load_at = |factor: f64| {
             match along_mm_s2 {
-                Some(accel) => limit_path_accel(self.machine, &mut moved, accel * factor),
+                Some(accel) => {
+                    // Where the direction is not known axes are held to it as well.
+                    moved.accel_mm_s2 = base.accel_mm_s2;
+                    limit_path_accel(self.machine, &mut moved, accel * factor);
+                }
                 None => moved.accel_mm_s2 = base.accel_mm_s2.map(|accel| accel * factor),
             }
             self.load(case, &moved)

@@ -13,6 +13,7 @@ use super::conclusion::{conclude, holds_one_way};
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand, in_fixed_blocks};
 use super::front::read_whole;
 use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::pace::sooner;
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::relay::no_thread;
@@ -207,12 +208,13 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     let places = Cell::new(Vec::new());
-    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
+    let learned = Cell::new(None);
+    let mut attempt_with = |target: &Machine, plan: Option<Plan>, start: Depths, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
         }
-        let mut depths = Depths::default();
+        let mut depths = start;
         let mut rungs = Vec::new();
         let mut ladder = None;
         loop {
@@ -227,6 +229,11 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             };
             let (mut written, mut certified) = job.run(&mut input, &mut output, rows)?;
             places.set(std::mem::take(&mut written.places));
+            if let Some(paces) = depths.paces_mut() {
+                let over = certified.deeper.iter().map(|line| line.place);
+                paces.learn(std::mem::take(&mut certified.paced), over);
+            }
+            learned.set(depths.paces().cloned());
             if certified.deeper.is_empty() {
                 // What the bound over all overrides leaves open is looked at in further
                 // runs, which write the same.
@@ -249,7 +256,15 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
         }
     };
     let stands = how.allowed.pause.then_some(Plan::NEVER);
-    let first = attempt(machine, stands, false)?;
+    let first = attempt_with(machine, stands, Depths::default(), false)?;
+    let first = sooner(how, first, &mut |paces| {
+        let start = paces.map_or_else(Depths::default, Depths::by_measure);
+        let found = attempt_with(machine, stands, start, true)?;
+        Ok((found, learned.take().unwrap_or_default()))
+    })?;
+    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
+        attempt_with(target, plan, Depths::default(), again)
+    };
     if missed_narrowly(&first) {
         return aim_lower(machine, first, &mut |target| attempt(target, None, true));
     }

@@ -7,6 +7,7 @@ use crate::power::Rating;
 
 use super::by_line::LineSummary;
 use super::front::ONLY_SUBPROGRAMS;
+use super::ideal::Ideal;
 use super::over_time::OverTime;
 use super::pause::Pause;
 use super::price::Price;
@@ -134,4 +135,7 @@ pub struct LimitSummary {
     pub reasons: Vec<Diagnostic>,
     /// What would make it fit, where that was asked for: see [`price`](super::price).
     pub price: Option<Price>,
+    /// What a word for acceleration would bring, where that was asked for and is worth a
+    /// line: see [`ideal`](super::ideal).
+    pub ideal: Option<Ideal>,
 }

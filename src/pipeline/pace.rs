@@ -1,0 +1,163 @@
+//! Programs whose moves are planned together: speeds found by measure, where those that were
+//! solved move by move lose time or do not fit.
+//!
+//! Three ways are tried: each line is held to what its own plan leaves it, round by round;
+//! all lines that are lowered are held to one share of their speeds; and both are let go
+//! where there is room. The soonest that is certified is written.
+
+use std::collections::BTreeSet;
+
+use super::summary::AT_LENGTH_MAX;
+use super::{Failure, Law, LimitOptions, LimitSummary, Strategy};
+use crate::limit::{Paces, Place};
+
+/// What a program must have lost before other speeds are looked for, and what these must
+/// bring in, as a share of its time.
+const LOSS: f64 = 1e-3;
+const GAIN: f64 = 2e-4;
+/// Moves that are written in all tries together.
+const EFFORT: u64 = 400_000;
+/// How often lines are let go.
+const RAISES: u32 = 4;
+/// Halvings of the share that all lines have in common, and the first one tried.
+const HALVINGS: u32 = 12;
+const LOWEST: f64 = 1.0 / 64.0;
+/// How often further lines are taken in.
+const JOINS: u32 = 8;
+
+/// Runs a program with the speeds that lines are held to, or else with moves solved one by
+/// one: gives what came of it, and what the plan said of its lines.
+type Run<'a> = &'a mut dyn FnMut(Option<Paces>) -> Result<(LimitSummary, Paces), Failure>;
+
+/// The soonest program of those that fit; `first` is what came of solving its moves one by
+/// one.
+pub(super) fn sooner(
+    how: LimitOptions,
+    first: LimitSummary,
+    run: Run<'_>,
+) -> Result<LimitSummary, Failure> {
+    if !is_worth(how, &first) {
+        return Ok(first);
+    }
+    let mut search = Search {
+        left: EFFORT / first.before.moves.max(1),
+        best: first,
+        by: None,
+        last_is_best: true,
+        run,
+    };
+    let lowered = search.try_paces(Paces::default())?;
+    search.raise()?;
+    search.common(lowered.places().collect())?;
+    search.finish()
+}
+
+/// Whether there may be something to gain.
+fn is_worth(how: LimitOptions, first: &LimitSummary) -> bool {
+    let (before, after) = (&first.before, &first.after);
+    let solved = matches!(
+        how.strategy,
+        Strategy::Speed | Strategy::Optimal | Strategy::Split
+    );
+    let lost_s = after.duration_s - before.duration_s;
+    solved
+        && how.law == Law::Exact
+        && after.ahead
+        && before.moves <= AT_LENGTH_MAX
+        && (after.unfit_count > 0 || first.certified && lost_s > LOSS * before.duration_s)
+}
+
+struct Search<'a> {
+    best: LimitSummary,
+    /// The speeds that it was written with, where it was by measure, as they were at the end.
+    by: Option<(Paces, Paces)>,
+    /// What was written last is the best.
+    last_is_best: bool,
+    /// Tries that are left.
+    left: u64,
+    run: Run<'a>,
+}
+
+impl Search<'_> {
+    /// Tries speeds, and keeps them where the program is certified and sooner done.
+    fn try_paces(&mut self, paces: Paces) -> Result<Paces, Failure> {
+        let start = paces.clone();
+        let (found, end) = (self.run)(Some(paces))?;
+        self.left = self.left.saturating_sub(u64::from(end.rounds()) + 1);
+        let least_s = self.best.after.duration_s * (1.0 - GAIN);
+        let better = found.certified && (!self.best.certified || found.after.duration_s < least_s);
+        self.last_is_best = better;
+        if better {
+            self.best = found;
+            self.by = Some((start, end.clone()));
+        }
+        Ok(end)
+    }
+
+    /// Lets lines go where the best leaves them room.
+    fn raise(&mut self) -> Result<(), Failure> {
+        for _ in 0..RAISES {
+            let Some((_, end)) = self.by.as_ref().filter(|_| self.left > 0) else {
+                break;
+            };
+            let raised = end.raised();
+            self.try_paces(raised)?;
+            if !self.last_is_best {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Holds all lines that are lowered to one share of their speeds.
+    fn common(&mut self, lines: BTreeSet<Place>) -> Result<(), Failure> {
+        let mut lines = lines;
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut share = 0.5;
+        let mut any = false;
+        for _ in 0..HALVINGS {
+            if self.left == 0 || !any && share < LOWEST || high - low < GAIN * low {
+                break;
+            }
+            if self.fits(&mut lines, share)? {
+                (low, any) = (share, true);
+            } else {
+                high = share;
+            }
+            share = if any { f64::midpoint(low, high) } else { 0.5 * high };
+        }
+        if self.by.as_ref().is_some_and(|(start, _)| !start.measures()) {
+            self.raise()?;
+        }
+        Ok(())
+    }
+
+    /// Whether one share of the speeds of these lines is enough; lines that exceed then
+    /// join them.
+    fn fits(&mut self, lines: &mut BTreeSet<Place>, share: f64) -> Result<bool, Failure> {
+        for _ in 0..JOINS {
+            if self.left == 0 {
+                break;
+            }
+            let end = self.try_paces(Paces::common(lines.iter().copied(), share))?;
+            let known = lines.len();
+            lines.extend(end.exceeding());
+            if end.exceeding().next().is_none() {
+                return Ok(true);
+            }
+            if lines.len() == known {
+                break;
+            }
+        }
+        Ok(false)
+    }
+
+    /// What was best, written once more where it was not last.
+    fn finish(self) -> Result<LimitSummary, Failure> {
+        if self.last_is_best {
+            return Ok(self.best);
+        }
+        let start = self.by.map(|(start, _)| start);
+        (self.run)(start).map(|(found, _)| found)
+    }
+}
