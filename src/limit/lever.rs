@@ -11,6 +11,9 @@ pub const UNTOUCHABLE: &str = "untouchable";
 /// The rule of a refusal where no word lowers a move.
 pub const NO_KNOB: &str = "no-knob";
 
+/// The rule of a refusal where lower cutting feeds are not permitted.
+pub const FEED_NOT_ALLOWED: &str = "feed-not-allowed";
+
 /// The word that lowers the speed of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum SpeedLever {

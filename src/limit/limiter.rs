@@ -325,8 +325,8 @@ impl Limiter<'_> {
         }
         let Waiting { permit, .. } = find(self.slots.len())?;
         let levers = levers(solver.machine, solver.how, mv, &permit);
-        if levers.speed.is_none() && paces.measures() {
-            return None;
+        if levers.speed.is_none() {
+            return (!paces.measures()).then(Outcome::default);
         }
         let pairs = levers.accel.is_some() && solver.how.strategy != Strategy::Speed;
         let mut with = Change::NONE;

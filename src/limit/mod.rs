@@ -31,7 +31,7 @@ mod window;
 pub use change::{Change, Permit};
 pub use depth::{Deeper, Depths, Place};
 pub use first_feed::FirstFeed;
-pub use lever::{NO_KNOB, Obstacle, UNTOUCHABLE};
+pub use lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, UNTOUCHABLE};
 pub use limiter::{Limiter, Outcome, Waiting};
 pub use options::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 pub use pace::{Paced, Paces};

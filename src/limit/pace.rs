@@ -5,10 +5,10 @@
 //! exceeds is held to the speed at which its own excess would be gone; lines that have room
 //! left after that are let go again as far as they have it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::depth::Place;
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::machine::AXES;
 use crate::plan::SpeedBound;
 use crate::power::{Assessment, PowerModel};
@@ -64,16 +64,24 @@ pub(super) fn fitting_mm_s(model: &PowerModel, mv: &Move, judged: &Assessment) -
         share
     };
     let speed_mm_s = judged.top_speed_mm_s * share;
-    (base < 1.0 && load > base && speed_mm_s > 0.0 && speed_mm_s.is_finite())
-        .then_some(speed_mm_s)
+    (base < 1.0 && load > base && speed_mm_s > 0.0 && speed_mm_s.is_finite()).then_some(speed_mm_s)
+}
+
+/// Which moves one share is for.
+#[derive(Debug, Clone, PartialEq)]
+enum Whose {
+    /// All but rapids.
+    Feeds,
+    /// Those of these lines.
+    Lines(HashSet<Place>),
 }
 
 /// The speeds that lines are held to, mm/s at the largest override.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Paces {
     lines: HashMap<Place, f64>,
-    /// Lines that are held to one share of their own speeds, instead.
-    common: Option<(HashMap<Place, ()>, f64)>,
+    /// Moves that are held to one share of their own speeds, instead.
+    common: Option<(Whose, f64)>,
     /// What the plan of the last round said of lines that were lowered.
     last: Vec<Paced>,
     /// Lines that exceeded the limit in it.
@@ -87,7 +95,16 @@ impl Paces {
     #[must_use]
     pub fn common(lines: impl Iterator<Item = Place>, share: f64) -> Self {
         Self {
-            common: Some((lines.map(|place| (place, ())).collect(), share)),
+            common: Some((Whose::Lines(lines.collect()), share)),
+            ..Self::default()
+        }
+    }
+
+    /// The same for all moves but rapids.
+    #[must_use]
+    pub fn all_feeds(share: f64) -> Self {
+        Self {
+            common: Some((Whose::Feeds, share)),
             ..Self::default()
         }
     }
@@ -96,8 +113,12 @@ impl Paces {
     #[must_use]
     pub fn of(&self, mv: &Move, own_mm_s: f64) -> Option<f64> {
         let place = (mv.text, mv.line);
-        if let Some((lines, share)) = &self.common {
-            return lines.contains_key(&place).then_some(share * own_mm_s);
+        if let Some((whose, share)) = &self.common {
+            let concerned = match whose {
+                Whose::Feeds => mv.kind != MoveKind::Rapid,
+                Whose::Lines(lines) => lines.contains(&place),
+            };
+            return concerned.then_some(share * own_mm_s);
         }
         self.lines.get(&place).copied()
     }

@@ -1,6 +1,7 @@
 //! What would bring a move down, in a few words.
 
 use super::entry::{positions, turns_apart};
+use super::hints::FITS;
 use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::{AxisSet, AxisValues, Machine};
@@ -135,6 +136,6 @@ impl<'m> Adviser<'m> {
         } else {
             ""
         };
-        format!("fits with {}{option}", words.join(" and "))
+        format!("{FITS}{}{option}", words.join(" and "))
     }
 }

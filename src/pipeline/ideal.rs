@@ -118,9 +118,8 @@ fn with_word(machine: &Machine) -> Machine {
     };
     let mut target = machine.clone();
     let own = target.controller.knobs.drain(..);
-    let others = own.filter(|knob| {
-        matches!(knob.target, KnobTarget::Speed | KnobTarget::CruiseRatio)
-    });
+    let others =
+        own.filter(|knob| matches!(knob.target, KnobTarget::Speed | KnobTarget::CruiseRatio));
     let ideal = [
         KnobTarget::FeedAccel,
         KnobTarget::RapidAccel,

@@ -16,9 +16,11 @@ use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
 use super::pace::sooner;
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
+use super::readable::readable;
 use super::relay::no_thread;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
+use super::unmarked::unmarked;
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
 use super::writer::{Plan, Writer, Written};
@@ -40,11 +42,11 @@ const BATCHES: usize = 2;
 /// See [`Failure`]. A program that cannot be made to fit is no error: see
 /// [`LimitSummary::certified`].
 pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
-    mut input: R,
+    input: R,
     machine: &Machine,
     options: &Options,
     how: LimitOptions,
-    mut output: W,
+    output: W,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     if let Some((machine, note)) = trusting(machine, how) {
@@ -52,7 +54,29 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
         summary.before.notes.push(note);
         return Ok(summary);
     }
+    if let Some((machine, note)) = readable(machine) {
+        let mut summary = limit(input, &machine, options, how, output, rows)?;
+        summary.before.notes.push(note);
+        return Ok(summary);
+    }
     check_strategy(machine, how)?;
+    let mut summary = limit_ways(input, machine, options, how, output, &mut rows)?;
+    summary
+        .before
+        .notes
+        .extend(unmarked(options, how, &summary));
+    Ok(summary)
+}
+
+/// Limits a program on all ways through it.
+fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+    mut output: W,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<LimitSummary, Failure> {
     let paths = if has_ways(options) {
         let paths = ways(&mut input, machine, options, false)?;
         input.rewind().map_err(Failure::Input)?;
@@ -60,7 +84,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     } else {
         vec![options.clone()]
     };
-    let mut as_asked = limit_paths(&mut input, machine, &paths, how, &mut output, &mut rows)?;
+    let mut as_asked = limit_paths(&mut input, machine, &paths, how, &mut output, rows)?;
     if !as_asked.may_skip {
         return Ok(as_asked);
     }
@@ -70,14 +94,14 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
         Ok(all) if all.len() <= paths.len() => return Ok(as_asked),
         Ok(all) => {
             input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, &mut rows)?;
-            let summary = limit_paths(&mut input, machine, &all, how, &mut output, &mut rows)?;
+            restart(&mut output, rows)?;
+            let summary = limit_paths(&mut input, machine, &all, how, &mut output, rows)?;
             if summary.certified || !as_asked.certified {
                 return Ok(summary);
             }
             input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, &mut rows)?;
-            as_asked = limit_paths(input, machine, &paths, how, output, &mut rows)?;
+            restart(&mut output, rows)?;
+            as_asked = limit_paths(input, machine, &paths, how, output, rows)?;
             summary.reasons
         }
         Err(Failure::Refused { diagnostics, .. }) => diagnostics,

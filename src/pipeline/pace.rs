@@ -16,14 +16,17 @@ use crate::limit::{Paces, Place};
 const LOSS: f64 = 1e-3;
 const GAIN: f64 = 2e-4;
 /// Moves that are written in all tries together.
-const EFFORT: u64 = 400_000;
+const EFFORT: u64 = 200_000;
+/// How often a program is written at most.
+const TRIES: u64 = 60;
 /// How often lines are let go.
-const RAISES: u32 = 4;
-/// Halvings of the share that all lines have in common, and the first one tried.
-const HALVINGS: u32 = 12;
+const RAISES: u32 = 2;
+/// Halvings of the ratio between the shares that are enough and those that are not, and the
+/// lowest share.
+const HALVINGS: u32 = 10;
 const LOWEST: f64 = 1.0 / 64.0;
 /// How often further lines are taken in.
-const JOINS: u32 = 8;
+const JOINS: u32 = 4;
 
 /// Runs a program with the speeds that lines are held to, or else with moves solved one by
 /// one: gives what came of it, and what the plan said of its lines.
@@ -40,7 +43,7 @@ pub(super) fn sooner(
         return Ok(first);
     }
     let mut search = Search {
-        left: EFFORT / first.before.moves.max(1),
+        left: (EFFORT / first.before.moves.max(1)).min(TRIES),
         best: first,
         by: None,
         last_is_best: true,
@@ -48,7 +51,12 @@ pub(super) fn sooner(
     };
     let lowered = search.try_paces(Paces::default())?;
     search.raise()?;
-    search.common(lowered.places().collect())?;
+    search.common(&mut |search, share| {
+        let end = search.try_paces(Paces::all_feeds(share))?;
+        Ok(end.exceeding().next().is_none())
+    })?;
+    let mut lines = lowered.places().collect();
+    search.common(&mut |search, share| search.fits(&mut lines, share))?;
     search.finish()
 }
 
@@ -109,24 +117,28 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Holds all lines that are lowered to one share of their speeds.
-    fn common(&mut self, lines: BTreeSet<Place>) -> Result<(), Failure> {
-        let mut lines = lines;
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut share = 0.5;
-        let mut any = false;
+    /// The largest share of their speeds that moves may have in common.
+    fn common(
+        &mut self,
+        fits: &mut dyn FnMut(&mut Self, f64) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
+        if self.left == 0 || !fits(self, LOWEST)? {
+            return Ok(());
+        }
+        let (mut low, mut high) = (LOWEST, 1.0);
+        let before = self.best.after.duration_s;
         for _ in 0..HALVINGS {
-            if self.left == 0 || !any && share < LOWEST || high - low < GAIN * low {
+            if self.left == 0 {
                 break;
             }
-            if self.fits(&mut lines, share)? {
-                (low, any) = (share, true);
+            let share = libm::sqrt(low * high);
+            if fits(self, share)? {
+                low = share;
             } else {
                 high = share;
             }
-            share = if any { f64::midpoint(low, high) } else { 0.5 * high };
         }
-        if self.by.as_ref().is_some_and(|(start, _)| !start.measures()) {
+        if self.best.after.duration_s < before {
             self.raise()?;
         }
         Ok(())

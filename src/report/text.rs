@@ -156,8 +156,8 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
             figures(before, machine),
             worst(after),
             over_time_text(after),
-            price_text(summary),
-            ideal_text(summary)
+            ideal_text(summary),
+            price_text(summary)
         );
     }
     let mut text = if summary.edited_lines == 0 {
@@ -269,8 +269,8 @@ pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) ->
         lines(summary.edited_lines),
         worst(after),
         over_time_text(after),
-        price_text(summary),
-        ideal_text(summary)
+        ideal_text(summary),
+        price_text(summary)
     )
 }
 

@@ -38,7 +38,7 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
 }
 
 /// The lines that do so: one, or two where the axes wait until it acts.
-pub(super) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
+pub(crate) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
     let mut lines = vec![words(machine, index, values)?];
     lines.extend(machine.controller.knobs.get(index)?.wait.clone());
     Some(lines)

@@ -3,7 +3,9 @@
 use std::io::{Read, Seek};
 
 use crate::interpret::{Move, MoveKind, Step};
-use crate::limit::{Change, Deeper, Depths, Limiter, Outcome, Paced, Paces, Permit, Place, Waiting};
+use crate::limit::{
+    Change, Deeper, Depths, Limiter, Outcome, Paced, Paces, Permit, Place, Waiting,
+};
 use crate::machine::{AXES, Machine, PathMode};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::front::Front;
@@ -163,7 +165,9 @@ impl<'m> Trial<'m> {
                 Event::Move(number) => {
                     let outcome = all.next();
                     for mv in self.changed(*number, outcome) {
-                        verdict.places.push((*number, outcome.is_some_and(is_split)));
+                        verdict
+                            .places
+                            .push((*number, outcome.is_some_and(is_split)));
                         let mut sink = |mv: &Move, after: &Assessment, _: &[u8]| {
                             verdict.take(mv, after);
                         };
@@ -181,7 +185,9 @@ impl<'m> Trial<'m> {
             }
         }
         assessor.finish(&mut |mv, after, _| verdict.take(mv, after));
-        verdict.tally.rate(assessor.ratings(), assessor.lower_ratings());
+        verdict
+            .tally
+            .rate(assessor.ratings(), assessor.lower_ratings());
         let summary = verdict.tally.finish(false);
         let duration_s = summary.fits_at_largest().then_some(summary.duration_s);
         Found {
@@ -255,7 +261,8 @@ impl Verdict<'_, '_> {
             // Under the robust bound the neighbours count as well.
             let robust = after.certificate == Certificate::Robust;
             let next_to = |place| Deeper { place, paced: None };
-            self.deeper.extend(self.before.filter(|_| robust).map(next_to));
+            self.deeper
+                .extend(self.before.filter(|_| robust).map(next_to));
             let by_itself = !robust && !in_pieces;
             let paced = by_itself.then(|| Paced::of(&self.model, place, mv, after));
             self.deeper.push(Deeper { place, paced });
@@ -274,6 +281,7 @@ fn permit(entry: &Entry, machine: &Machine, mv: &Move, step: usize) -> Permit {
     let Waiting { permit, .. } = entry.waiting(machine, mv, step);
     Permit {
         edit: permit.edit || mv.kind == MoveKind::Rapid,
+        unsplit: None,
         ..permit
     }
 }
@@ -283,11 +291,7 @@ fn is_split(outcome: &Outcome) -> bool {
 }
 
 /// Hands over what is no move.
-fn act(
-    assessor: &mut Assessor<'_>,
-    step: &Step,
-    sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
-) {
+fn act(assessor: &mut Assessor<'_>, step: &Step, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
     if let Step::Action(action) = step {
         assessor.act(action, sink);
     }
