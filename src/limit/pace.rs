@@ -18,9 +18,9 @@ const STEPS_POWER: f64 = 3.0;
 /// How much lower a line goes in a round at least, as a share; that grows by rounds, so that
 /// they end.
 const LEAST: f64 = 1e-4;
-const GROWTH: f64 = 1.3;
+const GROWTH: f64 = 1.6;
 /// Rounds after which lines go no lower.
-const ROUNDS: u32 = 40;
+const ROUNDS: u32 = 16;
 /// How far a line is let go at once.
 const RAISE: f64 = 4.0;
 /// The share of its room that it leaves.

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeSet;
 
+use super::lower::LAST_ROUND;
 use super::summary::AT_LENGTH_MAX;
 use super::{Failure, Law, LimitOptions, LimitSummary, Strategy};
 use crate::limit::{Paces, Place};
@@ -17,8 +18,10 @@ const LOSS: f64 = 1e-3;
 const GAIN: f64 = 2e-4;
 /// Moves that are written in all tries together.
 const EFFORT: u64 = 200_000;
+/// Reasons of a refusal for which other speeds may help.
+const OPEN: [&str; 4] = ["does-not-fit", LAST_ROUND, "no-solution", "not-enough"];
 /// How often a program is written at most.
-const TRIES: u64 = 60;
+const TRIES: u64 = 80;
 /// How often lines are let go.
 const RAISES: u32 = 2;
 /// Halvings of the ratio between the shares that are enough and those that are not, and the
@@ -50,13 +53,13 @@ pub(super) fn sooner(
         run,
     };
     let lowered = search.try_paces(Paces::default())?;
-    search.raise()?;
     search.common(&mut |search, share| {
         let end = search.try_paces(Paces::all_feeds(share))?;
         Ok(end.exceeding().next().is_none())
     })?;
     let mut lines = lowered.places().collect();
     search.common(&mut |search, share| search.fits(&mut lines, share))?;
+    search.raise()?;
     search.finish()
 }
 
@@ -72,7 +75,12 @@ fn is_worth(how: LimitOptions, first: &LimitSummary) -> bool {
         && how.law == Law::Exact
         && after.ahead
         && before.moves <= AT_LENGTH_MAX
-        && (after.unfit_count > 0 || first.certified && lost_s > LOSS * before.duration_s)
+        && if first.certified {
+            lost_s > LOSS * before.duration_s
+        } else {
+            let mut reasons = first.reasons.iter();
+            reasons.all(|reason| OPEN.contains(&reason.rule))
+        }
 }
 
 struct Search<'a> {
@@ -109,8 +117,9 @@ impl Search<'_> {
                 break;
             };
             let raised = end.raised();
+            let before_s = self.best.after.duration_s;
             self.try_paces(raised)?;
-            if !self.last_is_best {
+            if self.best.after.duration_s >= before_s {
                 break;
             }
         }
@@ -126,7 +135,6 @@ impl Search<'_> {
             return Ok(());
         }
         let (mut low, mut high) = (LOWEST, 1.0);
-        let before = self.best.after.duration_s;
         for _ in 0..HALVINGS {
             if self.left == 0 {
                 break;
@@ -137,9 +145,6 @@ impl Search<'_> {
             } else {
                 high = share;
             }
-        }
-        if self.best.after.duration_s < before {
-            self.raise()?;
         }
         Ok(())
     }
