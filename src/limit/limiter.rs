@@ -14,8 +14,8 @@ use super::pace::{Paces, fitting_mm_s};
 use super::solver::{Case, Ends, Solver};
 use super::split::{SPLIT_TRIES, Split};
 use super::window;
-use crate::interpret::Move;
-use crate::machine::Machine;
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{Machine, RapidJoint};
 use crate::power::{Assessment, Certificate};
 
 /// What was decided for one move.
@@ -313,7 +313,18 @@ impl Limiter<'_> {
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Option<Outcome> {
         let solver = &self.solver;
-        let own_mm_s = assessment.speed_mm_s * solver.largest.feed;
+        let joint = solver.machine.controller.planner.rapid_joint;
+        if mv.kind == MoveKind::Rapid && joint != RapidJoint::All {
+            // As a feed it runs between two stops, by itself.
+            return None;
+        }
+        // One factor on all feeds is one on F, not on what axes or curvature leave of it.
+        let asked_mm_s = if mv.feed_mm_s.is_finite() {
+            mv.feed_mm_s
+        } else {
+            assessment.speed_mm_s
+        };
+        let own_mm_s = asked_mm_s * solver.largest.feed;
         let exceeds = !solver.model.fits(&assessment.demand);
         let mut most_mm_s = paces.of(mv, own_mm_s);
         if most_mm_s.is_none() && !(exceeds && paces.measures()) {

@@ -57,10 +57,10 @@ fn tools_stops_and_ends() {
     // Of a feed alone F changes.
     let program = "G1 X400 F40000 M1\nX0 Y10\nG0 T2 Y300\nM2\n";
     assert_snapshot!(limited(&shop("linuxcnc", 300.0), program), @r"
-    G1 X400 F13714
+    G1 X400 F23995
     F40000
     M1
-    X0 Y10 F13662
+    X0 Y10 F23842
     F40000
     G4 P0
     G1 T2 Y300 F23999
