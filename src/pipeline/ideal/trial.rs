@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek};
 
-use crate::interpret::{Move, MoveKind, Step};
+use crate::interpret::{Action, Move, MoveKind, Step};
 use crate::limit::{
     Change, Deeper, Depths, Limiter, Outcome, Paced, Paces, Permit, Place, Waiting,
 };
@@ -32,7 +32,7 @@ enum Event {
     /// The move of this number.
     Move(usize),
     /// Something else.
-    Other(Step),
+    Other(Action),
     /// A line ends; whether axes move in it, or it turns a knob.
     EndOfLine(bool),
 }
@@ -63,9 +63,12 @@ impl<'m> Trial<'m> {
             }
             mm_per_unit = entry.mark.mm_per_unit;
             for (index, step) in entry.steps.iter().enumerate() {
-                let Step::Move(mv) = step else {
-                    trial.events.push(Event::Other(step.clone()));
-                    continue;
+                let mv = match step {
+                    Step::Move(mv) => mv,
+                    Step::Action(action) => {
+                        trial.events.push(Event::Other(*action));
+                        continue;
+                    }
                 };
                 mode = mv.path_mode;
                 trial.events.push(Event::Move(trial.moves.len()));
@@ -125,7 +128,7 @@ impl<'m> Trial<'m> {
                         assessor.push(mv, b"", &mut sink);
                     }
                 }
-                Event::Other(step) => act(&mut assessor, step, &mut sink),
+                Event::Other(action) => assessor.act(action, &mut sink),
                 Event::EndOfLine(moved) => assessor.end_line(*moved, &mut sink),
             }
         }
@@ -174,10 +177,10 @@ impl<'m> Trial<'m> {
                         assessor.push(&mv, b"", &mut sink);
                     }
                 }
-                Event::Other(step) => {
+                Event::Other(action) => {
                     let mut sink =
                         |mv: &Move, after: &Assessment, _: &[u8]| verdict.take(mv, after);
-                    act(&mut assessor, step, &mut sink);
+                    assessor.act(action, &mut sink);
                 }
                 Event::EndOfLine(moved) => {
                     assessor.end_line(*moved, &mut |mv, after, _| verdict.take(mv, after));
@@ -288,13 +291,6 @@ fn permit(entry: &Entry, machine: &Machine, mv: &Move, step: usize) -> Permit {
 
 fn is_split(outcome: &Outcome) -> bool {
     outcome.split.is_some()
-}
-
-/// Hands over what is no move.
-fn act(assessor: &mut Assessor<'_>, step: &Step, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-    if let Step::Action(action) = step {
-        assessor.act(action, sink);
-    }
 }
 
 /// A part of a straight move, from one share of its way to another.
