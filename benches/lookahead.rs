@@ -72,6 +72,7 @@ fn moves() -> Vec<Move> {
             accel_mm_s2: [2000.0; AXES],
             path_accel_mm_s2: f64::INFINITY,
             rapid_factor: 1.0,
+            pace: 1.0,
             dwell_s: 0.0,
             loads: 0,
             path_mode: PathMode::LookAhead,

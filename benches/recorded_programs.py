@@ -9,7 +9,8 @@ ROTARY = "ABC"
 FIELDS = ("rapid", "accel", "mass", "coulomb", "viscous", "weight", "efficiency")
 
 
-def random_machine(rng, axes):
+def random_machine(rng, axes, uneven=False):
+    """`uneven`: the axes are either light or heavy."""
     machine = {}
     for axis in axes:
         rotary = axis in ROTARY
@@ -20,6 +21,8 @@ def random_machine(rng, axes):
         machine[axis] = dict(zip(FIELDS, (float(f"{value:.6g}") for value in values)))
         if axis == "Z":
             machine[axis]["weight"] = float(rng.randrange(-300, 500))
+        if uneven:
+            machine[axis]["mass"] = rng.choice((1.0, 10.0) if axis in ROTARY else (20.0, 500.0))
     return machine
 
 
@@ -142,12 +145,20 @@ class Maker:
 
     def fine(self):
         """Many short lines, on a line or a wide curve, then a long one: LinuxCNC's optimiser
-        leaves the short ones at the speeds that they had as the last of its queue."""
+        leaves some of the short ones at the speeds that they had as the last of its queue."""
         length, turn = self.rng.uniform(0.1, 0.6), self.rng.choice((0, 0.0005, 0.002))
         for _ in range(self.rng.randint(8, 60)):
             self.angle += turn
             self.go("G1", self.ahead(length))
         self.go("G1", self.ahead(self.rng.uniform(5, 50)))
+
+    def bends(self):
+        """Lines that hardly bend: LinuxCNC passes their joints as they are, with a step of speed."""
+        length, turn = 10 ** self.rng.uniform(-0.3, 0.9), self.rng.choice((-1, 1)) * self.rng.uniform(0.0002, 0.0025)
+        self.angle += self.rng.uniform(-3, 3)
+        for _ in range(self.rng.randint(10, 60)):
+            self.angle += turn * self.rng.choice((-0.5, 1, 1))
+            self.go("G1", self.ahead(length))
 
     def dwell(self):
         self.say(f"G4 P{self.rng.choice((0, 0.02, 0.1))}")
@@ -167,11 +178,12 @@ class Maker:
                 ways = {**self.some(reach), **self.some(reach, self.rotary)}
             self.go(code, {axis: way * self.rng.uniform(0.5, 1.0) for axis, way in ways.items()})
 
-    def program(self, seconds, fine):
+    def program(self, seconds, fine=False, bends=False):
         pieces = [self.rapids, self.sharp, self.zigzag, self.collinear, self.curve, self.curve, self.arc, self.arc, self.arc,
                   self.new_feed, self.new_feed, self.new_mode, self.new_plane, self.dwell, self.word]
         pieces += [self.index, self.together, self.together, self.together] if self.rotary else []
         pieces += [self.fine, self.fine] if fine else []
+        pieces += [self.bends] * 10 if bends else []
         self.new_feed()
         while self.seconds < seconds:
             self.rng.choice(pieces)()

@@ -4,6 +4,7 @@ mod lower;
 mod over_time;
 mod random;
 mod series;
+mod surface;
 
 use std::fmt::Write as _;
 use std::io::Cursor;

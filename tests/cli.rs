@@ -4,6 +4,7 @@ mod dialects;
 mod identify;
 #[cfg(unix)]
 mod interrupts;
+mod levels;
 mod machines;
 mod marks;
 mod prices;

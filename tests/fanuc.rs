@@ -254,3 +254,26 @@ fn what_is_refused_by_name() {
         assert!(found.contains(expected), "{block}: {found}");
     }
 }
+
+/// Fanuc shows the end of a block as `;`: what follows is another block, and no comment.
+#[test]
+fn a_second_block_on_a_line() {
+    let refused = "2 second-block: `;` ends a block on this control, and another one follows on \
+                   the same line\n";
+    for controller in [
+        "fanuc",
+        "haas",
+        "mitsubishi",
+        "mazak",
+        "syntec",
+        "fanuc-lathe",
+    ] {
+        assert_eq!(moves(controller, "G21\nG0 X1.; G0 X500.;\nM30\n"), refused);
+    }
+    let plain = "G21\nG0 X1. ; over there\n(A;X2.)\nG0 X2.;\nM30\nG0;X5.\n";
+    assert_eq!(moves("fanuc", plain), "2 rapid X1.0000\n4 rapid X2.0000\n");
+    assert_eq!(
+        moves("linuxcnc", "G21\nG0 X1.; G0 X500.\nM2\n"),
+        "2 rapid X1.0000\n"
+    );
+}

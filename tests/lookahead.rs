@@ -58,6 +58,7 @@ pub(crate) fn line(to: [f64; 3], feed_mm_s: f64, accel_mm_s2: f64, joint: Joint)
         rapid: false,
         length_mm,
         feed_mm_s,
+        pace: 1.0,
         speed_mm_s: 1e3,
         accel_mm_s2,
         drive_accel_mm_s2: f64::INFINITY,

@@ -4,6 +4,7 @@ mod builtin;
 mod conversion;
 mod default_machine;
 mod errors;
+mod levels;
 mod load;
 mod profile_errors;
 mod robust;

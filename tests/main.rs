@@ -39,6 +39,7 @@ mod contour;
 mod limit;
 mod lookahead;
 mod machine;
+mod nci;
 mod printers;
 mod cli;
 mod readme;

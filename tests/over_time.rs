@@ -2,6 +2,7 @@
 
 mod lower;
 mod overrides;
+mod worked;
 
 use std::process::Command;
 

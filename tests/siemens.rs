@@ -4,6 +4,7 @@
 
 mod cycles;
 mod flow;
+mod limits;
 mod refusals;
 
 use std::fmt::Write as _;

@@ -65,7 +65,9 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
         let options = setup.options_for(&program);
         let how = self::options(args);
         let input = program.open()?;
-        summary.price = pipeline::price(input, &setup.machine, &options, how, &summary)?;
+        pipeline::price(input, &setup.machine, &options, how, &mut summary)?;
+        let input = program.open()?;
+        summary.ideal = pipeline::ideal(input, &setup.machine, &options, how, &summary)?;
         Ok(summary)
     });
     let summary = match done {

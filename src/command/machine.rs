@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use gwatt::machine::{builtin, schema};
 use gwatt::pipeline::assumptions;
 use gwatt::power::spindle_run;
-use gwatt::report::{Verdict, axis_table, duration, power};
+use gwatt::report::{Verdict, axis_table, duration, level_table, power};
 
 use super::output::print;
 use super::setup::load_machine;
@@ -83,7 +83,7 @@ fn check(file: &str, terminal: Terminal) -> Result<()> {
         .with_context(|| format!("{file}: [spindle]"))?;
     print(|out| {
         writeln!(out, "{file}: {}", machine.name)?;
-        write!(out, "{}", axis_table(&machine))?;
+        write!(out, "{}{}", axis_table(&machine), level_table(&machine))?;
         for converter in &machine.converters {
             let share = 1.0 - machine.limits.margin;
             let limit = power(share * converter.peak_power_w);

@@ -50,16 +50,17 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     };
     let mut rows = Rows::new(csv, args.json.as_deref())?;
 
-    if args.series.is_some() {
-        // It is read more than once.
-        if let Err(failure) = program.keep() {
-            dialect::failure(&setup, &program, &failure, terminal);
-            return Ok(Verdict::Refused);
-        }
+    // It is read more than once: what `limit` would do is looked up in it.
+    if let Err(failure) = program.keep() {
+        dialect::failure(&setup, &program, &failure, terminal);
+        return Ok(Verdict::Refused);
     }
-    let outcome = program.open().and_then(|input| {
+    let outcome = program.open().and_then(|mut input| {
         let sink = rows.sink().map(|rows| rows as &mut dyn RowSink);
-        pipeline::analyze(input, &setup.machine, &setup.options_for(&program), sink)
+        let options = setup.options_for(&program);
+        let mut summary = pipeline::analyze(&mut input, &setup.machine, &options, sink)?;
+        pipeline::take_hints(input, &setup.machine, &options, &mut summary)?;
+        Ok(summary)
     });
     let summary = match outcome {
         Ok(summary) => summary,

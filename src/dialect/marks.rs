@@ -54,6 +54,7 @@ pub(super) const ENDINGS: [Ending; 4] = [
 
 const SIEMENS: &[&str] = &["siemens"];
 const ISG: &[&str] = &["isg"];
+const NCI: &[&str] = &["twincat-nci"];
 const LINUXCNC: &[&str] = &["linuxcnc"];
 const GRBL: &[&str] = &["grbl"];
 const RS274: &[&str] = &["linuxcnc", "grbl"];
@@ -213,7 +214,12 @@ const SLICERS: &[&str] = &[
 ];
 
 /// All marks.
-pub(super) const MARKS: [Mark; 62] = [
+pub(super) const MARKS: [Mark; 64] = [
+    // TwinCAT NC I
+    mark("DynOvr", NCI, 10, |line| line.code().starts_with("DYNOVR")),
+    mark("#set param", NCI, 10, |line| {
+        line.code().starts_with("#SET PARAM")
+    }),
     // SINUMERIK
     mark("%_N_", SIEMENS, 10, |line| line.raw().starts_with("%_N_")),
     mark(";$PATH=", SIEMENS, 10, |line| {

@@ -40,6 +40,12 @@ fn each_controller_has_its_marks() {
     );
     is("$H\n", "grbl", "a $ command of grbl in line 1");
     is("$120=10\n", "grbl", "a $ command of grbl in line 1");
+    is("N20 DynOvr=0.4\n", "twincat-nci", "DynOvr in line 1");
+    is(
+        "#set paramPathDynamics( 700; 700; 3000 )#\n",
+        "twincat-nci",
+        "#set param in line 1",
+    );
     is("VC1=5\n", "okuma okuma-lathe", "VC variables in line 1");
     is(
         "G15 H1\nCALL OABC\n",

@@ -37,6 +37,10 @@ impl Control<'_> {
         if self.osp.is_some() {
             return self.osp_words(block, report);
         }
+        if self.nci.is_some() {
+            self.nci_words(block, report);
+            return false;
+        }
         if self.run > 1
             && let Some(transfers) = self.replay(block, report)
         {

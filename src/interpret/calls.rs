@@ -45,7 +45,7 @@ impl Interpreter<'_> {
         self.control.leave_level();
         let modal = &mut self.control.modal;
         if let Some(siemens) = &mut self.control.siemens {
-            siemens.leave(modal);
+            siemens.leave(modal, &mut self.control.knobs, self.control.machine);
             self.control.settle_siemens();
         }
         if let Some(isg) = &mut self.control.isg {

@@ -179,6 +179,7 @@ pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
         }
         (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
         (Family::Isg, _) => isg_g_code(number),
+        (Family::Nci, _) => super::nci::nci_g_code(number, common_g_code),
         _ => common_g_code(number).or_else(|| coordinate_g_code(number, family)),
     }
 }
@@ -330,7 +331,7 @@ pub(super) fn refused_m_name(number: u16) -> &'static str {
 pub(super) fn path_mode(number: u16, language: &crate::machine::Language) -> PathMode {
     match number {
         3590 => PathMode::LookAhead,
-        3600 => PathMode::ExactStop,
+        600 | 3600 => PathMode::ExactStop,
         610 => language.g61,
         611 => language.g61_1,
         _ => language.g64,

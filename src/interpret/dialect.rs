@@ -232,8 +232,16 @@ impl Control<'_> {
         if number == 1870 && run.words.has(b'P') {
             let message = "G187 P1 lets a Haas accelerate harder than P2 and P3: the \
                            accelerations of the machine file have to be those of the \
-                           smoothness that the program selects";
+                           smoothness that the program selects, or each level's stands under \
+                           [[levels]]";
             run.report.note_once("smoothness", message, span);
+        }
+        let on = |letter| run.words.word(letter, run.block).map(|word| word.value) == Some(1.0);
+        if number == 51 && on(b'Q') || number == 80 && on(b'P') {
+            let message = "G5.1 Q1 and G8 P1 may give the axes other accelerations: those of the \
+                           machine file have to be the highest that the program selects, or each \
+                           word's stand under [[levels]]";
+            run.report.note_once("control-mode", message, span);
         }
         let alone = run.words.groups & !GCode::Ignored.group() == 0;
         if matches!(number, 51 | 220) {

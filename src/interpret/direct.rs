@@ -18,7 +18,9 @@ use crate::syntax::{Block, Word};
 pub(super) fn is_direct(machine: &Machine) -> bool {
     let language = &machine.controller.language;
     let dialect = &language.dialect;
-    language.family != Family::Siemens && !dialect.active && !dialect.adapts()
+    !matches!(language.family, Family::Siemens | Family::Nci)
+        && !dialect.active
+        && !dialect.adapts()
 }
 
 /// What the words of a straight move say.
@@ -43,6 +45,9 @@ impl Control<'_> {
         facts: &mut Facts,
     ) -> Option<()> {
         if !self.may_go_direct() || block.tape || block.delete_level > 0 {
+            return None;
+        }
+        if self.may_hide_words(text, block) {
             return None;
         }
         let mut straight = Straight {
@@ -99,6 +104,7 @@ impl Control<'_> {
             accel_mm_s2: *self.knobs.accel(kind),
             path_accel_mm_s2: self.path_accel(*moving),
             rapid_factor: self.knobs.rapid_factor,
+            pace: 1.0,
             dwell_s: 0.0,
             loads: self.loads,
             path_mode: self.modal.path_mode,
@@ -198,6 +204,7 @@ impl Control<'_> {
             && self.special.left.is_none()
             && self.debts.is_empty()
             && self.knobs.pending.is_none()
+            && !self.knobs.is_paced()
             && self.callee.is_none()
             && self.transfer.is_none()
     }

@@ -11,6 +11,7 @@ use super::isg::Isg;
 use super::knob::KnobState;
 use super::modal::Modal;
 use super::moves::{Action, ActionKind, Step};
+use super::nci::Nci;
 use super::osp::Osp;
 use super::parameters::Parameters;
 use super::position::{BlockDelete, Position, Reading};
@@ -102,6 +103,8 @@ pub(super) struct Control<'m> {
     pub(super) isg: Option<Box<Isg>>,
     /// The same for OSP.
     pub(super) osp: Option<Box<Osp>>,
+    /// The same for NC I.
+    pub(super) nci: Option<Nci>,
 }
 
 /// The block that is being executed.
@@ -178,6 +181,7 @@ impl<'m> Interpreter<'m> {
                 .then(|| Box::new(Siemens::new())),
             isg: (machine.controller.language.family == Family::Isg).then(|| Box::new(Isg::new())),
             osp: (machine.controller.language.dialect.osp).then(|| Box::new(Osp::new())),
+            nci: (machine.controller.language.family == Family::Nci).then(Nci::default),
         };
         if let Some(file) = &reading.parameters {
             control.parameters.keep(file);
@@ -282,6 +286,7 @@ impl<'m> Interpreter<'m> {
             osp.only_keeps = false;
             beyond |= osp.is_beyond_words(block);
         }
+        beyond |= self.control.nci.is_some();
         let transfers = beyond && self.control.beyond_words(block, &mut report);
         let reads_state = beyond && self.control.reads_state.take();
         if beyond {
@@ -290,6 +295,7 @@ impl<'m> Interpreter<'m> {
         if let Some(siemens) = &self.control.siemens {
             acts = siemens.is_active();
         }
+        acts |= self.control.nci.as_ref().is_some_and(Nci::is_active);
         if !block.issues.is_empty() || block.words.is_empty() && !acts {
             if block.words.is_empty() {
                 self.control.abort(block, &mut report);
@@ -334,7 +340,7 @@ impl<'m> Interpreter<'m> {
         if self.control.compensation.is_some() {
             self.control.compensate(&mut run, before, errors);
         }
-        self.control.refuse_too_early(&mut run, before);
+        self.control.let_knobs_act(&mut run, before);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;
@@ -364,57 +370,6 @@ impl<'m> Interpreter<'m> {
 }
 
 impl Control<'_> {
-    /// Whether the block is deleted, a tape mark, or after the end.
-    fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
-        let all = Span::new(0, block.text_end as usize);
-        if self.ended {
-            if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
-                report.note_once(
-                    "behind-the-end",
-                    "what follows the end of the program is not executed",
-                    all,
-                );
-            }
-            return true;
-        }
-        if block.tape && self.isg.is_none() {
-            // The first `%` opens the tape; one after any block ends it.
-            self.ended = self.begun;
-            return true;
-        }
-        if block.delete_level == 0 {
-            return false;
-        }
-        if !self.machine.controller.language.block_delete {
-            report.note_once(
-                "no-block-delete",
-                "this controller executes blocks that begin with `/`",
-                all,
-            );
-            return false;
-        }
-        self.block_delete.passes(block.delete_level)
-    }
-
-    /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").
-    fn abort(&self, block: &Block, report: &mut Report<'_, '_>) {
-        let text = report.text.get(..block.text_end as usize);
-        let comment = text.and_then(|text| Some((text, memchr::memrchr(b'(', text)?)));
-        let Some((text, start)) =
-            comment.filter(|_| self.machine.controller.language.family == Family::Rs274)
-        else {
-            return;
-        };
-        let inside = text.get(start + 1..).unwrap_or_default();
-        let letters = inside.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
-        if letters.map(u8::to_ascii_lowercase).take(6).eq(*b"abort,") {
-            let message = "the program ends itself with an error here";
-            report
-                .error("abort", message, Span::new(start, text.len()))
-                .help("see why it comes to this line");
-        }
-    }
-
     #[inline]
     fn execute(&mut self, run: &mut Run<'_, '_>) {
         self.begun = true;
@@ -424,6 +379,7 @@ impl Control<'_> {
         if self.adapts {
             self.adapt_words(run);
         }
+        self.take_dynamics(run);
         let errors = run.report.diagnostics.errors;
         if !self.debts.is_empty() {
             let span = run.whole();

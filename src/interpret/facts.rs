@@ -40,6 +40,9 @@ pub struct Facts {
     /// It changes the tool, saves or restores the state or does more that shows it: the
     /// modal state must be the original's, and no word of the block is changed.
     pub boundary: bool,
+    /// Its words that select and change the tool before it moves, where it does no more than
+    /// that besides: they may stand on a line before it.
+    pub tool_words: [Option<Span>; 2],
     /// It selects a tool: the modal state before it must be the original's.
     pub selects_tool: bool,
     /// Its word that stops or ends the program once the axes stand: the modal state before

@@ -1,7 +1,9 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
 use super::moves::MoveKind;
-use crate::machine::{AXES, AxisValues, CornerRule, Knob, KnobTarget, Machine};
+use crate::machine::{
+    AXES, AxisValues, CornerRule, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine,
+};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +17,14 @@ pub struct KnobState {
     pub path_accel_mm_s2: [f64; 3],
     /// Share of the rapid speed.
     pub rapid_factor: f64,
+    /// Share of the speed of all moves that an output sets, where it acts.
+    pub speed_share: f64,
+    /// The same, set and not in force before the next move.
+    pub speed_share_next: Option<f64>,
+    /// It acts (`LinuxCNC`'s M52).
+    pub adaptive: bool,
+    /// What acted on the last move; 0 after a stop.
+    pub(super) speed_share_last: f64,
     /// A knob that is set and does not act yet, with its value.
     pub(super) pending: Option<(usize, f64)>,
     /// Largest speed along the path of moves that the extruder does not make alone, mm/s
@@ -24,6 +34,14 @@ pub struct KnobState {
     pub speed_mm_s: AxisValues,
     /// How the look-ahead planner takes corners and hills; `None`: as the profile says.
     pub square: Option<Square>,
+    /// The level in force of each group of words that select one; `None`: any of them may be.
+    pub levels: [Option<u8>; LEVEL_GROUPS],
+    /// Accelerations of feed moves and of rapids that the levels in force give, of which
+    /// percentages are taken, mm/s².
+    pub(super) base_accel_mm_s2: [AxisValues; 2],
+    /// The share of the rapid speed that the levels in force give, of which percentages are
+    /// taken.
+    pub(super) base_rapid_factor: f64,
 }
 
 /// What Klipper's `SET_VELOCITY_LIMIT` sets for its look-ahead.
@@ -56,7 +74,7 @@ impl KnobState {
     pub fn new(machine: &Machine) -> Self {
         let accel =
             std::array::from_fn(|axis| machine.axes[axis].map_or(0.0, |axis| axis.accel_mm_s2));
-        Self {
+        let mut state = Self {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
             path_accel_mm_s2: [
@@ -65,11 +83,93 @@ impl KnobState {
                 f64::INFINITY,
             ],
             rapid_factor: 1.0,
+            speed_share: 1.0,
+            speed_share_next: None,
+            adaptive: false,
+            speed_share_last: 0.0,
             pending: None,
             path_speed_mm_s: f64::INFINITY,
             speed_mm_s: [f64::INFINITY; AXES],
             square: None,
+            levels: [None; LEVEL_GROUPS],
+            base_accel_mm_s2: [accel; 2],
+            base_rapid_factor: 1.0,
+        };
+        for knob in &machine.controller.knobs {
+            if let Some(levels) = &knob.levels {
+                state.select(machine, knob, Some(levels.power_on));
+            }
         }
+        state
+    }
+
+    /// Puts a level in force; `None`: any of them may be, so that the largest of all count.
+    /// Percentages that the program has set stay.
+    pub(super) fn select(&mut self, machine: &Machine, knob: &Knob, level: Option<usize>) {
+        let Some(levels) = &knob.levels else {
+            return;
+        };
+        let found = level.and_then(|level| levels.list.get(level));
+        let (accel_mm_s2, rapid_factor) = match found {
+            Some(level) => (level.accel_mm_s2, level.rapid_factor),
+            None => levels.largest(),
+        };
+        if let Some(slot) = self.levels.get_mut(levels.group) {
+            *slot = level.and_then(|level| u8::try_from(level).ok());
+        }
+        if levels.list.iter().any(|level| level.rapid_factor != 1.0) {
+            if self.rapid_factor == self.base_rapid_factor {
+                self.rapid_factor = rapid_factor;
+            } else {
+                self.rapid_factor *= rapid_factor / self.base_rapid_factor;
+            }
+            self.base_rapid_factor = rapid_factor;
+        }
+        let [feed_base, rapid_base] = &mut self.base_accel_mm_s2;
+        let limits = [
+            (
+                KnobTarget::RapidAccel,
+                feed_base,
+                &mut self.feed_accel_mm_s2,
+            ),
+            (
+                KnobTarget::FeedAccel,
+                rapid_base,
+                &mut self.rapid_accel_mm_s2,
+            ),
+        ];
+        for (other, base, limit) in limits {
+            if knob.target == other || !knob.sets_accel() {
+                continue;
+            }
+            for axis in machine.axis_set.iter() {
+                // Exact where no percentage is in force.
+                if limit[axis] == base[axis] {
+                    limit[axis] = accel_mm_s2[axis];
+                } else {
+                    limit[axis] *= accel_mm_s2[axis] / base[axis];
+                }
+                base[axis] = accel_mm_s2[axis];
+            }
+        }
+    }
+
+    /// Puts the levels of an earlier state in force again.
+    pub(super) fn select_all(&mut self, machine: &Machine, saved: [Option<u8>; LEVEL_GROUPS]) {
+        for knob in &machine.controller.knobs {
+            let group = knob.levels.as_ref().map(|levels| levels.group);
+            if let Some(level) = group.and_then(|group| saved.get(group)) {
+                self.select(machine, knob, level.map(usize::from));
+            }
+        }
+    }
+
+    /// Whether it is known which level of each group is in force.
+    #[must_use]
+    pub fn knows_levels(&self, machine: &Machine) -> bool {
+        let knobs = machine.controller.knobs.iter();
+        let mut groups = knobs.filter_map(|knob| Some(knob.levels.as_ref()?.group));
+        groups.all(|group| self.levels.get(group).is_some_and(Option::is_some))
     }
 
     /// Sets the limit of acceleration along the path of moves that the extruder does not
@@ -134,6 +234,10 @@ impl KnobState {
         if knob.target == KnobTarget::CruiseRatio {
             return;
         }
+        if knob.target == KnobTarget::SpeedShare {
+            self.speed_share = value;
+            return;
+        }
         if knob.target == KnobTarget::RapidSpeed {
             self.rapid_factor = value / 100.0;
             return;
@@ -153,11 +257,20 @@ impl KnobState {
                 continue;
             };
             let accel = knob.unit.accel_mm_s2(data, value, mm_per_unit);
+            let of_base = matches!(knob.unit, KnobUnit::Percent | KnobUnit::Share);
+            let share = |base: &AxisValues| {
+                if of_base && base[axis] != data.accel_mm_s2 {
+                    base[axis] / data.accel_mm_s2
+                } else {
+                    1.0
+                }
+            };
+            let [feed, rapid] = self.base_accel_mm_s2.each_ref().map(share);
             if knob.target != KnobTarget::RapidAccel {
-                self.feed_accel_mm_s2[axis] = accel;
+                self.feed_accel_mm_s2[axis] = accel * feed;
             }
             if knob.target != KnobTarget::FeedAccel {
-                self.rapid_accel_mm_s2[axis] = accel;
+                self.rapid_accel_mm_s2[axis] = accel * rapid;
             }
         }
     }

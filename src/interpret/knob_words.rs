@@ -11,6 +11,10 @@ impl Control<'_> {
             let Some(knob) = self.machine.controller.knobs.get(which) else {
                 continue;
             };
+            if knob.levels.is_some() {
+                self.select_level(which, span, run);
+                continue;
+            }
             run.facts.turns_knob = true;
             let unit = self.modal.mm_per_unit;
             let mut turned = false;

@@ -131,6 +131,10 @@ impl Control<'_> {
                 ActionKind::Other => self.other_word(number, span, run),
                 _ => {}
             }
+            if number == 60 && !run.facts.boundary && self.changes_tool_first(run) {
+                let tool = run.block.words.iter().find(|word| word.letter == b'T');
+                run.facts.tool_words = [tool.map(|word| word.span), Some(span)];
+            }
             if !matches!(kind, ActionKind::Stop | ActionKind::End) {
                 run.facts.boundary |= kind == ActionKind::ToolChange;
                 run.act(kind, value);
@@ -140,6 +144,17 @@ impl Control<'_> {
                 run.facts.boundary = true;
             }
         }
+    }
+
+    /// Whether M6 comes before all other words of a block but T: that is documented for
+    /// RS274/NGC, in which S comes before it ("Order of Execution").
+    fn changes_tool_first(&self, run: &Run<'_, '_>) -> bool {
+        let others = run.words.m.iter().filter(|(number, _)| *number != 60);
+        let plain = others.clone().all(|(number, _)| matches!(number, 30..=90));
+        self.machine.controller.language.family == Family::Rs274
+            && plain
+            && run.words.m.len() == others.count() + 1
+            && !run.block.words.iter().any(|word| word.letter == b'S')
     }
 
     /// Switches loads on. Those that go off do so after the block's moves,

@@ -68,6 +68,17 @@ impl MoveKind {
             Self::Spindle => "spindle",
         }
     }
+
+    /// Which knobs make it last longer: that of feeds, that of rapids.
+    #[must_use]
+    pub fn knobs(self) -> [bool; 2] {
+        match self {
+            Self::Rapid => [false, true],
+            Self::Feed | Self::Arc => [true, false],
+            Self::Dwell | Self::Spindle => [false, false],
+            Self::Thread | Self::Tap | Self::Probe => [true, true],
+        }
+    }
 }
 
 /// How F is meant.
@@ -121,6 +132,9 @@ pub struct Move {
     /// Share of the rapid speed in force, (0, 1]; above 1 where a printer's
     /// program raised the speed limits of the axes that move.
     pub rapid_factor: f64,
+    /// What part of the speed a share that the control takes while it moves leaves (`LinuxCNC`'s
+    /// adaptive feed), (0, 1]: `feed_mm_s` or `rapid_factor` have it.
+    pub pace: f64,
     /// Duration of a dwell in s.
     pub dwell_s: f64,
     /// Switched loads that draw power during the move: bit i for `machine.loads[i]`.

@@ -3,6 +3,7 @@
 
 use super::execute::{Control, Run};
 use super::moves::Step;
+use crate::machine::KnobTarget;
 use crate::source::Span;
 
 /// What is said where moves are held back meanwhile, and what helps.
@@ -29,6 +30,10 @@ impl Control<'_> {
         run.words.take(b'E');
         let value = run.words.take(b'Q');
         run.facts.turns_knob = true;
+        if knobs.get(which).map(|knob| knob.target) == Some(KnobTarget::SpeedShare) {
+            self.set_speed_share(number, value, span, run);
+            return true;
+        }
         let refused = if number == 670 {
             Some((
                 "M67 changes the acceleration of blocks that are planned already or not, whichever \

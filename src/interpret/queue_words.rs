@@ -5,10 +5,31 @@ use super::code::GCode;
 use super::execute::{Control, Run};
 use super::motion::EXTRUDER;
 use super::moves::{Action, ActionKind, Corner, Step};
+use super::report::Report;
 use crate::machine::{CornerRule, Family, MESSAGES};
+use crate::source::Span;
 use crate::syntax::Block;
 
 impl Control<'_> {
+    /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").
+    pub(super) fn abort(&self, block: &Block, report: &mut Report<'_, '_>) {
+        let text = report.text.get(..block.text_end as usize);
+        let comment = text.and_then(|text| Some((text, memchr::memrchr(b'(', text)?)));
+        let Some((text, start)) =
+            comment.filter(|_| self.machine.controller.language.family == Family::Rs274)
+        else {
+            return;
+        };
+        let inside = text.get(start + 1..).unwrap_or_default();
+        let letters = inside.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
+        if letters.map(u8::to_ascii_lowercase).take(6).eq(*b"abort,") {
+            let message = "the program ends itself with an error here";
+            report
+                .error("abort", message, Span::new(start, text.len()))
+                .help("see why it comes to this line");
+        }
+    }
+
     /// Whether it matters: only where the look-ahead is modelled.
     fn plans_ahead(&self) -> bool {
         self.machine.controller.planner.look_ahead.is_some()

@@ -84,6 +84,7 @@ impl Control<'_> {
                 self.switches.feed_override = number == 480;
                 self.switches.speed_override = number == 480;
             }
+            520 if self.adapts(span, run) => return true,
             500..=530 => self.override_word(number, span, run),
             610 => {
                 self.load_tool(number, span, run);
@@ -105,7 +106,7 @@ impl Control<'_> {
         match self.machine.controller.language.family {
             Family::Rs274 => tens && matches!(number, 190 | 480..=530 | 610..=680 | 700..=730),
             Family::Iso | Family::Isg => number == 190,
-            Family::Marlin | Family::Siemens => false,
+            Family::Marlin | Family::Siemens | Family::Nci => false,
         }
     }
 

@@ -117,7 +117,9 @@ impl Words {
                     let number = code_number(word.value);
                     let knob = number.and_then(|number| {
                         controller.knobs.iter().position(|knob| {
+                            let levels = knob.levels.as_ref();
                             knob.code == Some((word.letter, number)) && knob.output().is_none()
+                                || levels.is_some_and(|it| it.begins(word.letter, number))
                         })
                     });
                     if let Some(knob) = knob {

@@ -1,7 +1,8 @@
 //! Knobs along the path, and those for the largest speed.
 
+use super::case::Case;
 use super::change::{Change, round_to_step};
-use super::solver::{Case, RETRIES, Solver};
+use super::solver::{RETRIES, Solver};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisSet, AxisValues, KnobArgument};
 

@@ -4,8 +4,9 @@
 //! they arrive with it: that takes power off and no time. Where it is not enough all
 //! arrive together a little later.
 
+use super::case::Case;
 use super::change::Change;
-use super::solver::{Case, Solver};
+use super::solver::Solver;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::{Trajectory, is_independent, plan};

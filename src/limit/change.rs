@@ -1,7 +1,10 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
+use super::level::level_of;
 use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
-use crate::machine::{AxisKind, AxisSet, AxisValues, Knob, KnobArgument, Machine, PathMode};
+use crate::machine::{
+    AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
+};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What may be changed about the block of a move.
@@ -18,9 +21,17 @@ pub struct Permit {
     /// The axes stand before and after it, or may be made to by exact stop: a knob may be
     /// turned for which they have to.
     pub stands: bool,
+    /// A line may come between it and the block before it.
+    pub line_before: bool,
+    /// What it changes is put back right after it, since other blocks may come then.
+    pub apart: bool,
     /// A word in the block can let it end at rest where the control would blend it with
     /// the next one.
     pub stop_word: bool,
+    /// Lines with words for levels may stand before it and after it.
+    pub levels: bool,
+    /// It starts and ends at rest as it is.
+    pub rests: bool,
     /// Why the block may not be written as several; `None`: it may.
     pub unsplit: Option<&'static str>,
     /// Why not, for a person; empty when all is permitted.
@@ -66,7 +77,8 @@ pub struct Change {
     pub stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
-    /// The knob for acceleration, and its value for each axis, in its unit.
+    /// The knob for acceleration, and its value for each axis, in its unit; of one with
+    /// levels, which may be those of the rapid speed, the index of the level.
     pub accel: Option<(usize, AxisValues)>,
     /// The same for the largest speed.
     pub speed: Option<(usize, AxisValues)>,
@@ -181,10 +193,12 @@ impl Change {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);
         }
         changed.corner = self.corner(machine, mv);
-        if let Some((_, percent)) = self.rapid_percent {
-            changed.rapid_factor = percent / 100.0;
+        if let Some((knob, percent)) = self.rapid_percent {
+            set_rapid_share(machine, &mut changed, knob, percent);
         }
-        if let Some((knob, values)) = self.accel
+        if let Some((knob, level)) = level_of(machine, self.accel) {
+            super::level::put(knob, level, &mut changed);
+        } else if let Some((knob, values)) = self.accel
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
             if knob.argument == KnobArgument::Value {
@@ -200,6 +214,15 @@ impl Change {
             }
         }
         under_cap(machine, changed, self.speed, permit)
+    }
+}
+
+/// Sets a rapid's share of the rapid speed, in %, by a knob.
+pub(super) fn set_rapid_share(machine: &Machine, mv: &mut Move, knob: usize, percent: f64) {
+    mv.rapid_factor = percent / 100.0;
+    let knob = machine.controller.knobs.get(knob);
+    if knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare) {
+        mv.pace = mv.rapid_factor;
     }
 }
 

@@ -9,6 +9,7 @@
 
 use std::collections::HashMap;
 
+use super::pace::{Paced, Paces};
 use crate::interpret::Move;
 
 /// Where a line stands: which text, and its number there from 1.
@@ -30,9 +31,40 @@ pub struct Depths {
     everywhere: u8,
     /// How often it went deeper.
     rounds: u32,
+    /// Speeds that lines are held to by measure, in place of going deeper.
+    paces: Option<Paces>,
+}
+
+/// A line that exceeds the limit next to others as they are written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deeper {
+    /// Where it stands.
+    pub place: Place,
+    /// What the plan says of it, where the controller's planner drives it as one move.
+    pub paced: Option<Paced>,
 }
 
 impl Depths {
+    /// Where moves are held to speeds by measure.
+    #[must_use]
+    pub fn by_measure(paces: Paces) -> Self {
+        Self {
+            paces: Some(paces),
+            ..Self::default()
+        }
+    }
+
+    /// The speeds that lines are held to.
+    #[must_use]
+    pub fn paces(&self) -> Option<&Paces> {
+        self.paces.as_ref()
+    }
+
+    /// The same, to be changed.
+    pub fn paces_mut(&mut self) -> Option<&mut Paces> {
+        self.paces.as_mut()
+    }
+
     /// The deepest step. From the second on each asks for a tenth less power,
     /// whatever the neighbours do.
     pub const DEEPEST: u8 = 12;
@@ -50,8 +82,17 @@ impl Depths {
 
     /// Lowers these lines, in the order of the program, one step deeper; false
     /// when none can be.
-    pub fn deepen(&mut self, lines: &[Place]) -> bool {
-        let deeper = self.go_deeper(lines);
+    pub fn deepen(&mut self, lines: &[Deeper]) -> bool {
+        let mut lower = false;
+        if let Some(paces) = &mut self.paces {
+            if !paces.measures() {
+                return false;
+            }
+            lower = paces.lower(lines.iter().filter_map(|line| line.paced));
+        }
+        // Those that no word slows down, and pieces of lines, go by rounds.
+        let places: Vec<Place> = lines.iter().map(|line| line.place).collect();
+        let deeper = self.go_deeper(&places) || lower;
         self.rounds += u32::from(deeper);
         deeper
     }
@@ -101,19 +142,27 @@ impl Depths {
 
 #[cfg(test)]
 mod tests {
-    use super::Depths;
+    use super::{Deeper, Depths, Place};
+
+    fn lines(places: &[Place]) -> Vec<Deeper> {
+        let line = |place: &Place| Deeper {
+            place: *place,
+            paced: None,
+        };
+        places.iter().map(line).collect()
+    }
 
     #[test]
     fn each_round_goes_one_step_deeper() {
         let mut depths = Depths::default();
         for _ in 0..Depths::DEEPEST {
-            assert!(depths.deepen(&[(0, 7), (0, 7), (0, 9)]));
+            assert!(depths.deepen(&lines(&[(0, 7), (0, 7), (0, 9)])));
         }
         assert_eq!(depths.everywhere, 0);
-        assert!(depths.deepen(&[(0, 7), (1, 7)]));
+        assert!(depths.deepen(&lines(&[(0, 7), (1, 7)])));
         assert_eq!(depths.everywhere, 0);
         // As deep as can be: all go with it.
-        assert!(depths.deepen(&[(0, 7)]));
+        assert!(depths.deepen(&lines(&[(0, 7)])));
         assert_eq!(depths.everywhere, 1);
     }
 
@@ -122,7 +171,7 @@ mod tests {
     fn lines_that_take_turns_come_to_an_end() {
         let mut depths = Depths::default();
         let mut line = 0;
-        while depths.deepen(&[(0, line)]) {
+        while depths.deepen(&lines(&[(0, line)])) {
             line += 1;
             assert!(line < 1000);
         }
@@ -134,9 +183,10 @@ mod tests {
     #[test]
     fn more_lines_than_are_remembered_count_all() {
         let mut depths = Depths::default();
-        let lines: Vec<_> = (0..=Depths::wanted() as u64)
+        let places: Vec<_> = (0..=Depths::wanted() as u64)
             .map(|line| (0, line))
             .collect();
+        let lines = lines(&places);
         for _ in 0..Depths::DEEPEST {
             assert!(depths.deepen(&lines));
         }

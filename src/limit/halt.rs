@@ -7,9 +7,10 @@
 
 use std::collections::VecDeque;
 
+use super::case::Ends;
 use super::change::Change;
 use super::limiter::{Outcome, Slot};
-use super::solver::{Ends, Solver};
+use super::solver::Solver;
 use super::window::{Member, Window, change, lower, put};
 use crate::plan::{Plan, Trajectory, plan};
 

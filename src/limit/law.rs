@@ -1,11 +1,12 @@
 //! Values by rule instead of by solution: presets, and the squared ratio.
 
+use super::case::Case;
 use super::change::{Change, feed_word, round_to_step};
 use super::lever::{Levers, NO_KNOB, Obstacle, SpeedLever};
 use super::options::{PresetElse, Strategy};
-use super::solver::{Case, Solver};
+use super::solver::Solver;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisSet, AxisValues, Machine, Preset};
+use crate::machine::{AXES, AxisSet, AxisValues, Knob, Machine, Preset};
 use crate::plan::{Caps, SpeedBound, speed_bound};
 
 /// The preset for exactly the axes that start together.
@@ -16,7 +17,7 @@ pub(super) fn preset_for<'m>(machine: &'m Machine, mv: &Move) -> Option<&'m Pres
 
 impl Solver<'_> {
     /// What the preset for its axes says of a move, or what was asked for where there is none.
-    pub(super) fn by_preset(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    pub(super) fn by_preset(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         if self.falls_back(case.mv) {
             return self.by_speed(case, levers);
         }
@@ -34,7 +35,7 @@ impl Solver<'_> {
     pub(super) fn anyway(
         &self,
         case: Case<'_>,
-        levers: Levers,
+        levers: &Levers,
     ) -> Result<Option<Change>, Obstacle> {
         let Case { mv, assessment, .. } = case;
         let presets = self.how.strategy == Strategy::Preset;
@@ -63,7 +64,7 @@ impl Solver<'_> {
 pub(super) fn preset(
     solver: &Solver<'_>,
     case: Case<'_>,
-    levers: Levers,
+    levers: &Levers,
 ) -> Result<Change, Obstacle> {
     let axes = AxisSet(case.mv.moving.0 | case.mv.unknown_start.0);
     let Some(preset) = preset_for(solver.machine, case.mv) else {
@@ -92,7 +93,8 @@ pub(super) fn preset(
             accel[axis] = accel[axis].min(preset.accel_mm_s2[axis]);
         }
         if accel != case.mv.accel_mm_s2 {
-            let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
+            let knob = levers.accel_word(solver.machine);
+            let knob = knob.ok_or_else(|| no_lever("acceleration"))?;
             let least = axes.iter().map(|axis| accel[axis]);
             let values = match solver.along_path(knob, case.mv) {
                 Some(own) => solver.path_values(knob, least.fold(own, f64::min)),
@@ -133,13 +135,14 @@ fn squared_factor(solver: &Solver<'_>, case: Case<'_>) -> f64 {
 pub(super) fn squared_ratio(
     solver: &Solver<'_>,
     case: Case<'_>,
-    levers: Levers,
+    levers: &Levers,
     strategy: Strategy,
 ) -> Result<Change, Obstacle> {
     let factor = squared_factor(solver, case);
     let mut change = Change::default();
     if strategy == Strategy::Accel {
-        let knob = levers.accel.ok_or_else(|| no_lever("acceleration"))?;
+        let knob = levers.accel_word(solver.machine);
+        let knob = knob.ok_or_else(|| no_lever("acceleration"))?;
         return solver
             .accel_change(case, knob, factor, &change)
             .ok_or_else(|| no_lever("acceleration"));
@@ -163,7 +166,7 @@ fn scale_speed(
             .controller
             .knobs
             .get(knob)
-            .map_or(1.0, |knob| knob.step);
+            .map_or(1.0, Knob::percent_step);
         let percent = round_to_step(case.mv.rapid_factor * share * 100.0, step);
         change.rapid_percent = (percent > 0.0).then_some((knob, percent));
         return if percent > 0.0 {

@@ -1,6 +1,7 @@
 //! Levers: which words may bring one move down, and what stands in the way.
 
 use super::change::Permit;
+use super::level::{Groups, groups};
 use super::options::LimitOptions;
 use crate::interpret::{Move, MoveKind, own_path_speed};
 use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
@@ -10,6 +11,9 @@ pub const UNTOUCHABLE: &str = "untouchable";
 
 /// The rule of a refusal where no word lowers a move.
 pub const NO_KNOB: &str = "no-knob";
+
+/// The rule of a refusal where lower cutting feeds are not permitted.
+pub const FEED_NOT_ALLOWED: &str = "feed-not-allowed";
 
 /// The word that lowers the speed of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,11 +29,25 @@ pub(super) enum SpeedLever {
 }
 
 /// The levers of one move.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Levers {
     pub(super) speed: Option<SpeedLever>,
-    /// Index of the knob for acceleration.
+    /// Index of the knob for acceleration, of those without levels.
     pub(super) accel: Option<usize>,
+    /// Knobs with levels for the move as it is.
+    pub(super) levels: Groups,
+    /// The same for a rapid that is written as a feed.
+    pub(super) feed_levels: Groups,
+}
+
+impl Levers {
+    /// The knob for acceleration, with levels or without.
+    pub(super) fn accel_word(&self, machine: &Machine) -> Option<usize> {
+        let knobs = &machine.controller.knobs;
+        let mut levels = self.levels.iter().copied();
+        self.accel
+            .or_else(|| levels.find(|index| knobs.get(*index).is_some_and(Knob::sets_accel)))
+    }
 }
 
 /// Why a move cannot be brought down.
@@ -59,19 +77,37 @@ impl Obstacle {
 
 /// The first verified knob with this target (or `Accel`), in whatever form.
 pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize> {
+    let knobs = &machine.controller.knobs;
+    // Where there are levels, they are the accelerations that percentages are taken of.
+    let has_levels = knobs
+        .iter()
+        .any(|knob| knob.levels.is_some() && knob.sets_accel());
     let suits = |knob: &Knob| {
-        knob.lowers_accel() && (knob.target == target || knob.target == KnobTarget::Accel)
+        !has_levels
+            && knob.lowers_accel()
+            && (knob.target == target || knob.target == KnobTarget::Accel)
+    };
+    knobs.iter().position(suits)
+}
+
+/// The knob for the speed of rapids.
+fn rapid_knob(machine: &Machine, permit: &Permit) -> Option<usize> {
+    let suits = |knob: &Knob| {
+        knob.verified
+            && knob.levels.is_none()
+            && match knob.target {
+                KnobTarget::RapidSpeed => true,
+                KnobTarget::SpeedShare => permit.line_before,
+                _ => false,
+            }
     };
     machine.controller.knobs.iter().position(suits)
 }
 
-/// The knob for the speed of rapids.
-fn rapid_knob(machine: &Machine) -> Option<usize> {
-    machine
-        .controller
-        .knobs
-        .iter()
-        .position(|knob| knob.verified && knob.target == KnobTarget::RapidSpeed)
+/// Whether the axes stand for a knob where its word is put back right away: a feed costs less.
+fn costs_stops(machine: &Machine, permit: &Permit, knob: usize) -> bool {
+    let knob = machine.controller.knobs.get(knob);
+    permit.apart && knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare)
 }
 
 /// The knob for the largest speed that acts on a move, where it can be put back.
@@ -84,7 +120,11 @@ pub(super) fn speed_knob(machine: &Machine, mv: &Move) -> Option<usize> {
                     && own_path_speed(machine).is_some()
             }
             KnobArgument::Axes => mv.arc.is_none(),
-            KnobArgument::Assign | KnobArgument::Path(_) | KnobArgument::Output(_) => false,
+            KnobArgument::Assign
+            | KnobArgument::Index
+            | KnobArgument::Path(_)
+            | KnobArgument::Output(_)
+            | KnobArgument::Level => false,
         };
         knob.verified && knob.target == KnobTarget::Speed && acts
     };
@@ -123,21 +163,31 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         return Levers {
             speed: speed.filter(|_| how.allowed.feed || permit.positions),
             accel: accel_lever(machine, mv, KnobTarget::FeedAccel).filter(acts),
+            levels: groups(machine, permit, true),
+            feed_levels: Groups::new(),
         };
     }
-    let speed = match rapid_knob(machine) {
-        Some(knob) => Some(SpeedLever::RapidPercent(knob)),
-        None => rapid_as_feed(machine, how, mv, permit).then_some(SpeedLever::AsFeed),
+    let as_feed = || rapid_as_feed(machine, how, mv, permit);
+    let speed = match rapid_knob(machine, permit) {
+        Some(knob) if !(costs_stops(machine, permit, knob) && as_feed()) => {
+            Some(SpeedLever::RapidPercent(knob))
+        }
+        _ => as_feed().then_some(SpeedLever::AsFeed),
     };
-    // A rapid written as a feed is under the knobs of feeds, which differ.
+    // A rapid written as a feed is under the knobs of feeds, which may differ.
     let accel = accel_lever(machine, mv, KnobTarget::RapidAccel).filter(acts);
     let both = |index: &usize| {
         let knob = machine.controller.knobs.get(*index);
-        knob.is_some_and(|knob| knob.stands() && knob.target == KnobTarget::Accel)
+        let one_for_all = |knob: &Knob| {
+            knob.stands() || matches!(knob.argument, KnobArgument::Index | KnobArgument::Assign)
+        };
+        knob.is_some_and(|knob| knob.target == KnobTarget::Accel && one_for_all(knob))
     };
     Levers {
         speed,
         accel: accel.filter(|index| speed != Some(SpeedLever::AsFeed) || both(index)),
+        levels: groups(machine, permit, false),
+        feed_levels: groups(machine, permit, true),
     }
 }
 

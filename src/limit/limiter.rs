@@ -6,15 +6,17 @@
 
 use std::collections::VecDeque;
 
+use super::case::{Case, Ends};
 use super::change::{Change, Permit};
 use super::depth::Depths;
 use super::lever::{Obstacle, levers};
 use super::options::{LimitOptions, Strategy};
-use super::solver::{Case, Ends, Solver};
+use super::pace::{Paces, fitting_mm_s};
+use super::solver::Solver;
 use super::split::{SPLIT_TRIES, Split};
 use super::window;
-use crate::interpret::Move;
-use crate::machine::Machine;
+use crate::interpret::{Move, MoveKind};
+use crate::machine::{Machine, RapidJoint};
 use crate::power::{Assessment, Certificate};
 
 /// What was decided for one move.
@@ -238,6 +240,13 @@ impl<'m> Limiter<'m> {
         ends: Ends,
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
     ) -> Outcome {
+        if assessment.ahead
+            && assessment.certificate == Certificate::Planned
+            && let Some(paces) = self.depths.paces()
+            && let Some(outcome) = self.by_measure(paces, (mv, assessment), ends, find)
+        {
+            return outcome;
+        }
         let deeper = assessment.ahead && self.depth(mv) > 0;
         let fits = self.solver.model.fits(&assessment.demand) && !deeper;
         let later = self.shifted && assessment.spindle.runs;
@@ -258,7 +267,7 @@ impl<'m> Limiter<'m> {
                     exact_stop: false,
                 };
                 let levers = levers(self.solver.machine, self.solver.how, mv, &permit);
-                Outcome::anyway(self.solver.anyway(case, levers))
+                Outcome::anyway(self.solver.anyway(case, &levers))
             } else {
                 Outcome::default()
             };
@@ -291,6 +300,73 @@ impl<'m> Limiter<'m> {
             Err(obstacle) => outcome.obstacle = Some(Box::new(obstacle)),
         }
         outcome
+    }
+}
+
+impl Limiter<'_> {
+    /// What a move gets that is held to a speed by measure, or by how far it exceeds the
+    /// limit next to its neighbours; `None` where it is solved like others.
+    fn by_measure<'a>(
+        &self,
+        paces: &Paces,
+        (mv, assessment): (&Move, &Assessment),
+        ends: Ends,
+        find: &impl Fn(usize) -> Option<Waiting<'a>>,
+    ) -> Option<Outcome> {
+        let solver = &self.solver;
+        let joint = solver.machine.controller.planner.rapid_joint;
+        if mv.kind == MoveKind::Rapid && joint != RapidJoint::All {
+            // As a feed it runs between two stops, by itself.
+            return None;
+        }
+        // One factor on all feeds is one on F, not on what axes or curvature leave of it.
+        let asked_mm_s = if mv.feed_mm_s.is_finite() {
+            mv.feed_mm_s
+        } else {
+            assessment.speed_mm_s
+        };
+        let own_mm_s = asked_mm_s * solver.largest.feed;
+        let exceeds = !solver.model.fits(&assessment.demand);
+        let mut most_mm_s = paces.of(mv, own_mm_s);
+        if most_mm_s.is_none() && !(exceeds && paces.measures()) {
+            return (!paces.measures()).then(Outcome::default);
+        }
+        let whole = self.depths.of(mv) >= SPLIT_TRIES || most_mm_s.is_some();
+        if self.splits() && exceeds && paces.measures() && !whole {
+            return None;
+        }
+        let Waiting { permit, .. } = find(self.slots.len())?;
+        let levers = levers(solver.machine, solver.how, mv, &permit);
+        if levers.speed.is_none() {
+            return (!paces.measures()).then(Outcome::default);
+        }
+        let pairs = levers.accel.is_some() && solver.how.strategy != Strategy::Speed;
+        let mut with = Change::NONE;
+        if exceeds && paces.measures() {
+            if pairs {
+                // The acceleration by itself; what neighbours make of it is measured.
+                with = solver.solve(mv, assessment, &permit, ends).ok()?;
+            } else if most_mm_s.is_none() {
+                most_mm_s = fitting_mm_s(&solver.model, mv, assessment);
+            }
+        }
+        let case = Case {
+            mv,
+            assessment,
+            permit: &permit,
+            ends,
+            exact_stop: false,
+        };
+        let held = |case: Case<'_>| match most_mm_s {
+            Some(most_mm_s) => solver.held(case, &levers, &with, most_mm_s),
+            None => Ok(with),
+        };
+        let mut outcome = Outcome::default();
+        match solver.sooner_stopped(case, held) {
+            Ok(change) => outcome.change = (!change.is_none()).then(|| Box::new(change)),
+            Err(obstacle) => outcome.obstacle = Some(Box::new(obstacle)),
+        }
+        Some(outcome)
     }
 }
 

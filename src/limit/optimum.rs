@@ -6,9 +6,10 @@
 //! An arc may have several, since its speed decides what is left to accelerate
 //! with: the search begins next to the best of a few.
 
+use super::case::Case;
 use super::change::Change;
 use super::lever::SpeedLever;
-use super::solver::{Case, Solver};
+use super::solver::Solver;
 use crate::plan::plan;
 
 /// Steps of the search; each narrows the bracket to 0.618.

@@ -1,9 +1,10 @@
 //! Why a move cannot be lowered, and what would permit it.
 
+use super::case::Case;
 use super::change::Change;
-use super::lever::{NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
+use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
 use super::options::{Allowed, LimitOptions};
-use super::solver::{Case, Solver};
+use super::solver::Solver;
 use crate::interpret::MoveKind;
 use crate::machine::{RapidKnob, RapidPath};
 
@@ -22,7 +23,9 @@ impl Solver<'_> {
             );
         }
         if mv.kind != MoveKind::Rapid {
-            let by_f = permit.feed_word.then(|| {
+            // Next to others it is known once the program was limited with the permission.
+            let alone = !case.assessment.ahead && !case.assessment.blended;
+            let by_f = (permit.feed_word && alone).then(|| {
                 self.allowing_feeds()
                     .speed(case, SpeedLever::FeedWord, &Change::default())
             });
@@ -31,7 +34,7 @@ impl Solver<'_> {
                 None => "--allow feed permits lower feeds".to_owned(),
             };
             return Obstacle::new(
-                "feed-not-allowed",
+                FEED_NOT_ALLOWED,
                 "cutting feeds are not changed without permission",
                 help,
             );

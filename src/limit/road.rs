@@ -5,8 +5,9 @@
 //! speed that the length of the way leaves, or with a cruise between them.
 
 use super::along::straight_accel_mm_s2;
+use super::case::Case;
 use super::change::Change;
-use super::solver::{Case, Solver};
+use super::solver::Solver;
 use super::stages::{Stages, Terms, stages};
 use crate::interpret::Move;
 use crate::machine::AxisValues;

@@ -1,7 +1,9 @@
 //! One move by itself: the change that makes it fit.
 
+use super::case::{Case, Ends};
 use super::change::{
     Change, Permit, feed_unit, feed_word, limit_path_accel, round_feed_down, round_to_step,
+    set_rapid_share,
 };
 use super::law;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
@@ -11,7 +13,7 @@ use super::refusal::too_much;
 use super::root::largest;
 use super::steps;
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisValues, Machine};
+use crate::machine::{AXES, AxisValues, KnobArgument, Machine};
 use crate::plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
 use crate::power::{Assessment, PowerModel, SpindleShare, Want};
 use crate::units::SECONDS_PER_MINUTE;
@@ -26,28 +28,6 @@ pub struct Solver<'m> {
     pub(super) model: PowerModel,
     pub(super) largest: Overrides,
     pub(super) how: LimitOptions,
-}
-
-/// A move to be solved, with all that is known of it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Case<'a> {
-    pub(super) mv: &'a Move,
-    pub(super) assessment: &'a Assessment,
-    pub(super) permit: &'a Permit,
-    /// For how much of what may happen at its ends it has to fit.
-    pub(super) ends: Ends,
-    /// A rapid that is written as a feed runs in exact stop.
-    pub(super) exact_stop: bool,
-}
-
-/// How a move begins and ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd)]
-pub enum Ends {
-    /// At rest.
-    Rest,
-    /// At any speed up to its own, with any acceleration up to its own: it fits
-    /// whatever its neighbours do. The depth of [`super::Depths`].
-    Any(u8),
 }
 
 impl<'m> Solver<'m> {
@@ -98,11 +78,11 @@ impl<'m> Solver<'m> {
                 "no feed and no acceleration changes that: a larger converter is needed",
             ));
         }
-        self.sooner_stopped(case, |case| self.by_strategy(case, levers))
+        self.sooner_stopped(case, |case| self.by_strategy(case, &levers))
     }
 
     /// The change that the strategy says.
-    fn by_strategy(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    fn by_strategy(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         let change = match (self.how.strategy, self.how.law) {
             (Strategy::Preset, _) => self.by_preset(case, levers)?,
             (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
@@ -215,7 +195,15 @@ impl<'m> Solver<'m> {
         known && (open || mv.stray.is_far())
     }
 
-    pub(super) fn by_speed(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    pub(super) fn by_speed(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        let found = self.by_speed_word(case, levers);
+        match self.how.strategy {
+            Strategy::Speed => self.with_levels(case, levers, found),
+            _ => found,
+        }
+    }
+
+    fn by_speed_word(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
         self.speed(case, lever, &Change::default())
             .ok_or_else(|| too_much(case))
@@ -233,7 +221,9 @@ impl<'m> Solver<'m> {
         let mut moved = base.clone();
         let mut load_at = |lever: SpeedLever, value: f64| {
             match lever {
-                SpeedLever::RapidPercent(_) => moved.rapid_factor = value / 100.0,
+                SpeedLever::RapidPercent(knob) => {
+                    set_rapid_share(self.machine, &mut moved, knob, value);
+                }
                 _ => moved.feed_mm_s = value / self.largest.feed,
             }
             self.load(case, &moved)
@@ -260,7 +250,7 @@ impl<'m> Solver<'m> {
         };
         match lever {
             SpeedLever::RapidPercent(knob) => {
-                let step = self.machine.controller.knobs.get(knob)?.step;
+                let step = self.machine.controller.knobs.get(knob)?.percent_step();
                 let percent = round_to_step(value, step);
                 trial.rapid_percent = (percent > 0.0).then_some((knob, percent));
                 trial.rapid_percent?;
@@ -290,7 +280,12 @@ impl<'m> Solver<'m> {
         None
     }
 
-    fn by_accel(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
+    fn by_accel(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        let found = self.by_accel_word(case, levers);
+        self.with_levels(case, levers, found)
+    }
+
+    fn by_accel_word(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
         let knob = levers.accel.ok_or_else(|| self.no_accel_lever(case))?;
         // A block that is too short for its speed reaches less of it the more slowly it
         // accelerates, so that friction alone at full speed decides nothing.
@@ -321,7 +316,11 @@ impl<'m> Solver<'m> {
         let along_mm_s2 = self.along_path(knob, &base);
         let mut load_at = |factor: f64| {
             match along_mm_s2 {
-                Some(accel) => limit_path_accel(self.machine, &mut moved, accel * factor),
+                Some(accel) => {
+                    // Where the direction is not known axes are held to it as well.
+                    moved.accel_mm_s2 = base.accel_mm_s2;
+                    limit_path_accel(self.machine, &mut moved, accel * factor);
+                }
                 None => moved.accel_mm_s2 = base.accel_mm_s2.map(|accel| accel * factor),
             }
             self.load(case, &moved)
@@ -332,7 +331,17 @@ impl<'m> Solver<'m> {
         } else {
             largest(1.0, load_top, load_at)?
         };
-        self.accel_change(case, knob, factor, with)
+        // The root lies a hair below the whole percentage that it may be.
+        let whole = self.machine.controller.knobs.get(knob);
+        let whole = whole.filter(|knob| knob.argument == KnobArgument::Index);
+        let whole = whole.and_then(|_| self.accel_change(case, knob, factor * (1.0 + 1e-6), with));
+        let fits = |change: &Change| {
+            let changed = change.apply(self.machine, case.mv, case.permit);
+            self.load(case, &changed) <= 1.0 + 1e-9
+        };
+        whole
+            .filter(fits)
+            .or_else(|| self.accel_change(case, knob, factor, with))
     }
 
     /// Acceleration knobs at `factor` of what is in force, rounded down;
@@ -365,6 +374,9 @@ impl<'m> Solver<'m> {
         permit: &Permit,
     ) -> Option<AxisValues> {
         let data = self.machine.controller.knobs.get(knob)?;
+        if data.levels.is_some() {
+            return self.level_values(data, accel_mm_s2);
+        }
         let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
             let Some(own) = &self.machine.axes[axis] else {
@@ -379,7 +391,7 @@ impl<'m> Solver<'m> {
                 return None;
             }
         }
-        if data.output().is_some() {
+        if data.output().is_some() || data.is_named_for_all() {
             // One value for all axes, whatever their rounding.
             let axes = || self.machine.axis_set.iter();
             let least = axes()
@@ -390,8 +402,13 @@ impl<'m> Solver<'m> {
         Some(values)
     }
 
-    fn optimal(&self, case: Case<'_>, levers: Levers) -> Result<Change, Obstacle> {
-        match levers {
+    fn optimal(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        let found = self.optimal_words(case, levers);
+        self.with_levels(case, levers, found)
+    }
+
+    fn optimal_words(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
+        match *levers {
             // Steps do not fall with the acceleration.
             Levers { speed: Some(_), .. } if steps::load(self, case, case.mv).is_some() => {
                 self.by_speed(case, levers)
@@ -399,9 +416,10 @@ impl<'m> Solver<'m> {
             Levers {
                 speed: Some(speed),
                 accel: Some(accel),
+                ..
             } => optimum::best_pair(self, case, speed, accel).ok_or_else(|| too_much(case)),
             Levers { speed: Some(_), .. } => self.by_speed(case, levers),
-            Levers { accel: Some(_), .. } => self.by_accel(case, levers),
+            Levers { accel: Some(_), .. } => self.by_accel_word(case, levers),
             _ => Err(self.no_speed_lever(case)),
         }
     }

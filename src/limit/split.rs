@@ -7,10 +7,11 @@
 //! them as designed here: an acceleration of each holds in it for speeding up and for
 //! braking, and the way is divided so that it has no other choice.
 
+use super::case::{Case, Ends};
 use super::change::{Change, Permit};
 use super::lever::{Levers, levers};
 use super::road::{MOST, NO_FIT, Road, SHORTEST_MM};
-use super::solver::{Case, Ends, Solver};
+use super::solver::Solver;
 use super::steps;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
@@ -73,7 +74,7 @@ impl Solver<'_> {
         if tries >= SPLIT_TRIES {
             return Err(BESIDE);
         }
-        let mut road = self.road(case, levers(self.machine, self.how, mv, permit))?;
+        let mut road = self.road(case, &levers(self.machine, self.how, mv, permit))?;
         road.coarser(tries);
         let mut way = road.way(SHORTEST_MM)?;
         let at_feed_mm = self.machine.controller.planner.shortest_at_feed_s * road.top_mm_s;
@@ -113,7 +114,7 @@ impl Solver<'_> {
         (cruise_ratio(mv, &rules) > 0.0).then_some(index)
     }
 
-    fn road<'a>(&'a self, case: Case<'a>, levers: Levers) -> Result<Road<'a>, &'static str> {
+    fn road<'a>(&'a self, case: Case<'a>, levers: &Levers) -> Result<Road<'a>, &'static str> {
         let Case { mv, assessment, .. } = case;
         let controller = &self.machine.controller;
         let straight = matches!(mv.kind, MoveKind::Rapid | MoveKind::Feed) && mv.arc.is_none();

@@ -5,8 +5,9 @@
 //! within the drives' response, with the second where one stands alone. The program
 //! is planned anew with the changes in any case; a deeper round expects less.
 
+use super::case::{Case, Ends};
 use super::options::Strategy;
-use super::solver::{Case, Ends, Solver};
+use super::solver::Solver;
 use crate::interpret::Move;
 use crate::machine::AXES;
 use crate::plan::{blended_bound, blended_speed};

@@ -1,8 +1,9 @@
 //! Rapids that are written as feeds between two stops, and how they run there.
 
+use super::case::Case;
 use super::change::Change;
 use super::lever::Obstacle;
-use super::solver::{Case, Solver};
+use super::solver::Solver;
 use crate::interpret::{Corner, Move, MoveKind};
 use crate::machine::{CornerRule, Knob, PathMode, RapidJoint};
 use crate::plan::plan;
@@ -72,7 +73,9 @@ impl Solver<'_> {
             return Ok(between_dwells);
         }
         let halved = self.halved(case.mv, &changed);
-        if halved.is_none() && between_dwells.accel.is_none() {
+        let knob = between_dwells.accel.map(|(knob, _)| knob);
+        let knob = knob.and_then(|knob| self.machine.controller.knobs.get(knob));
+        if halved.is_none() && !knob.is_some_and(Knob::stands) {
             return Ok(Change {
                 exact_stop: changed.path_mode == PathMode::LookAhead,
                 ..between_dwells

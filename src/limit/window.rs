@@ -9,14 +9,16 @@ use std::collections::VecDeque;
 use arrayvec::ArrayVec;
 
 use super::bounds::{envelope, factor, path_speed, scale};
+use super::case::{Case, Ends};
 use super::change::{Change, Permit, feed_word};
 use super::halt;
 use super::law;
+use super::level;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::{Outcome, Slot, Waiting};
 use super::options::{Law, Strategy};
 use super::root::largest;
-use super::solver::{Case, Ends, Solver};
+use super::solver::Solver;
 use crate::interpret::Move;
 use crate::machine::AxisValues;
 use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
@@ -48,8 +50,7 @@ impl Member<'_> {
     }
 }
 
-/// Lowers the window around `center` if it does not fit; `find` gives the move
-/// of a slot.
+/// Lowers the window around `center` if it does not fit; `find` gives the move of a slot.
 pub(super) fn settle<'a>(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
@@ -92,8 +93,9 @@ pub(super) fn lower(
         .iter()
         .map(|member| levers_joined(solver, member.mv, &member.permit))
         .collect();
-    let by_speed = || found.iter().any(|levers| speed_lever(*levers).is_some());
-    let by_accel = || found.iter().any(|levers| levers.accel.is_some());
+    let by_speed = || found.iter().any(|levers| speed_lever(levers).is_some());
+    let accel = |levers: &Levers| levers.accel_word(solver.machine);
+    let by_accel = || found.iter().any(|levers| accel(levers).is_some());
     let by_rule = solver.how.strategy == Strategy::Preset || solver.how.law == Law::Patent;
     let done = match solver.how.strategy {
         _ if by_rule => by_law(solver, slots, window, &found),
@@ -114,6 +116,8 @@ fn levers_joined(solver: &Solver<'_>, mv: &Move, permit: &Permit) -> Levers {
     // No knob for which the axes stand.
     let permit = Permit {
         stands: false,
+        rests: false,
+        line_before: false,
         ..*permit
     };
     let mut found = levers(solver.machine, solver.how, mv, &permit);
@@ -132,7 +136,7 @@ pub(super) fn put_anyway(solver: &Solver<'_>, slot: &mut Slot, mv: &Move, permit
         ends: Ends::Rest,
         exact_stop: false,
     };
-    slot.outcome = Outcome::anyway(solver.anyway(case, levers_joined(solver, mv, permit)));
+    slot.outcome = Outcome::anyway(solver.anyway(case, &levers_joined(solver, mv, permit)));
     let change = slot.outcome.change.as_deref();
     slot.changed = change.map(|change| Box::new(change.apply(solver.machine, mv, permit)));
 }
@@ -148,8 +152,8 @@ fn by_law(
     for (member, levers) in window.iter().zip(found) {
         let case = member.case(slots);
         let change = match solver.how.strategy {
-            Strategy::Preset => law::preset(solver, case, *levers),
-            strategy => law::squared_ratio(solver, case, *levers, strategy),
+            Strategy::Preset => law::preset(solver, case, levers),
+            strategy => law::squared_ratio(solver, case, levers, strategy),
         };
         // A neighbour for which there is none may fit as it is.
         if let Ok(change) = change {
@@ -166,13 +170,13 @@ fn by_law(
     let others = window.iter().zip(found).map(|(member, levers)| {
         let falls_back = solver.falls_back(member.mv);
         if falls_back {
-            *levers
+            levers.clone()
         } else {
             Levers::default()
         }
     });
     let others: Vec<Levers> = others.collect();
-    let by_speed = others.iter().any(|levers| speed_lever(*levers).is_some());
+    let by_speed = others.iter().any(|levers| speed_lever(levers).is_some());
     by_speed && lower_speed(solver, slots, window, &others)
 }
 
@@ -213,7 +217,7 @@ fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
 }
 
 /// Blended moves are lowered by F or by a word for the largest speed, also a rapid written as a feed.
-fn speed_lever(levers: Levers) -> Option<SpeedLever> {
+fn speed_lever(levers: &Levers) -> Option<SpeedLever> {
     levers
         .speed
         .filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_)))
@@ -269,7 +273,7 @@ fn lower_speed(
         .collect();
     let adjustable: Vec<bool> = found
         .iter()
-        .map(|levers| speed_lever(*levers).is_some())
+        .map(|levers| speed_lever(levers).is_some())
         .collect();
     let (top, accel) = envelope(bounds.iter().copied().zip(accels.iter()));
     let factors = |cap: f64| -> Vec<f64> {
@@ -297,7 +301,7 @@ fn lower_speed(
     };
     for ((member, factor), levers) in window.iter().zip(factors(cap)).zip(found) {
         if factor < 1.0
-            && let Some(lever) = speed_lever(*levers)
+            && let Some(lever) = speed_lever(levers)
             && !lower_feed(solver, slots, member, lever, factor)
         {
             return false;
@@ -375,7 +379,7 @@ fn lower_accel(
         accels
             .iter()
             .zip(found)
-            .map(|(accel, levers)| match levers.accel {
+            .map(|(accel, levers)| match levers.accel_word(solver.machine) {
                 Some(_) => std::array::from_fn(|axis| accel[axis].min(cap * top[axis])),
                 None => *accel,
             })
@@ -390,7 +394,7 @@ fn lower_accel(
         return false;
     };
     for ((member, accel), levers) in window.iter().zip(lowered(cap)).zip(found) {
-        if let Some(knob) = levers.accel
+        if let Some(knob) = levers.accel_word(solver.machine)
             && accel != member.changed(slots).accel_mm_s2
             && !set_accel(solver, slots, member, knob, &accel)
         {
@@ -448,11 +452,31 @@ fn faster_of_both(
     let by_accel = save(slots);
     restore(slots, before.clone());
     let speed_done = lower_speed(solver, slots, window, found);
-    if speed_done && time(solver, slots, window) < accel_time {
-        return true;
+    let speed_time = if speed_done {
+        time(solver, slots, window)
+    } else {
+        f64::INFINITY
+    };
+    let (mut best, mut best_time) = (accel_done.then_some(by_accel), accel_time);
+    if speed_time < accel_time {
+        (best, best_time) = (Some(save(slots)), speed_time);
     }
-    restore(slots, if accel_done { by_accel } else { before });
-    accel_done
+    // A level that is not gentle enough by itself leaves more speed than none.
+    for depth in 1..level::DEEPEST {
+        restore(slots, before.clone());
+        if !level::step_down(solver, slots, window, found, depth) {
+            break;
+        }
+        if lower_speed(solver, slots, window, found) {
+            let lasts = time(solver, slots, window);
+            if lasts < best_time * (1.0 - 1e-6) {
+                (best, best_time) = (Some(save(slots)), lasts);
+            }
+        }
+    }
+    let done = best.is_some();
+    restore(slots, best.unwrap_or(before));
+    done
 }
 
 /// Time of the window's moves with a stop at each, s.

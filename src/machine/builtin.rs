@@ -46,6 +46,7 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "linuxcnc",
     "grbl",
     "isg",
+    "twincat-nci",
     "siemens",
     "marlin",
     "reprap",

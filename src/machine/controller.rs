@@ -1,7 +1,7 @@
 //! Controller profiles: what a controller reads, how it plans, and which words
 //! lower speed and acceleration. Profiles are data (TOML).
 
-use super::knob::{Knob, KnobArgument};
+use super::knob::Knob;
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
 use super::queue::Queue;
@@ -73,6 +73,8 @@ pub struct Language {
     pub ignored_g: Vec<u16>,
     /// Further M numbers without motion that are passed over.
     pub ignored_m: Vec<u16>,
+    /// Words whose levels a document of the vendor describes, such as `G187`.
+    pub levels: Vec<String>,
     /// Whether `/` blocks exist (grbl and printers have none).
     pub block_delete: bool,
     /// How G41 and G42 shift the path; `None`: not known, or they do not exist.
@@ -118,6 +120,8 @@ pub struct Dialect {
     pub osp: bool,
     /// M words from M10 on that are not known move no axis.
     pub other_m: bool,
+    /// A `;` ends a block.
+    pub semicolon_ends_block: bool,
     /// F is a feed per revolution at power-on.
     pub per_revolution: bool,
     /// G12 and G13 mill circular pockets.
@@ -244,6 +248,8 @@ pub enum Family {
     Isg,
     /// Siemens SINUMERIK 840D and its kin.
     Siemens,
+    /// Beckhoff `TwinCAT` NC I, classic dialect.
+    Nci,
 }
 
 /// What happens at the joint of two blocks.
@@ -341,7 +347,7 @@ impl Controller {
             knob.verified
                 && knob.target == like.target
                 && knob.unit == like.unit
-                && knob.argument == KnobArgument::Axes
+                && knob.is_by_axis()
         })
     }
 }

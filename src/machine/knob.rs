@@ -1,6 +1,7 @@
 //! Knobs: words that limit speed or acceleration, as the controller profile describes them.
 
 use super::axis::{Axis, AxisKind};
+use super::levels::Levels;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// A word that limits speed or acceleration until it is taken back.
@@ -29,6 +30,8 @@ pub struct Knob {
     pub wait: Option<String>,
     /// How long the axes stand for a change of it, s.
     pub change_s: f64,
+    /// The levels that its words select, for `KnobArgument::Level`.
+    pub levels: Option<Levels>,
 }
 
 impl Knob {
@@ -47,15 +50,50 @@ impl Knob {
         }
     }
 
+    /// Whether it acts on accelerations.
+    #[must_use]
+    pub fn sets_accel(&self) -> bool {
+        matches!(
+            self.target,
+            KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel
+        )
+    }
+
+    /// Smallest step of a share of the rapid speed, %.
+    #[must_use]
+    pub fn percent_step(&self) -> f64 {
+        match self.unit {
+            KnobUnit::Share => self.step * 100.0,
+            _ => self.step,
+        }
+    }
+
+    /// The value that leaves a share of the rapid speed, given in %.
+    #[must_use]
+    pub fn of_percent(&self, percent: f64) -> f64 {
+        match self.unit {
+            // The quotient of two whole numbers is the decimal number that is written.
+            KnobUnit::Share => (percent * 10.0).round() / 1000.0,
+            _ => percent,
+        }
+    }
+
+    /// Whether it takes a value for each axis.
+    #[must_use]
+    pub fn is_by_axis(&self) -> bool {
+        matches!(self.argument, KnobArgument::Axes | KnobArgument::Index)
+    }
+
+    /// Whether it is a name with one value for all axes (`DynOvr=0.5`).
+    #[must_use]
+    pub fn is_named_for_all(&self) -> bool {
+        self.code.is_none() && self.argument == KnobArgument::Assign
+    }
+
     /// Whether it may be written to lower an acceleration.
     #[must_use]
     pub fn lowers_accel(&self) -> bool {
-        self.verified
-            && matches!(
-                self.target,
-                KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel
-            )
-            && !matches!(self.argument, KnobArgument::Path(_))
+        self.verified && self.sets_accel() && !matches!(self.argument, KnobArgument::Path(_))
     }
 }
 
@@ -72,6 +110,8 @@ pub enum KnobTarget {
     RapidSpeed,
     /// Speed of all moves.
     Speed,
+    /// Share of the speed of all moves, as an override sets it while they run.
+    SpeedShare,
     /// Share of each hill of speed that is cruised at least.
     CruiseRatio,
 }
@@ -79,7 +119,7 @@ pub enum KnobTarget {
 /// What stands after a knob's word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KnobArgument {
-    /// `= value` for all axes (`G131 = 50`).
+    /// `= value` for all axes (`G131 = 50`, `DynOvr=0.5`).
     Assign,
     /// A value for each axis letter (`G130 X70 Y60`).
     Axes,
@@ -87,9 +127,14 @@ pub enum KnobArgument {
     Path(Vec<u8>),
     /// The number of an analog output, and a value for all axes (`M68 E0 Q0.5`).
     Output(u16),
+    /// A value for each axis, with the axis in brackets after the word (`ACC[X]=70`).
+    Index,
     /// One value right after the word, the limit along the path of all moves that the
     /// extruder does not make alone (`SET_VELOCITY_LIMIT ACCEL=500`).
     Value,
+    /// Nothing: each word selects a level (`DYNFINISH`, `G187 P3`). Values are the indices of
+    /// these.
+    Level,
 }
 
 /// Unit of a knob's value.

@@ -38,6 +38,20 @@ pub struct Machine {
     pub limits: Limits,
 }
 
+impl Limits {
+    /// Whether lower overrides count than those at which peaks are taken.
+    #[must_use]
+    pub fn counts_lower(&self) -> bool {
+        self.override_at.is_none() || self.override_from.is_some()
+    }
+
+    /// The least shares of these that feeds and rapids stand at.
+    #[must_use]
+    pub fn least_shares(&self) -> [f64; 2] {
+        self.override_from.unwrap_or_default()
+    }
+}
+
 /// A converter (power supply) and the axes it feeds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Converter {
@@ -301,6 +315,8 @@ pub struct Limits {
     /// The overrides stand at these values: lower ones do not count, and times are
     /// taken there as well. No machine file says so; a run may ask for it.
     pub override_at: Option<OverrideAt>,
+    /// With that: feeds and rapids stand anywhere between these shares of it and it itself.
+    pub override_from: Option<[f64; 2]>,
     /// No cutting feed is lowered below this, mm/s; 0: no floor.
     pub min_feed_mm_s: f64,
     /// Nor below this share of min(F, axis-limited speed); 0: no floor.

@@ -1,9 +1,10 @@
 //! What would bring a move down, in a few words.
 
 use super::entry::{positions, turns_apart};
+use super::hints::FITS;
 use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
-use crate::machine::{AxisSet, AxisValues, Machine};
+use crate::machine::{AxisSet, AxisValues, Machine, RapidJoint};
 use crate::power::Assessment;
 
 /// What helps where the spindle alone is too much.
@@ -79,7 +80,13 @@ impl<'m> Adviser<'m> {
             as_feed: per_minute || apart,
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
+            line_before: true,
+            apart: false,
             stop_word: false,
+            levels: true,
+            rests: mv.path_mode == crate::machine::PathMode::ExactStop
+                || mv.kind == MoveKind::Rapid
+                    && self.machine.controller.planner.rapid_joint == RapidJoint::Stop,
             unsplit: None,
             reason: "",
             reason_help: "",
@@ -115,17 +122,17 @@ impl<'m> Adviser<'m> {
             (knob, least.fold(f64::INFINITY, f64::min))
         };
         let settings = [
-            change.rapid_percent,
+            change.rapid_percent.map(|(knob, percent)| {
+                let data = self.machine.controller.knobs.get(knob);
+                (knob, data.map_or(percent, |data| data.of_percent(percent)))
+            }),
             change.accel.map(least),
             change.speed.map(least),
         ];
         // An infinite value leaves the axes that move here as they are.
         let settings = settings.into_iter().flatten();
         for (knob, value) in settings.filter(|(_, value)| value.is_finite()) {
-            words.push(format!(
-                "{} {value}",
-                super::describe::knob_name(self.machine, knob)
-            ));
+            words.push(super::describe::knob_words(self.machine, knob, value));
         }
         if words.is_empty() {
             return NEIGHBOURS_HELP.to_owned();
@@ -135,6 +142,6 @@ impl<'m> Adviser<'m> {
         } else {
             ""
         };
-        format!("fits with {}{option}", words.join(" and "))
+        format!("{FITS}{}{option}", words.join(" and "))
     }
 }

@@ -25,7 +25,7 @@ use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
-use crate::limit::{Depths, Place};
+use crate::limit::{Deeper, Depths, Paced, Place};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
 use crate::source::lines;
@@ -61,7 +61,9 @@ pub(super) struct Verdict<'m, 'r> {
     judged: usize,
     reasons: Reasons,
     /// Lines that do not fit since their neighbours were changed.
-    deeper: Vec<Place>,
+    deeper: Vec<Deeper>,
+    /// What the plan says of lines that were lowered.
+    paced: Vec<Paced>,
     /// The line of the move before, and whether that of the next one is to be
     /// lowered with it.
     before: Option<Place>,
@@ -78,7 +80,9 @@ pub(super) struct Certified {
     pub(super) summary: Summary,
     pub(super) reasons: Reasons,
     /// Lines that would have to be lowered deeper, in the order of the program.
-    pub(super) deeper: Vec<Place>,
+    pub(super) deeper: Vec<Deeper>,
+    /// What the plan says of lines that were lowered.
+    pub(super) paced: Vec<Paced>,
 }
 
 impl Certified {
@@ -87,6 +91,7 @@ impl Certified {
         self.summary.worsen(&other.summary);
         self.reasons.join(other.reasons);
         self.deeper.extend(other.deeper);
+        self.paced.extend(other.paced);
         self
     }
 }
@@ -235,6 +240,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             judged: 0,
             reasons: Reasons::default(),
             deeper: Vec::new(),
+            paced: Vec::new(),
             before: None,
             deepen_next: false,
             spindle: VecDeque::new(),
@@ -297,6 +303,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
             summary,
             reasons,
             deeper: self.deeper,
+            paced: self.paced,
         })
     }
 
@@ -390,14 +397,20 @@ impl<'m, 'r> Verdict<'m, 'r> {
             if planned && !original.hopeless && !self.model.fits(&after.demand) {
                 // Under the robust bound the neighbours count as well.
                 let robust = after.certificate == Certificate::Robust;
+                let next_to = |place| Deeper { place, paced: None };
                 let before = self.before.filter(|_| robust);
-                self.deeper.extend(before);
-                self.deeper.push(place);
+                self.deeper.extend(before.map(next_to));
+                let by_itself = !robust && original.split.is_none();
+                let paced = by_itself.then(|| Paced::of(&self.model, place, mv, after));
+                self.deeper.push(Deeper { place, paced });
                 self.deepen_next = robust;
             } else if std::mem::take(&mut self.deepen_next) {
-                self.deeper.push(place);
+                self.deeper.push(Deeper { place, paced: None });
             }
             self.deeper.truncate(Depths::wanted() + 1);
+            if original.changed && after.ahead && self.paced.len() <= Depths::wanted() {
+                self.paced.push(Paced::of(&self.model, place, mv, after));
+            }
             self.before = Some(place);
             compare(&self.model, original, mv, after, text, &mut self.reasons);
         }

@@ -29,6 +29,7 @@ pub(super) fn conclude(
         summary: mut after,
         reasons: found,
         deeper: _,
+        paced: _,
     } = certified;
     if target != machine {
         // What cannot reach the lower limit keeps the machine's own, or else the
@@ -85,6 +86,7 @@ pub(super) fn conclude(
         slower,
         reasons: reasons.list,
         price: None,
+        ideal: None,
     }
 }
 

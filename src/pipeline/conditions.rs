@@ -3,8 +3,7 @@
 use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::interpret::BlockDelete;
-use crate::machine::{CornerRule, Knob, Machine, PathMode, Spindle, SpindleWait};
-use crate::power::lowest_share;
+use crate::machine::{CornerRule, KnobTarget, Machine, PathMode, Spindle, SpindleWait};
 
 /// How the spindle counts.
 fn spindle_condition(spindle: &Spindle) -> &'static str {
@@ -68,15 +67,16 @@ fn over_time_condition(machine: &Machine, summary: &Summary) -> String {
          at the largest"
             .to_owned()
     } else if looked_at {
-        let lowest = lowest_share() * 100.0;
-        format!(
-            "limits over time at lower overrides: where a bound over all of them leaves one open, feed \
-             and rapid together and each alone are looked at down to {lowest:.0} % of the largest, so \
-             closely that nothing in between exceeds it if it lasts longer in proportion"
-        )
+        "limits over time at lower overrides: where a bound over all of them leaves one open, ranges \
+         of feed and rapid overrides have bounds of their own, small enough to keep it in each"
+            .to_owned()
     } else {
         "limits over time hold at every lower override too, by a bound over all of them".to_owned()
     };
+    let rules = machine.controller.planner.look_ahead;
+    if rules.is_some_and(|rules| !matches!(rules.corner, CornerRule::LinuxCnc { .. })) {
+        said.push_str("; what drives make of steps of speed counts as at the larger overrides");
+    }
     if machine.spindle.is_some() {
         said.push_str("; the spindle's runs overlap the moves that they overlap at the largest");
     }
@@ -105,12 +105,32 @@ fn ways_conditions(paths: &[Options]) -> impl Iterator<Item = String> {
 
 /// Which outputs act on the motion.
 fn output_conditions(machine: &Machine) -> impl Iterator<Item = String> {
-    let outputs = machine.controller.knobs.iter().filter_map(Knob::output);
-    outputs.map(|number| {
-        format!(
-            "analog output {number} sets the share of all accelerations (M68 E{number}), and is 1 \
-             or was never set before the program"
-        )
+    let knobs = machine.controller.knobs.iter();
+    knobs.filter_map(|knob| {
+        let number = knob.output()?;
+        let share = match knob.target {
+            KnobTarget::SpeedShare => {
+                format!("the speed of all moves (M67 E{number} under M52 P1)")
+            }
+            _ => format!("all accelerations (M68 E{number})"),
+        };
+        Some(format!(
+            "analog output {number} sets the share of {share}, and is 1 or was never set before \
+             the program"
+        ))
+    })
+}
+
+/// Which levels hold when a program begins.
+fn level_conditions(machine: &Machine) -> impl Iterator<Item = String> {
+    let knobs = machine.controller.knobs.iter();
+    let levels = knobs.filter_map(|knob| knob.levels.as_ref());
+    levels.filter_map(|levels| {
+        let level = levels.list.get(levels.power_on)?;
+        Some(format!(
+            "{} holds when the program begins, and each level acts as the machine file has it",
+            level.text()
+        ))
     })
 }
 
@@ -165,6 +185,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
     ));
     conditions.extend(assumptions(machine));
     conditions.extend(output_conditions(machine));
+    conditions.extend(level_conditions(machine));
     conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
         Start::Unknown => "start position unknown".to_owned(),

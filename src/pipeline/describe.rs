@@ -4,7 +4,7 @@ use super::Row;
 use super::tally::axes;
 use crate::interpret::Move;
 use crate::limit::{Change, Split};
-use crate::machine::{AxisSet, AxisValues, KnobArgument, KnobUnit, Machine};
+use crate::machine::{AXES, AxisSet, AxisValues, KnobArgument, KnobTarget, KnobUnit, Machine};
 use crate::power::{Assessment, PowerModel};
 
 /// The row of a judged move that begins at `start_s`.
@@ -57,8 +57,12 @@ pub(super) fn describe(
     row: &mut Row,
 ) {
     let Some(change) = change else { return };
+    let knobs = &machine.controller.knobs;
+    let level = change.accel.and_then(|(knob, _)| knobs.get(knob));
+    let rapid_level = level.is_some_and(|knob| knob.target == KnobTarget::RapidSpeed);
     let speed = change.feed.is_some() || change.rapid_percent.is_some() || change.speed.is_some();
     row.action = match (speed, change.accel.is_some()) {
+        (false, true) if rapid_level => "lower rapid speed",
         (true, true) => "lower speed and acceleration",
         (true, false) if change.as_feed => "rapid as feed",
         (true, false) if change.rapid_percent.is_some() => "lower rapid speed",
@@ -76,8 +80,10 @@ pub(super) fn describe(
     }
     if let Some((knob, percent)) = change.rapid_percent {
         names.push(knob_name(machine, knob));
-        row.value_before = Some(mv.rapid_factor * 100.0);
-        row.value_after = Some(percent);
+        let data = machine.controller.knobs.get(knob);
+        let value = |percent: f64| data.map_or(percent, |data| data.of_percent(percent));
+        row.value_before = Some(value(mv.rapid_factor * 100.0));
+        row.value_after = Some(value(percent));
     }
     if let Some((knob, values)) = &change.speed {
         names.push(knob_name(machine, *knob));
@@ -85,8 +91,12 @@ pub(super) fn describe(
         row.value_after = axes.iter().map(|axis| values[axis]).min_by(f64::total_cmp);
     }
     if let Some((knob, values)) = &change.accel {
-        names.push(knob_name(machine, written(machine, *knob, values)));
+        names.push(match level_word(machine, *knob, values) {
+            Some(word) => word,
+            None => knob_name(machine, written(machine, *knob, values)),
+        });
         if row.value_after.is_none()
+            && level_word(machine, *knob, values).is_none()
             && let Some(axis) = mv
                 .moving
                 .iter()
@@ -138,6 +148,19 @@ fn written(machine: &Machine, knob: usize, values: &AxisValues) -> usize {
     let uniform = axes.all(|value| Some(value) == first);
     let by_axis = || machine.controller.knob_by_axis(knob);
     if uniform { None } else { by_axis() }.unwrap_or(knob)
+}
+
+/// The word that selects a level, in one piece: `G187P3`.
+fn level_word(machine: &Machine, knob: usize, values: &AxisValues) -> Option<String> {
+    let levels = machine.controller.knobs.get(knob)?.levels.as_ref()?;
+    let level = levels.list.get(values[0] as usize)?;
+    Some(level.text().replace(' ', ""))
+}
+
+/// A knob with its value, or the word of a level.
+pub(super) fn knob_words(machine: &Machine, knob: usize, value: f64) -> String {
+    let level = level_word(machine, knob, &[value; AXES]);
+    level.unwrap_or_else(|| format!("{} {value}", knob_name(machine, knob)))
 }
 
 /// The word of a knob, such as `G131`.

@@ -32,6 +32,8 @@ pub(super) struct Entry {
     pub(super) steps: Vec<Step>,
     /// The certificate holds with it and without it, where it may be skipped.
     pub(super) skips: bool,
+    /// What is changed in it is put back right after it.
+    pub(super) apart: bool,
     /// Corners are taken in one way each time that it runs.
     pub(super) one_corner: bool,
     /// Where no F is in force, it may not have one either: another block cannot.
@@ -65,6 +67,7 @@ impl Entry {
             facts: Facts::default(),
             steps: Vec::new(),
             skips: false,
+            apart: false,
             one_corner: true,
             without_feed: false,
             marked: false,
@@ -242,6 +245,11 @@ impl Entry {
             .knobs
             .as_ref()
             .map_or(mv.accel_mm_s2, |knobs| knobs.feed_accel_mm_s2);
+        let stopping = planner.rapid_joint == RapidJoint::Stop && mv.kind == MoveKind::Rapid;
+        let knows_levels = self
+            .knobs
+            .as_ref()
+            .is_some_and(|it| it.knows_levels(machine));
         let may_stop = self.between_stops(machine) && self.may_stop_exactly(machine);
         let blended_rapid = mv.kind == MoveKind::Rapid && mv.path_mode == PathMode::LookAhead;
         Permit {
@@ -250,6 +258,10 @@ impl Entry {
             as_feed: reasons == [None; 3],
             exact_stop: may_stop,
             stands: !facts.compensated && (stops || blended_rapid && may_stop),
+            levels: !facts.compensated && knows_levels,
+            rests: !facts.compensated && (stops || stopping && self.moves == 1),
+            line_before: !facts.compensated,
+            apart: self.apart,
             stop_word: reasons[0].is_none()
                 && self.moves == 1
                 && !self.block.words.is_empty()
@@ -317,7 +329,7 @@ impl Entry {
                 "it may be skipped (block delete)",
             ),
             (
-                facts.boundary,
+                facts.boundary && facts.tool_words[1].is_none(),
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),

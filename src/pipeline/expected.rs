@@ -132,7 +132,7 @@ impl Stops {
         Self {
             shortest_s: machine.controller.language.shortest_dwell().1,
             knobs_s: knobs
-                .filter(|knob| knob.stands())
+                .filter(|knob| knob.output().is_some() || knob.stands() || knob.change_s > 0.0)
                 .map(|knob| knob.change_s)
                 .collect(),
         }

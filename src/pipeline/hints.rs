@@ -17,6 +17,11 @@ use crate::machine::Machine;
 /// What helps where a cycle has to be written out.
 const EXPAND: &str = "`limit --allow expand` writes the canned cycle out and lowers its moves";
 
+/// How the advice for a move begins, and what is said before it where its neighbours were not
+/// looked at.
+pub(super) const FITS: &str = "fits with ";
+const BY_ITSELF: &str = "by itself it ";
+
 /// Lets the limiter decide about a program that does not fit: where it could not lower a
 /// move, its own reason stands in the place of the advice in `summary`.
 ///
@@ -57,15 +62,23 @@ pub fn take_hints<R: Read + Seek + Send>(
     let mut written = Written {
         lines: lines.map(|unfit| (unfit.line, None)).collect(),
     };
-    // Of longer programs the advice is that for each move by itself.
-    let rows = (summary.moves <= AT_LENGTH_MAX).then_some(&mut written as &mut dyn RestartRows);
+    // Of longer programs the advice is that for each move by itself, and says so.
+    let looks = summary.moves <= AT_LENGTH_MAX;
+    let rows = looks.then_some(&mut written as &mut dyn RestartRows);
+    if !looks {
+        for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
+            if unfit.help.starts_with(FITS) {
+                unfit.help.insert_str(0, BY_ITSELF);
+            }
+        }
+    }
     let as_it_stands = reasons(false, rows)?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
         let words = written.lines.get(&unfit.line).and_then(Option::as_ref);
         // What was advised for a move by itself gives way to what is written next to others.
         if let Some((_, words)) = words
             && unfit.file.is_empty()
-            && unfit.help.starts_with("fits with ")
+            && unfit.help.starts_with(FITS)
         {
             unfit.help.clone_from(words);
         }
@@ -92,7 +105,7 @@ pub fn take_hints<R: Read + Seek + Send>(
 
 /// The words that each line gets, with the lowest value of the first of them.
 struct Written {
-    lines: BTreeMap<u64, Option<(f64, String)>>,
+    lines: BTreeMap<u64, Option<(Option<f64>, String)>>,
 }
 
 impl RowSink for Written {
@@ -100,10 +113,16 @@ impl RowSink for Written {
         let Some(known) = self.lines.get_mut(&row.line) else {
             return Ok(());
         };
-        let (Some(value), true) = (row.value_after, row.file.is_empty()) else {
+        let value = row.value_after;
+        if !row.file.is_empty() || value.is_none() && row.knob.is_empty() {
             return Ok(());
+        }
+        // A level has no value.
+        let lower = |lowest: Option<f64>| match (value, lowest) {
+            (Some(value), Some(lowest)) => value < lowest,
+            (value, _) => value.is_some(),
         };
-        if known.as_ref().is_none_or(|(lowest, _)| value < *lowest) {
+        if known.as_ref().is_none_or(|(lowest, _)| lower(*lowest)) {
             *known = Some((value, words(row, value)));
         }
         Ok(())
@@ -118,7 +137,7 @@ impl Restart for Written {
 }
 
 /// What the limiter writes for a move: its words, with the value of the first.
-fn words(row: &Row, value: f64) -> String {
+fn words(row: &Row, value: Option<f64>) -> String {
     let mut names = row.knob.split(' ');
     let first = names.next().unwrap_or_default();
     let (before, blank) = match first {
@@ -126,7 +145,8 @@ fn words(row: &Row, value: f64) -> String {
         "F" => ("", ""),
         _ => ("", " "),
     };
-    let mut words = format!("fits with {before}{first}{blank}{value}");
+    let value = value.map_or_else(String::new, |value| format!("{blank}{value}"));
+    let mut words = format!("{FITS}{before}{first}{value}");
     for name in names {
         words.push_str(" and ");
         words.push_str(name);

@@ -13,11 +13,14 @@ use super::conclusion::{conclude, holds_one_way};
 use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand, in_fixed_blocks};
 use super::front::read_whole;
 use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::pace::sooner;
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
+use super::readable::readable;
 use super::relay::no_thread;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
+use super::unmarked::unmarked;
 use super::ways::{has_ways, ways};
 use super::whole::Whole;
 use super::writer::{Plan, Writer, Written};
@@ -39,11 +42,11 @@ const BATCHES: usize = 2;
 /// See [`Failure`]. A program that cannot be made to fit is no error: see
 /// [`LimitSummary::certified`].
 pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
-    mut input: R,
+    input: R,
     machine: &Machine,
     options: &Options,
     how: LimitOptions,
-    mut output: W,
+    output: W,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     if let Some((machine, note)) = trusting(machine, how) {
@@ -51,7 +54,29 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
         summary.before.notes.push(note);
         return Ok(summary);
     }
+    if let Some((machine, note)) = readable(machine) {
+        let mut summary = limit(input, &machine, options, how, output, rows)?;
+        summary.before.notes.push(note);
+        return Ok(summary);
+    }
     check_strategy(machine, how)?;
+    let mut summary = limit_ways(input, machine, options, how, output, &mut rows)?;
+    summary
+        .before
+        .notes
+        .extend(unmarked(options, how, &summary));
+    Ok(summary)
+}
+
+/// Limits a program on all ways through it.
+fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+    mut output: W,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<LimitSummary, Failure> {
     let paths = if has_ways(options) {
         let paths = ways(&mut input, machine, options, false)?;
         input.rewind().map_err(Failure::Input)?;
@@ -59,7 +84,7 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     } else {
         vec![options.clone()]
     };
-    let mut as_asked = limit_paths(&mut input, machine, &paths, how, &mut output, &mut rows)?;
+    let mut as_asked = limit_paths(&mut input, machine, &paths, how, &mut output, rows)?;
     if !as_asked.may_skip {
         return Ok(as_asked);
     }
@@ -69,14 +94,14 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
         Ok(all) if all.len() <= paths.len() => return Ok(as_asked),
         Ok(all) => {
             input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, &mut rows)?;
-            let summary = limit_paths(&mut input, machine, &all, how, &mut output, &mut rows)?;
+            restart(&mut output, rows)?;
+            let summary = limit_paths(&mut input, machine, &all, how, &mut output, rows)?;
             if summary.certified || !as_asked.certified {
                 return Ok(summary);
             }
             input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, &mut rows)?;
-            as_asked = limit_paths(input, machine, &paths, how, output, &mut rows)?;
+            restart(&mut output, rows)?;
+            as_asked = limit_paths(input, machine, &paths, how, output, rows)?;
             summary.reasons
         }
         Err(Failure::Refused { diagnostics, .. }) => diagnostics,
@@ -207,12 +232,13 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     let places = Cell::new(Vec::new());
-    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
+    let learned = Cell::new(None);
+    let mut attempt_with = |target: &Machine, plan: Option<Plan>, start: Depths, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
         }
-        let mut depths = Depths::default();
+        let mut depths = start;
         let mut rungs = Vec::new();
         let mut ladder = None;
         loop {
@@ -227,6 +253,11 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             };
             let (mut written, mut certified) = job.run(&mut input, &mut output, rows)?;
             places.set(std::mem::take(&mut written.places));
+            if let Some(paces) = depths.paces_mut() {
+                let over = certified.deeper.iter().map(|line| line.place);
+                paces.learn(std::mem::take(&mut certified.paced), over);
+            }
+            learned.set(depths.paces().cloned());
             if certified.deeper.is_empty() {
                 // What the bound over all overrides leaves open is looked at in further
                 // runs, which write the same.
@@ -249,7 +280,15 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
         }
     };
     let stands = how.allowed.pause.then_some(Plan::NEVER);
-    let first = attempt(machine, stands, false)?;
+    let first = attempt_with(machine, stands, Depths::default(), false)?;
+    let first = sooner(how, first, &mut |paces| {
+        let start = paces.map_or_else(Depths::default, Depths::by_measure);
+        let found = attempt_with(machine, stands, start, true)?;
+        Ok((found, learned.take().unwrap_or_default()))
+    })?;
+    let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
+        attempt_with(target, plan, Depths::default(), again)
+    };
     if missed_narrowly(&first) {
         return aim_lower(machine, first, &mut |target| attempt(target, None, true));
     }

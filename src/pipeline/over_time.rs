@@ -22,7 +22,7 @@ impl Summary {
     /// What settles limits over time at lower overrides.
     pub(super) fn ladder(&self, machine: &Machine) -> Ladder {
         let ratings: Vec<Rating> = self.over_time.iter().map(|found| found.rating).collect();
-        Ladder::new(machine, &ratings)
+        Ladder::new(machine, &ratings, self.moves, self.knobs)
     }
 
     /// Takes what it found.

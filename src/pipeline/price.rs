@@ -1,11 +1,16 @@
 //! What it would take to make a program fit that could not be: which permissions, and how
 //! much time.
 
+use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
 use super::summary::AT_LENGTH_MAX;
-use super::{Allowed, Failure, LimitOptions, LimitSummary, Options};
+use super::{
+    Allowed, Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, Row, RowSink,
+};
+use crate::diagnostic::Diagnostic;
+use crate::limit::FEED_NOT_ALLOWED;
 use crate::machine::Machine;
 
 /// What it takes to make a program fit.
@@ -18,8 +23,9 @@ pub struct Price {
 }
 
 /// Limits a program that could not be made to fit with further permissions, until one is
-/// enough; `None` where none is, or where the program has so many moves that to try would
-/// take too long. `refused`: what came of it as it was asked for.
+/// enough: that, and the feeds which it takes, are added to `refused`, what came of it as it
+/// was asked for. Nothing is where none is enough, or where the program has so many moves
+/// that to try would take too long.
 ///
 /// # Errors
 /// See [`Failure`].
@@ -28,28 +34,77 @@ pub fn price<R: Read + Seek + Send>(
     machine: &Machine,
     options: &Options,
     how: LimitOptions,
-    refused: &LimitSummary,
-) -> Result<Option<Price>, Failure> {
+    refused: &mut LimitSummary,
+) -> Result<(), Failure> {
     if refused.certified || refused.before.moves > AT_LENGTH_MAX {
-        return Ok(None);
+        return Ok(());
     }
+    let mut feeds = Feeds::of(refused);
     for allowed in further(machine, how.allowed, refused) {
         input.rewind().map_err(Failure::Input)?;
         let how = LimitOptions { allowed, ..how };
-        let found = match limit(&mut input, machine, options, how, io::sink(), None) {
+        let rows: Option<&mut dyn RestartRows> = (!feeds.lines.is_empty()).then_some(&mut feeds);
+        let found = match limit(&mut input, machine, options, how, io::sink(), rows) {
             Ok(found) => found,
             // Permissions that do not go with each other or with the strategy.
             Err(Failure::Unsuitable(_)) => continue,
             Err(failure) => return Err(failure),
         };
         if found.certified {
-            return Ok(Some(Price {
+            refused.price = Some(Price {
                 allowed,
                 duration_s: [refused.before.duration_s, found.after.duration_s],
-            }));
+            });
+            feeds.take_into(refused);
+            break;
         }
     }
-    Ok(None)
+    Ok(())
+}
+
+/// The lowest F that lines get which ask for permission.
+struct Feeds {
+    lines: BTreeMap<u64, Option<f64>>,
+}
+
+impl Feeds {
+    fn of(refused: &LimitSummary) -> Self {
+        let asks = |it: &&Diagnostic| it.rule == FEED_NOT_ALLOWED && it.file.is_none();
+        let lines = refused.reasons.iter().filter(asks);
+        Self {
+            lines: lines.map(|reason| (reason.line, None)).collect(),
+        }
+    }
+
+    /// What was found by limiting the whole program is said in the place of what a block by
+    /// itself would take.
+    fn take_into(&self, refused: &mut LimitSummary) {
+        for reason in &mut refused.reasons {
+            let feed = self.lines.get(&reason.line).copied().flatten();
+            if let Some(feed) = feed.filter(|_| reason.rule == FEED_NOT_ALLOWED) {
+                reason.help = Some(format!("it fits at F{feed}: --allow feed permits that"));
+            }
+        }
+    }
+}
+
+impl RowSink for Feeds {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let by_feed = row.knob.split(' ').next() == Some("F") && row.file.is_empty();
+        if let Some(known) = self.lines.get_mut(&row.line)
+            && let Some(feed) = row.value_after.filter(|_| by_feed)
+        {
+            *known = Some(known.map_or(feed, |lowest| lowest.min(feed)));
+        }
+        Ok(())
+    }
+}
+
+impl Restart for Feeds {
+    fn restart(&mut self) -> io::Result<()> {
+        self.lines.values_mut().for_each(|feed| *feed = None);
+        Ok(())
+    }
 }
 
 /// What may be allowed in addition, from what changes least on.

@@ -174,7 +174,8 @@ impl Entry {
 pub(super) fn impossible(machine: &Machine) -> Option<String> {
     let controller = &machine.controller;
     let name = &controller.name;
-    let words = controller.knobs.iter().filter(|knob| knob.lowers_accel());
+    let words = controller.knobs.iter();
+    let words = words.filter(|knob| knob.lowers_accel() && knob.levels.is_none());
     let acts: Vec<bool> = words.map(|knob| knob.between_moves).collect();
     if acts.is_empty() {
         return Some(format!(

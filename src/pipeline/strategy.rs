@@ -37,7 +37,10 @@ pub(super) fn trusting(machine: &Machine, how: LimitOptions) -> Option<(Machine,
 pub(super) fn check_strategy(machine: &Machine, how: LimitOptions) -> Result<(), Failure> {
     let accel = machine.controller.knobs.iter().any(Knob::lowers_accel);
     let unconfirmed = unconfirmed(machine);
-    let permit = if unconfirmed.is_empty() {
+    let language = &machine.controller.language.name;
+    let permit = if unconfirmed.is_empty() && *language != machine.controller.name {
+        format!(" that `{language}` reads")
+    } else if unconfirmed.is_empty() {
         String::new()
     } else {
         format!(" (--allow unverified permits {unconfirmed}, which no document confirms)")

@@ -7,6 +7,7 @@ use crate::power::Rating;
 
 use super::by_line::LineSummary;
 use super::front::ONLY_SUBPROGRAMS;
+use super::ideal::Ideal;
 use super::over_time::OverTime;
 use super::pause::Pause;
 use super::price::Price;
@@ -55,6 +56,8 @@ pub struct Summary {
     pub lines: u64,
     /// Number of moves, dwells and runs of the spindle that do not fit included.
     pub moves: u64,
+    /// Whether overrides of feeds and of rapids change anything.
+    pub knobs: [bool; 2],
     /// Cycle time in s.
     pub duration_s: f64,
     /// Largest bus power in W, and where (0: no move).
@@ -134,4 +137,7 @@ pub struct LimitSummary {
     pub reasons: Vec<Diagnostic>,
     /// What would make it fit, where that was asked for: see [`price`](super::price).
     pub price: Option<Price>,
+    /// What a word for acceleration would bring, where that was asked for and is worth a
+    /// line: see [`ideal`](super::ideal).
+    pub ideal: Option<Ideal>,
 }

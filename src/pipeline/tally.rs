@@ -151,6 +151,9 @@ impl<'m, 'r> Tally<'m, 'r> {
         let summary = &mut self.summary;
         let demand = &assessment.demand;
         summary.moves += u64::from(mv.kind != MoveKind::Spindle);
+        for (own, turns) in summary.knobs.iter_mut().zip(mv.kind.knobs()) {
+            *own |= turns;
+        }
         summary.duration_s += assessment.duration_s;
         self.energy_j += demand.energy_j;
         if let Some(by_line) = &mut self.by_line {

@@ -42,6 +42,9 @@ impl Summary {
     pub(super) fn worsen(&mut self, other: &Self) {
         self.lines = self.lines.max(other.lines);
         self.moves = self.moves.max(other.moves);
+        for (own, turns) in self.knobs.iter_mut().zip(other.knobs) {
+            *own |= turns;
+        }
         self.duration_s = self.duration_s.max(other.duration_s);
         if other.peak_w > self.peak_w {
             (self.peak_w, self.peak_line) = (other.peak_w, other.peak_line);

@@ -12,6 +12,7 @@ use super::effect::{Effect, Switched};
 use super::eye::Eye;
 use super::held::{Behind, Held, Rider};
 use super::idle::Idle;
+use super::late::unpaced;
 use super::line::Line;
 use super::model::PowerModel;
 use super::motion::Motion;
@@ -269,6 +270,11 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
+        if self.ahead.is_none() && mv.pace < 1.0 && self.may_blend(mv) {
+            // The robust bound alone does not know how fast such a move is entered.
+            let whole = unpaced(mv).into_owned();
+            return self.push_axes(&whole, text, sink);
+        }
         if let Some(ahead) = &self.ahead {
             let open = ahead.is_open();
             let follows = open && !(ahead.rests() && self.is_alone(mv));
@@ -358,6 +364,7 @@ impl<'m> Assessor<'m> {
         let blended = self.may_blend(mv);
         if let Some(path) = figures
             && !mv.stray.strays()
+            && mv.pace >= 1.0
             && let Some(demand) = self.quick_demand(mv, path, blended)
         {
             let mut assessment = Assessment {
@@ -421,6 +428,10 @@ impl<'m> Assessor<'m> {
         }
         if mv.stray.strays() {
             demand = self.model.with_stray(demand, mv, peak_plan.top_speed_mm_s);
+        }
+        let of_plan = [speed_mm_s, peak_plan.accel_mm_s2];
+        if let Some(late) = self.model.late(machine, mv, of_plan, largest) {
+            demand.include(&late);
         }
         let unknown = !mv.unknown_start.is_empty();
         Assessment {

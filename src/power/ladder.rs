@@ -1,243 +1,319 @@
-//! Limits over time that the bound over all overrides does not settle: the program is
-//! looked at with its knobs at some lower overrides, at more of them the nearer a limit is.
+//! Limits over time that the bound over all overrides does not settle: the square of feed
+//! and rapid overrides is divided into ranges, each with a bound of its own, until the
+//! limit is kept in all of them.
 //!
-//! Between two overrides o₁ < o₂ nothing lasts longer than by `o₂/o₁`: what uses up a limit
-//! there is no more than the larger of both times that, the powers of the one with the
-//! durations of the other. Where that keeps the limit nothing in between need be looked
-//! at; else what lies in the middle is, until both are next to each other.
+//! In a range nothing is drawn but what the bound at its larger ends has (see
+//! `watch/terms`), and nothing lasts longer than by the ratio of its ends: the smaller it
+//! is the nearer the bound comes to what some setting in it has. A limit that is missed at
+//! some setting is not kept; nor is one that the bound of the smallest ranges does not
+//! keep, or that takes more ranges than are looked at.
 //!
-//! Input: what was found at the largest overrides. Output: settings of the knobs to look
-//! at, then the worst of each limit.
+//! Input: what was found at the largest overrides. Output: ranges to look at, then the
+//! worst of each limit.
 
 use super::assess::Assessor;
 use super::demand::Want;
-use super::watch::{Measure, Rating};
+use super::watch::Rating;
 use crate::interpret::{Action, Move};
 use crate::machine::{Machine, OverrideAt};
 
-/// Shares of the largest overrides that are looked at first, down to the lowest.
-const FIRST: [f64; 8] = [0.64, 0.41, 0.26, 0.17, 0.11, 0.07, 0.045, 0.03];
-/// Two that differ by less than this stand next to each other.
+/// Where all settings are divided first, of one knob and of two.
+const FIRST: [f64; 10] = [1.0, 0.64, 0.41, 0.26, 0.17, 0.11, 0.07, 0.045, 0.03, 0.0];
+const FIRST_OF_TWO: [f64; 6] = [1.0, 0.64, 0.41, 0.17, 0.05, 0.0];
+/// Where a range that reaches down to 0 is divided, as a share of its larger end.
+const DOWN: f64 = 0.4;
+/// A range is not divided where its ends differ by less than this.
 const NEAR: f64 = 1.015;
-/// So many are looked at, at most, and so many at a time.
-const POINTS_MAX: usize = 160;
-const AT_ONCE: usize = 24;
+/// A side is divided alone where its ends differ by this power more than those of the
+/// other one.
+const LONGER: f64 = 1.5;
+/// So many are looked at, at most, of a program of so many moves at most, and so many at a
+/// time.
+const RANGES_MAX: usize = 640;
+const MOVES_MAX: u64 = 1_000_000;
+const RANGES_MIN: usize = 160;
+const AT_ONCE: usize = 64;
 
-/// Ways to turn the knobs of feed and rapid: the powers of a share that each stands at.
-/// Together, each alone, and one less than the other.
-const WAYS: [[f64; 2]; 5] = [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.3], [0.3, 1.0]];
+/// Which knobs matter: that of feeds, that of rapids.
+pub type Knobs = [bool; 2];
 
-/// One setting and what was found there, by limit.
+/// Shares of the largest overrides, from the lower to the upper one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Range {
+    feed: [f64; 2],
+    rapid: [f64; 2],
+}
+
+/// What a range has left open.
 #[derive(Debug, Clone)]
-struct Rung {
-    share: f64,
-    found: Option<Vec<Rating>>,
+struct Open {
+    range: Range,
+    /// How far each limit is used up by its bound; 0 where that keeps it.
+    used: Vec<f64>,
 }
 
 /// The settings that have been looked at.
 #[derive(Debug)]
 pub struct Ladder {
-    /// By way, from the largest on down.
-    rungs: [([f64; 2], Vec<Rung>); 5],
     /// At the largest overrides.
     largest: Vec<Rating>,
-    /// Nominal voltages by limit, V.
-    nominal_v: Vec<f64>,
+    /// Of each limit the worst setting that was looked at.
+    worst: Vec<Rating>,
+    /// What came of each limit.
+    verdicts: Vec<Verdict>,
+    open: Vec<Open>,
+    asked: Vec<Range>,
+    left: usize,
     machine: Machine,
-    asked: Vec<[usize; 2]>,
-    points: usize,
 }
 
-impl Ladder {
-    /// Nothing has been looked at but the largest overrides.
-    #[must_use]
-    pub fn new(machine: &Machine, largest: &[Rating]) -> Self {
-        let nominal_v = |rating: &Rating| {
-            let converter = machine.converters.get(rating.converter);
-            let capacitor = converter.and_then(|converter| converter.ratings.capacitor);
-            capacitor.map_or(0.0, |capacitor| capacitor.nominal_v)
-        };
-        let rungs = WAYS.map(|way| {
-            let first = FIRST.map(|share| Rung { share, found: None });
-            let top = Rung {
-                share: 1.0,
-                found: Some(largest.to_vec()),
-            };
-            (way, std::iter::once(top).chain(first).collect())
-        });
-        Self {
-            rungs,
-            nominal_v: largest.iter().map(nominal_v).collect(),
-            largest: largest.to_vec(),
-            machine: machine.clone(),
-            asked: Vec::new(),
-            points: 0,
+/// What came of a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Verdict {
+    /// It is kept everywhere, or missed at the largest.
+    Known,
+    /// Ranges are looked at.
+    Open,
+    /// Some setting misses it.
+    Missed,
+    /// The smallest of ranges does not keep it, or there are too many: so far its bound
+    /// goes.
+    TooNear(f64),
+}
+
+impl Open {
+    /// How far the worst of the limits that are open is used up.
+    fn worst(&self, verdicts: &[Verdict]) -> f64 {
+        let open = self.used.iter().zip(verdicts);
+        let open = open.filter(|(_, verdict)| **verdict == Verdict::Open);
+        open.fold(0.0, |worst, (used, _)| worst.max(*used))
+    }
+}
+
+impl Range {
+    /// All settings of the knobs that matter.
+    fn all(knobs: Knobs) -> Self {
+        let [feed, rapid] = knobs.map(|turns| if turns { [0.0, 1.0] } else { [1.0, 1.0] });
+        Self { feed, rapid }
+    }
+
+    /// The same in parts; none where it is small.
+    fn parts(&self) -> Vec<Self> {
+        let whole = |side: [f64; 2]| side == [0.0, 1.0];
+        match [whole(self.feed), whole(self.rapid)] {
+            [false, false] => self.halves(),
+            [true, true] => grid(&FIRST_OF_TWO, &FIRST_OF_TWO),
+            [true, false] => grid(&FIRST, &[self.rapid[1], self.rapid[0]]),
+            [false, true] => grid(&[self.feed[1], self.feed[0]], &FIRST),
         }
     }
 
-    /// The machine with its knobs where they are to be looked at next; none where all is
-    /// settled.
+    fn halves(&self) -> Vec<Self> {
+        let [feed, rapid] = [self.feed, self.rapid].map(|[lower, upper]| {
+            if upper > lower * NEAR {
+                libm::log(upper / lower)
+            } else {
+                0.0
+            }
+        });
+        let halves = |[lower, upper]: [f64; 2], divide: bool| {
+            let middle = if lower > 0.0 {
+                (lower * upper).sqrt()
+            } else {
+                upper * DOWN
+            };
+            if divide {
+                vec![upper, middle, lower]
+            } else {
+                vec![upper, lower]
+            }
+        };
+        if feed == 0.0 && rapid == 0.0 {
+            return Vec::new();
+        }
+        let feeds = halves(self.feed, feed > 0.0 && rapid <= LONGER * feed);
+        let rapids = halves(self.rapid, rapid > 0.0 && feed <= LONGER * rapid);
+        grid(&feeds, &rapids)
+    }
+}
+
+/// The ranges between neighbours, from the largest on down.
+fn grid(feeds: &[f64], rapids: &[f64]) -> Vec<Range> {
+    let sides = |ends: &[f64]| -> Vec<[f64; 2]> {
+        let pairs = ends.windows(2).filter_map(|pair| match pair {
+            [upper, lower] => Some([*lower, *upper]),
+            _ => None,
+        });
+        pairs.collect()
+    };
+    let rapids = sides(rapids);
+    let pairs = sides(feeds).into_iter().flat_map(|feed| {
+        let rapids = rapids.iter();
+        rapids.map(move |rapid| Range {
+            feed,
+            rapid: *rapid,
+        })
+    });
+    pairs.collect()
+}
+
+impl Ladder {
+    /// Nothing has been looked at but the largest overrides, of a program of so many moves.
+    #[must_use]
+    pub fn new(machine: &Machine, largest: &[Rating], moves: u64, knobs: Knobs) -> Self {
+        let verdict = |rating: &Rating| {
+            if rating.bound.is_some() {
+                Verdict::Open
+            } else {
+                Verdict::Known
+            }
+        };
+        let most = (MOVES_MAX / moves.max(1)) as usize;
+        Self {
+            largest: largest.to_vec(),
+            worst: largest.to_vec(),
+            verdicts: largest.iter().map(verdict).collect(),
+            open: vec![Open {
+                range: Range::all(knobs),
+                used: vec![f64::INFINITY; largest.len()],
+            }],
+            asked: Vec::new(),
+            left: most.clamp(RANGES_MIN, RANGES_MAX),
+            machine: machine.clone(),
+        }
+    }
+
+    /// The machine with its knobs in the ranges that are to be looked at next; none where
+    /// all is settled.
     #[must_use]
     pub fn ask(&mut self) -> Vec<Machine> {
         self.asked.clear();
-        if !(0..self.largest.len()).any(|limit| self.is_open(limit)) {
-            return Vec::new();
+        self.settle();
+        let verdicts = &self.verdicts;
+        let worst = |open: &Open| open.worst(verdicts);
+        self.open.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
+        let mut rest = Vec::new();
+        for open in std::mem::take(&mut self.open) {
+            let parts = if self.asked.len() < AT_ONCE && self.left > 0 {
+                open.range.parts()
+            } else {
+                Vec::new()
+            };
+            if parts.is_empty() {
+                rest.push(open);
+            }
+            self.left = self.left.saturating_sub(parts.len());
+            self.asked.extend(parts);
         }
-        self.refine();
-        let mut machines = Vec::new();
-        for (line, (way, rungs)) in self.rungs.iter().enumerate() {
-            for (place, rung) in rungs.iter().enumerate() {
-                if rung.found.is_none() && self.asked.len() < AT_ONCE && self.points < POINTS_MAX {
-                    self.asked.push([line, place]);
-                    self.points += 1;
-                    machines.push(at(&self.machine, *way, rung.share));
-                }
+        self.open = rest;
+        self.asked
+            .iter()
+            .map(|range| within(&self.machine, range))
+            .collect()
+    }
+
+    /// Leaves aside what leaves no limit open, and limits that nothing leaves open.
+    fn settle(&mut self) {
+        let Self { open, verdicts, .. } = self;
+        open.retain(|open| open.worst(verdicts) > 0.0);
+        for (limit, verdict) in verdicts.iter_mut().enumerate() {
+            let used = |open: &Open| open.used.get(limit).is_some_and(|used| *used > 0.0);
+            if *verdict == Verdict::Open && !open.iter().any(used) {
+                *verdict = Verdict::Known;
             }
         }
-        machines
     }
 
     /// Takes what was found there.
     pub fn take(&mut self, found: &[Vec<Rating>]) {
-        for ([line, place], found) in self.asked.drain(..).zip(found) {
-            let rung = self.rungs.get_mut(line);
-            if let Some(rung) = rung.and_then(|(_, rungs)| rungs.get_mut(place)) {
-                rung.found = Some(found.clone());
-            }
-        }
-    }
-
-    /// Puts settings between those that leave something open.
-    fn refine(&mut self) {
-        let open: Vec<usize> = (0..self.largest.len())
-            .filter(|limit| self.is_open(*limit))
-            .collect();
-        let mut middles = Vec::new();
-        for (line, (_, rungs)) in self.rungs.iter().enumerate() {
-            for pair in rungs.windows(2) {
-                let [upper, lower] = pair else { continue };
-                let doubtful = open.iter().any(|limit| !self.is_kept(*limit, upper, lower));
-                if doubtful && upper.found.is_some() && lower.found.is_some() {
-                    middles.push((line, (upper.share * lower.share).sqrt()));
+        for (index, range) in std::mem::take(&mut self.asked).into_iter().enumerate() {
+            let Some(found) = found.get(index) else {
+                // Nobody has looked.
+                let used = vec![f64::INFINITY; self.verdicts.len()];
+                self.open.push(Open { range, used });
+                continue;
+            };
+            let mut all_used = vec![0.0; self.verdicts.len()];
+            let small = range.parts().is_empty();
+            let limits = self.verdicts.iter_mut().zip(&mut self.worst);
+            let limits = limits.zip(found).zip(&mut all_used);
+            for (((verdict, worst), rating), used) in limits {
+                if *verdict == Verdict::Known {
+                    continue;
+                }
+                if rating.load_ratio() > worst.load_ratio() {
+                    *worst = Rating {
+                        overrides: within(&self.machine, &range).limits.override_at,
+                        bound: None,
+                        ..*rating
+                    };
+                }
+                if !rating.keeps() {
+                    *verdict = Verdict::Missed;
+                } else if let Some(bound) = rating.bound
+                    && *verdict == Verdict::Open
+                {
+                    if small {
+                        *verdict = Verdict::TooNear(bound);
+                    }
+                    let bound = Rating {
+                        value: bound,
+                        ..*rating
+                    };
+                    *used = bound.load_ratio();
                 }
             }
+            self.open.push(Open {
+                range,
+                used: all_used,
+            });
         }
-        for (line, share) in middles {
-            if let Some((_, rungs)) = self.rungs.get_mut(line) {
-                rungs.push(Rung { share, found: None });
-                rungs.sort_by(|a, b| b.share.total_cmp(&a.share));
-            }
-        }
-    }
-
-    /// Whether a limit is kept between two settings.
-    fn is_kept(&self, limit: usize, upper: &Rung, lower: &Rung) -> bool {
-        let used = |rung: &Rung| {
-            let found = rung.found.as_ref().and_then(|found| found.get(limit));
-            found.map_or(f64::INFINITY, |rating| self.used(limit, rating))
-        };
-        used(upper).max(used(lower)) * (upper.share / lower.share) <= 1.0
-    }
-
-    /// How far a limit is used up, in what grows with time.
-    fn used(&self, limit: usize, rating: &Rating) -> f64 {
-        let share = match rating.measure {
-            Measure::LowestVoltage | Measure::HighestVoltage => {
-                let nominal_v = self.nominal_v.get(limit).copied().unwrap_or_default();
-                let energy = |volts: f64| volts * volts - nominal_v * nominal_v;
-                energy(rating.value) / energy(rating.limit)
-            }
-            Measure::Continuous { .. } => {
-                let share = rating.value / rating.limit;
-                share * share
-            }
-            Measure::Overload { .. } | Measure::Brake { .. } => rating.value / rating.limit,
-        };
-        if share.is_nan() { f64::INFINITY } else { share }
-    }
-
-    /// Whether a limit is left open by the bound, and nowhere seen to be missed or too
-    /// near.
-    fn is_open(&self, limit: usize) -> bool {
-        let Some(largest) = self.largest.get(limit) else {
-            return false;
-        };
-        let all = self.rungs.iter().flat_map(|(_, rungs)| rungs);
-        let mut found = all.filter_map(|rung| rung.found.as_ref()?.get(limit));
-        let missed = found.any(|rating| !rating.keeps());
-        let mut pairs = self.rungs.iter().flat_map(|(_, rungs)| rungs.windows(2));
-        let near = pairs.any(|pair| match pair {
-            [upper, lower] => {
-                let known = upper.found.is_some() && lower.found.is_some();
-                let next_to = upper.share <= lower.share * NEAR;
-                known && next_to && !self.is_kept(limit, upper, lower)
-            }
-            _ => false,
-        });
-        largest.bound.is_some() && !missed && !near
+        self.settle();
     }
 
     /// Of each limit the worst of all that was looked at; where that does not settle it, the
     /// bound.
     pub fn conclude<'a>(&self, ratings: impl Iterator<Item = &'a mut Rating>) {
-        for (limit, rating) in ratings.enumerate() {
-            let Some(bound) = rating.bound else {
+        let found = self.verdicts.iter().zip(&self.worst).zip(&self.largest);
+        for (rating, ((verdict, worst), largest)) in ratings.zip(found) {
+            let Some(bound) = largest.bound else {
                 continue;
             };
-            let mut worst = *rating;
-            let mut settled = true;
-            for (way, rungs) in &self.rungs {
-                for rung in rungs.iter().skip(1) {
-                    let found = rung.found.as_ref().and_then(|found| found.get(limit));
-                    if let Some(found) = found
-                        && found.load_ratio() > worst.load_ratio()
-                    {
-                        let machine = at(&self.machine, *way, rung.share);
-                        worst = Rating {
-                            overrides: machine.limits.override_at,
-                            ..*found
-                        };
-                    }
-                }
-                let mut pairs = rungs.windows(2);
-                settled &= pairs.all(|pair| match pair {
-                    [upper, lower] => self.is_kept(limit, upper, lower),
-                    _ => true,
-                });
-            }
-            *rating = if settled || !worst.keeps() {
-                Rating {
-                    bound: None,
-                    looked_at: true,
-                    ..worst
-                }
-            } else {
-                Rating {
+            let looked_at = Rating {
+                bound: None,
+                looked_at: true,
+                ..*worst
+            };
+            *rating = match verdict {
+                Verdict::Known | Verdict::Missed => looked_at,
+                Verdict::TooNear(bound) => Rating {
+                    value: *bound,
+                    any: true,
+                    ..*rating
+                },
+                Verdict::Open => Rating {
                     value: bound,
                     any: true,
                     ..*rating
-                }
+                },
             };
         }
     }
 }
 
-/// A machine where its knobs stand.
-fn at(machine: &Machine, way: [f64; 2], share: f64) -> Machine {
+/// A machine with its knobs somewhere in a range.
+fn within(machine: &Machine, range: &Range) -> Machine {
     let mut machine = machine.clone();
     let limits = &machine.limits;
-    let [feed, rapid] = way.map(|power| libm::pow(share, power));
+    let [feed, rapid] = [range.feed, range.rapid];
     machine.limits.override_at = Some(OverrideAt {
-        feed: limits.feed_override_max * feed,
-        rapid: limits.rapid_override_max * rapid,
+        feed: limits.feed_override_max * feed[1],
+        rapid: limits.rapid_override_max * rapid[1],
         spindle: limits.spindle_override_max,
     });
+    let least = [feed, rapid].map(|[lower, upper]| lower / upper);
+    machine.limits.override_from = Some(least);
     machine
-}
-
-/// The lowest override that is looked at, as a share of the largest.
-pub fn lowest_share() -> f64 {
-    FIRST.into_iter().fold(1.0, f64::min)
 }
 
 impl Assessor<'_> {

@@ -158,6 +158,55 @@ impl Surface {
         Some(extremes)
     }
 
+    /// The same at any override of feed and spindle up to these; what it gives is no more
+    /// than at rest. `most_rpm` is the clamp at most: whether an override lowers it is not
+    /// known, and where it does not the spindle follows the closer to the axis the lower it
+    /// stands, at the clamp's speed at most.
+    ///
+    /// `n ≤ min(c/r, clamp)` and `dn/dt ≤ n·vr/r`: both are largest where the tool is
+    /// nearest, and so is what they take. Turned down n falls, and with it what follows the
+    /// square of it more than friction.
+    pub fn following_lower(
+        &self,
+        motor: &SpindleMotor,
+        mv: &Move,
+        speed_mm_s: f64,
+        most_rpm: f64,
+    ) -> Option<[f64; 2]> {
+        let [from, to] = [&mv.start, &mv.end].map(|place| place[0] - self.center_mm);
+        let (near, far) = (from.abs().min(to.abs()), from.abs().max(to.abs()));
+        let radial_mm_s = speed_mm_s * (to - from).abs() / mv.length_mm;
+        let c = self.speed_mm_s * SECONDS_PER_MINUTE / TAU;
+        let speed = |radius: f64| (c / radius).min(most_rpm);
+        let rate = |radius: f64| speed(radius) * radial_mm_s / radius;
+        let share = |i: u32| f64::from(i) / f64::from(SAMPLES);
+        for radius in (0..=SAMPLES).map(|i| near + share(i) * (far - near)) {
+            let limits = &motor.limits;
+            let speeds = (0..=SAMPLES).map(|i| share(i) * speed(radius));
+            let limit = speeds.fold(f64::INFINITY, |least, n| {
+                least.min(limits.drive.at(n)).min(limits.brake.at(n))
+            });
+            // Not a number on the axis.
+            if rate(radius).is_nan() || rate(radius) > limit {
+                return None;
+            }
+        }
+        let [inertia, friction] = motor.power.coefficients();
+        let power_w = |sign: f64| {
+            let n = speed(near);
+            motor
+                .power
+                .converted(n * (sign * inertia * rate(near) + friction))
+        };
+        let inward = to.abs() < from.abs();
+        let held_w = motor.holding_w(speed(near));
+        Some(if inward {
+            [held_w.max(power_w(1.0)), 0.0]
+        } else {
+            [held_w, power_w(-1.0).min(0.0)]
+        })
+    }
+
     /// Energy of following a planned move, J: with what is fed back taken off,
     /// and without; the move stays on one side of the axis.
     pub fn energy(&self, power: &SpindlePower, mv: &Move, plan: &Plan) -> [f64; 2] {

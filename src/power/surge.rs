@@ -11,8 +11,8 @@ use super::piece::straight_line;
 use super::robust::Part;
 use crate::interpret::Move;
 use crate::machine::AxisValues;
-use crate::plan::lookahead::{Piece, Planned};
-use crate::plan::{Blend, PathShares, Plan, Section, SpeedBound, Trajectory};
+use crate::plan::lookahead::{Piece, Planned, Speeds2};
+use crate::plan::{Blend, PathShares, Plan, Section, Trajectory};
 use std::f64::consts::PI;
 
 /// Stretches of a turn over which the directions change little, and of a piece at most.
@@ -116,15 +116,23 @@ impl Surge {
         (self.rises_mm_s.is_some() || self.falls_mm_s.is_some()).then_some(self)
     }
 
-    /// How long its ramps last at most, s.
-    pub fn lasts_s(&self) -> f64 {
-        let ramps = [(self.rises_mm_s, false), (self.falls_mm_s, true)];
-        let lasts = ramps.into_iter().filter_map(|(speed_mm_s, last)| {
+    /// How long its ramps last at most, s, where no place of the piece is passed at less than
+    /// a share of its speed at the largest overrides.
+    pub fn lasts_s(&self, planned: Speeds2, least_share: f64) -> f64 {
+        let ramps = [
+            (self.rises_mm_s, planned.start, false),
+            (self.falls_mm_s, planned.end, true),
+        ];
+        let lasts = ramps.into_iter().filter_map(|(speed_mm_s, end2, last)| {
             let speed_mm_s = speed_mm_s.filter(|speed| *speed > 0.0)?;
             Some(match &self.section {
-                // As part of another curve it may be gentler.
-                Some(section) => 2.0 * section.ramp(speed_mm_s, last).duration_s(),
-                None => speed_mm_s / self.accel_mm_s2,
+                // As part of another curve it may be gentler, and its own ramp is no longer
+                // than that.
+                Some(section) => {
+                    let change_mm_s = speed_mm_s * (1.0 - least_share);
+                    2.0 * section.ramp(change_mm_s, last).duration_s()
+                }
+                None => (speed_mm_s - least_share * end2.sqrt()).max(0.0) / self.accel_mm_s2,
             })
         });
         lasts.sum()
@@ -163,29 +171,54 @@ fn arc_demand(model: &PowerModel, mv: &Move, [from_mm, to_mm]: [f64; 2], surge: 
     let sweep_rad = mv.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs());
     let turns = sweep_rad * (to_mm - from_mm) / (mv.length_mm * 2.0 * PI);
     let stretches = libm::ceil(turns * STRETCHES_A_TURN).clamp(1.0, STRETCHES_MAX);
-    let speed_mm_s = surge.speed_mm_s();
     let mut demand = Demand::NONE;
     for stretch in 0..stretches as u32 {
         let at = |share: f64| from_mm + (to_mm - from_mm) * share / stretches;
         let ends_mm = [at(f64::from(stretch)), at(f64::from(stretch) + 1.0)];
         let shares = PathShares::of(mv, ends_mm);
-        let (mut bound, mut accels) = (shares.along, AxisValues::default());
-        for (axis, accel) in accels.iter_mut().enumerate() {
+        demand.include(&turning_demand(model, mv, &shares, surge));
+    }
+    demand
+}
+
+/// What a path with directions within `shares` asks for. While it is sped up no axis is braked but
+/// by the turn, and while it is braked none is sped up but by that; what is lost in copper grows
+/// either way.
+fn turning_demand(model: &PowerModel, mv: &Move, shares: &PathShares, surge: Surge) -> Demand {
+    let mut demand = Demand::NONE;
+    let copper = model.has_copper(mv);
+    for (speed_mm_s, falls) in [(surge.rises_mm_s, false), (surge.falls_mm_s, true)] {
+        let Some(speed_mm_s) = speed_mm_s.filter(|speed| *speed > 0.0) else {
+            continue;
+        };
+        let mut bound = shares.along;
+        let (mut both, mut turn) = (AxisValues::default(), AxisValues::default());
+        for (axis, (both, turn)) in both.iter_mut().zip(&mut turn).enumerate() {
             let share = bound.positive[axis].max(bound.negative[axis]);
-            *accel = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
+            *turn = shares.across[axis] * speed_mm_s * speed_mm_s;
+            *both = *turn + share * surge.accel_mm_s2;
             bound.positive[axis] *= speed_mm_s;
             bound.negative[axis] *= speed_mm_s;
         }
-        demand.include(&model.robust(mv, &bound, &accels));
+        for (index, converter) in model.converters.iter().enumerate() {
+            let mut totals = model.robust_totals(converter, mv, &bound, &both);
+            if !copper {
+                let turning = model.robust_totals(converter, mv, &bound, &turn);
+                if falls {
+                    totals.peak_w = turning.peak_w;
+                } else {
+                    totals.regen_w = turning.regen_w;
+                }
+            }
+            demand.add(index, converter, totals);
+        }
     }
     demand
 }
 
 /// The directions of a blend are those between its tangents.
 fn blend_demand(model: &PowerModel, mv: &Move, blend: &Blend, surge: Surge) -> Demand {
-    let speed_mm_s = surge.speed_mm_s();
-    let turning = speed_mm_s * speed_mm_s / blend.radius_mm;
-    let (mut bound, mut accels) = (SpeedBound::default(), AxisValues::default());
+    let mut shares = PathShares::default();
     let (sin, cos) = libm::sincos(blend.sweep_rad);
     for (axis, (first, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
         let last = first * cos + normal * sin;
@@ -202,10 +235,9 @@ fn blend_demand(model: &PowerModel, mv: &Move, blend: &Blend, surge: Surge) -> D
                 ends
             }
         };
-        bound.positive[axis] = most(1.0, peak) * speed_mm_s;
-        bound.negative[axis] = most(-1.0, peak + PI) * speed_mm_s;
-        let along = bound.positive[axis].max(bound.negative[axis]) / speed_mm_s;
-        accels[axis] = along * surge.accel_mm_s2 + swing * turning;
+        shares.along.positive[axis] = most(1.0, peak);
+        shares.along.negative[axis] = most(-1.0, peak + PI);
+        shares.across[axis] = swing / blend.radius_mm;
     }
-    model.robust(mv, &bound, &accels)
+    turning_demand(model, mv, &shares, surge)
 }

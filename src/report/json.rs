@@ -11,7 +11,7 @@ use super::finding::{Finding, UnfitMove};
 use super::over_time::OverTimeRecord;
 use super::record::Record;
 use crate::pipeline::{
-    Certificate, Failure, LimitSummary, Price, Row, RowSink, SetFile, SetSummary, Summary,
+    Certificate, Failure, Ideal, LimitSummary, Price, Row, RowSink, SetFile, SetSummary, Summary,
 };
 
 /// Writes rows as JSON objects with commas between them.
@@ -129,6 +129,8 @@ struct LimitTail<'a> {
     reasons: Vec<Finding<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     price: Option<PriceRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with_acceleration_word: Option<IdealRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     over_time: Vec<OverTimeRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -152,6 +154,26 @@ impl From<&Price> for PriceRecord {
             allow: price.allowed.names(),
             duration_s: Figure(before_s),
             duration_after_s: Figure(after_s),
+        }
+    }
+}
+
+/// What a word for acceleration would bring.
+#[derive(Serialize)]
+struct IdealRecord<'a> {
+    duration_s: Figure,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    duration_in_pieces_s: Option<Figure>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    settings: &'a [String],
+}
+
+impl<'a> From<&'a Ideal> for IdealRecord<'a> {
+    fn from(ideal: &'a Ideal) -> Self {
+        Self {
+            duration_s: Figure(ideal.duration_s),
+            duration_in_pieces_s: ideal.in_pieces_s.map(Figure),
+            settings: &ideal.settings,
         }
     }
 }
@@ -300,6 +322,7 @@ fn limited<'a>(
         pauses: PauseRecord::list(summary),
         reasons: summary.reasons.iter().map(Finding::from).collect(),
         price: summary.price.as_ref().map(PriceRecord::from),
+        with_acceleration_word: summary.ideal.as_ref().map(IdealRecord::from),
         over_time: OverTimeRecord::list(&summary.before),
         over_time_after: OverTimeRecord::list(&summary.after),
         files: Vec::new(),

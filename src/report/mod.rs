@@ -12,6 +12,7 @@ mod github;
 mod identified;
 mod json;
 mod junit;
+mod level_table;
 mod moves;
 mod over_time;
 mod patch;
@@ -40,6 +41,7 @@ pub use identified::{
 };
 pub use json::{JsonRows, check_json, limit_json, report_json, set_json};
 pub use junit::junit;
+pub use level_table::level_table;
 pub use moves::write_move;
 pub use patch::unified_diff;
 pub use quantity::{duration, power};

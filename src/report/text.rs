@@ -152,10 +152,11 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
         let count = summary.reasons.len();
         let noun = if count == 1 { "reason" } else { "reasons" };
         return format!(
-            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}{}{}",
+            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}{}{}{}",
             figures(before, machine),
             worst(after),
             over_time_text(after),
+            ideal_text(summary),
             price_text(summary)
         );
     }
@@ -172,6 +173,7 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
     };
     text.push_str(&over_time_text(after));
     text.push_str(&pauses_text(summary));
+    text.push_str(&ideal_text(summary));
     if let Some(certificate) = after.certificate {
         let _ = writeln!(text, "certificate: {}", certificate.name());
     }
@@ -193,6 +195,41 @@ fn price_text(summary: &LimitSummary) -> String {
         duration(after_s),
         duration(before_s)
     )
+}
+
+/// What a word for acceleration would bring; nothing where that is not worth a line.
+fn ideal_text(summary: &LimitSummary) -> String {
+    let Some(ideal) = &summary.ideal else {
+        return String::new();
+    };
+    let mut text = if summary.certified {
+        let less = |seconds: f64| duration(summary.after.duration_s - seconds);
+        let whole = summary.after.duration_s - ideal.duration_s;
+        let word = "with a word for acceleration between moves: ";
+        match ideal.in_pieces_s {
+            Some(split_s) if whole < summary.after.duration_s * 1e-3 => {
+                format!("{word}{} less, long blocks in pieces", less(split_s))
+            }
+            Some(split_s) => format!(
+                "{word}{} less, with long blocks in pieces {} less",
+                less(ideal.duration_s),
+                less(split_s)
+            ),
+            None => format!("{word}{} less", less(ideal.duration_s)),
+        }
+    } else {
+        let soonest_s = ideal.in_pieces_s.unwrap_or(ideal.duration_s);
+        format!(
+            "with a word for acceleration between moves it would fit, in {} instead of {}",
+            duration(soonest_s),
+            duration(summary.before.duration_s)
+        )
+    };
+    if !ideal.settings.is_empty() {
+        let _ = write!(text, " ({})", ideal.settings.join("; "));
+    }
+    text.push('\n');
+    text
 }
 
 /// Where the written program waits though the original does not; nothing where it does not.
@@ -224,7 +261,7 @@ fn pauses_text(summary: &LimitSummary) -> String {
 pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) -> String {
     let (before, after) = (&summary.before, &summary.after);
     format!(
-        "{program}: not certified: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}{}",
+        "{program}: not certified: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}{}{}",
         moves(after.unfit_count),
         figures(after, machine),
         power(before.peak_w),
@@ -232,6 +269,7 @@ pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) ->
         lines(summary.edited_lines),
         worst(after),
         over_time_text(after),
+        ideal_text(summary),
         price_text(summary)
     )
 }
@@ -284,7 +322,7 @@ pub fn axis_table(machine: &Machine) -> String {
 }
 
 /// A number of the machine file: six digits show it, and hide how it was made.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     round_to_digits(value, 6)
 }
 

@@ -147,6 +147,10 @@ impl<'m> Rewriter<'m> {
             out.extend_from_slice(view.text);
             return true;
         }
+        self.edits.clear();
+        if !view.change.is_none() {
+            self.change_tool_first(view, out);
+        }
         if view.rapids || view.feeds {
             self.write_pieces(view, out);
             self.turn_knobs(view.change, view, out);
@@ -161,7 +165,6 @@ impl<'m> Rewriter<'m> {
         if view.stops && !self.stopped {
             self.insert_stop(out);
         }
-        self.edits.clear();
         let stop = facts.stop_word.filter(|_| !view.change.is_none());
         if let Some(word) = stop {
             self.edits.push(Edit::replace(without(word, view), ""));
@@ -191,6 +194,23 @@ impl<'m> Rewriter<'m> {
             self.stop_after(word, view, out);
         }
         fine
+    }
+
+    /// Words that select and change the tool, on a line of their own before what the block
+    /// does then.
+    fn change_tool_first(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+        if view.facts.tool_words[1].is_none() {
+            return;
+        }
+        let mut line = Vec::new();
+        for word in view.facts.tool_words.into_iter().flatten() {
+            line.push(String::from_utf8_lossy(word.of(view.text)).into_owned());
+        }
+        for gone in without_tool(view).into_iter().flatten() {
+            self.edits.push(Edit::replace(gone, ""));
+        }
+        self.insert_line(&line.join(" "), out);
+        self.stopped = false;
     }
 
     /// The stop or end of a block whose motion was changed, on a line of its own: whoever
@@ -398,7 +418,35 @@ impl<'m> Rewriter<'m> {
 /// The first word of a block that stays in it.
 fn first_word<'v>(view: &BlockView<'v>) -> Option<&'v Word> {
     let mut words = view.block.words.iter();
-    words.find(|word| Some(word.span) != view.facts.stop_word)
+    let facts = view.facts;
+    words.find(|word| {
+        let span = Some(word.span);
+        span != facts.stop_word && !facts.tool_words.contains(&span)
+    })
+}
+
+/// The words that select and change the tool with the blanks that go with them; in one where
+/// both stand first.
+fn without_tool(view: &BlockView<'_>) -> [Option<Span>; 2] {
+    let [tool, change] = view.facts.tool_words;
+    let (Some(tool), Some(change)) = (tool, change) else {
+        return [tool, change].map(|word| word.map(|word| without(word, view)));
+    };
+    let (one, other) = if tool.start < change.start {
+        (tool, change)
+    } else {
+        (change, tool)
+    };
+    let gone = without(one, view);
+    if gone.end < other.start || gone.start < one.start {
+        return [Some(gone), Some(without(other, view))];
+    }
+    let behind = view.text.get(other.end as usize..).unwrap_or_default();
+    let blanks = behind
+        .iter()
+        .take_while(|byte| matches!(byte, b' ' | b'\t'));
+    let end = other.end + blanks.count() as u32;
+    [Some(Span { end, ..gone }), None]
 }
 
 /// A word with the blanks that go with it.

@@ -11,6 +11,10 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
     let first = values[axes.next()?];
     let uniform = axes.all(|axis| values[axis] == first);
     match &knob.argument {
+        KnobArgument::Assign if knob.is_named_for_all() => {
+            // No blanks: NC I's words end at one.
+            uniform.then(|| format!("{}={}", knob.name, decimal(first, false)))
+        }
         KnobArgument::Assign if uniform => {
             Some(format!("{} = {}", knob.name, decimal(first, false)))
         }
@@ -27,19 +31,35 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
             }
             Some(text)
         }
+        KnobArgument::Index => {
+            let written = machine.axis_set.iter().map(|axis| {
+                let letter = ALL_AXES[axis].letter() as char;
+                format!("{}[{letter}]={}", knob.name, decimal(values[axis], false))
+            });
+            Some(written.collect::<Vec<_>>().join(" "))
+        }
         KnobArgument::Output(number) if uniform => Some(format!(
             "{} E{number} Q{}",
             knob.name,
             decimal(first, false)
         )),
+        KnobArgument::Level => {
+            let level = knob.levels.as_ref()?.list.get(first as usize)?;
+            Some(level.text().to_owned())
+        }
         KnobArgument::Output(_) | KnobArgument::Path(_) => None,
         KnobArgument::Value => Some(format!("{}{}", knob.name, decimal(first, false))),
     }
 }
 
 /// The lines that do so: one, or two where the axes wait until it acts.
-pub(super) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
+pub(crate) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
     let mut lines = vec![words(machine, index, values)?];
     lines.extend(machine.controller.knobs.get(index)?.wait.clone());
     Some(lines)
+}
+
+/// The line that sets an analog output of `LinuxCNC` as soon as the axes stand.
+pub(super) fn at_once(number: u16, value: f64) -> String {
+    format!("M68 E{number} Q{}", decimal(value, false))
 }

@@ -68,7 +68,7 @@ impl RapidMark {
     pub fn comment(&self, language: &Language) -> Comment {
         let to_line_end = match language.family {
             Family::Siemens | Family::Marlin => true,
-            Family::Iso | Family::Rs274 | Family::Isg => false,
+            Family::Iso | Family::Rs274 | Family::Isg | Family::Nci => false,
         };
         let text = if to_line_end {
             format!("; {}", self.0)

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, Language, Lathe, Machine};
+use crate::machine::{ALL_AXES, AXES, AxisValues, Family, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
@@ -19,7 +19,7 @@ use crate::units::SECONDS_PER_MINUTE;
 /// Cycles of plain moves, times ten: drilling, pecking, counterboring and boring.
 const PLAIN: [u16; 7] = [730, 810, 820, 830, 850, 860, 890];
 /// Turning cycles along a contour of `LinuxCNC`, times ten.
-const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
+pub(super) const TURNING: std::ops::RangeInclusive<u16> = 700..=722;
 /// Drilling and boring along X of Fanuc's lathes, times ten; along Z they have the numbers of
 /// milling machines.
 const ACROSS: [u16; 2] = [870, 890];
@@ -55,7 +55,7 @@ pub struct CycleBlock<'a> {
 /// Writes blocks of cycles out.
 #[derive(Debug, Clone)]
 pub struct Singles<'m> {
-    language: &'m Language,
+    pub(super) language: &'m Language,
     /// The block at which the axes stop, where there is one.
     stop: Option<String>,
 }
@@ -64,9 +64,9 @@ pub struct Singles<'m> {
 pub(super) struct Lines<'a> {
     pub(super) out: Vec<u8>,
     pub(super) line_end: &'a [u8],
-    at: AxisValues,
+    pub(super) at: AxisValues,
     /// The last motion word that was written.
-    motion: Option<Motion>,
+    pub(super) motion: Option<Motion>,
     /// The last line is a dwell.
     stopped: bool,
     /// The feed in force, mm/s, as soon as one is known.
@@ -85,17 +85,29 @@ impl<'m> Singles<'m> {
         }
     }
 
+    /// Whether the language is that of Fanuc and its relatives.
+    #[must_use]
+    pub fn is_iso(&self) -> bool {
+        self.language.family == Family::Iso
+    }
+
     /// The lines that do what a block of a canned cycle does; `place` gives a place of the
-    /// machine in coordinates and units of the program.
+    /// machine in coordinates and units of the program. Of a tap these are the positioning
+    /// moves before and after it; `held` and `returns_to_r` as in [`Self::place_before`].
     ///
     /// # Errors
     /// Why it cannot be said in single blocks.
     pub fn write_out(
         &self,
         of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        returns_to_r: bool,
         place: impl Fn(&AxisValues) -> AxisValues,
     ) -> Result<Vec<u8>, &'static str> {
-        self.may_write_out(of.number)?;
+        if let Err(why) = self.may_write_out(of.number) {
+            let around = self.place_around(of, held, returns_to_r, place);
+            return around.map_err(|_| why);
+        }
         let lathe = self.language.dialect.lathe.is_some();
         if lathe && OUT_FASTER.contains(&of.number) && of.modal.feed_mode != FeedMode::PerMinute {
             return Err("its way out is faster than its F, which is per revolution");
@@ -160,61 +172,8 @@ impl<'m> Singles<'m> {
         Ok(())
     }
 
-    /// The block with its way to the hole on a line before it, and with the words of the
-    /// cycle that such a line ends: `held` gives the last of each in this series of blocks.
-    ///
-    /// # Errors
-    /// Why that cannot be.
-    pub fn place_before(
-        &self,
-        of: &CycleBlock<'_>,
-        held: &BTreeMap<u8, Vec<u8>>,
-        returns_to_r: bool,
-        place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
-        if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
-            return Err("all its moves follow from each other");
-        }
-        let repeats = |word: &Word| matches!(word.letter, b'K' | b'L') && word.value != 1.0;
-        if !of.modal.absolute || of.block.words.iter().any(repeats) {
-            return Err("its places are increments, or it repeats");
-        }
-        let mut lines = Lines::new(of, &place);
-        let mut across = AxisSet::default();
-        of.modal.plane[..2]
-            .iter()
-            .for_each(|axis| across.insert(*axis));
-        let way = of.steps.iter().find_map(as_move);
-        let way = way.filter(|mv| mv.kind == MoveKind::Rapid && mv.moving.0 & !across.0 == 0);
-        let way = way.ok_or("its first move is not the way to the hole")?;
-        self.one_move(way, of, &place, &mut lines)?;
-        let has = |letter| of.block.words.iter().any(|word| word.letter == letter);
-        let mut edits = Vec::new();
-        let first = of.block.words.first().map_or(0, |word| word.span.start);
-        if of.cycle_word.is_none() {
-            edits.push(Edit::insert(
-                first,
-                format!("G{} ", f64::from(of.number) / 10.0),
-            ));
-        }
-        if self.lacks_level(of, returns_to_r) {
-            edits.push(Edit::insert(first, "G99 "));
-        }
-        for (_, word) in held.iter().filter(|(letter, _)| !has(**letter)) {
-            let mut text = vec![b' '];
-            text.extend_from_slice(word);
-            edits.push(Edit::insert(of.block.words_end, text));
-        }
-        let (text, _) = split_line_end(of.text);
-        if !apply(text, &mut edits, &mut lines.out) {
-            return Err("its words overlap");
-        }
-        lines.out.extend_from_slice(lines.line_end);
-        Ok(lines.finish(of.text))
-    }
-
     /// Whether a block returns to R only because an earlier block says so.
-    fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
+    pub(super) fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
         let says = |word: &Word| word.letter == b'G' && [98.0, 99.0].contains(&word.value);
         let iso = self.language.family == Family::Iso && self.language.dialect.lathe.is_none();
         iso && returns_to_r && !of.block.words.iter().any(says)
@@ -278,7 +237,7 @@ impl<'m> Singles<'m> {
         }
     }
 
-    fn one_move(
+    pub(super) fn one_move(
         &self,
         mv: &Move,
         of: &CycleBlock<'_>,

@@ -3,7 +3,11 @@
 use super::knob_line;
 use crate::interpret::{KnobState, Square, own_path_speed};
 use crate::limit::Change;
-use crate::machine::{AXES, AxisValues, KnobArgument, KnobTarget, Machine};
+use crate::machine::{AXES, AxisValues, Knob, KnobArgument, KnobTarget, Machine};
+
+/// The words that switch `LinuxCNC`'s adaptive feed.
+const SWITCH_ON: &str = "M52 P1";
+const SWITCH_OFF: &str = "M52 P0";
 
 /// See the module.
 #[derive(Debug)]
@@ -11,6 +15,8 @@ pub(super) struct Turned<'m> {
     machine: &'m Machine,
     /// With their values.
     knobs: Vec<(usize, AxisValues)>,
+    /// The share of the speed that was switched on (`LinuxCNC`'s M52).
+    switched: Option<usize>,
 }
 
 /// What knobs act on.
@@ -35,10 +41,12 @@ impl<'m> Turned<'m> {
         Self {
             machine,
             knobs: Vec::new(),
+            switched: None,
         }
     }
 
-    /// Whether all knobs stand as in the original.
+    /// Whether all knobs stand as in the original; one that is switched on leaves the speed
+    /// as it is.
     pub(super) fn is_empty(&self) -> bool {
         self.knobs.is_empty()
     }
@@ -61,13 +69,16 @@ impl<'m> Turned<'m> {
         let mut wanted: [Option<(usize, AxisValues)>; 4] = [change.accel, change.speed, None, None];
         wanted[2] = change.cruise.map(|knob| (knob, [0.0; AXES]));
         if let Some((knob, percent)) = change.rapid_percent {
-            wanted[3] = Some((knob, [percent; AXES]));
+            let data = self.machine.controller.knobs.get(knob);
+            let value = data.map_or(percent, |data| data.of_percent(percent));
+            wanted[3] = Some((knob, [value; AXES]));
         }
         for (knob, values) in wanted.into_iter().flatten() {
             if self.knobs.contains(&(knob, values)) {
                 continue;
             }
             if let Some(words) = knob_line::lines(self.machine, knob, &values) {
+                lines.extend(self.switch_on(knob, in_force));
                 lines.extend(words);
                 self.knobs.retain(|(turned, _)| *turned != knob);
                 self.knobs.push((knob, values));
@@ -92,10 +103,39 @@ impl<'m> Turned<'m> {
     /// Lines that give all knobs the values of the original.
     pub(super) fn restore(&mut self, in_force: InForce<'_>) -> Vec<String> {
         let mut lines = Vec::new();
+        let switched = self.switched.take();
+        let mut share = switched;
         while let Some((knob, _)) = self.knobs.last().copied() {
+            if self.is_speed_share(knob) {
+                self.knobs.pop();
+                share = Some(knob);
+                continue;
+            }
             lines.extend(self.restore_one(knob, in_force).into_iter().flatten());
         }
+        if let Some((share, state)) = share.zip(in_force.knobs) {
+            let output = self.machine.controller.knobs.get(share);
+            let number = output.and_then(Knob::output);
+            // Nothing may move any more, for which M67 waits.
+            lines.extend(number.map(|number| knob_line::at_once(number, speed_share(state))));
+            lines.extend(switched.map(|_| SWITCH_OFF.to_owned()));
+        }
         lines
+    }
+
+    fn is_speed_share(&self, knob: usize) -> bool {
+        let knob = self.machine.controller.knobs.get(knob);
+        knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare)
+    }
+
+    /// The line that lets a share of the speed act, where the original has not.
+    fn switch_on(&mut self, knob: usize, in_force: InForce<'_>) -> Option<String> {
+        let acts = in_force.knobs.is_some_and(|state| state.adaptive);
+        if acts || self.switched.is_some() || !self.is_speed_share(knob) {
+            return None;
+        }
+        self.switched = Some(knob);
+        Some(SWITCH_ON.to_owned())
     }
 
     /// Whether a knob acts on the moves of a block.
@@ -104,7 +144,10 @@ impl<'m> Turned<'m> {
         knob.is_some_and(|knob| match knob.target {
             KnobTarget::FeedAccel => acted.feeds,
             KnobTarget::RapidAccel | KnobTarget::RapidSpeed => acted.rapids,
-            KnobTarget::Accel | KnobTarget::Speed | KnobTarget::CruiseRatio => true,
+            KnobTarget::Accel
+            | KnobTarget::Speed
+            | KnobTarget::SpeedShare
+            | KnobTarget::CruiseRatio => true,
         })
     }
 
@@ -113,6 +156,13 @@ impl<'m> Turned<'m> {
         self.knobs.retain(|(turned, _)| *turned != knob);
         let state = in_force.knobs?;
         let data = self.machine.controller.knobs.get(knob)?;
+        if let Some(levels) = &data.levels {
+            let level = state.levels.get(levels.group).copied().flatten()?;
+            return knob_line::lines(self.machine, knob, &[f64::from(level); AXES]);
+        }
+        if data.target == KnobTarget::SpeedShare {
+            return knob_line::lines(self.machine, knob, &[speed_share(state); AXES]);
+        }
         if data.argument == KnobArgument::Value {
             let value = match data.target {
                 KnobTarget::Speed if state.path_speed_mm_s.is_finite() => state.path_speed_mm_s,
@@ -154,6 +204,11 @@ impl<'m> Turned<'m> {
         }
         knob_line::lines(self.machine, knob, &values)
     }
+}
+
+/// The share of the speed that the original has set.
+fn speed_share(state: &KnobState) -> f64 {
+    state.speed_share_next.unwrap_or(state.speed_share)
 }
 
 /// Takes the rounding of a division off: twelve digits.

@@ -55,6 +55,26 @@ fn a_program_is_changed_in_place_again_and_again() {
     assert_eq!((diff.code, diff.stdout.as_str()), (0, ""));
 }
 
+/// Without marks a feed in the place of a rapid cuts: a note where its F looks written.
+#[test]
+fn what_an_earlier_run_wrote_without_marks_is_noted() {
+    let shop = shop();
+    let note = "note[unmarked-rapid]: its F looks as an earlier run of `limit` writes one for a \
+                rapid: without marks it counts as a cutting feed";
+    for (feed, mark, noted) in [
+        ("23976", None, true),
+        ("23976", Some("--mark-rapids"), false),
+        ("24000", None, false),
+    ] {
+        let part = format!("G21 G90 G94\nG1 X400. F{feed}\nG1 Y1. F500.\nM30\n");
+        shop.put("again.nc", part);
+        let asked = ["limit", "again.nc", "-m", "small.toml"];
+        let ran = shop.run(&[&asked[..], mark.as_slice()].concat());
+        assert_eq!(ran.code, 1, "{}", ran.stderr);
+        assert_eq!(ran.stderr.contains(note), noted, "{}", ran.stderr);
+    }
+}
+
 #[test]
 fn a_mark_of_ones_own() {
     let shop = shop();

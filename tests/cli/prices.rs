@@ -50,6 +50,39 @@ fn the_price_is_what_limit_asks_for() {
     }
 }
 
+/// What a reason says of the feed is what is written with the permission.
+#[test]
+fn the_feed_that_is_named_is_the_one_that_is_written() {
+    let shop = Shop::mill("grbl", "peak_power_w = 350", "", "");
+    let part = "G21 G90\nG1 X0.4 F24000\nX0.9 Y0.1\nX1.5 Y0.5\nX60\n";
+    shop.put("part.nc", part);
+    let (code, _, told) = shop.run("limit part.nc -o fit.nc");
+    assert_eq!(code, 1, "{told}");
+    let (code, _, _) = shop.run("limit part.nc -o fit.nc --allow feed");
+    assert_eq!(code, 0);
+    let fit = shop.get("fit.nc");
+    let named = told
+        .lines()
+        .filter_map(|line| line.split("it fits at ").nth(1));
+    let named: Vec<&str> = named
+        .filter_map(|it| it.split(": --allow").next())
+        .collect();
+    assert!(!named.is_empty(), "{told}");
+    for feed in named {
+        let written = fit.split_whitespace().any(|word| word == feed);
+        assert!(written, "{feed}\n{fit}");
+    }
+    // `check` and `report` name the same.
+    let (_, checked, _) = shop.run("check part.nc");
+    let (_, _, reported) = shop.run("report part.nc --csv rows.csv");
+    assert!(checked.contains("fits with F"), "{checked}");
+    let hint = |text: &str| -> Vec<String> {
+        let hints = text.lines().filter_map(|line| line.split("→ ").nth(1));
+        hints.map(str::to_owned).collect()
+    };
+    assert_eq!(hint(&checked), hint(&reported));
+}
+
 /// Where coolant alone draws too much no permission helps, and none is named.
 #[test]
 fn no_price_where_nothing_helps() {

@@ -57,10 +57,10 @@ fn tools_stops_and_ends() {
     // Of a feed alone F changes.
     let program = "G1 X400 F40000 M1\nX0 Y10\nG0 T2 Y300\nM2\n";
     assert_snapshot!(limited(&shop("linuxcnc", 300.0), program), @r"
-    G1 X400 F13714
+    G1 X400 F23995
     F40000
     M1
-    X0 Y10 F13662
+    X0 Y10 F23842
     F40000
     G4 P0
     G1 T2 Y300 F23999
@@ -180,4 +180,44 @@ fn reference_point_of_sinumerik() {
     let slow = "reference_mm = 300\nreference_mm_min = 3000";
     let shop = Shop::mill("siemens", "peak_power_w = 700", known, slow);
     assert_eq!(limited(&shop, program), program);
+}
+
+/// RS274/NGC changes the tool before all else but S: the words stand on a line before the
+/// motion then. Elsewhere the order is the builder's, and the block stays as it is.
+#[test]
+fn tools_that_are_changed_before_the_motion() {
+    let program = "G21 G90\nN10 T2 M6 G0 X400 Y300\nG1 Z30 F400\nG0 M6 X0 T3 Y300\nM6 G1 X100 F30000\nG0 X110\nM2\n";
+    assert_snapshot!(limited(&shop("linuxcnc", 520.0), program), @r"
+    G21 G90
+    T2 M6
+    G4 P0
+    N10 G1 X400 Y300 F37500
+    G4 P0
+    G1 Z30 F400
+    G0 M6 X0 T3 Y300
+    M6
+    G1 X100 F28799
+    G0 X110
+    F30000
+    M2
+    ");
+    for controller in ["fanuc", "haas"] {
+        let refused = shop(controller, 520.0);
+        refused.put("a.nc", "G21 G90\nT2 M6 G0 X400 Y300\nM30\n");
+        let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
+        assert_eq!(code, 1);
+        assert!(
+            errors.contains("it stops, changes the tool or ends the program"),
+            "{errors}"
+        );
+    }
+    // With S the tool is changed in between.
+    let refused = shop("linuxcnc", 520.0);
+    refused.put(
+        "a.nc",
+        "G21 G90\nT2 M6 S500 G0 X400 Y300\nG1 Z30 F400\nM30\n",
+    );
+    let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
+    assert_eq!(code, 1);
+    assert!(errors.contains("changes the tool"), "{errors}");
 }

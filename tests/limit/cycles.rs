@@ -190,6 +190,78 @@ fn a_turning_cycle_is_written_out() {
     assert!(text.contains("G3 X24. Z-14."), "{text}");
 }
 
+/// A tap stays a cycle: its rapids stand on lines before it, and the one back to the level
+/// from which it began after it.
+#[test]
+fn the_rapids_of_a_tap_are_written_out() {
+    let fanuc = shop("fanuc", 300.0);
+    let program = "G21 G90 G54 G0 Z50.\nG98 G84 X400. Y300. Z-12. R2. F1000.\nX0.\nG80\n\
+                   G99 G84 X400. Z-12. R2.\nG80 G0 Z50.\nM30\n";
+    let text = limited(&fanuc, program, "feed,expand");
+    same_moves(&fanuc, &text);
+    assert_snapshot!(text, @r"
+    G4 P1
+    G9 G21 G90 G54 G1 Z50. F13714
+    G9 G1 X400. Y300. F10786
+    G9 G1 Z2. F13714
+    G0
+    G99 G84 X400. Y300. Z-12. R2. F1000.
+    G4 P1
+    G9 G98 G1 Z50. F13714.
+    G9 G1 X0.
+    G9 G1 Z2.
+    G0 F1000.
+    G84 G99 X0. R2. Z-12.
+    G4 P1
+    G9 G98 G1 Z50. F13714.
+    G80
+    G4 P1
+    G9 G1 X400.
+    G9 G1 Z2.
+    G0 F1000.
+    G99 G84 X400. Z-12. R2.
+    G4 P1
+    G9 G80 G1 Z50. F13714.
+    G0 F1000.
+    M30
+    ");
+    // In the other planes as well.
+    let program = "G21 G90 G54 G19 G0 X50. Z10.\nG98 G84 Y300. Z90. X-12. R2. F1000.\nG80\nM30\n";
+    let text = limited(&fanuc, program, "feed,expand");
+    same_moves(&fanuc, &text);
+    assert_snapshot!(text, @r"
+    G4 P1
+    G9 G21 G90 G54 G19 G1 X50. Z10. F13158
+    G9 G1 Y300. Z90. F12914
+    G9 G1 X2. F13714
+    G0
+    G99 G84 Y300. Z90. X-12. R2. F1000.
+    G4 P1
+    G9 G98 G1 X50. F13714.
+    G80
+    G0 F1000.
+    M30
+    ");
+    let linuxcnc = shop("linuxcnc", 300.0);
+    // A hole below its level R is left upwards first.
+    let program = "G21 G90 G0 Z1\nM3 S100\nG99 G84 X400 Y300 Z-10 R50 F100\nG80\nM2\n";
+    let text = limited(&linuxcnc, program, "feed,expand");
+    same_moves(&linuxcnc, &text);
+    assert_snapshot!(text, @r"
+    G21 G90 G0 Z1
+    M3 S100
+    G0 Z50.
+    G4 P0
+    G1 X400. Y300. F18640
+    G4 P0
+    G4 P0
+    G0
+    G99 G84 X400 Y300 Z-10 R50 F100
+    G80
+    M2
+    ");
+}
+
 #[test]
 fn what_is_not_written_out_is_said() {
     let shop = shop("fanuc", 300.0);
@@ -203,8 +275,12 @@ fn what_is_not_written_out_is_said() {
     assert!(found.contains("  line 2  rapid Z"), "{found}");
     for (program, why) in [
         (
-            drill.replace("G81", "G84"),
+            drill.replace("G81", "G84 K2"),
             "it taps, or stops for the operator",
+        ),
+        (
+            drill.replace("G81", "M29 S500\nG84"),
+            "M29 before it makes it rigid, which ends with any other motion word",
         ),
         (
             drill.replace("\nX0.", "\n/X0."),

@@ -9,6 +9,24 @@ use gwatt::pipeline::{
 };
 use proptest::prelude::*;
 
+/// From a place that is not known axes are held to the limit along the path, Z too: what is
+/// found for one acceleration must not hold it to a lower one.
+#[test]
+fn accelerations_from_an_unknown_place_are_enough() {
+    let text = "schema = 1\nname = \"test\"\ncontroller = \"klipper\"\n[converter]\n\
+                peak_power_w = 70\nbase_load_w = 30\n\
+                [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 10000\nmass_kg = 2.5\n\
+                coulomb_n = 8\nefficiency = 0.6\n\
+                [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 10000\nmass_kg = 15\n\
+                coulomb_n = 12\nefficiency = 0.6\n\
+                [axes.Z]\nrapid_mm_min = 1200\naccel_mm_s2 = 500\nmass_kg = 60\n\
+                coulomb_n = 30\ngravity_n = 20\nefficiency = 0.5\n";
+    let machine = Machine::from_toml("test.toml", text).expect("a machine").0;
+    let program = "G28\nG1 X50 Y50 Z5 F6000\nG28 X Y\nG1 X20 Y20 F6000\n";
+    let (text, _) = fits(&machine, how(Strategy::Optimal, false), program);
+    assert!(text.contains("\nG1 X50 Y50 Z5 F6000\n"), "{text}");
+}
+
 /// 10 kg by X and by Y, 200 mm/s and 1000 mm/s²: from rest to 200 mm/s along X takes
 /// 10·1·0.2 = 2 W.
 fn machine(peak_w: f64, rest: &str) -> Machine {

@@ -286,6 +286,10 @@ proptest! {
         let [allow_feed, robust, patent] = flags;
         let machine = drives.machine(controller);
         let mut program = text(&blocks, style);
+        if controller == "marlin" {
+            // Words in parentheses are refused there.
+            program = program.replace(" (G0 X1 F1)", "");
+        }
         if controller == "isg" {
             // Dwells are named by X there, units by other words.
             program = program.to_ascii_uppercase().replace("G20", "G71").replace("G21", "G71");

@@ -186,6 +186,7 @@ fn chords_of_a_helix_end_where_it_ends() {
         accel_mm_s2: [1000.0; AXES],
         path_accel_mm_s2: f64::INFINITY,
         rapid_factor: 1.0,
+        pace: 1.0,
         dwell_s: 0.0,
         loads: 0,
         path_mode: PathMode::LookAhead,

@@ -300,24 +300,39 @@ fn a_lower_feed_behind_a_blend_is_seen_too_late() {
     assert_close(profile.length_mm(), line.length_mm);
 }
 
-/// Y 150 kg on an arc of 100 mm, then lines of 0.3 mm at 140 mm/s, which takes 4.9 mm to stop:
-/// recorded were 42.75 W, since LinuxCNC keeps the speed from which it could stop where its
-/// queue ended within these lines. Lines of 3 mm are planned, and so are short ones at a feed
-/// from which five of them are enough to stop.
-#[test]
-fn runs_of_short_lines_may_be_slowed_down() {
+/// Limits of 200 mm/s and 2000 mm/s², friction of `coulomb_n` in each axis, no margin.
+fn rig(masses_kg: [u32; 3], coulomb_n: u32, rest: &str) -> gwatt::machine::Machine {
     let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n[limits]\nmargin = 0\n\
          [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n"
         .to_owned();
-    for (axis, mass_kg) in [("X", 50), ("Y", 150), ("Z", 50)] {
+    for (axis, mass_kg) in ["X", "Y", "Z"].into_iter().zip(masses_kg) {
         let _ = write!(
             text,
-            "[axes.{axis}]\nrapid_mm_min = 12000\naccel_mm_s2 = 2000\nmass_kg = {mass_kg}\ncoulomb_n = 50\n"
+            "[axes.{axis}]\nrapid_mm_min = 12000\naccel_mm_s2 = 2000\nmass_kg = {mass_kg}\n\
+             coulomb_n = {coulomb_n}\n{rest}"
         );
     }
-    let machine = gwatt::machine::Machine::from_toml("m.toml", &text)
+    gwatt::machine::Machine::from_toml("m.toml", &text)
         .unwrap()
-        .0;
+        .0
+}
+
+fn rows(machine: &gwatt::machine::Machine, program: &str) -> Vec<gwatt::pipeline::Row> {
+    let mut rows = crate::rows::Rows::default();
+    let input = std::io::Cursor::new(program);
+    let options = gwatt::pipeline::Options::default();
+    gwatt::pipeline::analyze(input, machine, &options, Some(&mut rows)).unwrap();
+    rows.0
+}
+
+/// Y 150 kg on an arc of 100 mm, then lines of 0.3 mm and a long one; recorded were 42.75 W at
+/// 140 mm/s. The joints of the lines have limits of 140 mm/s. When the last short line was added
+/// the first one could be entered with v² = 6·2·a·L + a·L/2 = 7500 mm²/s²; the long one brings
+/// all seven joints to their limits, of which six are raised. So the axis speeds up again, by
+/// 2·a·L = 1200 mm²/s² in each.
+#[test]
+fn runs_of_short_lines_are_slowed_down() {
+    let machine = rig([50, 150, 50], 50, "");
     let check = |step_mm: f64, feed: u32| {
         let mut program =
             format!("G21 G90 G17 G94 G64 P0.01 Q0\nF{feed}\nG1 X30\nG3 X130 Y100 I0 J100\n");
@@ -325,20 +340,117 @@ fn runs_of_short_lines_may_be_slowed_down() {
             let _ = writeln!(program, "G1 Y{:.3}", 100.0 + step_mm * f64::from(number));
         }
         program.push_str("G1 Y182.1\nM2\n");
-        let input = std::io::Cursor::new(program);
-        let options = gwatt::pipeline::Options::default();
-        let summary = gwatt::pipeline::analyze(input, &machine, &options, None).unwrap();
-        (summary.certificate, summary.peak_w)
+        let rows = rows(&machine, &program);
+        let planned = |row: &gwatt::pipeline::Row| row.certificate == Certificate::Planned;
+        assert!(rows.iter().all(planned));
+        rows[2..9].iter().map(|row| row.peak_w).collect::<Vec<_>>()
     };
-    let (certificate, peak_w) = check(0.3, 8400);
-    assert_eq!(certificate, Some(Certificate::Robust));
-    // Full acceleration of Y at its speed, at most.
+    let speeding_up = |v2: f64| (150.0 * 2.0 + 50.0) * 1e-3 * v2.sqrt();
+    let peaks_w = check(0.3, 8400);
+    for (peak_w, number) in peaks_w.into_iter().zip(1..) {
+        assert_close(peak_w, speeding_up(7500.0 + 1200.0 * f64::from(number)));
+    }
+    // 140 mm/s all along.
+    assert!(check(3.0, 8400).into_iter().all(|peak_w| peak_w < 7.001));
+    // 86.5 mm/s are not slowed down, 86.67 mm/s are.
+    assert!(check(0.3, 5190).into_iter().all(|peak_w| peak_w < 4.4));
+    assert_close(check(0.3, 5200)[0], speeding_up(5200.0 * 5200.0 / 3600.0));
+}
+
+/// An arc at 100 mm/s before lines at 57 mm/s, which it brakes for later at lower overrides: what
+/// it draws is what its turn takes, 0.1 m/s² at most, and friction. Sped up with 1 m/s² it drew
+/// 37 W.
+#[test]
+fn an_arc_that_brakes_is_not_sped_up() {
+    let program = "G21 G90 G17 G94 G64 P0.01 Q0\nF7999\nG1 X30\nG3 X130 Y100 I0 J100 F6000\n\
+         G1 Y100.3 F3428\nG1 Y100.6\nG1 Y100.9\nG1 Y182.1\nM2\n";
+    let found = rows(&rig([50, 150, 50], 50, ""), program);
+    let diagonal = 0.5_f64.sqrt();
+    let turning_w = 0.1 * diagonal * ((50.0 + 150.0) * 0.1 * diagonal + 2.0 * 50.0);
+    let peak_w = found[1].peak_w;
     assert!(
-        (42.75..0.14 * (150.0 * 2.0 + 50.0) * 1.6).contains(&peak_w),
+        peak_w > 0.1 * 2.0 * diagonal * 50.0 && peak_w < 1.3 * turning_w,
         "{peak_w}"
     );
-    assert_eq!(check(3.0, 8400).0, Some(Certificate::Planned));
-    // Five lines of 0.3 mm are enough to stop from 77.5 mm/s.
-    assert_eq!(check(0.3, 4600).0, Some(Certificate::Planned));
-    assert_eq!(check(0.3, 4700).0, Some(Certificate::Robust));
+}
+
+/// With limits of jerk what the optimiser leaves is not known: the robust bound counts where five
+/// lines are shorter than it takes to stop.
+#[test]
+fn runs_of_short_lines_with_jerk_are_bounded() {
+    let machine = rig([50, 150, 50], 50, "jerk_mm_s3 = 1e6\n");
+    for (step_mm, certificate) in [(0.3, Certificate::Robust), (3.0, Certificate::Planned)] {
+        let mut program = "G21 G90 G17 G94 G64 P0.01 Q0\nF8400\nG1 X30\n".to_owned();
+        for number in 1..=60 {
+            let _ = writeln!(program, "G1 X{:.3}", 30.0 + step_mm * f64::from(number));
+        }
+        program.push_str("M2\n");
+        let rows = rows(&machine, &program);
+        let middle = &rows[20..40];
+        assert!(
+            middle.iter().all(|row| row.certificate == certificate),
+            "{step_mm}"
+        );
+        // Full acceleration at that speed, at most.
+        let bound_w = 0.14 * (50.0 * 2.0 + 50.0);
+        assert!(middle.iter().all(|row| row.peak_w < bound_w * (1.0 + 1e-9)));
+    }
+}
+
+/// X 20 kg and Y 500 kg at 100 mm/s, and a bend by 0.001 rad, which takes 4 % of the
+/// acceleration of an axis for a cycle of 1 ms: it is passed as it is. What Y gains in speed and
+/// X loses, in two cycles, is drawn next to the friction of 10 N. The next joint is none.
+#[test]
+fn a_bend_that_is_passed_takes_its_step() {
+    let program = "G21 G90 G17 G94 G64 P0.01 Q0\nF6000\nG1 X30 Y40\nG1 X59.96 Y80.03\n\
+         G1 X89.92 Y120.06\nG1 X119.88 Y160.09\nM2\n";
+    let second_mm = libm::hypot(29.96, 40.03);
+    let (x, y) = (29.96 / second_mm, 40.03 / second_mm);
+    let steady_w = 0.1 * (x + y) * 10.0;
+    let stepped_w =
+        0.1 * (x * (20.0 * (x - 0.6) * 50.0 + 10.0) + y * (500.0 * (y - 0.8) * 50.0 + 10.0));
+    assert!(stepped_w > 1.8 * steady_w);
+    for mode in ["", "G61\n"] {
+        let found = rows(
+            &rig([20, 500, 50], 10, ""),
+            &program.replace("F6000", &format!("F6000\n{mode}")),
+        );
+        // Means are bounded over a quarter of their time at once.
+        let off = found[1].peak_w / stepped_w - 1.0;
+        assert!((-1e-9..1e-4).contains(&off), "{off}");
+        assert_close(found[2].peak_w, steady_w);
+    }
+}
+
+/// The same where a line leaves an arc of 200 mm by 0.0008 rad off its tangent: the last mean in the
+/// arc takes in the whole step.
+#[test]
+fn bends_after_an_arc_count() {
+    let machine = rig([20, 500, 50], 0, "");
+    let angle = libm::asin(0.3);
+    let (sin, cos) = libm::sincos(angle);
+    // A joint off by 0.0008 rad from the tangent, and one that is not.
+    let peak_w = |off_rad: f64| {
+        let (sy, sx) = libm::sincos(angle + off_rad);
+        let program = format!(
+            "G21 G90 G17 G94 G64 P0.01 Q0\nF6000\nG1 X20\nG3 X{:.9} Y{:.9} I0 J200\nG1 X{:.9} Y{:.9}\nM2\n",
+            20.0 + 200.0 * sin,
+            200.0 - 200.0 * cos,
+            20.0 + 200.0 * sin + 60.0 * sx,
+            200.0 - 200.0 * cos + 60.0 * sy
+        );
+        rows(&machine, &program)[1].peak_w
+    };
+    // The arc alone: at its end, and Y is pulled by v²/r·cos.
+    let turning_w = 0.1 * sin * 500.0 * 0.01 / 0.2 * cos;
+    let off = (peak_w(0.0) / turning_w - 1.0).abs();
+    assert!(off < 1e-4, "{off}");
+    let (last, _) = libm::sincos(angle + 0.0008);
+    let step_w = 0.1 * last * 500.0 * (0.1 * (last - sin) / 0.002);
+    let bent_w = peak_w(0.0008);
+    let both_w = step_w + turning_w;
+    assert!(
+        bent_w > 0.97 * both_w && bent_w < 1.01 * both_w,
+        "{bent_w} {both_w}"
+    );
 }

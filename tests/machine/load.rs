@@ -23,7 +23,7 @@ fn unknown_names() {
     assert_snapshot!(said("three-axes"), @r#"line 0, error machine-file: no built-in machine and no file is named "three-axes" / did you mean "three-axis"? built in: three-axis, vmc, linear-gantry, five-axis, lathe, router-48v, linuxcnc-mill, printer"#);
     assert_snapshot!(said("qqq"), @r#"line 0, error machine-file: no built-in machine and no file is named "qqq" / built in: three-axis, vmc, linear-gantry, five-axis, lathe, router-48v, linuxcnc-mill, printer"#);
     assert_snapshot!(said(""), @r#"line 0, error machine-file: no built-in machine and no file is named "" / built in: three-axis, vmc, linear-gantry, five-axis, lathe, router-48v, linuxcnc-mill, printer"#);
-    assert_snapshot!(render(&Controller::load("marlim").unwrap_err()), @r#"line 0, error machine-file: no built-in controller profile and no file is named "marlim" / did you mean "marlin"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, haas-lathe, mitsubishi, mazak, syntec, okuma, okuma-lathe"#);
+    assert_snapshot!(render(&Controller::load("marlim").unwrap_err()), @r#"line 0, error machine-file: no built-in controller profile and no file is named "marlim" / did you mean "marlin"? built in: iso, linuxcnc, grbl, isg, twincat-nci, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, haas-lathe, mitsubishi, mazak, syntec, okuma, okuma-lathe"#);
 }
 
 #[test]

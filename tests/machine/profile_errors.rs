@@ -86,7 +86,7 @@ fn unknown_key() {
 #[test]
 fn unknown_family() {
     assert_snapshot!(findings(&edited("family = \"iso\"", "family = \"fanuc\"")), @r#"
-    line 6, error machine-value: `family` must be "iso", "rs274", "marlin", "isg" or "siemens", not "fanuc"
+    line 6, error machine-value: `family` must be "iso", "rs274", "marlin", "isg", "siemens" or "nci", not "fanuc"
       | family = "fanuc"
       |          ^^^^^^^
     "#);
@@ -191,7 +191,7 @@ fn knob_incomplete() {
     line 19, error machine-missing: `target` is missing in `knob` / What it acts on
       | [[knob]]
       | ^^^^^^^^
-    line 19, error machine-missing: `argument` is missing in `knob` / What stands after it: `= value`, a value per axis, the path's value after a letter, or right after the word, or the number of an analog output ([outputs] of the machine file) with its value
+    line 19, error machine-missing: `argument` is missing in `knob` / What stands after it: `= value`, a value per axis, the same with the axis in brackets (`ACC[X]=70`), the path's value after a letter, or right after the word, or the number of an analog output ([outputs] of the machine file) with its value
       | [[knob]]
       | ^^^^^^^^
     line 19, error machine-missing: `unit` is missing in `knob` / Unit of the value
@@ -269,6 +269,31 @@ fn knobs_with_a_value() {
         found.contains("`unit` does not go with `target`"),
         "{found}"
     );
+}
+
+#[test]
+fn knobs_with_names() {
+    let knob = |word: &str, target: &str, argument: &str, unit: &str| {
+        with(&format!(
+            "[[knob]]\nword = \"{word}\"\ntarget = \"{target}\"\nargument = \"{argument}\"\n\
+             unit = \"{unit}\"\nstep = 0.01\nmin = 0.01\n"
+        ))
+    };
+    assert_eq!(findings(&knob("ACC", "accel", "index", "percent")), "");
+    assert_eq!(findings(&knob("DynOvr", "accel", "assign", "share")), "");
+    for (word, target, argument, unit) in [
+        ("VELOLIM", "speed", "index", "percent"),
+        ("ACC", "feed-accel", "index", "percent"),
+        ("ACC", "accel", "index", "per-second-squared"),
+        ("DynOvr", "accel", "index", "percent"),
+        ("DynOvr", "accel", "assign", "percent"),
+    ] {
+        let found = findings(&knob(word, target, argument, unit));
+        let message = format!("\"{word}\" is not read back in this form");
+        assert!(found.contains(&message), "{word} {argument}: {found}");
+    }
+    let found = findings(&knob("ACC", "accel", "assign", "percent"));
+    assert!(found.contains("\"ACC\" is not a program word"), "{found}");
 }
 
 #[test]

@@ -279,7 +279,7 @@ fn curves_of_axes() {
 #[test]
 fn unknown_controller() {
     assert_snapshot!(findings(&edited("controller = \"iso\"", "controller = \"linuxcn\"")), @r#"
-    line 3, error machine-controller: no built-in controller profile and no file is named "linuxcn" / did you mean "linuxcnc"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, haas-lathe, mitsubishi, mazak, syntec, okuma, okuma-lathe
+    line 3, error machine-controller: no built-in controller profile and no file is named "linuxcn" / did you mean "linuxcnc"? built in: iso, linuxcnc, grbl, isg, twincat-nci, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, haas-lathe, mitsubishi, mazak, syntec, okuma, okuma-lathe
       | controller = "linuxcn"
       |              ^^^^^^^^^
     "#);
@@ -297,7 +297,7 @@ fn controller_file_missing() {
 #[test]
 fn many_at_once() {
     assert_snapshot!(findings("schema = 1\nname = \"t\"\ncontroller = \"isso\"\n[converter]\npeak_power_w = -1\n[axes.X]\nrapid_mm_mim = 1000\naccel_mm_s2 = \"a\"\n[limits]\nmargin = 2\n"), @r#"
-    line 3, error machine-controller: no built-in controller profile and no file is named "isso" / did you mean "iso"? built in: iso, linuxcnc, grbl, isg, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, haas-lathe, mitsubishi, mazak, syntec, okuma, okuma-lathe
+    line 3, error machine-controller: no built-in controller profile and no file is named "isso" / did you mean "iso"? built in: iso, linuxcnc, grbl, isg, twincat-nci, siemens, marlin, reprap, klipper, fanuc, haas, fanuc-lathe, fanuc-lathe-b, haas-lathe, mitsubishi, mazak, syntec, okuma, okuma-lathe
       | controller = "isso"
       |              ^^^^^^
     line 5, error machine-range: `peak_power_w` must be greater than 0, but is -1

@@ -356,8 +356,9 @@ fn limits_hold_at_any_override() {
     let found = sweep(2, 40, 8);
     assert_eq!(found.missed, 0);
     assert!(found.lower >= 5, "{found:?}");
+    // A bound over ranges refuses more than samples would.
     let [all, loose] = found.loose;
-    assert!(4 * loose <= all, "{found:?}");
+    assert!(3 * loose <= all, "{found:?}");
 }
 
 /// Some minutes.

@@ -38,6 +38,8 @@ fn free_text_is_no_fault() {
     ");
     assert_snapshot!(marlin("M106 S{x}\n"), @"expression: expressions in `{ }` are not supported");
     assert_snapshot!(marlin("M999.3 ?\nM106 hello\n"), @"unknown-text: this is no parameter of the command");
+    assert_snapshot!(marlin("G1 X20 F60 (over there)\n"), @"1 feed X0.000>20.000 v1.000");
+    assert_snapshot!(marlin("G1 X20 F60 (Y500)\n"), @"unknown-text: not all firmware takes words in parentheses for a comment");
     assert_snapshot!(marlin("M1234\n"), @"unknown-code: M1234 is not known to this controller profile");
     assert_snapshot!(marlin("G1 X10 Y\n"), @"missing-number: `Y` has no number after it");
 }

@@ -168,7 +168,6 @@ fn refusals_name_the_construct() {
         ("CALL 5", "1 syntax: a text is needed here"),
         ("R1=1 X", "1 missing-number: X has no number"),
         ("OVR=300", "1 override: OVR of 300 %"),
-        ("ACC[X]=150", "1 override: ACC of 150 %"),
         ("TRANS Q5", "1 frame: TRANS with Q5"),
         ("SCALE X0", "1 frame: a scale of 0"),
         (

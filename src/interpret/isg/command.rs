@@ -12,6 +12,8 @@ enum Kind {
     /// It changes how speed and acceleration are built up within their limits,
     /// or lowers the limits.
     Smooths,
+    /// It limits speed and acceleration along the path.
+    Limits,
     Refused(&'static str),
 }
 
@@ -23,7 +25,7 @@ const COMMANDS: [(&str, Kind); 40] = [
     ("SLOPE", Kind::Smooths),
     ("SET SLOPE", Kind::Smooths),
     ("CONTOUR MODE", Kind::Smooths),
-    ("VECTOR LIMIT", Kind::Smooths),
+    ("VECTOR LIMIT", Kind::Limits),
     ("LAH", Kind::Smooths),
     ("BLOCKSEARCH", Kind::Passes),
     ("BACKWARD STORAGE", Kind::Passes),
@@ -62,8 +64,13 @@ const COMMANDS: [(&str, Kind); 40] = [
     ("PTP", Kind::Refused("a move from point to point")),
 ];
 
-const SMOOTHS: &str = "#SLOPE, #CONTOUR MODE, #HSC, #VECTOR LIMIT, #OVERRIDE and their kin \
-                       change speed within the limits of the axes: taken as not there";
+const SMOOTHS: &str = "#SLOPE, #CONTOUR MODE, #HSC, #OVERRIDE and their kin change speed within \
+                       the limits of the axes: taken as not there";
+
+/// "Adapt path dynamic limit values (#VECTOR LIMIT ON/OFF)", "P-CHAN-00351", "P-CHAN-00350".
+const LIMITS: &str = "#VECTOR LIMIT lowers speed and acceleration along the path, in a unit and on \
+                      blocks that parameters of the channel say; the limits of the axes hold under \
+                      it: counted as not there";
 
 impl Reading<'_, '_, '_> {
     /// A command.
@@ -136,6 +143,7 @@ impl Reading<'_, '_, '_> {
         match found.map(|(_, kind)| kind) {
             Some(Kind::Passes) => {}
             Some(Kind::Smooths) => self.note("smoothing", SMOOTHS, start),
+            Some(Kind::Limits) => self.note("limit-not-lowered", LIMITS, start),
             Some(Kind::Refused(reason)) => {
                 return Err(self.cursor.refused(&format!("#{name}"), reason, start));
             }

@@ -234,6 +234,10 @@ impl<'t> Text<'t> {
             let letter = byte.to_ascii_uppercase();
             if letter == b'(' {
                 at = self.behind(at, b')');
+                // Firmware that knows no comment of this form takes its words.
+                if holds_word(self.line.get(start..at).unwrap_or_default()) {
+                    return Err(Span::new(start, at));
+                }
                 continue;
             }
             if !letter.is_ascii_alphabetic() || list.is_full() {
@@ -319,4 +323,15 @@ impl<'t> Text<'t> {
             .filter(|number| number.is_finite());
         number.map(Some).ok_or(NotANumber)
     }
+}
+
+/// Whether a letter with a number stands in a text.
+fn holds_word(text: &[u8]) -> bool {
+    text.windows(2).any(|pair| match pair {
+        [letter, number] => {
+            letter.is_ascii_alphabetic()
+                && (number.is_ascii_digit() || matches!(number, b'+' | b'-' | b'.'))
+        }
+        _ => false,
+    })
 }

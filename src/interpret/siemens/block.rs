@@ -78,6 +78,7 @@ impl Control<'_> {
             || state.feed_in_mm
             || state.feed_factor != 1.0
             || state.rounds.is_some()
+            || state.limits.are_due()
             || matches!(self.modal.motion, Motion::None | Motion::Special(_));
         if let Some(shift) = shift {
             self.position.set_shifts(&shift);
@@ -109,9 +110,15 @@ impl Control<'_> {
         if let Some(dwell_s) = dwell_s {
             self.dwell(run, dwell_s);
         }
+        self.turn_knobs(run);
+        self.dynamic_mode(state, run);
         self.siemens_settings(state, run);
         if run.report.diagnostics.errors != errors {
             return;
+        }
+        if state.extra.turns_limit {
+            run.facts.turns_knob = true;
+            self.raise_limits(&state.limits);
         }
         let mode = self.modal.path_mode;
         let g9 = GCode::Siemens(Code::ExactOnce);
@@ -132,6 +139,9 @@ impl Control<'_> {
             self.cycle(state, &call, run);
         } else if moved && run.report.diagnostics.errors == errors {
             self.modal_call(state, run);
+        }
+        if state.extra.turns_limit || state.limits.are_due() {
+            self.settle_limits(&mut state.limits);
         }
         self.modal.path_mode = mode;
         if state.extra.blends {
@@ -307,6 +317,26 @@ impl Control<'_> {
             }
         }
         run.words.take(b'H');
+    }
+
+    /// DYNNORM and its kin act in their block ("Dynamic response").
+    fn dynamic_mode(&mut self, state: &Siemens, run: &mut Run<'_, '_>) {
+        let Some((group, level)) = state.extra.level else {
+            return;
+        };
+        run.facts.turns_knob = true;
+        if self.compensation.is_some() {
+            let span = run.whole();
+            run.report
+                .error(
+                    "compensation",
+                    "a dynamic mode under tool radius compensation is not followed",
+                    span,
+                )
+                .help("write it before G41 or G42, or after G40 and the move after that");
+            return;
+        }
+        self.turn_to_level(group, level, run);
     }
 
     fn choose_path_mode(&mut self, asked: PathMode) {

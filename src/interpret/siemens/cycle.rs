@@ -101,7 +101,9 @@ impl Control<'_> {
         match call.kind {
             Kind::Drill => self.cycle_drill(state, levels, call, run),
             Kind::Deep => self.deep_hole(state, levels, call, run),
-            Kind::Tap | Kind::FloatingTap => self.tap(state, levels, call, run),
+            Kind::Tap | Kind::FloatingTap => {
+                self.at_any_mode(|control| control.tap(state, levels, call, run));
+            }
             Kind::Bore => self.cycle_bore(state, levels, call, run),
             _ => self.bore_aside(state, levels, call, run),
         }

@@ -19,6 +19,7 @@ mod flow_words;
 mod frame;
 mod frame_words;
 mod function;
+mod limits;
 mod names;
 mod pattern;
 mod polar;
@@ -41,7 +42,8 @@ use super::code::{GCode, Motion};
 use super::compensation::Insert;
 use super::modal::Modal;
 use super::words::Words;
-use crate::machine::{AXES, AxisSet, AxisValues};
+use crate::interpret::knob::KnobState;
+use crate::machine::{AXES, AxisSet, AxisValues, LEVEL_GROUPS, Machine};
 
 /// How the value of an axis is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,9 +79,13 @@ struct Extra {
     machine_coordinates: bool,
     /// CYCLE832: a path mode that blends.
     blends: bool,
+    /// DYNNORM and its kin: a group of levels, and which one of it; `None`: any of them.
+    level: Option<(usize, Option<usize>)>,
     cycle: Option<cycle::Call>,
     /// CHF, CHR, RND.
     corner: Option<Insert>,
+    /// It changes a limit of the axes.
+    turns_limit: bool,
 }
 
 /// What MCALL has set.
@@ -121,6 +127,7 @@ struct Polar {
 struct Saved {
     modal: Modal,
     frame: Frame,
+    levels: [Option<u8>; LEVEL_GROUPS],
 }
 
 /// What a control of this language keeps besides the modal state.
@@ -164,6 +171,7 @@ pub(super) struct Siemens {
     rounds: Option<Insert>,
     /// I, J and K of G331.
     tap_lead: [Option<f64>; 3],
+    limits: limits::Limits,
 }
 
 impl Siemens {
@@ -198,6 +206,7 @@ impl Siemens {
             radius: radius::Radius::default(),
             rounds: None,
             tap_lead: [None; 3],
+            limits: limits::Limits::new(),
         }
     }
 
@@ -239,7 +248,12 @@ impl Siemens {
 
     /// A subprogram has ended: VAR parameters give their values back, and SAVE
     /// its state.
-    pub(super) fn leave(&mut self, modal: &mut Modal) -> bool {
+    pub(super) fn leave(
+        &mut self,
+        modal: &mut Modal,
+        knobs: &mut KnobState,
+        machine: &Machine,
+    ) -> bool {
         let Some(scope) = self.scopes.pop() else {
             return false;
         };
@@ -278,6 +292,7 @@ impl Siemens {
             modal.feed = None;
         }
         self.frame = saved.frame;
+        knobs.select_all(machine, saved.levels);
         true
     }
 

@@ -16,16 +16,14 @@ pub(super) enum Name {
 
 /// Passed over.
 const DATA: &[&str] = &[
-    // Ramps, feed forward, compressors, dynamic sets: the limits of the machine
-    // hold under each of them.
+    // Ramps, feed forward, compressors, dynamic sets without accelerations in the machine
+    // file: its limits hold under each of them.
     "SOFT",
     "BRISK",
     "DRIVE",
     "SOFTA",
     "BRISKA",
     "DRIVEA",
-    "JERKLIM",
-    "JERKLIMA",
     "FFWON",
     "FFWOF",
     "COMPON",

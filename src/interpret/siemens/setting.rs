@@ -3,6 +3,7 @@
 use super::reading::Reading;
 use crate::interpret::compensation::Insert;
 use crate::interpret::formula::Outcome;
+use crate::interpret::level_words::named;
 use crate::syntax::Block;
 
 impl Reading<'_, '_, '_> {
@@ -61,9 +62,8 @@ impl Reading<'_, '_, '_> {
                 self.state.spindle_limit = Some(value.abs());
             }
             "OVR" => self.feed_override(start)?,
-            "OVRRAP" | "OVRA" | "ACC" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" => {
-                self.limit(name, start)?;
-            }
+            "ACC" | "OVRRAP" | "OVRA" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" | "JERKLIM"
+            | "JERKLIMA" => self.limit(name, start)?,
             // "Three, four and five axis transformation (TRAORI)".
             "TRAORI" => {
                 self.cursor.pass_over_parentheses()?;
@@ -140,34 +140,38 @@ impl Reading<'_, '_, '_> {
         Err(self.cursor.fault("override", message, help, start))
     }
 
-    /// Percentages of the machine's limits: what lowers them is not counted,
-    /// which leaves the estimate higher.
-    fn limit(&mut self, name: &str, start: usize) -> Outcome<()> {
-        if self.cursor.take(b'[') {
-            while !self.cursor.take(b']') {
-                if self.cursor.peek().is_none() {
-                    self.cursor.expect(b']')?;
-                }
-                self.cursor.at += 1;
-            }
-        }
-        let percent = self.value_behind(name, start)?;
-        if percent > 100.0 || percent <= 0.0 {
-            let message = format!("{name} of {percent} %");
-            let help = "only values above 0 and up to 100 are read: the machine's limits hold";
-            return Err(self.cursor.fault("override", message, help, start));
-        }
-        if percent < 100.0 {
-            let message = "a limit that the program lowers by a percentage is counted at 100 %";
-            self.note("limit-not-lowered", message, start);
+    /// CYCLE832 ("High Speed Settings") chooses a path mode that blends.
+    fn high_speed_settings(&mut self) -> Outcome<()> {
+        let start = self.cursor.at;
+        self.cursor.pass_over_parentheses()?;
+        self.extra().blends = true;
+        if let Some((group, _)) = named(self.control.machine, "DYNNORM") {
+            self.extra().level = Some((group, None));
+            let message = "CYCLE832 chooses a dynamic mode by a program of the machine's builder: \
+                           the highest accelerations of all modes count from here on";
+            self.note("level-unclear", message, start);
         }
         Ok(())
     }
 
-    /// CYCLE832 ("High Speed Settings") chooses a path mode that blends.
-    fn high_speed_settings(&mut self) -> Outcome<()> {
-        self.cursor.pass_over_parentheses()?;
-        self.extra().blends = true;
-        Ok(())
+    /// A dynamic mode, where the machine file has accelerations for them ("Dynamic
+    /// response"); false for other names.
+    pub(super) fn level(&mut self, name: &str, start: usize) -> Outcome<bool> {
+        let Some((group, level)) = named(self.control.machine, name) else {
+            if name.starts_with("DYN") && name != "DYNNORM" {
+                let message = "dynamic modes (DYNROUGH and its kin) have accelerations of their \
+                               own: those of the machine file have to be the highest of all that \
+                               the program selects, or each mode's stands under [[levels]]";
+                self.note("dynamic-mode", message, start);
+            }
+            return Ok(false);
+        };
+        if level.is_none() {
+            let message = format!("what {name} makes of the accelerations is not known");
+            let help = "give it under [[levels]] of the machine file";
+            return Err(self.cursor.fault("level-unknown", message, help, start));
+        }
+        self.extra().level = Some((group, level));
+        Ok(true)
     }
 }

@@ -107,6 +107,9 @@ impl Reading<'_, '_, '_> {
         if self.setting(&name, start, block)? {
             return Ok(None);
         }
+        if self.level(&name, start)? {
+            return Ok(None);
+        }
         // `A3` is an angle, `A3=` a vector.
         let word = name.as_bytes().get(1).is_some_and(u8::is_ascii_digit) && !assigns;
         let known = if word { None } else { Name::of(&name) };

@@ -74,10 +74,12 @@ impl Control<'_> {
         };
         let tapping = GCode::Siemens(Code::Tapping);
         if run.words.g.iter().any(|(code, ..)| *code == tapping) {
-            return self.floating_tap(state, &target, run);
+            return self.at_any_mode(|control| control.floating_tap(state, &target, run));
         }
         if let Motion::Special(number) = self.modal.motion {
-            return self.siemens_thread(number, state, &target, run);
+            return self.at_any_mode(|control| {
+                control.siemens_thread(number, state, &target, run);
+            });
         }
         if arc {
             run.facts.uses_feed = true;
@@ -299,11 +301,14 @@ impl Control<'_> {
         target.named = named;
         target.unknown = AxisSet(named.0 & self.position.unknown.0);
         let rapid_factor = self.knobs.rapid_factor;
+        let rapid_accel_mm_s2 = self.knobs.rapid_accel_mm_s2;
         if number == 740 {
             self.knobs.rapid_factor *= self.return_factor(&target.machine, named, target.unknown);
+            self.unlimited_return();
         }
         self.siemens_go(state, run, MoveKind::Rapid, &target, None);
         self.knobs.rapid_factor = rapid_factor;
+        self.knobs.rapid_accel_mm_s2 = rapid_accel_mm_s2;
     }
 }
 

@@ -6,8 +6,8 @@ use super::machine_file::{
 };
 use super::value::{At, Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, offsets, outputs, own_language, plausible, preset, response,
-    servo, spindle, tool, word,
+    axis, converter, drive_curve, levels, offsets, outputs, own_language, plausible, preset,
+    response, servo, spindle, tool, word,
 };
 use crate::machine::axis::{AXES, Axis, AxisSet};
 use crate::machine::controller::{Controller, PathMode, RapidPath};
@@ -74,12 +74,15 @@ pub(crate) fn machine(
     if given.is_none() {
         path.response_time_s = servo::response_s(&axes, RESPONSE_TIME_S);
     }
-    let loads = file
+    let loads: Vec<Load> = file
         .load
         .iter()
         .flatten()
         .filter_map(|table| load(findings, table, &converters))
         .collect();
+    if let Some(tables) = &file.levels {
+        levels::take(findings, tables, &axes, &loads, &mut controller);
+    }
     let spindle = file
         .spindle
         .as_ref()
@@ -241,6 +244,7 @@ fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {
         rapid_override_max: value(overrides.and_then(|o| o.rapid.as_ref()), 100.0) / 100.0,
         spindle_override_max: value(overrides.and_then(|o| o.spindle.as_ref()), 100.0) / 100.0,
         override_at: None,
+        override_from: None,
         min_feed_mm_s: value(floor, 0.0) / SECONDS_PER_MINUTE,
         min_feed_ratio: value(ratio, 0.0),
     }

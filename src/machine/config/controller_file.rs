@@ -72,6 +72,9 @@ pub(crate) struct LanguageTable {
     pub(crate) rapid_uses_feed: Option<bool>,
     /// Further G and M words that certainly move nothing and are passed over.
     pub(crate) ignored: Option<Vec<At<String>>>,
+    /// Words that select accelerations, as a document of the vendor has it, such as `G187`
+    /// or `DYNFINISH`; what each makes of them, the machine file says ([[levels]]).
+    pub(crate) levels: Option<Vec<String>>,
     /// Whether `/` blocks exist; default true.
     pub(crate) block_delete: Option<bool>,
     /// How G41 and G42 shift the path by the tool's radius; default: not known,
@@ -107,6 +110,9 @@ pub(crate) struct LanguageTable {
     /// Whether M words from M10 on that are not known move no axis, which is
     /// then said once; default false: they are refused.
     pub(crate) other_m: Option<bool>,
+    /// Whether `;` ends a block, so that words after it are another one, which is refused;
+    /// default false: a comment begins there.
+    pub(crate) semicolon_ends_block: Option<bool>,
     /// The F in force at power-on, in mm/min: where the first moves come before any F, none
     /// above it is written for them. Default: none is known.
     pub(crate) power_on_feed_mm_min: Option<Positive>,
@@ -185,6 +191,7 @@ pub(crate) enum FamilyName {
     Marlin,
     Isg,
     Siemens,
+    Nci,
 }
 
 /// A word of G4.
@@ -310,9 +317,9 @@ pub(crate) struct KnobTable {
     /// What it acts on.
     #[schemars(required)]
     pub(crate) target: Option<TargetName>,
-    /// What stands after it: `= value`, a value per axis, the path's value after a
-    /// letter, or right after the word, or the number of an analog output ([outputs] of the
-    /// machine file) with its value.
+    /// What stands after it: `= value`, a value per axis, the same with the axis in brackets
+    /// (`ACC[X]=70`), the path's value after a letter, or right after the word, or the number
+    /// of an analog output ([outputs] of the machine file) with its value.
     #[schemars(required)]
     pub(crate) argument: Option<At<ArgumentName>>,
     /// Letters of the value, for `argument = "path"`.
@@ -345,6 +352,7 @@ pub(crate) enum TargetName {
     Accel,
     RapidSpeed,
     Speed,
+    SpeedShare,
     CruiseRatio,
 }
 
@@ -354,6 +362,7 @@ pub(crate) enum TargetName {
 pub(crate) enum ArgumentName {
     Assign,
     Axes,
+    Index,
     Path,
     Output,
     Value,

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::controller_file::{CompensationTable, DistanceName, PointName};
+use super::levels::LevelsTable;
 use super::offsets::OffsetsTable;
 use super::outputs::OutputsTable;
 use super::value::{
@@ -51,6 +52,8 @@ pub(crate) struct MachineFile {
     pub(crate) load: Option<Vec<At<LoadTable>>>,
     /// Limits for combinations of axes.
     pub(crate) preset: Option<Vec<At<PresetTable>>>,
+    /// Words that select accelerations or rapid speeds.
+    pub(crate) levels: Option<Vec<At<LevelsTable>>>,
     /// Margin, overrides and floors.
     pub(crate) limits: Option<At<LimitsTable>>,
 }

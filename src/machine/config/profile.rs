@@ -8,6 +8,7 @@ use super::controller_file::{
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
+use super::named_knob;
 use super::value::At;
 use super::word;
 use crate::machine::axis::AxisId;
@@ -60,6 +61,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         FamilyName::Marlin => Family::Marlin,
         FamilyName::Isg => Family::Isg,
         FamilyName::Siemens => Family::Siemens,
+        FamilyName::Nci => Family::Nci,
     };
     Some(Language {
         name: String::new(),
@@ -86,6 +88,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
         ignored_g,
         ignored_m,
+        levels: table.levels.clone().unwrap_or_default(),
         block_delete: table.block_delete.unwrap_or(true),
         compensation: table.cutter_compensation.as_ref().and_then(compensation),
         printer: super::printer::printer(findings, table),
@@ -159,6 +162,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         diameter: table.diameter.unwrap_or(false),
         osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
+        semicolon_ends_block: table.semicolon_ends_block.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
         circular_pocket: table.circular_pocket.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
@@ -303,6 +307,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         TargetName::Accel => KnobTarget::Accel,
         TargetName::RapidSpeed => KnobTarget::RapidSpeed,
         TargetName::Speed => KnobTarget::Speed,
+        TargetName::SpeedShare => KnobTarget::SpeedShare,
         TargetName::CruiseRatio => KnobTarget::CruiseRatio,
     };
     let unit = match knob.unit? {
@@ -314,26 +319,12 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     };
     let argument = argument(findings, knob)?;
     let output = argument == KnobArgument::Output(0);
-    let suits = match target {
-        KnobTarget::Accel if output => unit == KnobUnit::Share,
-        _ if output => false,
-        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
-            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
-        }
-        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
-        KnobTarget::Speed => {
-            matches!(
-                unit,
-                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
-            )
-        }
-        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
-    };
-    if !suits {
+    let read_back = named_knob::is_read_back(knob.word.as_ref()?, &argument, target, unit);
+    if !read_back && !goes_with(target, unit, output) {
         let message = "`unit` does not go with `target`";
         let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
                     \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
-                    cruise-ratio is a \"share\", as is accel with argument = \"output\"";
+                    cruise-ratio is a \"share\", as are accel and speed-share with argument = \"output\"";
         findings.error("machine-kind", &table.span, message, Some(help.to_owned()));
     }
     let text = knob.word.as_ref()?;
@@ -341,33 +332,25 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         .wait
         .as_deref()
         .is_some_and(|it| it.starts_with("M66 "));
-    if output && !(text.value == "M68" && waits) {
+    let read_back = match target {
+        KnobTarget::SpeedShare => text.value == "M67" && knob.wait.is_none(),
+        _ => text.value == "M68" && waits,
+    };
+    if output && !read_back {
         let message = format!(
             "\"{}\" with argument = \"output\" is not read back",
             text.value
         );
-        let help = Some("\"M68\" with wait = \"M66 P0 L0\"".to_owned());
+        let help = "\"M68\" with wait = \"M66 P0 L0\" for accel, \"M67\" alone for speed-share";
+        let help = Some(help.to_owned());
         findings.error("machine-word", &text.span, message, help);
         return None;
     }
-    let code = if argument == KnobArgument::Value {
-        let read = match target {
-            KnobTarget::Accel => Some("SET_VELOCITY_LIMIT ACCEL="),
-            KnobTarget::Speed => Some("SET_VELOCITY_LIMIT VELOCITY="),
-            KnobTarget::CruiseRatio => Some("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO="),
-            KnobTarget::FeedAccel | KnobTarget::RapidAccel | KnobTarget::RapidSpeed => None,
-        };
-        if read != Some(text.value.as_str()) || unit == KnobUnit::Percent {
-            let message = format!(
-                "\"{}\" with argument = \"value\" is not read back",
-                text.value
-            );
-            let help = "\"SET_VELOCITY_LIMIT ACCEL=\" in mm/s² with target = \"accel\", \
-                        \"SET_VELOCITY_LIMIT VELOCITY=\" in mm/s with target = \"speed\", or \
-                        \"SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=\" with target = \"cruise-ratio\"";
-            findings.error("machine-word", &text.span, message, Some(help.to_owned()));
-            return None;
-        }
+    let code = if named_knob::is_named(text, &argument) {
+        named_knob::check(findings, text, &argument, target, unit)?;
+        None
+    } else if argument == KnobArgument::Value {
+        named_knob::check_value(findings, text, target, unit)?;
         None
     } else {
         let code = word::code(&text.value);
@@ -393,7 +376,28 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         between_moves: knob.between_moves.unwrap_or(false),
         wait: knob.wait.clone(),
         change_s: 0.0,
+        levels: None,
     })
+}
+
+/// Whether values in a unit can act so; `output`: set by an analog output.
+fn goes_with(target: KnobTarget, unit: KnobUnit, output: bool) -> bool {
+    match target {
+        KnobTarget::Accel | KnobTarget::SpeedShare if output => unit == KnobUnit::Share,
+        _ if output => false,
+        KnobTarget::SpeedShare => false,
+        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
+            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
+        }
+        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
+        KnobTarget::Speed => {
+            matches!(
+                unit,
+                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
+            )
+        }
+        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
+    }
 }
 
 fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgument> {
@@ -407,6 +411,7 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
     Some(match argument.value {
         ArgumentName::Assign => KnobArgument::Assign,
         ArgumentName::Axes => KnobArgument::Axes,
+        ArgumentName::Index => KnobArgument::Index,
         // Which one, the machine file says.
         ArgumentName::Output => KnobArgument::Output(0),
         ArgumentName::Value => KnobArgument::Value,

@@ -232,13 +232,17 @@ fn survey_path(
     let lathe = machine.controller.language.dialect.lathe.is_some();
     let mut front = Front::new(Cursor::new(program), machine, options);
     let mut open: Option<Series> = None;
+    // What comes next taps without a chuck that gives way.
+    let mut rigid = false;
     let mut before = returns::Before::of(front.interpreter().modal());
     while let Some(line) = front.next_line()? {
         let (facts, interpreter) = (&*line.facts, line.interpreter);
         if !facts.cycle {
             if !interpreter.in_cycle() {
+                rigid &= open.is_none();
                 close(&mut open, all);
             }
+            rigid |= line.block.words.iter().any(is_rigid);
             if facts.reference || facts.machine_coordinates {
                 close(&mut returns::series(&line, &before, machine), all);
             }
@@ -284,6 +288,9 @@ fn survey_path(
             modal: interpreter.modal(),
             motion_before: interpreter.motion_before_cycle(),
         };
+        rigid |= line.block.words.iter().any(is_rigid);
+        let taps = TAPS.contains(&interpreter.cycle()) && singles.is_iso();
+        let fixed = fixed.or((rigid && taps).then_some(RIGID));
         let turned = || turning::stays(&line, interpreter.cycle()).filter(|_| lathe);
         let fixed = fixed.or_else(turned);
         if let Some(why) = fixed {
@@ -307,7 +314,7 @@ fn survey_path(
         add(
             &mut series.written_out,
             number,
-            singles.write_out(&cycle, place),
+            singles.write_out(&cycle, &series.held, to_r, place),
         );
         let n_word = line.block.number.map(|word| word.value);
         series.numbers.insert(number, n_word);
@@ -322,6 +329,15 @@ fn turning_word(block: &Block) -> Option<Word> {
     block.words.iter().find(turning).copied()
 }
 
+/// Whether a word announces rigid tapping, in which nothing may come between it and the taps.
+fn is_rigid(word: &Word) -> bool {
+    word.letter == b'M' && word.value == 29.0
+}
+
+/// Tapping cycles, times ten.
+const TAPS: [u16; 2] = [740, 840];
+/// Why such a tap stays as it is.
+const RIGID: &str = "M29 before it makes it rigid, which ends with any other motion word";
 /// Words that hold until a cycle ends.
 const HELD: &[u8] = b"ZRQPIJ";
 /// Why a line that runs several times stays as it is.

@@ -90,6 +90,7 @@ fn write(
         let count = (last + 1).saturating_sub(first) as usize;
         lines(program).skip(first as usize - 1).take(count)
     };
+    let held = BTreeMap::new();
     match (cycle.number, contour) {
         (FINISH, Some([first, last])) => {
             let lines = singles.write_finish(cycle, text(first, last), place)?;
@@ -99,12 +100,16 @@ fn write(
             if first <= number {
                 return Err("its contour stands before it");
             }
-            let mut lines = BTreeMap::from([(number, singles.write_out(cycle, place)?)]);
+            let mut lines =
+                BTreeMap::from([(number, singles.write_out(cycle, &held, false, place)?)]);
             // What stands between them was jumped over too.
             let jumped = (number + 1..).zip(text(number + 1, last));
             lines.extend(jumped.filter_map(|(line, text)| Some((line, contour_as_comment(text)?))));
             Ok(lines)
         }
-        (_, None) => Ok(BTreeMap::from([(number, singles.write_out(cycle, place)?)])),
+        (_, None) => Ok(BTreeMap::from([(
+            number,
+            singles.write_out(cycle, &held, false, place)?,
+        )])),
     }
 }

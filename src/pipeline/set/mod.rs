@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::conclusion::holds_one_way;
+use super::readable::readable;
 use super::strategy::{check_strategy, trusting};
 use super::ways::{has_ways, ways};
 use super::{Failure, LimitOptions, LimitSummary, Options, RestartRows};
@@ -110,6 +111,13 @@ pub fn limit_set(
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<SetSummary, SetFailure> {
     if let Some((machine, note)) = trusting(machine, how) {
+        let mut summary = limit_set(programs, &machine, how, rows)?;
+        if let Some(first) = summary.programs.first_mut() {
+            first.before.notes.push(note);
+        }
+        return Ok(summary);
+    }
+    if let Some((machine, note)) = readable(machine) {
         let mut summary = limit_set(programs, &machine, how, rows)?;
         if let Some(first) = summary.programs.first_mut() {
             first.before.notes.push(note);

@@ -16,6 +16,7 @@ impl Table {
     /// Gives a block what all runs of its line are known to meet.
     pub(super) fn tell(&self, entry: &mut Entry) {
         entry.skips = self.skips;
+        entry.apart = true;
         // A line that runs again would meet another motion word.
         let without = entry.facts.no_motion_word && !self.may_get_word();
         let without = without.then_some(NO_MOTION_WORD);

@@ -57,6 +57,9 @@ pub struct Element<T> {
     /// Speed that is asked for in mm/s; of a rapid infinite, unless its override is
     /// below 100 %.
     pub feed_mm_s: f64,
+    /// What part of the speed that is asked for a share leaves which the control takes while
+    /// it moves.
+    pub pace: f64,
     /// Speed that the axes permit, mm/s. Of an arc without its curvature.
     pub speed_mm_s: f64,
     /// Acceleration along the path that the axes permit, mm/s². Of an arc by
@@ -111,6 +114,7 @@ impl<T> Element<T> {
             rapid: false,
             length_mm: 0.0,
             feed_mm_s: f64::INFINITY,
+            pace: 1.0,
             speed_mm_s: f64::INFINITY,
             accel_mm_s2: f64::INFINITY,
             drive_accel_mm_s2: f64::INFINITY,
@@ -145,6 +149,7 @@ impl<T> Element<T> {
             MoveKind::Rapid => f64::INFINITY,
             kind => mv.feed_mm_s * limits::feed_factor(kind, overrides),
         };
+        self.pace = mv.pace;
         self.drive_accel_mm_s2 = f64::INFINITY;
         self.path_accel_mm_s2 = mv.path_accel_mm_s2;
         self.curve_speed_mm_s = f64::INFINITY;
@@ -168,10 +173,11 @@ impl<T> Element<T> {
             None => limits::straight(machine, mv, overrides, &caps),
         };
         self.speed_mm_s = limits.speed_mm_s;
-        if self.rapid && overrides.rapid > 0.0 && overrides.rapid < 1.0 {
+        let share = overrides.rapid * mv.pace;
+        if self.rapid && share > 0.0 && share < 1.0 {
             // The knob is turned while it runs; what is decided before knows nothing of it.
             self.feed_mm_s = limits.speed_mm_s;
-            self.speed_mm_s = limits.speed_mm_s / overrides.rapid;
+            self.speed_mm_s = limits.speed_mm_s / share;
         }
         self.accel_mm_s2 = limits.accel_mm_s2.min(mv.path_accel_mm_s2);
         self.jerk_mm_s3 = limits.jerk_mm_s3;
@@ -186,7 +192,9 @@ impl<T> Element<T> {
 
     /// Takes in what the drives leave at speeds up to the element's.
     fn drive(&mut self, machine: &Machine, mv: &Move) {
-        let top = self.top_mm_s();
+        // It may be entered at its whole speed.
+        let axes = lower(self.speed_mm_s, self.curve_speed_mm_s);
+        let top = lower(axes, self.feed_mm_s / self.pace);
         self.drive_accel_mm_s2 = drive::lowest_on_path(machine, mv, top);
         let plane = self.curve.map(|curve| curve.plane);
         let axes = self.axis_accel_mm_s2.iter_mut().zip(&self.start);

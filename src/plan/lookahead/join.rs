@@ -47,11 +47,6 @@ impl<T: Copy> Joiner<T> {
         }
     }
 
-    /// Whether an element waits for what could be joined to it.
-    pub fn holds(&self) -> bool {
-        self.last.is_some()
-    }
-
     /// Whether an element goes through as it is: none is held, and nothing can be
     /// joined to it.
     pub fn passes(&self, element: &Element<T>) -> bool {

@@ -21,6 +21,7 @@ mod window;
 
 pub(crate) use element::common_accel;
 pub use element::{Curve, Element, Joint};
-pub(crate) use glide::{Gliding, Line, LineStart, Passed};
+pub(crate) use glide::{Gliding, Line};
+pub(crate) use linuxcnc::LATE_CYCLES;
 pub use planner::{Blend, PathPlanner, Piece, Planned};
 pub use ramp::Speeds2;

@@ -30,6 +30,10 @@ pub(super) struct Pending<T> {
     /// F at the largest feed override, mm/s: how joints are passed is decided for that,
     /// wherever the knob stands.
     pub expected_mm_s: f64,
+    /// The pace of the element before it, which it is entered at.
+    pub pace_before: f64,
+    /// It may be entered faster than it runs, and the change of pace comes late.
+    pub lags: bool,
     /// Share of the acceleration given up to the kinks before and after.
     pub kink_before: f64,
     pub kink_behind: f64,
@@ -57,6 +61,8 @@ impl<T: Copy> Pending<T> {
             sweep_rad: 0.0,
             max_speed: 0.0,
             expected_mm_s: element.feed_mm_s,
+            pace_before: element.pace,
+            lags: false,
             kink_before: 0.0,
             kink_behind: 0.0,
             blended_before: false,
@@ -75,8 +81,9 @@ impl<T: Copy> Pending<T> {
         self.expected_mm_s = if element.rapid {
             f64::INFINITY
         } else {
-            element.feed_mm_s * feed_ratio
+            element.feed_mm_s / element.pace * feed_ratio
         };
+        (self.pace_before, self.lags) = (element.pace, false);
         self.from_mm = 0.0;
         self.length_mm = element.length_mm;
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
@@ -96,6 +103,15 @@ impl<T: Copy> Pending<T> {
     /// The speed that it runs at.
     pub fn run_speed(&self) -> f64 {
         self.element.feed_mm_s.min(self.max_speed)
+    }
+
+    /// The same while the pace of the element before it is still in force.
+    pub fn seen_speed(&self) -> f64 {
+        if self.pace_before == self.element.pace {
+            return self.run_speed();
+        }
+        let feed_mm_s = self.element.feed_mm_s / self.element.pace * self.pace_before;
+        feed_mm_s.min(self.max_speed)
     }
 
     /// The acceleration before any share is taken off.
@@ -129,11 +145,25 @@ impl<T: Copy> Pending<T> {
     }
 
     /// The share that it keeps while nothing waits after it.
-    pub fn unseen_share(&self) -> f64 {
+    fn unseen_share(&self) -> f64 {
         match self.element.joint {
             Joint::Blend { .. } => self.unbent_share(),
             _ => self.straight_share(),
         }
+    }
+
+    /// The speed, squared, with which the planner enters it while nothing waits after it: half
+    /// of it is enough to stop.
+    pub fn unseen2(&self) -> f64 {
+        let share = match self.element.joint {
+            Joint::Blend { .. } => 0.5,
+            _ if self.blended_before => 0.5,
+            _ => 1.0,
+        };
+        let along = self.element.curve.map_or(1.0, |_| TANGENTIAL_SHARE);
+        let accel = share * along * (1.0 - self.kink_before) * self.accel();
+        let length_mm = self.element.length_mm - self.from_mm;
+        lower(accel * length_mm, self.expected_mm_s * self.expected_mm_s)
     }
 
     /// Whether it overlaps with the element before or after it: its path is known

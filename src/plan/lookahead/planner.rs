@@ -212,31 +212,30 @@ impl<T: Copy> PathPlanner<T> {
     /// A planner at rest.
     #[must_use]
     pub fn new(machine: &Machine, look_ahead: LookAhead) -> Self {
-        let rule = match look_ahead.corner {
-            CornerRule::LinuxCnc {
-                cycle_s,
-                kink_ratio,
-                gap_cycles,
-            } => {
-                let axes = Axes::of(machine);
-                Rule::LinuxCnc(Box::new(LinuxCnc::new(
-                    axes, cycle_s, kink_ratio, gap_cycles,
-                )))
-            }
-            _ => Rule::Corner(None),
-        };
+        let mut axes = machine.axes.iter().flatten();
+        let has_jerk = axes.any(|axis| axis.jerk_mm_s3 > 0.0);
         let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead));
-        if matches!(rule, Rule::LinuxCnc(_)) {
-            window = window.renewing(RENEWED);
-        }
-        if machine
-            .axes
-            .iter()
-            .flatten()
-            .any(|axis| axis.jerk_mm_s3 > 0.0)
+        let rule = if let CornerRule::LinuxCnc {
+            cycle_s,
+            kink_ratio,
+            gap_cycles,
+        } = look_ahead.corner
         {
-            window = window.with_jerk();
-        }
+            let axes = Axes::of(machine);
+            let mut rule = LinuxCnc::new(axes, cycle_s, kink_ratio, gap_cycles);
+            if has_jerk {
+                window = window.with_jerk(Some(RENEWED));
+            } else {
+                window = window.given();
+                rule = rule.optimised(look_ahead.blocks);
+            }
+            Rule::LinuxCnc(Box::new(rule))
+        } else {
+            if has_jerk {
+                window = window.with_jerk(None);
+            }
+            Rule::Corner(None)
+        };
         Self {
             look_ahead,
             rule,

@@ -40,7 +40,7 @@ impl Ahead {
         let with_energy = times && open.want.energy;
         let watched = peaks && eye.watch.is_some();
         if with_energy || watched {
-            let step = self.step(number, planned, peaks);
+            let step = self.step(planned, peaks);
             let Some(open) = self.open.get_mut(number) else {
                 return;
             };
@@ -52,7 +52,7 @@ impl Ahead {
             }
         }
         if peaks {
-            self.follow(model, number, planned);
+            self.follow(model, planned);
         }
         let Some(open) = self.open.get_mut(number) else {
             return;
@@ -103,11 +103,10 @@ impl Ahead {
         }
     }
 
-    /// The step of speed before a piece on the path of a move, at the largest
-    /// overrides or at 100 %, where the rules know any.
-    fn step(&mut self, number: u64, planned: &Planned<u64>, peaks: bool) -> Option<StepEnergy> {
-        let response_s = self.steps.as_ref()?.response_s();
-        let open = self.open.get(number)?;
+    /// The step of speed before a piece, at the largest overrides or at 100 %.
+    fn step(&mut self, planned: &Planned<u64>, peaks: bool) -> Option<StepEnergy> {
+        let response_s = self.steps.response_s();
+        let open = self.open.get(planned.tag)?;
         let side = match &mut self.nominal {
             Some(nominal) if !peaks => nominal,
             _ => &mut self.largest,
@@ -134,18 +133,31 @@ impl Ahead {
                 None => eye.show_piece(&open.mv, planned),
             }
         }
+        let Some(open) = self.open.get(own) else {
+            return;
+        };
+        let with_energy = times && open.want.energy;
+        let watched = peaks && eye.watch.is_some();
+        let step = (with_energy || watched).then(|| self.step(planned, peaks));
+        let step = step.flatten();
+        if peaks {
+            self.follow(model, planned);
+        }
         let Some(open) = self.open.get_mut(own) else {
             return;
         };
         if peaks {
             open.rests |= planned.rests;
-            eye.keep(model, &open.mv, planned, None, &mut open.kept);
+            eye.keep(model, &open.mv, planned, step.as_ref(), &mut open.kept);
         }
         let mut demand = if !open.want.energy && is_quiet(model, &open.mv, planned, open.want) {
             Demand::NONE
         } else {
             piece_demand(model, &open.mv, planned, open.want)
         };
+        if with_energy && let Some(step) = &step {
+            demand.energy_j += step.supplied_j(model);
+        }
         self.ride(model, planned, peaks, times);
         if peaks {
             if let Some(surge) = self.surge(model, eye, planned) {

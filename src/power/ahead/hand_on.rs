@@ -9,6 +9,7 @@ use crate::plan::{Overrides, blended_bound, blended_speed};
 use crate::power::assessment::{Assessment, Certificate};
 use crate::power::demand::Demand;
 use crate::power::eye::Eye;
+use crate::power::late::unpaced;
 use crate::power::model::PowerModel;
 use crate::power::robust::{Extremes, Part};
 
@@ -62,7 +63,7 @@ impl Ahead {
                 let doubtful = self.in_doubt || self.unwaited.is_some();
                 let ends_mm_s = [before, next].map(|beside| match beside {
                     _ if doubtful => f64::INFINITY,
-                    Some(beside) => blended_speed(machine, &beside.mv, largest),
+                    Some(beside) => blended_speed(machine, &unpaced(&beside.mv), largest),
                     None => 0.0,
                 });
                 own.drive(ends_mm_s, machine, model, eye, largest);
@@ -71,6 +72,13 @@ impl Ahead {
                 && let Some(cruises) = model.cruises(&own.mv, own.assessment.top_speed_mm_s)
             {
                 own.assessment.demand.include(&cruises);
+            }
+            if own.mv.pace < 1.0 {
+                let of_plan = [own.assessment.speed_mm_s, own.assessment.accel_mm_s2];
+                let late = model.late(machine, &own.mv, of_plan, self.largest.overrides);
+                if let Some(late) = late {
+                    own.assessment.demand.include(&late);
+                }
             }
             if own.mv.stray.strays() && own.assessment.ahead {
                 let top_speed_mm_s = own.assessment.top_speed_mm_s;
@@ -138,7 +146,8 @@ impl Open {
         let mut demand = {
             let own = &*self;
             let beside = [before.unwrap_or(own), own, next.unwrap_or(own)];
-            let bounds = beside.map(|open| blended_bound(machine, &open.mv, largest));
+            // A change of pace is part of what is not known.
+            let bounds = beside.map(|open| blended_bound(machine, &unpaced(&open.mv), largest));
             let [first, own, last] = &bounds;
             let part = |bound, index: usize| Part {
                 bound,

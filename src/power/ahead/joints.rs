@@ -7,49 +7,65 @@ use crate::machine::{AXES, AxisValues, CornerRule, LookAhead, Machine};
 use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
 use crate::power::model::PowerModel;
-use crate::power::steps::{Heading, Span, StepEnergy, Steps, spans, velocity};
+use crate::power::steps::{Heading, Span, StepEnergy, Steps, close_spans, spans, velocity};
 use crate::power::surge::Surge;
+use std::ops::RangeInclusive;
 
 /// Chords that last for less than this share of the response time at the largest
 /// overrides: at lower ones, where they last for all of it, what two steps ask for in that
 /// time, 2·m·v³/r, is less than what the curve asks for at the largest, since 2·x³ < 1.
 const SHORT: f64 = 0.79;
 
-/// The means over the drives' response time, where the rules know steps of speed.
-pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Option<Box<Steps>> {
-    // LinuxCNC takes the acceleration for a kink from that along the path.
-    let stepped = !matches!(rules.corner, CornerRule::LinuxCnc { .. });
-    let response_s = machine.path.response_time_s;
+/// Servo cycles over which `LinuxCNC` spreads a step: its commands pass a cubic spline.
+const SPLINE_CYCLES: f64 = 2.0;
+
+/// The means over the response time to steps of speed.
+pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Box<Steps> {
     let lower = machine.limits.override_at.is_none();
-    stepped.then(|| Box::new(Steps::new(machine.axis_set, response_s, lower)))
+    let new = |response_s| Steps::new(machine.axis_set, response_s, lower);
+    Box::new(match rules.corner {
+        // What is a step at a joint it takes from the acceleration along the path.
+        CornerRule::LinuxCnc { cycle_s, .. } => new(SPLINE_CYCLES * cycle_s).turning(),
+        _ => new(machine.path.response_time_s),
+    })
+}
+
+/// The moves that a piece belongs to.
+fn moves_of(planned: &Planned<u64>) -> RangeInclusive<u64> {
+    planned.first..=planned.next.unwrap_or(planned.tag)
 }
 
 impl Ahead {
-    /// Follows a planned piece of a move's own path, at the largest overrides.
+    /// Follows a planned piece, at the largest overrides.
     #[inline]
-    pub(super) fn follow(&mut self, model: &PowerModel, number: u64, planned: &Planned<u64>) {
-        self.follow_piece(model, number, planned);
-        let (Some(steps), Some(own)) = (&mut self.steps, self.open.get_mut(number)) else {
-            return;
-        };
-        if own.in_doubt || self.reach2.is_some() {
-            steps.doubt();
-        } else if steps.has_doubtful_steps() {
+    pub(super) fn follow(&mut self, model: &PowerModel, planned: &Planned<u64>) {
+        self.follow_piece(model, planned);
+        let moves = moves_of(planned);
+        let in_doubt = |number| self.open.get(number).is_some_and(|own| own.in_doubt);
+        if self.reach2.is_some() || moves.clone().any(in_doubt) {
+            self.steps.doubt();
+        } else if self.steps.has_doubtful_steps() {
             // Means reach back to where it may have stopped.
-            own.certain = false;
+            for number in moves {
+                if let Some(own) = self.open.get_mut(number) {
+                    own.certain = false;
+                }
+            }
         }
     }
 
     #[inline]
-    fn follow_piece(&mut self, model: &PowerModel, number: u64, planned: &Planned<u64>) {
-        let Some(steps) = self.steps.as_deref_mut() else {
-            return;
-        };
-        let Piece::Along { from_mm, to_mm } = planned.piece else {
-            return steps.begin();
-        };
+    fn follow_piece(&mut self, model: &PowerModel, planned: &Planned<u64>) {
+        let steps = &mut *self.steps;
+        let number = planned.tag;
         let Some(own) = self.open.get(number) else {
             return;
+        };
+        if steps.turns() {
+            return follow_turns(steps, &mut self.open, model, planned);
+        }
+        let Piece::Along { from_mm, to_mm } = planned.piece else {
+            return steps.begin();
         };
         let speeds2 = planned.speeds2;
         if own.mv.arc.is_none() && speeds2.start == speeds2.top && speeds2.end == speeds2.top {
@@ -77,7 +93,7 @@ impl Ahead {
             let mut phase = *phase;
             phase.position_mm += from_mm;
             spans(&heading, &phase, joint, &mut |span| {
-                take(steps, &mut self.open, model, number, span);
+                take(steps, &mut self.open, model, number..=number, span);
             });
             joint = false;
         }
@@ -85,36 +101,33 @@ impl Ahead {
 
     /// The last piece that was followed may be sped up or braked at lower overrides:
     /// that comes on top of steps of speed next to it.
-    pub(super) fn follow_surge(&mut self, model: &PowerModel, number: u64, surge: &Surge) {
-        let Some(steps) = self.steps.as_deref_mut() else {
-            return;
-        };
-        let Some(own) = self.open.get(number) else {
+    pub(super) fn follow_surge(
+        &mut self,
+        model: &PowerModel,
+        planned: &Planned<u64>,
+        surge: &Surge,
+    ) {
+        let steps = &mut *self.steps;
+        let Some(own) = self.open.get(planned.tag) else {
             return;
         };
         let sides = [surge.rises_mm_s, surge.falls_mm_s].map(|it| it.is_some());
-        steps.surge(&Heading::of(&own.mv).extremes(), sides, surge.accel_mm_s2);
+        let extremes = Heading::of_piece(&own.mv, &planned.piece).extremes();
+        steps.surge(&extremes, sides, surge.accel_mm_s2);
         if steps.is_surged() && !steps.is_quiet(model, &own.mv, own.want) {
             let demand = steps.surged_demand(model, &own.mv);
-            include(&mut self.open, number, &demand);
+            include(&mut self.open, moves_of(planned), &demand);
         }
     }
 
     /// The axes rest after the last move: what they do until then is followed by rest.
     pub(super) fn follow_rest(&mut self, model: &PowerModel) {
-        let Some(steps) = self.steps.as_deref_mut() else {
-            return;
-        };
+        let steps = &mut *self.steps;
         let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
         let last = (self.open.first()..self.open.end()).rev().find(moves);
         if let Some(last) = last {
-            let rest = Span {
-                duration_s: steps.response_s(),
-                direction: [0.0; AXES],
-                speeds_mm_s: [0.0; 2],
-                joint: true,
-            };
-            take(steps, &mut self.open, model, last, &rest);
+            let rest = Span::straight(steps.response_s(), &[0.0; AXES], [0.0; 2], true);
+            take(steps, &mut self.open, model, last..=last, &rest);
         }
         steps.begin();
     }
@@ -131,23 +144,48 @@ pub(super) fn glide_over(
 ) {
     let Some(own) = open.get(number) else { return };
     let direction = Heading::of(&own.mv).at(0.0);
-    let span = Span {
-        duration_s,
-        direction,
-        speeds_mm_s: [speed_mm_s; 2],
-        joint: true,
-    };
-    take(steps, open, model, number, &span);
+    let span = Span::straight(duration_s, &direction, [speed_mm_s; 2], true);
+    take(steps, open, model, number..=number, &span);
 }
 
-/// Follows a span of a move; what steps ask for there counts for it and for the one
-/// before.
+/// Follows a piece closely where it turns.
+fn follow_turns(steps: &mut Steps, open: &mut Queue, model: &PowerModel, planned: &Planned<u64>) {
+    let Some(own) = open.get(planned.tag) else {
+        return;
+    };
+    let heading = Heading::of_piece(&own.mv, &planned.piece);
+    let from_mm = match planned.piece {
+        Piece::Along { from_mm, .. } => from_mm,
+        Piece::Joined { .. } | Piece::Blend(_) => 0.0,
+    };
+    let terms = [steps.response_s(), planned.accel_mm_s2];
+    let mut joint = true;
+    for phase in &planned.profile().phases {
+        let mut phase = *phase;
+        phase.position_mm += from_mm;
+        close_spans(&heading, &phase, joint, terms, &mut |span| {
+            take(steps, open, model, moves_of(planned), span);
+        });
+        joint = false;
+    }
+}
+
+/// Follows a span of a piece; what steps ask for there counts for its moves and for the
+/// one before.
 #[inline]
-fn take(steps: &mut Steps, open: &mut Queue, model: &PowerModel, number: u64, span: &Span) {
+fn take(
+    steps: &mut Steps,
+    open: &mut Queue,
+    model: &PowerModel,
+    moves: RangeInclusive<u64>,
+    span: &Span,
+) {
     if !steps.push(span) {
         return;
     }
-    let Some(own) = open.get(number) else { return };
+    let Some(own) = open.get(*moves.start()) else {
+        return;
+    };
     if steps.is_quiet(model, &own.mv, own.want) {
         return;
     }
@@ -155,16 +193,16 @@ fn take(steps: &mut Steps, open: &mut Queue, model: &PowerModel, number: u64, sp
     if steps.is_surged() {
         demand.include(&steps.surged_demand(model, &own.mv));
     }
-    include(open, number, &demand);
+    include(open, moves, &demand);
 }
 
 #[cold]
-fn include(open: &mut Queue, number: u64, demand: &Demand) {
-    let before = (open.first()..number).rev();
+fn include(open: &mut Queue, moves: RangeInclusive<u64>, demand: &Demand) {
+    let before = (open.first()..*moves.start()).rev();
     let before = before
         .take(8)
         .find(|it| open.get(*it).is_some_and(|it| it.moves));
-    for number in before.into_iter().chain([number]) {
+    for number in before.into_iter().chain(moves) {
         if let Some(open) = open.get_mut(number) {
             open.assessment.demand.include(demand);
             let loads = &mut open.assessment.loads;
@@ -173,7 +211,7 @@ fn include(open: &mut Queue, number: u64, demand: &Demand) {
     }
 }
 
-/// The step of speed before a piece on the path of a move, where the last one ended
+/// The step of speed before a piece, where the last one ended
 /// with the speeds `before`; and the speeds with which it ends. Within an arc there is none:
 /// what its chords take is in the power of the arc.
 pub(super) fn step_before(
@@ -184,9 +222,9 @@ pub(super) fn step_before(
 ) -> (StepEnergy, AxisValues) {
     let [from_mm, to_mm] = match planned.piece {
         Piece::Along { from_mm, to_mm } => [from_mm, to_mm],
-        Piece::Joined { .. } | Piece::Blend(_) => [0.0; 2],
+        Piece::Joined { .. } | Piece::Blend(_) => [0.0, planned.length_mm],
     };
-    let heading = Heading::of(mv);
+    let heading = Heading::of_piece(mv, &planned.piece);
     let [first, last] = [from_mm, to_mm].map(|at_mm| heading.at(at_mm));
     let after = velocity(&first, planned.speeds2.start.sqrt());
     let step = StepEnergy {

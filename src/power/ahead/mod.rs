@@ -65,8 +65,8 @@ pub(super) struct Ahead {
     driven: bool,
     /// What lower overrides may make of them, if these count.
     surges: Option<Surges>,
-    /// Steps of speed at joints, where the rules know them.
-    steps: Option<Box<Steps>>,
+    /// Steps of speed at joints.
+    steps: Box<Steps>,
 }
 
 /// A planner and how far it has come.
@@ -131,11 +131,7 @@ impl Ahead {
             reach2: None,
             unwaited: None,
             driven: false,
-            surges: machine
-                .limits
-                .override_at
-                .is_none()
-                .then(|| Surges::new(&rules)),
+            surges: machine.limits.counts_lower().then(|| Surges::new(&rules)),
             steps: joints::steps_of(machine, &rules),
         }
     }

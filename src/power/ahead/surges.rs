@@ -151,7 +151,7 @@ impl Ahead {
         };
         let top_mm_s = planned.top_speed_mm_s();
         // The drives' mean over a step takes in what is around a shorter ramp as well.
-        let response_s = self.steps.as_ref().map_or(0.0, |steps| steps.response_s());
+        let response_s = self.steps.response_s();
         let course = Course {
             start2: planned.speeds2.start,
             end2: planned.speeds2.end,
@@ -190,10 +190,8 @@ impl Ahead {
             }
             Surge::between([rises2, falls2], planned.accel_mm_s2)
         };
-        if let Some(surge) = surge
-            && matches!(planned.piece, Piece::Along { .. })
-        {
-            self.follow_surge(model, planned.tag, &surge);
+        if let Some(surge) = surge {
+            self.follow_surge(model, planned, &surge);
         }
         if eye.watch.is_some()
             && let Some(open) = self.open.get_mut(planned.tag)

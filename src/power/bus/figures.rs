@@ -169,7 +169,7 @@ impl SpindleBus<'_> {
     pub(super) fn reserve(&mut self) {
         let [mut largest_w, mut least_w] = self.states[0].henceforth(&self.motor);
         if let Some(slower) = &self.slower {
-            let [most_w, lowest_w] = slower.state.henceforth(&self.motor);
+            let [most_w, lowest_w] = slower.henceforth(&self.motor);
             (largest_w, least_w) = (largest_w.max(most_w), least_w.min(lowest_w));
         }
         self.reserve_w = if self.surface.is_some() && self.direction != 0.0 {

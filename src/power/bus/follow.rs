@@ -12,6 +12,8 @@ use crate::power::surface_speed::Surface;
 pub(super) struct Followed {
     /// Largest and smallest power, W.
     pub(super) extremes: [f64; 2],
+    /// The same at any override below the largest, where these count.
+    pub(super) lower: Option<[f64; 2]>,
     /// Energy with and without what is fed back taken off, J.
     pub(super) energy_j: Option<[f64; 2]>,
     /// At 100 %: what it follows, and the speed at the end in 1/min.
@@ -48,6 +50,7 @@ impl SpindleBus<'_> {
             self.states[1].pass([assessment.duration_s; 2]);
             return Some(Followed {
                 extremes,
+                lower: self.wandering(),
                 energy_j: None,
                 surface: None,
                 target: None,
@@ -69,12 +72,21 @@ impl SpindleBus<'_> {
             let planned = plan(self.machine, mv, self.overrides[1]);
             let energy_j = sides[1].energy(&self.motor.power, mv, &planned);
             self.states[0].follow(speeds.end);
-            if let Some(slower) = &mut self.slower {
-                slower.state.follow(speeds.end);
-            }
+            let most_rpm = self.unturned_clamp_rpm(&surface);
+            let lower = self.slower.as_mut().map(|slower| {
+                slower.follow(speeds.end);
+                let following = sides[0].following_lower(&self.motor, mv, top_mm_s, most_rpm);
+                following.unwrap_or_else(|| {
+                    let [low, high] = speeds.range;
+                    let [low, high] = [low.min(0.0), high.max(0.0)];
+                    let unturned = most_rpm * self.direction;
+                    self.motor.extremes(low.min(unturned), high.max(unturned))
+                })
+            });
             self.states[1].follow(nominal.end);
             return Some(Followed {
                 extremes,
+                lower,
                 energy_j: Some(energy_j),
                 surface: Some((sides[1], nominal.end)),
                 target: None,
@@ -86,17 +98,41 @@ impl SpindleBus<'_> {
         self.states[1].pass([assessment.duration_s; 2]);
         Some(Followed {
             extremes: self.states[0].henceforth(&self.motor),
+            lower: self.wandering(),
             energy_j: Some([span.energy_j, span.drawn_j]),
             surface: None,
             target: Some(nominal.end),
         })
     }
 
-    /// Somewhere between two speeds, and on the way to a target.
+    /// Somewhere between two speeds, and on the way to a target; turned down, at any lower
+    /// one.
     pub(super) fn wander(&mut self, range: [f64; 2], target: f64) {
         self.states[0].wander(&self.motor, range, target);
+        // Where the largest override is below 100 % it may have lowered the clamp.
+        let most_rpm = self
+            .surface
+            .filter(|_| self.overrides[0].spindle < 1.0)
+            .map(|surface| self.unturned_clamp_rpm(&surface) * self.direction);
         if let Some(slower) = &mut self.slower {
-            slower.state.wander(&self.motor, range, target);
+            let most_rpm = most_rpm.unwrap_or_default();
+            let range = [
+                range[0].min(0.0).min(most_rpm),
+                range[1].max(0.0).max(most_rpm),
+            ];
+            slower.wander(&self.motor, range, target, self.surface.is_some());
         }
+    }
+
+    /// What the spindle may ask for at lower overrides while it wanders, W.
+    fn wandering(&self) -> Option<[f64; 2]> {
+        let slower = self.slower.as_ref()?;
+        Some(slower.henceforth(&self.motor))
+    }
+
+    /// The clamp where overrides do not lower it, 1/min.
+    fn unturned_clamp_rpm(&self, surface: &Surface) -> f64 {
+        let factor = self.overrides[0].spindle.max(1.0);
+        (surface.clamp_rpm * factor).min(self.spindle.max_rpm)
     }
 }

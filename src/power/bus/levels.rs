@@ -60,7 +60,7 @@ impl SpindleBus<'_> {
             Window::Run(trace, from_s) => {
                 let to_s = from_s + duration_s;
                 let whole = trace.over(*from_s, to_s);
-                let stands = self.machine.limits.override_at.is_some();
+                let stands = !self.machine.limits.counts_lower();
                 if ahead && !stands || !duration_s.is_finite() {
                     return Steps::Steady(level(duration_s, whole.largest_w, whole.least_w));
                 }

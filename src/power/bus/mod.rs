@@ -245,8 +245,14 @@ impl<'m> SpindleBus<'m> {
             let idle_w = if rests { self.idle_w(mv) } else { 0.0 };
             self.add(&mut judged.demand, extremes, idle_w, cutting_w);
         }
-        if covered.is_none() {
-            self.count_slower(mv, assessment, own.as_ref(), cutting_w, &mut judged);
+        match (covered, &followed) {
+            (None, _) => self.count_slower(mv, assessment, own.as_ref(), cutting_w, &mut judged),
+            (Some(extremes), followed) if self.slower.is_some() => {
+                let lower = followed.as_ref().and_then(|it| it.lower);
+                let lower = lower.unwrap_or(extremes);
+                self.count_following(assessment, lower, cutting_w, &mut judged);
+            }
+            (Some(_), _) => {}
         }
         judged.spindle.drawn_w = later[0].max(0.0) + self.spindle.base_load_w;
         judged.spindle.fed_back_w = (-later[1]).max(0.0);

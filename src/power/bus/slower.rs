@@ -1,7 +1,7 @@
 //! Runs of the spindle next to axes at lower overrides of feed, rapid and spindle.
 
 use super::SpindleBus;
-use crate::interpret::{Move, MoveKind};
+use crate::interpret::Move;
 use crate::plan::Plan;
 use crate::plan::period::Motion;
 use crate::power::assessment::Assessment;
@@ -19,16 +19,8 @@ pub(super) struct Slower {
     /// Time at the largest overrides since the last command, s: of moves that the knob of
     /// feeds makes last longer, and that of rapids.
     grows_s: [f64; 2],
-}
-
-/// Which knobs make a move last longer: that of feeds, that of rapids.
-fn knobs(mv: &Move) -> [bool; 2] {
-    match mv.kind {
-        MoveKind::Rapid => [false, true],
-        MoveKind::Feed | MoveKind::Arc => [true, false],
-        MoveKind::Dwell | MoveKind::Spindle => [false, false],
-        MoveKind::Thread | MoveKind::Tap | MoveKind::Probe => [true, true],
-    }
+    /// It has followed X: turned down, its speed need not be lower by as much.
+    followed: bool,
 }
 
 impl Slower {
@@ -37,15 +29,29 @@ impl Slower {
             state,
             whole: None,
             grows_s: [0.0; 2],
+            followed: false,
         }
     }
 
     /// A move passes, which takes so long at the largest overrides, at least and at most.
     pub fn pass(&mut self, mv: &Move, time_s: [f64; 2]) {
         self.state.pass(time_s);
-        for (grows_s, grows) in self.grows_s.iter_mut().zip(knobs(mv)) {
+        for (grows_s, grows) in self.grows_s.iter_mut().zip(mv.kind.knobs()) {
             *grows_s += if grows { time_s[1] } else { 0.0 };
         }
+    }
+
+    /// It follows X, and has that speed at the largest overrides.
+    pub fn follow(&mut self, speed: f64) {
+        self.state.follow(speed);
+        self.followed = true;
+    }
+
+    /// It is somewhere between two speeds; `follows`: where X wants it.
+    pub fn wander(&mut self, motor: &SpindleMotor, range: [f64; 2], target: f64, follows: bool) {
+        self.state.wander(motor, range, target);
+        self.whole = None;
+        self.followed |= follows;
     }
 
     /// A new speed is asked for. When that is, and so at which speed, is not known where
@@ -57,6 +63,10 @@ impl Slower {
         self.grows_s = [0.0; 2];
         let was_steady = self.state.is_steady();
         let start = self.state.target();
+        if std::mem::take(&mut self.followed) && target != 0.0 {
+            let range = [start.min(0.0), start.max(0.0)];
+            return self.wander(motor, range, target, false);
+        }
         self.state.command(motor, target);
         self.whole = None;
         if self.state.on_run().is_none() {
@@ -105,7 +115,7 @@ impl Slower {
     /// `None`: any.
     fn scaled_s(&self, mv: &Move) -> Option<f64> {
         let [feed_s, rapid_s] = self.grows_s;
-        match knobs(mv) {
+        match mv.kind.knobs() {
             [true, false] if rapid_s == 0.0 => Some(feed_s),
             [false, true] if feed_s == 0.0 => Some(rapid_s),
             _ => None,
@@ -158,6 +168,23 @@ impl SpindleBus<'_> {
             demand = assessment.demand;
             demand.set_spindle(index, &self.model, [peak_w + more_w, fed_back_w]);
         }
+        if !self.model.fits(&demand) {
+            judged.demand.include(&demand);
+        }
+    }
+
+    /// The same where the spindle follows the axes: `lower` is what it asks for at most at
+    /// lower overrides.
+    pub(super) fn count_following(
+        &self,
+        assessment: &Assessment,
+        [largest_w, least_w]: [f64; 2],
+        cutting_w: f64,
+        judged: &mut Assessment,
+    ) {
+        let mut demand = assessment.demand;
+        let lower = [largest_w.max(0.0), least_w.min(0.0)];
+        self.add(&mut demand, lower, 0.0, cutting_w);
         if !self.model.fits(&demand) {
             judged.demand.include(&demand);
         }

@@ -15,6 +15,10 @@
 //! ask for more than that over τ: these are looked at too, up to 2·τ; one over a
 //! longer time has no more acceleration than one of its parts.
 //!
+//! `LinuxCNC` takes what a step at a joint asks of an axis from its acceleration along the path,
+//! and its commands pass a spline: τ is that of two servo cycles. Between such joints arcs and
+//! blends turn as they do.
+//!
 //! Input: the planned motion as [`Span`]s in the order of time. Output: the largest
 //! power of these means where there is a step within. It comes on top of what the
 //! plan itself asks for, which has no steps.
@@ -25,7 +29,7 @@ mod surged;
 mod windows;
 
 pub(super) use energy::{StepEnergy, velocity};
-pub(super) use spans::{Heading, spans};
+pub(super) use spans::{Heading, close_spans, spans};
 
 use surged::Surged;
 
@@ -40,16 +44,34 @@ use std::collections::VecDeque;
 /// Steps by less than this share of the speed are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A stretch of time with one direction, and a speed that changes evenly.
+/// A stretch of time in which the speed of each axis changes evenly.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
     pub duration_s: f64,
-    /// Change of each axis per unit of path.
-    pub direction: AxisValues,
-    /// Along the path at both ends, mm/s.
-    pub speeds_mm_s: [f64; 2],
+    /// Of each axis at both ends, mm/s.
+    pub axes_mm_s: [AxisValues; 2],
+    /// The larger one along the path, mm/s.
+    pub top_mm_s: f64,
     /// It begins at a joint.
     pub joint: bool,
+}
+
+impl Span {
+    /// In one direction, with the speeds at both ends.
+    #[inline]
+    pub fn straight(
+        duration_s: f64,
+        direction: &AxisValues,
+        [from, to]: [f64; 2],
+        joint: bool,
+    ) -> Self {
+        Self {
+            duration_s,
+            axes_mm_s: [velocity(direction, from), velocity(direction, to)],
+            top_mm_s: if from > to { from } else { to },
+            joint,
+        }
+    }
 }
 
 /// A span in its place.
@@ -80,6 +102,8 @@ pub(super) struct Steps {
     response_s: f64,
     /// Lower overrides count too.
     lower: bool,
+    /// See [`Self::turning`].
+    turns: bool,
     axes: ArrayVec<usize, AXES>,
     spans: VecDeque<Placed>,
     end_s: f64,
@@ -103,6 +127,7 @@ impl Steps {
         Self {
             response_s,
             lower,
+            turns: false,
             axes: axes.iter().collect(),
             spans: VecDeque::with_capacity(64),
             end_s: 0.0,
@@ -116,6 +141,18 @@ impl Steps {
         }
     }
 
+    /// The same where the path turns between joints as well, and is followed closely there: the
+    /// turn is no step.
+    pub fn turning(mut self) -> Self {
+        self.turns = true;
+        self
+    }
+
+    /// See [`Self::turning`].
+    pub fn turns(&self) -> bool {
+        self.turns
+    }
+
     /// Over how long the drives spread a step, s.
     pub fn response_s(&self) -> f64 {
         self.response_s
@@ -126,7 +163,9 @@ impl Steps {
         if !self.spans.is_empty() {
             let mut axes = AxisSet::default();
             self.axes.iter().for_each(|axis| axes.insert(*axis));
+            let turns = self.turns;
             *self = Self::new(axes, self.response_s, self.lower);
+            self.turns = turns;
         }
     }
 
@@ -152,23 +191,27 @@ impl Steps {
             self.most = [Most::default(), self.most[0]];
             self.since_s = start_s;
         }
-        let [from, to] = span.speeds_mm_s;
-        let accel = (to - from) / span.duration_s;
-        let top = if from > to { from } else { to };
+        let [from, to] = &span.axes_mm_s;
+        let per_s = 1.0 / span.duration_s;
+        // Where it comes to rest, rounding is that of what was before.
+        let last_mm_s = (self.spans.back()).map_or(0.0, |last| last.span.top_mm_s);
+        let rounding_mm_s = ROUNDING * larger(span.top_mm_s, last_mm_s);
         let most = &mut self.most[0];
         let place_mm = self.end_mm;
-        let (mut steps, length_mm) = (false, 0.5 * (from + to) * span.duration_s);
+        let mut steps = false;
         let mut step_mm_s = [0.0; AXES];
         for &axis in &self.axes {
-            let u = span.direction[axis];
-            step_mm_s[axis] = u * from - self.end_mm_s[axis];
+            let (from, to) = (from[axis], to[axis]);
+            step_mm_s[axis] = from - self.end_mm_s[axis];
             let step = step_mm_s[axis].abs();
-            steps |= step > ROUNDING * top;
+            steps |= step > rounding_mm_s;
             most.step_mm_s[axis] += step;
-            most.speed_mm_s[axis] = most.speed_mm_s[axis].max(u.abs() * top);
-            most.accel_mm_s2[axis] = most.accel_mm_s2[axis].max((u * accel).abs());
-            self.end_mm[axis] += u * length_mm;
-            self.end_mm_s[axis] = u * to;
+            let top = larger(from.abs(), to.abs());
+            most.speed_mm_s[axis] = larger(most.speed_mm_s[axis], top);
+            let accel = ((to - from) * per_s).abs();
+            most.accel_mm_s2[axis] = larger(most.accel_mm_s2[axis], accel);
+            self.end_mm[axis] += 0.5 * (from + to) * span.duration_s;
+            self.end_mm_s[axis] = to;
         }
         steps &= span.joint;
         if steps {
@@ -246,11 +289,17 @@ impl Placed {
         self.start_s + self.span.duration_s
     }
 
-    /// Speed along the path and way since its start at an instant, mm/s and mm.
-    fn at(&self, t: f64) -> [f64; 2] {
-        let own = (t - self.start_s).clamp(0.0, self.span.duration_s);
-        let [from, to] = self.span.speeds_mm_s;
-        let change = (to - from) * (own / self.span.duration_s);
-        [from + change, (from + 0.5 * change) * own]
+    /// Share of its time that has passed at an instant.
+    fn passed(&self, t: f64) -> f64 {
+        let duration_s = self.span.duration_s;
+        (t - self.start_s).clamp(0.0, duration_s) / duration_s
+    }
+
+    /// Speed of an axis, mm/s, and its way since the start, mm, after a share of the time.
+    fn at(&self, axis: usize, passed: f64) -> [f64; 2] {
+        let [from, to] = self.span.axes_mm_s.map(|all| all[axis]);
+        let change = (to - from) * passed;
+        let way_mm = (from + 0.5 * change) * (passed * self.span.duration_s);
+        [from + change, way_mm]
     }
 }

@@ -88,23 +88,24 @@ impl Steps {
             }
         }
         for placed in &self.spans {
-            let [first, last] = placed.span.speeds_mm_s;
+            let [first, last] = &placed.span.axes_mm_s;
+            // No further away than the means reach.
+            let ends = [from_s, until_s].map(|at_s| placed.passed(at_s));
             for &axis in &self.axes {
-                let u = placed.span.direction[axis];
                 let step = placed.step_mm_s[axis];
                 if placed.start_s >= from_s {
                     most.accel[axis] += step.max(0.0) / self.response_s;
                     least.accel[axis] += step.min(0.0) / self.response_s;
                 }
                 if placed.end_s() >= from_s {
-                    let accel = u * (last - first) / placed.span.duration_s;
+                    let accel = (last[axis] - first[axis]) / placed.span.duration_s;
                     up[axis] = up[axis].max(accel);
                     down[axis] = down[axis].max(-accel);
-                    // No further away than the means reach.
-                    let [first, last] = [from_s, until_s].map(|at_s| placed.at(at_s)[0]);
-                    let top = u * first.max(last);
-                    most.speed[axis] = most.speed[axis].max(top);
-                    least.speed[axis] = least.speed[axis].min(top);
+                    for passed in ends {
+                        let [speed, _] = placed.at(axis, passed);
+                        most.speed[axis] = most.speed[axis].max(speed);
+                        least.speed[axis] = least.speed[axis].min(speed);
+                    }
                 }
             }
         }

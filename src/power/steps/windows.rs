@@ -38,11 +38,11 @@ impl End<'_> {
     fn state(&self, axes: &[usize]) -> [AxisValues; 2] {
         let mut state = [[0.0; AXES], *self.rest_mm];
         if let Some(placed) = self.placed {
-            let [speed, way] = placed.at(self.at_s);
+            let passed = placed.passed(self.at_s);
             for &axis in axes {
-                let u = placed.span.direction[axis];
-                state[0][axis] = u * speed;
-                state[1][axis] = placed.place_mm[axis] + u * way;
+                let [speed, way] = placed.at(axis, passed);
+                state[0][axis] = speed;
+                state[1][axis] = placed.place_mm[axis] + way;
             }
         }
         state

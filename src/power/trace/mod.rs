@@ -13,6 +13,7 @@
 mod course;
 mod line;
 mod raised;
+mod shifted;
 mod slice;
 mod turn;
 

@@ -67,7 +67,7 @@ impl Tracer<'_> {
     }
 
     /// The share of an axis in that.
-    fn held_w(&self, axis: usize) -> f64 {
+    pub(super) fn held_w(&self, axis: usize) -> f64 {
         let axis = &self.model.axes[axis];
         let power_w = |sign: f64| self.flow.sign() * axis.power(self.flow.side(), 0.0, 0.0, sign);
         power_w(1.0).max(power_w(-1.0)).max(0.0)
@@ -247,9 +247,7 @@ impl Tracer<'_> {
             for phase in &profile.phases {
                 self.raised_phase(&direction(*axis), phase, idle_w, out);
             }
-            // The axes of other converters run on.
-            let rest_s = duration_s - lasts_s(profile);
-            self.at_rest(rest_s, self.idle_w(mv, AxisSet::default()), out);
+            // The axes of other converters may run on, but at lower overrides for less time.
             return None;
         }
         let mut apart = Apart {
@@ -274,7 +272,7 @@ impl Tracer<'_> {
 }
 
 /// Equal parts of a phase.
-fn split(phase: &Phase, parts: f64) -> impl Iterator<Item = Phase> {
+pub(super) fn split(phase: &Phase, parts: f64) -> impl Iterator<Item = Phase> {
     let (phase, step_s) = (*phase, phase.duration_s / parts);
     let count = parts as u32;
     (0..count).map(move |part| {

@@ -104,6 +104,14 @@ impl Slice {
         values.fold(f64::NEG_INFINITY, super::super::demand::larger)
     }
 
+    /// The least power in W.
+    pub(in crate::power) fn least_w(&self) -> f64 {
+        let inside = self.power.derivative().roots(self.from, self.to);
+        let ends = [self.from, self.to];
+        let values = inside.into_iter().chain(ends).map(|z| self.power.value(z));
+        values.fold(f64::INFINITY, f64::min)
+    }
+
     /// Its energy in J.
     #[must_use]
     pub fn energy_j(&self) -> f64 {

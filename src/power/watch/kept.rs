@@ -15,6 +15,8 @@ pub(in crate::power) struct Kept(Vec<Own>);
 #[derive(Debug, Clone, Default)]
 struct Own {
     slices: Vec<Slice>,
+    /// What may come when the move is over at the largest overrides, of a bound.
+    late: Vec<Slice>,
     /// Instead of slices: no more power than this, and what the slices come from.
     line: Option<(f64, Line)>,
     /// Of a bound over all lower overrides what else it has to know.
@@ -25,6 +27,7 @@ impl Kept {
     pub fn clear(&mut self) {
         for own in &mut self.0 {
             own.slices.clear();
+            own.late.clear();
             own.line = None;
             own.terms = Terms::default();
         }
@@ -41,6 +44,13 @@ impl Kept {
     pub fn push(&mut self, track: usize, slice: Slice) {
         if let Some(own) = self.own(track) {
             own.slices.push(slice);
+        }
+    }
+
+    /// What may come when the move is over at the largest overrides.
+    pub(super) fn push_late(&mut self, track: usize, slice: Slice) {
+        if let Some(own) = self.own(track) {
+            own.late.push(slice);
         }
     }
 
@@ -93,8 +103,14 @@ impl Track {
                 self.time_s += apart.duration_s;
             }
         }
+        let largest_w = beside.largest_w();
         self.take_slices(index, model, kept, beside, place);
         if let Some(terms) = &terms {
+            let late = kept.0.get(index).map_or(&[][..], |own| &own.late);
+            for slice in late {
+                let slice = slice.raised(largest_w);
+                self.limits.late(&slice, self.time_s, place);
+            }
             self.limits.end(terms, self.time_s, place);
         }
     }
@@ -168,6 +184,7 @@ mod tests {
             limits: Limits::drawn(&machine.converters[0], 0.0, 3000.0),
             time_s: 0.0,
             bounds: false,
+            ends: false,
         };
         let (mut quick, mut general) = (track(), track());
         let mut seed = 1_u32;

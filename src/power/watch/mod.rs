@@ -29,6 +29,7 @@
 //! limit. A move from an unknown start may last for ever.
 
 mod beside;
+mod bounds;
 mod kept;
 mod limits;
 mod overload;
@@ -47,13 +48,13 @@ use super::model::PowerModel;
 use super::piece::straight_line;
 use super::robust::Part;
 use super::steps::StepEnergy;
-use super::surge::{Surge, surge_powers};
 use super::trace::{Flow, Slice, Tracer};
 use crate::interpret::Move;
 use crate::machine::Machine;
 use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{Plan, Trajectory};
 use beside::{Levels, Waiting, Waits};
+use bounds::{bound, least_share, lower_of, shift};
 use limits::Limits;
 use rating::Place;
 use terms::{Models, Terms};
@@ -71,6 +72,9 @@ pub(super) struct Watch {
     pub repeated: bool,
     /// What bounds are reckoned with.
     models: Models,
+    /// The least shares of the largest overrides that bounds go down to: of feeds, of
+    /// rapids.
+    least_shares: [f64; 2],
 }
 
 /// One converter and one direction of its power.
@@ -83,6 +87,8 @@ struct Track {
     time_s: f64,
     /// What is found is no less than at any lower override: see [`terms`].
     bounds: bool,
+    /// These are no lower than some share of the largest.
+    ends: bool,
 }
 
 impl Watch {
@@ -90,7 +96,7 @@ impl Watch {
     /// overrides below the largest count, each limit is watched twice: at the largest, and
     /// as a bound over all.
     pub fn new(machine: &Machine, model: &PowerModel) -> Option<Box<Self>> {
-        let lower = machine.limits.override_at.is_none();
+        let lower = machine.limits.counts_lower();
         let all = |bounds: bool| {
             let converters = machine.converters.iter().enumerate();
             converters.flat_map(move |(index, converter)| {
@@ -107,6 +113,7 @@ impl Watch {
                     limits,
                     time_s: 0.0,
                     bounds,
+                    ends: lower_of(machine.limits.least_shares()) > 0.0,
                 })
             })
         };
@@ -131,6 +138,7 @@ impl Watch {
                 powers: Vec::new(),
                 repeated: false,
                 models: Models::new(model, lower),
+                least_shares: machine.limits.least_shares(),
             })
         })
     }
@@ -199,8 +207,13 @@ impl Watch {
                 continue;
             };
             if track.bounds {
-                bound(&tracer, (mv, plan), index, &mut kept);
+                let least_share = least_share(self.least_shares, mv);
+                bound(&tracer, (mv, plan), least_share, index, &mut kept);
                 if let Trajectory::Axes(profiles) = &plan.trajectory {
+                    if least_share > 0.0 {
+                        shift(&tracer, (mv, profiles), least_share, index, &mut kept);
+                        continue;
+                    }
                     let out = &mut |slice| kept.push(index, slice);
                     let apart = tracer.apart(mv, profiles, out);
                     let peak_w = kept.peak_w(index, 0);
@@ -279,39 +292,8 @@ impl Watch {
                 if let Some(terms) = kept.terms(index) {
                     terms.rest_w = terms.rest_w.max(rest_w);
                     terms.cruise_w = terms.cruise_w.max(cruise_w);
+                    terms.least_share = lower_of(self.least_shares);
                 }
-            }
-        }
-    }
-
-    /// At lower overrides a piece may be sped up or braked where it is not at the
-    /// largest.
-    #[cold]
-    pub fn surge(
-        &self,
-        model: &PowerModel,
-        mv: &Move,
-        planned: &Planned<u64>,
-        surge: &Surge,
-        kept: &mut Kept,
-    ) {
-        let lasts_s = surge.lasts_s();
-        if lasts_s <= 0.0 {
-            return;
-        }
-        for (index, track) in self.tracks.iter().enumerate() {
-            if !track.bounds {
-                continue;
-            }
-            let own = track.model(model, &self.models);
-            let [drawn_w, fed_back_w] = surge_powers(own, track.converter, mv, planned, *surge);
-            let power_w = match track.flow {
-                Flow::Drawn => drawn_w,
-                Flow::FedBack => fed_back_w,
-            };
-            if let Some(terms) = kept.terms(index) {
-                terms.surge_w = terms.surge_w.max(power_w);
-                terms.surge_s += lasts_s;
             }
         }
     }
@@ -358,10 +340,10 @@ impl Watch {
             *of_flow = slices.fold(*of_flow, |most, slice| {
                 super::demand::larger(most, slice.peak_w())
             });
-            let tracer = track.tracer(own).filter(|_| track.bounds);
-            let rest_w = tracer.map_or(0.0, |tracer| tracer.rest_w(mv));
+            let rest_w = track.still_w(own, mv, parts);
             self.powers.push([powers[0], powers[1], rest_w]);
         }
+        let span = self.within(span);
         kept.clear();
         self.last(span, place);
     }
@@ -402,22 +384,6 @@ impl Watch {
     }
 }
 
-/// What a bound over all lower overrides has to know of a move by itself.
-fn bound(tracer: &Tracer<'_>, (mv, plan): (&Move, &Plan), index: usize, kept: &mut Kept) {
-    if matches!(plan.trajectory, Trajectory::Rest) {
-        // It lasts as long as it does.
-        return;
-    }
-    let Some(terms) = kept.terms(index) else {
-        return;
-    };
-    terms.rest_w = tracer.rest_w(mv);
-    if mv.arc.is_none() && matches!(plan.trajectory, Trajectory::Path(_)) {
-        terms.cruise_w = tracer.cruise_w(mv, plan.top_speed_mm_s);
-        terms.line_s = Some(mv.length_mm / plan.top_speed_mm_s);
-    }
-}
-
 impl Track {
     /// The model that it is reckoned with.
     fn model<'a>(&self, model: &'a PowerModel, models: &'a Models) -> &'a PowerModel {
@@ -448,6 +414,8 @@ impl Track {
         let terms = Terms {
             rest_w: powers[2],
             cruise_w: power_w,
+            // The span is as long as it may be.
+            least_share: if self.ends { 1.0 } else { 0.0 },
             ..Terms::default()
         };
         if self.bounds {

@@ -34,6 +34,10 @@ pub(super) struct Overload {
     /// may lie above the power, and whether its time below counts.
     stretch: f64,
     dropped: bool,
+    /// Of its time below that which ramps take the place of, s; and whether all of it lies
+    /// above.
+    lost_s: f64,
+    all_above: bool,
     /// Of a line how long it has lain above, and for how long it may at most, s.
     own_s: f64,
     line_s: Option<f64>,
@@ -54,6 +58,8 @@ impl Overload {
             head: Vec::new(),
             stretch: 1.0,
             dropped: false,
+            lost_s: 0.0,
+            all_above: false,
             own_s: 0.0,
             line_s: None,
             edge_s: 0.0,
@@ -71,7 +77,9 @@ impl Overload {
     #[inline]
     pub fn pass(&mut self, duration_s: f64) {
         if !self.dropped {
-            self.clock_s += duration_s;
+            let lost_s = self.lost_s.min(duration_s);
+            self.lost_s -= lost_s;
+            self.clock_s += duration_s - lost_s;
         }
     }
 
@@ -79,7 +87,7 @@ impl Overload {
         let start_s = self.clock_s;
         for (part, above) in slice.sides(self.calm_w()) {
             let from_s = self.clock_s;
-            if above {
+            if above || self.all_above {
                 let lasts_s = if self.line_s.is_some() {
                     part.duration_s
                 } else {
@@ -90,8 +98,8 @@ impl Overload {
                 let found_s = self.count(from_s, self.clock_s);
                 let now_s = time_s + (self.clock_s - start_s);
                 self.worst.raise(found_s, now_s, place);
-            } else if !self.dropped {
-                self.clock_s += part.duration_s;
+            } else {
+                self.pass(part.duration_s);
             }
         }
     }
@@ -104,14 +112,27 @@ impl Overload {
             line_s,
             ..
         } = *terms;
+        let longest_ratio = terms.longest_ratio();
         (self.stretch, self.own_s, self.line_s) = (1.0, 0.0, None);
         if rest_w > self.calm_w() {
-            self.worst.raise(f64::INFINITY, time_s, place);
+            (self.stretch, self.all_above) = (longest_ratio, true);
+            if longest_ratio.is_infinite() {
+                (self.stretch, self.all_above) = (1.0, false);
+                self.worst.raise(f64::INFINITY, time_s, place);
+            }
         } else if cruise_w > self.calm_w() && rest_w < self.above_w {
-            self.stretch = (cruise_w - rest_w) / (self.above_w - rest_w);
-            self.line_s = line_s.map(|line_s| line_s * self.stretch);
+            let stretch = (cruise_w - rest_w) / (self.above_w - rest_w);
+            self.line_s = line_s.map(|line_s| line_s * stretch);
+            self.stretch = stretch.min(longest_ratio);
         }
-        self.dropped = terms.surge_s > 0.0 && terms.surge_w > self.calm_w();
+        let surges = terms.surge_s > 0.0 && terms.surge_w > self.calm_w();
+        if surges && terms.least_share > 0.0 {
+            self.lost_s = terms.surge_s;
+            // Of a window that begins and one that ends inside.
+            self.edge_s = self.edge_s.max(2.0 * terms.surge_s);
+        } else {
+            self.dropped = surges;
+        }
     }
 
     /// It ends.
@@ -122,10 +143,21 @@ impl Overload {
                 self.prolong(more_s, time_s, place);
             }
         }
-        if self.dropped {
+        if terms.surge_s > 0.0 && terms.surge_w > self.calm_w() {
             self.above(terms.surge_s, time_s, place);
         }
         (self.stretch, self.dropped) = (1.0, false);
+        (self.lost_s, self.all_above) = (0.0, false);
+    }
+
+    /// What may come after a move.
+    pub fn late(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        let above = slice.sides(self.calm_w()).into_iter();
+        let above = above.filter(|(_, above)| *above || self.all_above);
+        let lasts_s: f64 = above.map(|(part, _)| part.duration_s).sum();
+        if lasts_s > 0.0 {
+            self.above(lasts_s, time_s, place);
+        }
     }
 
     /// The last interval lasts longer.
@@ -255,7 +287,7 @@ impl Overload {
 
     /// A power that lasts for a time that is not known.
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
-        let below = power_w <= self.calm_w();
+        let below = power_w <= self.calm_w() && !self.all_above;
         let stretch = if below { 1.0 } else { self.stretch };
         let lasts_s = span.worse_s(!below) * stretch;
         if below {

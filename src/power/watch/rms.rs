@@ -11,6 +11,7 @@
 use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
+use super::terms::Terms;
 
 /// Cells of a window.
 const CELLS: f64 = 4096.0;
@@ -61,9 +62,27 @@ impl Continuous {
         std::iter::once(&mut self.lasting).chain(&mut self.dense)
     }
 
-    /// A power that may last as long as it will at low overrides.
-    pub fn rest(&mut self, power_w: f64, time_s: f64, place: Place) {
-        self.ways().for_each(|rms| rms.rest(power_w, time_s, place));
+    /// A move begins.
+    pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        let rest_w = terms.rest_w;
+        for rms in self.ways() {
+            if terms.least_share > 0.0 {
+                rms.own_floor_w = rest_w;
+                rms.own_more = rest_w * rest_w * (terms.longest_ratio() - 1.0);
+            } else {
+                rms.rest(rest_w, time_s, place);
+            }
+        }
+    }
+
+    /// It ends.
+    pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        for rms in self.ways() {
+            (rms.own_floor_w, rms.own_more) = (0.0, 0.0);
+        }
+        if terms.surge_s > 0.0 {
+            self.surge(terms.surge_w, terms.surge_s, time_s, place);
+        }
     }
 
     /// A power that comes in addition.
@@ -153,6 +172,10 @@ struct Rms {
     /// What a window may hold more of, of a move of which it is not known when it draws,
     /// W²·s.
     edge: f64,
+    /// What the slices of the move at hand count at least, W, and what comes on top of their
+    /// squares since it may last longer, W².
+    own_floor_w: f64,
+    own_more: f64,
 }
 
 impl Rms {
@@ -176,6 +199,8 @@ impl Rms {
             last: (0.0, Place::default()),
             head: Vec::new(),
             edge: 0.0,
+            own_floor_w: 0.0,
+            own_more: 0.0,
         }
     }
 
@@ -232,15 +257,16 @@ impl Rms {
     }
 
     pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        if slice.keeps_above(self.floor_w) {
+        let floor_w = self.floor_w.max(self.own_floor_w);
+        if slice.keeps_above(floor_w) {
             return self.add(slice, time_s, place);
         }
         let mut now_s = time_s;
-        for (part, above) in slice.sides(self.floor_w) {
+        for (part, above) in slice.sides(floor_w) {
             if above {
                 self.add(&part, now_s, place);
             } else {
-                let floor = Slice::constant(part.duration_s, self.floor_w);
+                let floor = Slice::constant(part.duration_s, floor_w);
                 self.add(&floor, now_s, place);
             }
             now_s += part.duration_s;
@@ -328,6 +354,9 @@ impl Rms {
         let between_s = end_s - 2.0 * edge_s;
         let squares = slice.squares();
         self.total += squares.between(slice.at(edge_s), slice.at(end_s - edge_s));
+        if self.own_more > 0.0 {
+            self.total += self.own_more * between_s;
+        }
         self.elapsed_s += between_s;
         let tail = Slice::linear(edge_s, at_w(end_s - edge_s), at_w(end_s));
         self.add(&tail, time_s + edge_s + between_s, place);
@@ -336,6 +365,7 @@ impl Rms {
     /// Counts something in the cell that is being filled.
     #[inline]
     fn count(&mut self, square: f64, duration_s: f64) {
+        let square = square + self.own_more * duration_s;
         self.cell += square;
         self.total += square;
         self.elapsed_s += duration_s;

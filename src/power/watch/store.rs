@@ -30,6 +30,15 @@ pub(super) struct Store {
     given_off: ArrayVec<(f64, f64), NOTED_MAX>,
     /// Where this is a bound over all lower overrides: the move at hand gives nothing off.
     dropped: bool,
+    /// What it has given off, and the most power that it did so with; what was held before
+    /// it, with what has come in since.
+    drained_j: f64,
+    drain_w: f64,
+    undrained_j: f64,
+    /// By how much longer it may last where it fills next to rest, and with what power at
+    /// least, W.
+    stretch: f64,
+    rest_w: f64,
     /// What may come in at the end of a move of which it is not known when, J.
     pub edge_j: f64,
     pub worst: Worst,
@@ -45,6 +54,11 @@ impl Store {
             clock_s: 0.0,
             given_off: ArrayVec::new(),
             dropped: false,
+            drained_j: 0.0,
+            drain_w: 0.0,
+            undrained_j: 0.0,
+            stretch: 1.0,
+            rest_w: f64::NEG_INFINITY,
             edge_j: 0.0,
             worst: Worst::default(),
         }
@@ -81,13 +95,23 @@ impl Store {
         passed: &mut impl FnMut(&Slice, f64),
     ) {
         let mut now_s = time_s;
-        for (part, above) in slice.sides(self.taken_w) {
+        for (mut part, mut above) in slice.sides(self.taken_w) {
             if self.dropped && !above {
                 passed(&part, now_s);
                 now_s += part.duration_s;
                 continue;
             }
-            let change_j = part.energy_j() - self.taken_w * part.duration_s;
+            if !above && self.rest_w > self.taken_w {
+                (part, above) = (Slice::constant(part.duration_s, self.rest_w), true);
+            }
+            let mut change_j = part.energy_j() - self.taken_w * part.duration_s;
+            if above {
+                change_j *= self.stretch;
+                self.undrained_j += change_j;
+            } else {
+                self.drained_j -= change_j;
+                self.drain_w = self.drain_w.max(self.taken_w - part.least_w());
+            }
             self.net_j += change_j;
             self.most_j = self.most_j.max(self.net_j);
             self.note(part.duration_s);
@@ -119,24 +143,56 @@ impl Store {
         if self.dropped {
             return;
         }
-        self.net_j += energy_j - self.taken_w * duration_s;
+        let change_j = energy_j - self.taken_w * duration_s;
+        if duration_s > 0.0 {
+            self.drained_j -= change_j;
+            // A mean only, but nothing is held that could be drained.
+            self.drain_w = self.drain_w.max(-change_j / duration_s);
+        }
+        self.net_j += change_j;
         self.note(duration_s);
     }
 
     /// A move begins, where this is a bound: see [`Terms`].
     pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
+        let ratio = terms.longest_ratio();
         if terms.rest_w > self.taken_w * (1.0 + ROUNDING) {
-            self.worst.raise(f64::INFINITY, time_s, place);
+            if ratio.is_infinite() {
+                self.worst.raise(f64::INFINITY, time_s, place);
+            } else {
+                (self.stretch, self.rest_w) = (ratio, terms.rest_w);
+            }
         }
-        self.dropped = terms.surge_s > 0.0;
+        self.dropped = terms.surge_s > 0.0 && ratio.is_infinite();
+        (self.drained_j, self.drain_w) = (0.0, 0.0);
+        self.undrained_j = self.held_j;
     }
 
     /// It ends.
     pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
         self.dropped = false;
-        if terms.surge_s > 0.0 && terms.surge_w > self.taken_w {
-            let energy_j = (terms.surge_w - self.taken_w) * terms.surge_s;
-            self.fill(energy_j, time_s, place);
+        (self.stretch, self.rest_w) = (1.0, f64::NEG_INFINITY);
+        if terms.surge_s <= 0.0 {
+            return;
+        }
+        let surge_j = (terms.surge_w - self.taken_w).max(0.0) * terms.surge_s;
+        if terms.least_share > 0.0 {
+            // Ramps take the place of what gives off; where in the move is not known.
+            let kept_j = self.drained_j.min(self.drain_w * terms.surge_s);
+            let room_j = (self.undrained_j - self.held_j).max(0.0);
+            self.edge_j = self.edge_j.max(surge_j + kept_j.min(room_j));
+            self.net_j += kept_j - kept_j.min(room_j);
+            self.fill(surge_j + kept_j.min(room_j), time_s, place);
+        } else if surge_j > 0.0 {
+            self.fill(surge_j, time_s, place);
+        }
+    }
+
+    /// What may come after a move.
+    pub fn late(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        let more_w = slice.peak_w() - self.taken_w;
+        if more_w > 0.0 {
+            self.fill(more_w * slice.duration_s * self.stretch, time_s, place);
         }
     }
 

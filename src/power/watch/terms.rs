@@ -5,7 +5,11 @@
 //! takes no longer. Beyond that
 //!
 //! * what is drawn next to rest lasts for ever where the override is next to nothing:
-//!   means count at least that, and where it lies above a limit nothing is kept;
+//!   means count at least that, and where it lies above a limit nothing is kept. Where
+//!   overrides are no lower than a share σ of the largest, speeds are not either, and
+//!   nothing lasts longer than by 1/σ: `P²·dt` grows by the square of the power next to
+//!   rest, since `(P² − λ²)·dt` does not, and what lies above a limit next to rest does so
+//!   all along;
 //! * what lies above a power lasts longer at a lower speed: a cruise of `P` by
 //!   `(P − P₀)/(λ − P₀)` at most, P₀ next to rest, since below that speed it does not
 //!   lie above λ;
@@ -13,15 +17,18 @@
 //!   speed at which a cruise comes to λ: in all it takes `L/v + v/a`, and as long as it
 //!   takes to brake, and some of speeding up, lie below;
 //! * where a lower override makes axes speed up or brake that do not at the largest, so
-//!   much power counts for so long in addition, and nothing is given off meanwhile;
+//!   much power counts for so long in addition, and nothing is given off meanwhile: with
+//!   σ it is from that share of a speed on, and the time that is lost for giving off is
+//!   no longer than the ramp, since no place is passed faster;
 //! * axes that run for themselves meet otherwise: their work counts, at no more than
-//!   the largest powers of all together.
+//!   the largest powers of all together; with σ what each draws after t at the largest
+//!   it draws between t and t/σ, see `trace/shifted`.
 
 use super::limits::Limits;
 use super::rating::Place;
 use crate::power::axis::AxisPower;
 use crate::power::model::PowerModel;
-use crate::power::trace::Apart;
+use crate::power::trace::{Apart, Slice};
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
@@ -37,6 +44,8 @@ pub(super) struct Terms {
     pub surge_s: f64,
     /// Axes that run for themselves.
     pub apart: Option<Apart>,
+    /// No place is passed at less than this share of its speed at the largest overrides.
+    pub least_share: f64,
 }
 
 impl Terms {
@@ -46,6 +55,15 @@ impl Terms {
         self.cruise_w += by_w;
         self.surge_w += by_w;
         self
+    }
+
+    /// By how much anything may last longer; endless where overrides go down to 0.
+    pub fn longest_ratio(&self) -> f64 {
+        if self.least_share > 0.0 {
+            1.0 / self.least_share
+        } else {
+            f64::INFINITY
+        }
     }
 }
 
@@ -75,7 +93,7 @@ impl Limits {
             overload.begin(terms, time_s, place);
         }
         if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.rest(terms.rest_w, time_s, place);
+            continuous.begin(terms, time_s, place);
         }
         let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
         let brake = self.brake.iter_mut().map(|(store, ..)| store);
@@ -89,15 +107,28 @@ impl Limits {
         for (overload, ..) in &mut self.overload {
             overload.end(terms, time_s, place);
         }
-        if let Some((continuous, ..)) = &mut self.continuous
-            && terms.surge_s > 0.0
-        {
-            continuous.surge(terms.surge_w, terms.surge_s, time_s, place);
+        if let Some((continuous, ..)) = &mut self.continuous {
+            continuous.end(terms, time_s, place);
         }
         let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
         let brake = self.brake.iter_mut().map(|(store, ..)| store);
         for store in bus.chain(brake) {
             store.end(terms, time_s, place);
+        }
+    }
+
+    /// At the end of a move what may come when it is over at the largest overrides.
+    pub fn late(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        for (overload, ..) in &mut self.overload {
+            overload.late(slice, time_s, place);
+        }
+        if let Some((continuous, ..)) = &mut self.continuous {
+            continuous.surge(slice.peak_w(), slice.duration_s, time_s, place);
+        }
+        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
+        let brake = self.brake.iter_mut().map(|(store, ..)| store);
+        for store in bus.chain(brake) {
+            store.late(slice, time_s, place);
         }
     }
 

@@ -53,7 +53,7 @@ impl Rewriter<'_> {
     pub(super) fn turn_knobs(&mut self, change: &Change, view: &BlockView<'_>, out: &mut Vec<u8>) {
         let acted = Acted {
             rapids: view.rapids,
-            feeds: view.feeds,
+            feeds: view.feeds || change.as_feed,
         };
         let in_force = InForce {
             knobs: view.knobs,

@@ -13,14 +13,12 @@
 
 mod arcs;
 mod corner;
-mod shallow;
 
 use super::super::limits::{self, lower};
 use super::vector::{Vector, angle, scale};
 use crate::machine::{AxisValues, Machine};
 
 pub(super) use corner::Corner;
-pub(super) use shallow::Rounded;
 
 /// Share of an element that the tolerance may be.
 const TOLERANCE_SHARE: f64 = 0.25;

@@ -12,7 +12,7 @@
 //! which the next element begins while the last one brakes, each with half of its
 //! acceleration. Facts from `tp.c`, `tc.c` and measurements.
 
-mod glide;
+mod optimiser;
 
 use super::super::arc::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
 use super::blend::{Axes, Fit, fit};
@@ -22,14 +22,15 @@ use super::pending::{Braking, Pending};
 use super::planner::{Blend, Load, Piece};
 use super::vector::{Vector, add, dot, scale, sub};
 use super::window::{Node, Window};
+use optimiser::Optimiser;
 
-/// Elements after one over which `tpRunOptimization` comes back to it: it goes on until it
-/// has met more than four that have had the largest speed of their joint once, be it with a
-/// successor that was not planned yet. What is further back keeps the speed from which it
-/// could stop where the queue ended then. Recorded: six lines shorter than the way to stop.
-pub(super) const RENEWED: usize = 5;
+/// Elements after one over which the optimiser surely raises its speeds.
+pub(super) const RENEWED: usize = optimiser::HITS;
 /// Cycles that an element lasts at least.
 const CYCLES_MIN: f64 = 1.02;
+/// Cycles after which a change of pace acts: HAL hands it on within one, and the planner takes
+/// it in the next.
+pub(crate) const LATE_CYCLES: f64 = 2.0;
 /// A reversal within two degrees is a stop.
 const REVERSAL2: f64 = 0.034_906_585_039_886_59 * 0.034_906_585_039_886_59;
 
@@ -43,6 +44,8 @@ pub(super) struct LinuxCnc<T> {
     /// Room for the next one.
     spare: Option<Box<Pending<T>>>,
     joiner: Joiner<T>,
+    /// Sets the speeds at joints. With limits of jerk the window does, as far as that is known.
+    optimiser: Option<Optimiser<T>>,
     /// Largest speed of the last node, squared, whatever F asks for.
     last_max2: f64,
     /// The largest feed override by the one in force.
@@ -66,9 +69,16 @@ impl<T: Copy> LinuxCnc<T> {
             pending: None,
             spare: None,
             joiner: Joiner::new(),
+            optimiser: None,
             last_max2: f64::INFINITY,
             feed_ratio: 1.0,
         }
+    }
+
+    /// Speeds at joints are those of its optimiser, which goes back over so many elements.
+    pub fn optimised(mut self, depth: Option<u32>) -> Self {
+        self.optimiser = Some(Optimiser::new(depth));
+        self
     }
 
     /// The feed override may be raised by this factor.
@@ -110,10 +120,17 @@ impl<T: Copy> LinuxCnc<T> {
             self.pending = Some(next);
             return;
         };
-        match self.way(&mut before, &mut next) {
+        let way = self.way(&mut before, &mut next);
+        if before.element.pace != next.element.pace {
+            self.change_pace(&before, &mut next, &way);
+        }
+        match way {
             Way::Stop => {
                 before.rests = true;
                 self.hand_over(&before, window, false);
+                if let Some(optimiser) = &mut self.optimiser {
+                    optimiser.end(true, &mut |node| window.push(node));
+                }
                 window.stop();
             }
             Way::Pass(speed) => {
@@ -131,6 +148,20 @@ impl<T: Copy> LinuxCnc<T> {
         }
         self.pending = Some(next);
         self.spare = Some(before);
+    }
+
+    /// The pace changes at a joint that is not a stop: up to there the next element is seen
+    /// at the pace before. A lower one comes into force after some cycles, in which the
+    /// motion may still speed up.
+    fn change_pace(&self, before: &Pending<T>, next: &mut Pending<T>, way: &Way) {
+        let joint_mm_s = match way {
+            Way::Stop | Way::Parabolic => return,
+            Way::Pass(speed) => *speed,
+            Way::Blend(fit) => fit.speed,
+        };
+        next.pace_before = before.element.pace;
+        let late_mm_s = joint_mm_s + LATE_CYCLES * self.cycle_s * next.accel();
+        next.lags = next.pace_before > next.element.pace && late_mm_s > next.run_speed();
     }
 
     /// An element that nothing has changed yet.
@@ -161,6 +192,9 @@ impl<T: Copy> LinuxCnc<T> {
         if let Some(last) = self.pending.take() {
             self.hand_over(&last, window, !followed);
             self.spare = Some(last);
+        }
+        if let Some(optimiser) = &mut self.optimiser {
+            optimiser.end(followed, &mut |node| window.push(node));
         }
     }
 
@@ -246,6 +280,13 @@ impl<T: Copy> LinuxCnc<T> {
         window: &mut Window<Load<T>>,
     ) {
         let lead_mm = self.lead_mm(before, fit);
+        if lead_mm.is_some()
+            && let Some(optimiser) = &mut self.optimiser
+        {
+            let entry2 = before.entry2.min(before.max_speed * before.max_speed);
+            let taken = [entry2, before.unseen2()];
+            optimiser.pass_taken(taken, &mut |node| window.push(node));
+        }
         before.trim(fit.trims[0], false);
         next.trim(fit.trims[1], true);
         let tag = before.element.tag;
@@ -261,7 +302,7 @@ impl<T: Copy> LinuxCnc<T> {
         if length_mm > 0.0 {
             max = max.min(length_mm / (self.cycle_s * CYCLES_MIN));
         }
-        let top = max.min(before.run_speed().max(next.run_speed()));
+        let top = max.min(before.run_speed().max(next.seen_speed()));
         let piece = Piece::Blend(Blend {
             lead_mm,
             radius_mm: fit.radius,
@@ -291,27 +332,34 @@ impl<T: Copy> LinuxCnc<T> {
         let mut node = Node::new(length_mm, top2, accel, entry2, load);
         node.block = false;
         node.jerk = jerk;
-        self.push_node(node, max2, window);
+        self.push_node(node, max2, 0.0, window);
         next.entry2 = max2;
     }
 
     /// Hands a node on. The planner looks back with the speeds that the machine
     /// permits: around a blend it sees a lower F only when it is there, and may
-    /// still be too fast.
-    fn push_node(&mut self, mut node: Node<Load<T>>, max2: f64, window: &mut Window<Load<T>>) {
+    /// still be too fast. `unseen2`: see [`Optimiser::push`].
+    #[inline]
+    fn push_node(
+        &mut self,
+        mut node: Node<Load<T>>,
+        max2: f64,
+        unseen2: f64,
+        window: &mut Window<Load<T>>,
+    ) {
         node.overruns = node.jerk == f64::INFINITY;
         self.last_max2 = max2;
-        window.push(node);
+        match &mut self.optimiser {
+            Some(optimiser) => optimiser.push(node, unseen2, &mut |node| window.push(node)),
+            None => window.push(node),
+        }
     }
 
     /// Puts an element into the window as it is now.
     fn hand_over(&mut self, of: &Pending<T>, window: &mut Window<Load<T>>, last: bool) {
         let mut accel = of.accel() * of.kept_share(last);
         let mut max_speed = of.max_speed.min(of.length_mm / self.cycle_s);
-        // What a queue's last element may be entered with.
-        let mut unseen = of.accel() * of.unseen_share();
         if of.element.curve.is_some() {
-            unseen *= TANGENTIAL_SHARE;
             if last {
                 accel *= TANGENTIAL_SHARE;
             } else {
@@ -333,8 +381,9 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let mut entry2 = of.entry2.min(max2);
         if last {
-            // With nothing after it F counts.
-            entry2 = entry2.min(accel * of.length_mm).min(top2);
+            // With nothing after it F counts, whatever the pace.
+            let asked = (of.element.feed_mm_s / of.element.pace).min(max_speed);
+            entry2 = entry2.min(accel * of.length_mm).min(asked * asked);
         }
         let entry2 = if entry2 > 0.0 {
             entry2.min(self.last_max2)
@@ -347,15 +396,16 @@ impl<T: Copy> LinuxCnc<T> {
             next: None,
             piece: of.piece(),
             // With limits of jerk it is not modelled.
-            certain: !of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY,
+            certain: !of.lags && (!of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY),
             rests: of.rests,
             overlap_s: of.overlap_s(last),
             overlaps: of.overlaps(),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
+        let seen = of.seen_speed().min(max_speed);
+        node.seen2 = seen * seen;
         node.jerk = of.element.jerk_mm_s3;
-        node.tail2 = unseen * of.length_mm;
-        self.push_node(node, max2, window);
+        self.push_node(node, max2, of.unseen2(), window);
     }
 }
 

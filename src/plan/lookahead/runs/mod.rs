@@ -36,6 +36,8 @@ use super::window::{Node, OPEN_MAX, Span, lower};
 
 /// How far a higher speed may lower another one by rounding, as a share.
 const ROUNDING: f64 = 1e-12;
+/// What rounding may make of a speed from which elements are enough to stop, as a share.
+const RENEWED_ROUNDING: f64 = 1e-9;
 /// Elements of one run, at most.
 const RUN_MAX: usize = 1 << 12;
 /// Runs after which a first backward pass is worth its start.
@@ -116,6 +118,9 @@ pub(super) struct Runs<P> {
     now: f64,
     /// The controller's own look-ahead.
     blocks: Option<usize>,
+    /// Elements after one over which the controller surely plans its speeds again as these
+    /// come; `None`: over all.
+    renewed: Option<usize>,
     /// Whether the controller's rules are known to go together with limits of
     /// jerk.
     certain: bool,
@@ -136,10 +141,18 @@ impl<P> Runs<P> {
             open: 0,
             now: 0.0,
             blocks,
+            renewed: None,
             certain,
             open_min: OPEN_MIN,
             open_max: OPEN_MAX,
         }
+    }
+
+    /// The same where the controller plans an element again only while so many come after it:
+    /// where these are shorter than it takes to stop, it may keep a lower speed at its end.
+    pub fn renewing(mut self, elements: usize) -> Self {
+        self.renewed = Some(elements);
+        self
     }
 
     /// Adds an element.
@@ -358,12 +371,27 @@ impl<P> Runs<P> {
         }
         let current = self.current.as_mut()?;
         let element = self.elements.pop_front()?;
-        let span = current.give(element);
+        let mut span = current.give(element);
         if current.left == 0 {
             self.now = current.curve.end;
             self.current = None;
         }
+        span.certain &= self.is_renewed(span.end2.sqrt());
         Some(span)
+    }
+
+    /// Whether the element before those that are left surely gets this speed at its end.
+    fn is_renewed(&self, end: f64) -> bool {
+        let Some(elements) = self.renewed else {
+            return true;
+        };
+        let (mut length, mut steepness) = (0.0, Steepness::NONE);
+        for element in self.elements.iter().take(elements) {
+            length += element.length;
+            steepness = steepness.lowest(element.steepness);
+        }
+        end == 0.0
+            || length > 0.0 && steepness.farthest(0.0, length) >= end * (1.0 - RENEWED_ROUNDING)
     }
 
     /// The next run, once it is final.

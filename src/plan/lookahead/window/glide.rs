@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Node, Span, Window};
+use super::{Node, Window};
 
 impl<P: Copy> Window<P> {
     /// Whether elements of this window may be followed from outside.
@@ -28,21 +28,6 @@ impl<P: Copy> Window<P> {
             entered && smooth && node.top2 == speed2 && !node.forced
         });
         glides.then_some((speed2, &self.nodes))
-    }
-
-    /// The first element that is open, over which the motion glides.
-    pub fn pop_gliding(&mut self, speed2: f64) -> Option<Span<P>> {
-        let node = self.nodes.pop_front()?;
-        Some(Span {
-            start2: speed2,
-            end2: speed2,
-            top2: speed2,
-            length: node.length,
-            accel: node.accel,
-            certain: true,
-            section: None,
-            payload: node.payload,
-        })
     }
 
     /// Forgets the elements that are open: the motion has glided over them at this

@@ -36,8 +36,6 @@ pub(super) const OPEN_MAX: usize = 1 << 14;
 /// Squared speeds and accelerations beyond this (a million km/s) are no limits;
 /// sums with it stay finite.
 const UNLIMITED: f64 = 1e24;
-/// What rounding may make of sums, as a share.
-const ROUNDING: f64 = 1e-9;
 /// Elements after which a first backward pass is worth its start.
 const OPEN_MIN: usize = 8;
 
@@ -48,6 +46,8 @@ pub(super) struct Node<P> {
     pub length: f64,
     /// Largest speed inside, squared.
     pub top2: f64,
+    /// The same as it is seen from the element before it, squared.
+    pub seen2: f64,
     /// Acceleration along it.
     pub accel: f64,
     /// Jerk along it; infinite: no limit.
@@ -56,9 +56,6 @@ pub(super) struct Node<P> {
     pub smooth_accel: f64,
     /// Largest squared speed at its start.
     pub entry2: f64,
-    /// Squared speed at its start from which it can end at rest where it is
-    /// the last that the controller sees.
-    pub tail2: f64,
     /// Squared speed at which it begins where what is before it ends at rest.
     pub step2: f64,
     /// False for a blend, which enters the controller's queue together with
@@ -88,11 +85,11 @@ impl<P> Node<P> {
         Self {
             length,
             top2: lower(top2, UNLIMITED),
+            seen2: lower(top2, UNLIMITED),
             accel,
             jerk: f64::INFINITY,
             smooth_accel: accel,
             entry2,
-            tail2: 2.0 * accel * length,
             step2: 0.0,
             block: true,
             overruns: false,
@@ -106,8 +103,9 @@ impl<P> Node<P> {
         }
     }
 
+    /// By how much the squared speed changes along it at most.
     #[inline]
-    fn ramp2(&self) -> f64 {
+    pub fn ramp2(&self) -> f64 {
         2.0 * self.accel * self.length
     }
 
@@ -156,9 +154,8 @@ pub(super) struct Window<P> {
     blocks: Option<usize>,
     /// Hills are smoothed: `Node::smooth_accel` counts.
     smooth: bool,
-    /// Elements after one over which its speeds are surely planned again as these come;
-    /// `None`: over all.
-    renewed: Option<usize>,
+    /// The speeds at joints are final as they come.
+    given: bool,
     /// Open elements at which a first backward pass runs, and at most.
     open_min: usize,
     open_max: usize,
@@ -175,24 +172,30 @@ impl<P: Copy> Window<P> {
             now2: 0.0,
             blocks: blocks.map(|blocks| blocks.max(1) as usize),
             smooth,
-            renewed: None,
+            given: false,
             open_min: OPEN_MIN,
             open_max: OPEN_MAX,
             runs: None,
         }
     }
 
-    /// The same where the controller plans an element again only while so many come after it:
-    /// where these are shorter than it takes to stop, it may keep a lower speed at its end.
-    pub fn renewing(mut self, elements: usize) -> Self {
-        self.renewed = Some(elements);
+    /// The same where the speed at the start of each element is final as it comes: from
+    /// there on the motion can come to all that follow.
+    pub fn given(mut self) -> Self {
+        self.given = true;
+        self.blocks = None;
         self
     }
 
     /// The same where elements limit their jerk; how that goes together with
-    /// smoothed hills is not known.
-    pub fn with_jerk(mut self) -> Self {
-        self.runs = Some(Box::new(Runs::new(self.blocks, !self.smooth)));
+    /// smoothed hills is not known. `renewed`: elements after one over which the controller
+    /// surely plans its speeds again as these come, if not over all.
+    pub fn with_jerk(mut self, renewed: Option<usize>) -> Self {
+        let mut runs = Runs::new(self.blocks, !self.smooth);
+        if let Some(elements) = renewed {
+            runs = runs.renewing(elements);
+        }
+        self.runs = Some(Box::new(runs));
         self
     }
 
@@ -201,6 +204,11 @@ impl<P: Copy> Window<P> {
     pub fn push(&mut self, mut node: Node<P>) {
         if let Some(runs) = &mut self.runs {
             return runs.push(node);
+        }
+        if self.given {
+            node.e2 = node.entry2;
+            self.ready = self.nodes.len();
+            return self.nodes.push_back(node);
         }
         if let Some(last) = self.nodes.back() {
             // What cannot be reached from before is no limit that matters.
@@ -225,7 +233,7 @@ impl<P: Copy> Window<P> {
             node.smooth_accel = node.accel;
         }
         let entry2 = node.entry2;
-        let stops = node.tail2 >= entry2 && node.ramp2() >= entry2;
+        let stops = node.ramp2() >= entry2;
         self.nodes.push_back(node);
         if stops && !self.smooth {
             self.release_before_last();
@@ -261,7 +269,9 @@ impl<P: Copy> Window<P> {
         if self.ready == self.nodes.len() {
             return;
         }
-        self.backward(true);
+        if !self.given {
+            self.backward();
+        }
         self.ready = self.nodes.len();
         self.settle_at = self.open_min;
     }
@@ -271,7 +281,10 @@ impl<P: Copy> Window<P> {
         if let Some(runs) = &mut self.runs {
             return runs.settle();
         }
-        let anchor = self.backward(false);
+        if self.given {
+            return;
+        }
+        let anchor = self.backward();
         self.ready = self.ready.max(anchor);
         if let Some(blocks) = self.blocks
             && !self.smooth
@@ -292,25 +305,15 @@ impl<P: Copy> Window<P> {
     }
 
     /// Runs the backward pass from rest at the end; elements before the index
-    /// that it gives are final. Where the path does not `end`, the last element
-    /// is the last that the controller sees by now.
-    fn backward(&mut self, ends: bool) -> usize {
+    /// that it gives are final.
+    fn backward(&mut self) -> usize {
         if self.smooth {
             return self.backward_smooth();
         }
         let mut e2 = 0.0;
         let mut anchor = None;
-        let last = if ends {
-            self.nodes.len()
-        } else {
-            self.nodes.len().saturating_sub(1)
-        };
         for (i, node) in self.nodes.iter_mut().enumerate().skip(self.ready).rev() {
-            let reach = if i == last {
-                node.tail2
-            } else {
-                e2 + node.ramp2()
-            };
+            let reach = e2 + node.ramp2();
             if reach >= node.entry2 {
                 e2 = node.entry2;
                 anchor = anchor.or(Some(i));
@@ -387,10 +390,10 @@ impl<P: Copy> Window<P> {
         if self.ready == 0 {
             return None;
         }
-        let (end2, next_top2) = match self.nodes.get(1) {
+        let (end2, seen2) = match self.nodes.get(1) {
             Some(next) => {
                 let cap2 = lower(next.e2, self.rest2(1));
-                (lower(cap2, next.hill2), next.top2)
+                (lower(cap2, next.hill2), next.seen2)
             }
             None => (0.0, 0.0),
         };
@@ -403,7 +406,7 @@ impl<P: Copy> Window<P> {
         let (ramp2, mut top2) = (node.ramp2(), lower(node.hill2, node.top2));
         let end2 = lower(end2, start2 + ramp2);
         let most2 = if node.overruns {
-            lower(top2, next_top2)
+            lower(top2, seen2)
         } else {
             top2
         };
@@ -418,7 +421,7 @@ impl<P: Copy> Window<P> {
             top2,
             length: node.length,
             accel: node.accel,
-            certain: !node.forced && self.is_renewed(end2),
+            certain: !node.forced,
             section: None,
             payload: node.payload,
         };
@@ -426,23 +429,6 @@ impl<P: Copy> Window<P> {
         self.ready -= 1;
         self.now2 = end2;
         Some(span)
-    }
-
-    /// Whether the first element surely gets this speed at its end, squared.
-    #[inline]
-    fn is_renewed(&self, end2: f64) -> bool {
-        let Some(elements) = self.renewed else {
-            return true;
-        };
-        let needed2 = end2 * (1.0 - ROUNDING);
-        let mut sum2 = 0.0;
-        for node in self.nodes.iter().skip(1).take(elements) {
-            sum2 += node.ramp2();
-            if sum2 >= needed2 {
-                return true;
-            }
-        }
-        end2 == 0.0
     }
 
     /// Speed, squared, from which the controller can stop within the blocks
@@ -455,13 +441,8 @@ impl<P: Copy> Window<P> {
         let Some(first) = self.nodes.get(i) else {
             return f64::INFINITY;
         };
-        // A blend enters the queue together with the line after it.
-        let mut last = i + blocks;
-        if self.nodes.get(last).is_some_and(|node| !node.block) {
-            last -= 1;
-        }
-        match self.nodes.get(last) {
-            Some(node) if node.run == first.run => node.sum - first.sum + node.tail2,
+        match self.nodes.get(i + blocks) {
+            Some(node) if node.run == first.run => node.sum - first.sum + node.ramp2(),
             _ => f64::INFINITY,
         }
     }

@@ -5,9 +5,6 @@
 //! permit that and the path after it is long enough to brake, Σ 2·a·L ≥ v², with
 //! no more blocks than the controller sees. What is not final when that ends is
 //! given to the planner.
-//!
-//! How much of the path is a line's own, and how much a blend, is known with the
-//! line after it.
 
 mod terms;
 
@@ -19,7 +16,7 @@ use super::surges::Surges;
 use crate::interpret::Move;
 use crate::machine::{AxisSet, LookAhead, Machine};
 use crate::plan::Overrides;
-use crate::plan::lookahead::{Gliding, Line, LineStart, Passed};
+use crate::plan::lookahead::{Gliding, Line};
 use crate::power::demand::Want;
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
@@ -54,20 +51,16 @@ struct Glide {
     last: usize,
     /// The first move of all.
     begun: u64,
-    /// The first move that is not final, and where it begins.
+    /// The first move that is not final.
     first: u64,
-    start: LineStart,
-    /// The planner still keeps pieces of path before that.
-    keeps: bool,
-    /// Σ 2·a·L, at least, of the moves after the first one; while the planner
-    /// keeps pieces, of that too.
+    /// Σ 2·a·L, at least, of the moves after the first one.
     ramp2: f64,
 }
 
 /// What a move that glides comes to.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Glided {
-    passed: Passed,
+    length_mm: f64,
     /// 2·a·L, at least.
     ramp2: f64,
 }
@@ -98,11 +91,10 @@ impl Glider {
 }
 
 /// Whether nothing but the time and the largest speed of a move is of interest,
-/// which has this speed all along, and after it on a curve.
+/// which has this speed all along.
 #[inline]
-fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, per_mm: f64, want: Want) -> bool {
-    let accel_mm_s2 = per_mm * speed_mm_s * speed_mm_s;
-    !want.energy && model.is_below_floor(mv, [speed_mm_s, accel_mm_s2], want)
+fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, want: Want) -> bool {
+    !want.energy && model.is_below_floor(mv, [speed_mm_s, 0.0], want)
 }
 
 impl Ahead {
@@ -141,7 +133,7 @@ impl Ahead {
         open.moves = true;
         // The same speed is asked for; how far it reaches matters when this ends.
         open.pace = pace.unwrap_or_default();
-        self.count_gliding(model, eye);
+        self.count_gliding(model);
         true
     }
 
@@ -165,21 +157,19 @@ impl Ahead {
         if !terms.describe(line, mv, axes, glide.speed_mm_s) {
             return None;
         }
-        let passed = self
-            .largest
-            .planner
-            .passes(before, line, glide.speed_mm_s)?;
-        let per_mm = passed.curvature_per_mm;
-        if !is_plain(model, &last.mv, glide.speed_mm_s, per_mm, last.want) {
+        let planner = &self.largest.planner;
+        if !planner.passes(before, line, glide.speed_mm_s)
+            || !is_plain(model, &last.mv, glide.speed_mm_s, last.want)
+        {
             return None;
         }
         let least_mm_s2 = lower(before.least_accel_mm_s2, line.least_accel_mm_s2);
-        let ramp2 = 2.0 * passed.accel_share * least_mm_s2 * (passed.own_mm + passed.shared_mm);
-        last.glided = Glided { passed, ramp2 };
-        if glide.keeps || glide.first + 1 < number {
+        let ramp2 = 2.0 * planner.accel_share() * least_mm_s2 * before.length_mm;
+        let length_mm = before.length_mm;
+        last.glided = Glided { length_mm, ramp2 };
+        if glide.first + 1 < number {
             glide.ramp2 += ramp2;
         }
-        line.start = passed.next;
         glide.last ^= 1;
         Some(glide.speed_mm_s)
     }
@@ -188,17 +178,16 @@ impl Ahead {
     fn begin_gliding(&mut self, model: &PowerModel, eye: &mut Eye) -> Option<Glide> {
         self.largest.planner.settle();
         self.pump(model, eye);
-        if self.steps.as_ref().is_some_and(|steps| steps.is_doubtful()) {
+        if self.steps.is_doubtful() {
             return None;
         }
+        let planner = &self.largest.planner;
+        let accel_share = planner.accel_share();
         let Gliding {
             first,
             open,
-            keeps,
             speed2,
-            start,
-            accel_share,
-        } = self.largest.planner.gliding()?;
+        } = planner.gliding()?;
         let terms = &self.glider.terms;
         if self.open.end().checked_sub(first) != Some(open as u64) || open as u64 > terms.blocks {
             // Pieces of arcs, or a path that is too short to brake on.
@@ -220,7 +209,7 @@ impl Ahead {
             let glides = terms.suit(&each.mv)
                 && each.mv.feed_mm_s == feed_mm_s
                 && !each.in_doubt
-                && is_plain(model, &each.mv, speed_mm_s, 0.0, each.want)
+                && is_plain(model, &each.mv, speed_mm_s, each.want)
                 && terms.describe(&mut line, &each.mv, each.mv.moving, speed_mm_s);
             if !glides {
                 return None;
@@ -230,7 +219,6 @@ impl Ahead {
                 ramp2 += if index > 0 { each.glided.ramp2 } else { 0.0 };
             }
         }
-        line.start = start;
         Some(Glide {
             feed_mm_s,
             speed_mm_s,
@@ -239,62 +227,33 @@ impl Ahead {
             last: 0,
             begun: first,
             first,
-            start,
-            keeps,
             ramp2,
         })
     }
 
     /// Counts the moves that are final.
     #[inline]
-    fn count_gliding(&mut self, model: &PowerModel, eye: &mut Eye) {
+    fn count_gliding(&mut self, model: &PowerModel) {
         let Some(glide) = &mut self.glider.glide else {
             return;
         };
         let needed2 = glide.speed_mm_s * glide.speed_mm_s * (1.0 + ROUNDING);
-        if glide.ramp2 >= needed2 && glide.keeps {
-            return self.count_kept(model, eye);
-        }
         while glide.ramp2 >= needed2 {
             let Some(open) = self.open.get_mut(glide.first) else {
                 break;
             };
-            let passed = open.glided.passed;
-            let shared_s = 0.5 * passed.shared_mm * glide.s_per_mm;
-            open.glides_for(passed.own_mm * glide.s_per_mm + shared_s, glide.speed_mm_s);
+            let duration_s = open.glided.length_mm * glide.s_per_mm;
+            open.glides_for(duration_s, glide.speed_mm_s);
             self.largest.next = glide.first;
             self.glider.pause = 1;
-            if let Some(steps) = self.steps.as_deref_mut() {
-                let duration_s = passed.own_mm * glide.s_per_mm;
-                let glides = [duration_s, glide.speed_mm_s];
-                glide_over(steps, &mut self.open, model, glide.first, glides);
-            }
+            let glides = [duration_s, glide.speed_mm_s];
+            glide_over(&mut self.steps, &mut self.open, model, glide.first, glides);
             glide.first += 1;
-            glide.start = passed.next;
             let Some(next) = self.open.get_mut(glide.first) else {
                 break;
             };
             glide.ramp2 -= next.glided.ramp2;
-            if shared_s > 0.0 {
-                next.glides_for(shared_s, glide.speed_mm_s);
-            }
         }
-    }
-
-    /// Counts what the planner keeps: that is final now.
-    fn count_kept(&mut self, model: &PowerModel, eye: &mut Eye) {
-        let Some(mut glide) = self.glider.glide.take() else {
-            return;
-        };
-        let speed2 = glide.speed_mm_s * glide.speed_mm_s;
-        while let Some(planned) = self.largest.planner.pop_gliding(speed2) {
-            self.largest.next = planned.first;
-            self.take(model, eye, &planned, true, true);
-        }
-        glide.keeps = false;
-        let first = self.open.get(glide.first);
-        glide.ramp2 -= first.map_or(0.0, |first| first.glided.ramp2);
-        self.glider.glide = Some(glide);
     }
 
     /// Tells the planner of the moves since it was left alone.
@@ -308,9 +267,7 @@ impl Ahead {
     fn end_gliding(&mut self, machine: &Machine, glide: &Glide) {
         let side = &mut self.largest;
         let speed2 = glide.speed_mm_s * glide.speed_mm_s;
-        // What the planner keeps it knows.
-        let first = glide.first + u64::from(glide.keeps);
-        for number in first..self.open.end() {
+        for number in glide.first..self.open.end() {
             let open = self.open.get(number);
             // All have a path: their lengths and their limits are above 0.
             if !open.is_some_and(|open| side.describe(machine, &open.mv, number)) {
@@ -322,7 +279,7 @@ impl Ahead {
                 open.pace = surges.push(number, &side.element);
             }
             if number == glide.first {
-                side.planner.glide_to(&side.element, glide.start, speed2);
+                side.planner.glide_to(&side.element, speed2);
             } else {
                 side.planner.push(&side.element);
             }
@@ -334,10 +291,7 @@ impl Glided {
     /// A line that is run as it is.
     fn whole(line: &Line, accel_share: f64) -> Self {
         Self {
-            passed: Passed {
-                own_mm: line.length_mm,
-                ..Passed::default()
-            },
+            length_mm: line.length_mm,
             ramp2: 2.0 * accel_share * line.least_accel_mm_s2 * line.length_mm,
         }
     }

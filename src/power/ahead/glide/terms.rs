@@ -21,8 +21,6 @@ pub(super) struct Terms {
     path_accel_mm_s2: f64,
     /// Moves that may be open.
     pub blocks: u64,
-    /// Corners are rounded: what that takes is described too.
-    blends: bool,
     /// The acceleration of all paths counts.
     has_common: bool,
     /// The axes whose own limits a joint needs.
@@ -39,15 +37,12 @@ impl Terms {
             feed,
             path_accel_mm_s2: rules.path_accel_mm_s2,
             blocks: blocks as u64,
-            blends: matches!(rules.corner, CornerRule::LinuxCnc { .. }),
             at_joints: AxisSet::default(),
             has_common: rules.min_cruise_ratio > 0.0
                 || matches!(rules.corner, CornerRule::SquareCorner { .. }),
         };
         if blocks > 0 && machine.force_curves.is_empty() {
-            // Blends are those of X, Y and Z.
-            let extruder = (!terms.blends).then_some(EXTRUDER);
-            for index in (0..LINEAR).chain(extruder) {
+            for index in (0..LINEAR).chain([EXTRUDER]) {
                 if let Some(axis) = machine.axes.get(index).and_then(Option::as_ref) {
                     terms.axes.insert(index);
                     terms.speed_mm_s[index] = axis.rapid_mm_s;
@@ -93,8 +88,8 @@ impl Terms {
             }
         }
         line.length_mm = mv.length_mm;
-        line.path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
-        let mut least_accel_mm_s2 = line.path_accel_mm_s2;
+        let path_accel_mm_s2 = lower(mv.path_accel_mm_s2, self.path_accel_mm_s2);
+        let mut least_accel_mm_s2 = path_accel_mm_s2;
         for axis in AxisSet(axes.0 & self.at_joints.0).iter() {
             least_accel_mm_s2 = lower(mv.accel_mm_s2[axis], least_accel_mm_s2);
         }
@@ -106,45 +101,12 @@ impl Terms {
             least_accel_mm_s2 = lower(mv.accel_mm_s2[EXTRUDER] / share, least_accel_mm_s2);
         }
         if self.has_common {
-            let common_mm_s2 = common_accel(line.path_accel_mm_s2, &mv.accel_mm_s2);
+            let common_mm_s2 = common_accel(path_accel_mm_s2, &mv.accel_mm_s2);
             least_accel_mm_s2 = lower(least_accel_mm_s2, common_mm_s2);
             line.common_share = least_accel_mm_s2 / common_mm_s2;
         }
         line.least_accel_mm_s2 = least_accel_mm_s2;
-        if self.blends {
-            permitted &= describe_joint(line, mv);
-        }
         permitted
-    }
-}
-
-/// Describes what a blend needs; false where there is none at the end.
-#[inline]
-fn describe_joint(line: &mut Line, mv: &Move) -> bool {
-    let Corner::Round {
-        tolerance_mm,
-        join_mm: 0.0,
-    } = mv.corner
-    else {
-        return false;
-    };
-    line.tolerance_mm = tolerance_mm;
-    let [x, y, z, ..] = mv.accel_mm_s2;
-    if line.axis_accel_mm_s2 != [x, y, z] {
-        line.axis_accel_mm_s2 = [x, y, z];
-        line.inverse_accel = line.axis_accel_mm_s2.map(inverse);
-    }
-    line.inverse_path_accel = 1.0 / line.path_accel_mm_s2;
-    true
-}
-
-/// Of an axis that there is not, 0.
-#[inline]
-fn inverse(accel_mm_s2: f64) -> f64 {
-    if accel_mm_s2 > 0.0 {
-        1.0 / accel_mm_s2
-    } else {
-        0.0
     }
 }
 

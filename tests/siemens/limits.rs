@@ -1,0 +1,155 @@
+//! Percentages of the axes' limits: ACC, OVRRAP, VELOLIM, JERKLIM.
+
+use std::io::Cursor;
+
+use gwatt::pipeline::{Summary, analyze};
+
+use crate::limit::{EXACT_STOP, RIG, Rig, options};
+
+/// X and Y of 500 kg, 0.5 m/s and 5 m/s²: 1250 W and, over 400 mm, 0.8 s + 0.1 s.
+const RIG_840D: Rig = Rig {
+    controller: "siemens",
+    rest: EXACT_STOP,
+    ..RIG
+};
+
+fn summary(rig: &Rig, program: &str) -> Summary {
+    let program = Cursor::new(format!("{program}\nM30\n"));
+    analyze(program, &rig.machine(), &options(rig.options), None).expect("a program")
+}
+
+/// ACC in percent of 5 m/s²: 0.5 m/s · 500 kg · 2.5 m/s² = 625 W, and 0.5 m/s / 2.5 m/s² =
+/// 0.2 s longer than 0.8 s.
+#[test]
+fn acceleration_is_that_of_the_program() {
+    let cases = [
+        ("G0 X400", 1250.0, 0.9),
+        ("ACC[X]=50\nG0 X400", 625.0, 1.0),
+        ("ACC[X]=50\nG1 X400 F30000", 625.0, 1.0),
+        ("acc[x] = 50\nG0 X400", 625.0, 1.0),
+        ("ACC[X]=150\nG0 X400", 1875.0, 0.8 + 0.1 / 1.5),
+        ("ACC[X]=200\nG1 X400 F30000", 2500.0, 0.85),
+        ("ACC[Y]=50\nG0 X400", 1250.0, 0.9),
+        // Not of what is in force, and each axis by itself.
+        ("ACC[X]=50\nACC[X]=80\nG0 X400", 1000.0, 0.925),
+        ("ACC[X]=50 ACC[Y]=20\nG0 X400", 625.0, 1.0),
+        ("ACC[X]=50\nACC[X]=100\nG0 X400", 1250.0, 0.9),
+        // Whether it acts in its own block is not known: the higher one counts.
+        ("G0 X400 ACC[X]=50", 1250.0, 0.9),
+        ("G0 X400 ACC[X]=150", 1875.0, 0.8 + 0.1 / 1.5),
+        // Worked out, and of an axis by a computed name.
+        ("R1=25\nACC[X]=2*R1\nG0 X400", 625.0, 1.0),
+        (
+            "DEF AXIS WHICH\nWHICH=X\nACC[WHICH]=50\nG0 X400",
+            625.0,
+            1.0,
+        ),
+        ("ACC[$P_AXN1]=50\nG0 X400", 625.0, 1.0),
+        // Spindles and axes that the machine does not have.
+        ("ACC[S1]=50 ACC[X7]=60\nG0 X400", 1250.0, 0.9),
+        // The way to the reference point has the machine's own acceleration.
+        ("ACC[X]=50\nG0 X400\nG74 X1=0", 1250.0, 1.9),
+    ];
+    for (program, peak_w, duration_s) in cases {
+        let found = summary(&RIG_840D, program);
+        assert!(
+            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
+            "{program}: {}",
+            found.peak_w
+        );
+        assert!(
+            (found.duration_s - duration_s).abs() < 1e-9,
+            "{program}: {}",
+            found.duration_s
+        );
+    }
+}
+
+/// Down to 100 % the other words count as not there; above it rapids are faster: 0.75 m/s ·
+/// 500 kg · 5 m/s² = 1875 W.
+#[test]
+fn speeds_are_not_lowered() {
+    let cases = [
+        ("OVRRAP=50\nG0 X400", 1250.0),
+        ("OVRRAP=150\nG0 X400", 1875.0),
+        ("OVRRAP=150\nOVRRAP=100\nG0 X400", 1250.0),
+        ("G0 X400 OVRRAP=150", 1875.0),
+        ("VELOLIM[X]=50\nG0 X400", 1250.0),
+        ("OVRA[X]=50\nG0 X400", 1250.0),
+        ("JERKLIM[X]=50\nG0 X400", 1250.0),
+        ("JERKLIM[X]=150\nG0 X400", 1250.0),
+    ];
+    for (program, peak_w) in cases {
+        let found = summary(&RIG_840D, program);
+        assert!(
+            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
+            "{program}: {}",
+            found.peak_w
+        );
+    }
+    let said = |program: &str| {
+        let found = summary(&RIG_840D, program);
+        let rules = found.notes.iter().map(|note| note.rule);
+        rules.filter(|rule| *rule == "limit-not-lowered").count()
+    };
+    assert_eq!(said("OVRRAP=50"), 1);
+    assert_eq!(said("JERKLIM[X]=50"), 1);
+    assert_eq!(said("ACC[S1]=50"), 1);
+    assert_eq!(said("ACC[X]=50"), 0);
+}
+
+/// Under compensation blocks are held back: what is lower acts after it alone.
+#[test]
+fn under_compensation_what_is_lower_waits() {
+    let program = |first: &str, inside: &str, after: &str| {
+        format!(
+            "{first}\n$TC_DP6[1,1]=5\nT1 D1\nG1 G41 X10 Y10 F1000\n{inside}\nX400 F30000\nY20 F1000\n\
+             G40 X410 Y30\n{after}"
+        )
+    };
+    let peak_w = |program: &str| summary(&RIG_840D, program).peak_w;
+    assert!((peak_w(&program("", "", "")) - 1250.0).abs() < 0.1);
+    assert!((peak_w(&program("ACC[X]=50", "", "")) - 625.0).abs() < 0.1);
+    assert!((peak_w(&program("", "ACC[X]=50", "")) - 1250.0).abs() < 0.1);
+    assert!((peak_w(&program("", "ACC[X]=150", "")) - 1875.0).abs() < 0.1);
+    // Out of it, it acts.
+    let inside = program("ACC[X]=40", "ACC[X]=20\nACC[X]=40", "Y31\nG0 X0\nX400");
+    assert!((peak_w(&inside) - 500.0).abs() < 0.1, "{}", peak_w(&inside));
+    let lower = program("ACC[X]=50", "ACC[X]=20", "Y31\nG0 X0\nX400");
+    assert!((peak_w(&lower) - 625.0).abs() < 0.1, "{}", peak_w(&lower));
+    let found = summary(&RIG_840D, &lower);
+    let before = summary(&RIG_840D, &program("ACC[X]=50", "", "Y31\nG0 X0\nX400"));
+    // 0.5 m/s at 1 m/s² and at 2.5 m/s²: X400 takes 0.3 s longer.
+    assert!((found.duration_s - before.duration_s - 0.3).abs() < 1e-6);
+}
+
+/// Values that are not a percentage of a limit, or raise one that is not followed.
+#[test]
+fn limits_are_refused() {
+    let cases = [
+        ("ACC[X]=0", "1 override: ACC of 0 %"),
+        ("ACC[X]=-5", "1 override: ACC of -5 %"),
+        ("ACC[X]=201", "1 override: ACC of 201 %"),
+        ("ACC[S1]=150", "1 override: ACC of 150 %"),
+        (
+            "ACC[X]=R7",
+            "1 unknown-value: R7 has no value yet: what it holds, only the control knows",
+        ),
+        ("ACC[X]", "1 syntax: ACC has no value"),
+        ("ACC[5]=50", "1 no-such-axis: a number names no axis"),
+        ("OVRRAP=0", "1 override: OVRRAP of 0 %"),
+        ("OVRRAP=250", "1 override: OVRRAP of 250 %"),
+        ("VELOLIM[X]=150", "1 override: VELOLIM of 150 %"),
+        ("OVRA[X]=150", "1 override: OVRA of 150 %"),
+        ("JERKLIMA[X]=150", "1 override: JERKLIMA of 150 %"),
+    ];
+    for (line, expected) in cases {
+        assert_eq!(super::refusal(line), expected, "{line}");
+    }
+    let rig = Rig {
+        axis: "jerk_mm_s3 = 100000",
+        ..RIG_840D
+    };
+    let refused = rig.refusal("JERKLIM[X]=150\nG0 X400\nM30\n");
+    assert_eq!(refused[0].message, "JERKLIM of 150 %");
+}
