@@ -16,7 +16,7 @@ use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Move, Step};
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, Want};
+use crate::power::{Assessment, Assessor, Lower, Want};
 
 /// Reads a program and gives its figures; with `rows`, every move too. Where it can go on
 /// in several ways, by what probes find, each figure is the worst of all, and the rows are
@@ -58,7 +58,7 @@ fn analyze_way<R: Read + Seek + Send>(
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
-    let mut summary = judge(&mut input, machine, &[], options, rows)?;
+    let mut summary = judge(&mut input, machine, &Lower::default(), options, rows)?;
     // To look at lower overrides takes many times as long as all the rest.
     if summary.fits_at_largest() || summary.moves <= AT_LENGTH_MAX {
         let mut ladder = summary.ladder(machine);
@@ -80,7 +80,7 @@ fn analyze_way<R: Read + Seek + Send>(
 fn judge<R: Read + Seek + Send>(
     input: R,
     machine: &Machine,
-    rungs: &[Machine],
+    rungs: &Lower,
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
@@ -117,7 +117,7 @@ struct Analysis<'m, 'r> {
 impl<'m, 'r> Analysis<'m, 'r> {
     fn new(
         machine: &'m Machine,
-        rungs: &'m [Machine],
+        rungs: &'m Lower,
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {

@@ -27,7 +27,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
 use crate::limit::{Deeper, Depths, Paced, Place};
 use crate::machine::Machine;
-use crate::power::{Assessment, Assessor, Certificate, PowerModel, Rating, Want};
+use crate::power::{Assessment, Assessor, Certificate, Lower, PowerModel, Rating, Want};
 use crate::source::lines;
 use crate::syntax::{Block, scan_line};
 
@@ -99,7 +99,7 @@ impl Certified {
 impl<'m, 'r> Certifier<'m, 'r> {
     pub(super) fn new(
         machine: &'m Machine,
-        rungs: &'m [Machine],
+        rungs: &'m Lower,
         options: &Options,
         rows: Option<&'r mut (dyn RowSink + 'r)>,
     ) -> Self {

@@ -28,7 +28,7 @@ use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::limit::{Depths, Limiter};
 use crate::machine::Machine;
-use crate::power::PowerModel;
+use crate::power::{Lower, PowerModel};
 
 /// Pieces that may wait for the certifier.
 const BATCHES: usize = 2;
@@ -239,7 +239,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             restart(&mut output, rows)?;
         }
         let mut depths = start;
-        let mut rungs = Vec::new();
+        let mut rungs = Lower::default();
         let mut ladder = None;
         loop {
             let job = Job {
@@ -264,7 +264,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(machine));
                 ladder.take(&certified.summary.lower);
                 let worth = certified.reasons.count == 0 && certified.summary.fits_at_largest();
-                rungs = if worth { ladder.ask() } else { Vec::new() };
+                rungs = if worth { ladder.ask() } else { Lower::default() };
                 if rungs.is_empty() {
                     certified.summary.settle(ladder);
                     return Ok(conclude(machine, target, paths, how, written, certified));
@@ -318,7 +318,7 @@ struct Job<'a> {
     /// The same with the limits that are aimed at.
     target: &'a Machine,
     /// The machine with its knobs where they are looked at as well.
-    rungs: &'a [Machine],
+    rungs: &'a Lower,
     /// How the program is read, on each path through it.
     paths: &'a [Options],
     how: LimitOptions,

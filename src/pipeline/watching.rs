@@ -2,7 +2,7 @@
 
 use super::Options;
 use crate::machine::Machine;
-use crate::power::{Assessor, Want};
+use crate::power::{Assessor, Lower, Want};
 
 /// An assessor that watches limits over time as the options ask for.
 pub(super) fn watching<'m>(machine: &'m Machine, options: &Options) -> Assessor<'m> {
@@ -15,9 +15,9 @@ pub(super) fn watching<'m>(machine: &'m Machine, options: &Options) -> Assessor<
 /// The same that watches the machine with its knobs as in `rungs` as well.
 pub(super) fn watching_at<'m>(
     machine: &'m Machine,
-    rungs: &'m [Machine],
+    rungs: &'m Lower,
     options: &Options,
 ) -> Assessor<'m> {
-    let lower = rungs.iter().map(|rung| watching(rung, options));
-    watching(machine, options).with_lower(lower.collect())
+    let lower = rungs.machines.iter().map(|rung| watching(rung, options));
+    watching(machine, options).with_lower(lower.collect(), &rungs.watched)
 }

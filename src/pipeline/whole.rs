@@ -21,7 +21,7 @@ use super::{Failure, LimitOptions, Options, RowSink, Summary};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::{Depths, Limiter};
 use crate::machine::{Machine, PathMode};
-use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::power::{Assessment, Assessor, Lower, PowerModel, Want};
 use crate::rewrite::{BlockView, Comment, Rewriter};
 use crate::source::lines;
 
@@ -44,7 +44,7 @@ pub(super) struct Source<'a> {
     pub(super) paths: &'a [Options],
     pub(super) depths: &'a Depths,
     /// The machine with its knobs where they are looked at as well.
-    pub(super) rungs: &'a [Machine],
+    pub(super) rungs: &'a Lower,
 }
 
 impl Whole<'_> {
@@ -54,7 +54,7 @@ impl Whole<'_> {
         &self,
         mut input: R,
         mut output: impl Write,
-        (paths, depths, rungs): (&[Options], &Depths, &[Machine]),
+        (paths, depths, rungs): (&[Options], &Depths, &Lower),
         rows: Option<&mut dyn RowSink>,
     ) -> Result<(Written, Certified), Failure> {
         let program = read_whole(&mut input)?.ok_or_else(too_large)?;
@@ -453,7 +453,7 @@ impl<'m, 'p> Original<'m, 'p> {
 fn certify(
     mut original: Original<'_, '_>,
     text: &[u8],
-    (machine, rungs): (&Machine, &[Machine]),
+    (machine, rungs): (&Machine, &Lower),
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Certified, Failure> {

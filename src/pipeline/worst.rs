@@ -69,9 +69,7 @@ impl Summary {
         }
         for (own, other) in self.lower.iter_mut().zip(&other.lower) {
             for (own, other) in own.iter_mut().zip(other) {
-                if other.load_ratio() > own.load_ratio() {
-                    *own = *other;
-                }
+                *own = own.or_worse(other);
             }
         }
         if other.certificate == Some(Certificate::Robust) {

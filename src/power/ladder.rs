@@ -22,6 +22,9 @@ const FIRST: [f64; 10] = [1.0, 0.64, 0.41, 0.26, 0.17, 0.11, 0.07, 0.045, 0.03, 
 const FIRST_OF_TWO: [f64; 6] = [1.0, 0.64, 0.41, 0.17, 0.05, 0.0];
 /// Where a range that reaches down to 0 is divided, as a share of its larger end.
 const DOWN: f64 = 0.4;
+/// Unless that lies below this: programs would last for ever there, and nothing but what is
+/// drawn at rest makes a difference.
+const LOWEST: f64 = 2e-3;
 /// A range is not divided where its ends differ by less than this.
 const NEAR: f64 = 1.015;
 /// A side is divided alone where its ends differ by this power more than those of the
@@ -36,6 +39,23 @@ const AT_ONCE: usize = 64;
 
 /// Which knobs matter: that of feeds, that of rapids.
 pub type Knobs = [bool; 2];
+
+/// Settings to look at.
+#[derive(Debug, Default)]
+pub struct Lower {
+    /// The machine with its knobs in ranges.
+    pub machines: Vec<Machine>,
+    /// Which of the limits are watched there.
+    pub watched: Vec<bool>,
+}
+
+impl Lower {
+    /// Whether there is nothing to look at.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.machines.is_empty()
+    }
+}
 
 /// Shares of the largest overrides, from the lower to the upper one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,6 +83,9 @@ pub struct Ladder {
     verdicts: Vec<Verdict>,
     open: Vec<Open>,
     asked: Vec<Range>,
+    /// Which limits are watched there: those that are open, and those that are missed, whose
+    /// worst setting is shown.
+    watched: Vec<bool>,
     left: usize,
     machine: Machine,
 }
@@ -110,7 +133,7 @@ impl Range {
 
     fn halves(&self) -> Vec<Self> {
         let [feed, rapid] = [self.feed, self.rapid].map(|[lower, upper]| {
-            if upper > lower * NEAR {
+            if upper > lower * NEAR && upper > LOWEST {
                 libm::log(upper / lower)
             } else {
                 0.0
@@ -178,15 +201,16 @@ impl Ladder {
                 used: vec![f64::INFINITY; largest.len()],
             }],
             asked: Vec::new(),
+            watched: vec![true; largest.len()],
             left: most.clamp(RANGES_MIN, RANGES_MAX),
             machine: machine.clone(),
         }
     }
 
-    /// The machine with its knobs in the ranges that are to be looked at next; none where
-    /// all is settled.
+    /// The ranges that are to be looked at next, and the limits that are open; none where all
+    /// is settled.
     #[must_use]
-    pub fn ask(&mut self) -> Vec<Machine> {
+    pub fn ask(&mut self) -> Lower {
         self.asked.clear();
         self.settle();
         let verdicts = &self.verdicts;
@@ -206,10 +230,13 @@ impl Ladder {
             self.asked.extend(parts);
         }
         self.open = rest;
-        self.asked
-            .iter()
-            .map(|range| within(&self.machine, range))
-            .collect()
+        let watched = |verdict: &Verdict| matches!(verdict, Verdict::Open | Verdict::Missed);
+        self.watched = self.verdicts.iter().map(watched).collect();
+        let machines = self.asked.iter();
+        Lower {
+            machines: machines.map(|range| within(&self.machine, range)).collect(),
+            watched: self.watched.clone(),
+        }
     }
 
     /// Leaves aside what leaves no limit open, and limits that nothing leaves open.
@@ -224,7 +251,7 @@ impl Ladder {
         }
     }
 
-    /// Takes what was found there.
+    /// Takes what was found there of the limits that were watched.
     pub fn take(&mut self, found: &[Vec<Rating>]) {
         for (index, range) in std::mem::take(&mut self.asked).into_iter().enumerate() {
             let Some(found) = found.get(index) else {
@@ -236,11 +263,9 @@ impl Ladder {
             let mut all_used = vec![0.0; self.verdicts.len()];
             let small = range.parts().is_empty();
             let limits = self.verdicts.iter_mut().zip(&mut self.worst);
-            let limits = limits.zip(found).zip(&mut all_used);
-            for (((verdict, worst), rating), used) in limits {
-                if *verdict == Verdict::Known {
-                    continue;
-                }
+            let limits = limits.zip(&mut all_used).zip(&self.watched);
+            let limits = limits.filter_map(|(limit, watched)| watched.then_some(limit));
+            for (((verdict, worst), used), rating) in limits.zip(found) {
                 if rating.load_ratio() > worst.load_ratio() {
                     *worst = Rating {
                         overrides: within(&self.machine, &range).limits.override_at,
@@ -317,18 +342,22 @@ fn within(machine: &Machine, range: &Range) -> Machine {
 }
 
 impl Assessor<'_> {
-    /// Watches the program at lower overrides too, each by an assessor for itself.
+    /// Watches the program at lower overrides too, each by an assessor for itself, which
+    /// watches some of the limits.
     #[must_use]
-    pub fn with_lower(mut self, lower: Vec<Self>) -> Self {
+    pub fn with_lower(mut self, lower: Vec<Self>, watched: &[bool]) -> Self {
         self.lower = lower;
-        let watched = Want {
+        let peaks = Want {
             energy: false,
             floor_w: f64::INFINITY,
             regen_floor_w: f64::INFINITY,
             accel: false,
         };
         for lower in &mut self.lower {
-            lower.want = watched;
+            lower.want = peaks;
+            if let Some(watch) = &mut lower.eye.watch {
+                watch.only(watched);
+            }
         }
         self
     }

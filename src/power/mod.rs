@@ -72,7 +72,7 @@ pub use bus::{SpindleShare, Turning};
 pub use demand::{Demand, Want};
 pub(crate) use effect::{Effect, Switched};
 pub use instant::{AxisInstant, Instant, SpindleInstant};
-pub(crate) use ladder::Ladder;
+pub(crate) use ladder::{Ladder, Lower};
 pub use line::plans_lines;
 pub use model::PowerModel;
 pub use motion::Motion;

@@ -17,7 +17,7 @@ use crate::pipeline::lower::lower_further;
 use crate::pipeline::whole::{Decided, Source, Whole, write};
 use crate::pipeline::worst::worst_of;
 use crate::pipeline::{Failure, LimitOptions, LimitSummary, Options, RestartRows, RowSink};
-use crate::power::Ladder;
+use crate::power::{Ladder, Lower};
 
 /// What is to be limited.
 pub(super) struct Job<'a> {
@@ -38,7 +38,7 @@ pub(super) struct Job<'a> {
 #[derive(Default)]
 struct Round {
     depths: Depths,
-    rungs: Vec<Machine>,
+    rungs: Lower,
     ladder: Option<Ladder>,
     /// It asks for more than can be.
     stopped: bool,
@@ -286,7 +286,7 @@ fn again(rounds: &mut [Round], certified: &[Certified], machine: &Machine) -> bo
         let ladder = round.ladder.get_or_insert_with(|| summary.ladder(machine));
         ladder.take(&summary.lower);
         let worth = certified.reasons.count == 0 && summary.fits_at_largest();
-        round.rungs = if worth { ladder.ask() } else { Vec::new() };
+        round.rungs = if worth { ladder.ask() } else { Lower::default() };
         again |= !round.rungs.is_empty();
     }
     again

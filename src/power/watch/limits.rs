@@ -29,6 +29,8 @@ pub(super) struct Bus {
     share: f64,
     measure: Measure,
     limit_v: f64,
+    /// Whether it is a limit, not only what takes peaks off the converter.
+    rated: bool,
 }
 
 impl Limits {
@@ -57,6 +59,7 @@ impl Limits {
                 share,
                 measure: Measure::LowestVoltage,
                 limit_v: capacitor.min_v?,
+                rated: true,
             })
         });
         Self {
@@ -87,6 +90,7 @@ impl Limits {
                 share,
                 measure: Measure::HighestVoltage,
                 limit_v: capacitor.max_v?,
+                rated: true,
             })
         });
         let brake = ratings.brake.map(|brake| {
@@ -99,6 +103,18 @@ impl Limits {
             brake,
             ..Self::default()
         }
+    }
+
+    /// Goes on with those that are `watched`, asked for in the order of [`Self::ratings`].
+    pub fn only(&mut self, mut watched: impl FnMut() -> bool) {
+        self.overload.retain(|_| watched());
+        self.continuous = self.continuous.take().filter(|_| watched());
+        if let Some(bus) = &mut self.bus {
+            bus.rated = watched();
+        }
+        self.brake = self.brake.take().filter(|_| watched());
+        let supplied = self.buffered && !(self.overload.is_empty() && self.continuous.is_none());
+        self.bus = self.bus.take().filter(|bus| bus.rated || supplied);
     }
 
     pub fn is_empty(&self) -> bool {
@@ -241,7 +257,7 @@ impl Limits {
             worst.value += store.edge_j;
             worst
         };
-        if let Some(bus) = &self.bus {
+        if let Some(bus) = self.bus.as_ref().filter(|bus| bus.rated) {
             let mut worst = worst(&bus.store);
             worst.value = bus.volts(worst.value);
             list.push(worst.rating(bus.measure, converter, bus.limit_v));

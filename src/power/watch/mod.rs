@@ -143,6 +143,18 @@ impl Watch {
         })
     }
 
+    /// Goes on with some of its limits, in the order of [`Self::ratings`].
+    pub fn only(&mut self, watched: &[bool]) {
+        for bounds in [false, true] {
+            let mut watched = watched.iter().copied();
+            let tracks = self.tracks.iter_mut();
+            for track in tracks.filter(|track| track.bounds == bounds) {
+                track.limits.only(|| watched.next().unwrap_or(true));
+            }
+        }
+        self.tracks.retain(|track| !track.limits.is_empty());
+    }
+
     /// Whether it has to be told what the spindle does.
     pub fn follows_spindle(&self) -> bool {
         self.waiting.is_some()

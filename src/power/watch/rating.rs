@@ -99,6 +99,22 @@ impl Rating {
         self.keeps() && self.bound.is_none()
     }
 
+    /// The worse of two values of the same limit, and of what bounds say of it.
+    #[must_use]
+    pub fn or_worse(&self, other: &Self) -> Self {
+        let worse = if other.load_ratio() > self.load_ratio() {
+            other
+        } else {
+            self
+        };
+        let bounds = [self.bound, other.bound].into_iter().flatten();
+        let bound = bounds.reduce(match self.measure {
+            Measure::LowestVoltage => f64::min,
+            _ => f64::max,
+        });
+        Self { bound, ..*worse }
+    }
+
     /// Whether the limit is kept at the largest overrides, and lower ones were not looked at.
     #[must_use]
     pub fn is_open(&self) -> bool {
@@ -191,5 +207,28 @@ impl Worst {
             any: false,
             looked_at: false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two ways through a program one has the larger value, the other one the bound.
+    #[test]
+    fn a_bound_is_not_lost_to_a_larger_value() {
+        let of = |measure, value, limit, bound| Rating {
+            value,
+            bound,
+            ..Worst::default().rating(measure, 0, limit)
+        };
+        let heating = |value, bound| of(Measure::Continuous { window_s: 1.0 }, value, 10.0, bound);
+        let [small, large] = [heating(5.0, Some(12.0)), heating(6.0, None)];
+        for merged in [small.or_worse(&large), large.or_worse(&small)] {
+            assert_eq!((merged.value, merged.bound), (6.0, Some(12.0)));
+        }
+        let low = |value, bound| of(Measure::LowestVoltage, value, 300.0, bound);
+        let merged = low(400.0, Some(280.0)).or_worse(&low(350.0, Some(290.0)));
+        assert_eq!((merged.value, merged.bound), (350.0, Some(280.0)));
     }
 }
