@@ -86,8 +86,9 @@ impl OverTime {
     #[must_use]
     pub fn help(&self) -> &'static str {
         if self.rating.lasting {
-            return "how this motion is blended is not known, so its largest power counts for as \
-                    long as it may last: use exact stop, or lower the feed here";
+            return "where moves overlap, or are blended in a way that is not known, the largest \
+                    power counts for as long as it may last: use exact stop, or lower the feed \
+                    here";
         }
         match self.rating.measure {
             Measure::Overload { .. } | Measure::Continuous { .. } => {

@@ -9,7 +9,7 @@ use super::motion::Motion;
 use super::robust::Part;
 use super::steps::StepEnergy;
 use super::surge::Surge;
-use super::watch::{Beside, Kept, Span, Watch};
+use super::watch::{Beside, Kept, Known, Span, Watch};
 use crate::interpret::Move;
 use crate::machine::Machine;
 use crate::plan::lookahead::Planned;
@@ -121,7 +121,8 @@ impl Eye {
         } else {
             let bound = blended_bound(machine, mv, largest);
             let part = part(mv, &bound);
-            watch.unknown(model, mv, &[part], &mut Kept::default(), Span::ANY);
+            let known = Known::lasting(Span::ANY);
+            watch.unknown(model, mv, &[part], &mut Kept::default(), known);
         }
     }
 
@@ -165,8 +166,7 @@ impl Eye {
         }
     }
 
-    /// A move that may be blended in a way that is not known: it lasts no longer
-    /// than with a stop at both ends, and no shorter than at full speed.
+    /// A move that may be blended in a way that is not known, with the largest speeds around.
     #[inline]
     pub fn blended(
         &mut self,
@@ -177,17 +177,40 @@ impl Eye {
         kept: &mut Kept,
         largest: Overrides,
     ) {
-        let Some(watch) = &mut self.watch else { return };
-        let mut span = Span::ANY;
-        if mv.unknown_start.is_empty() && !mv.stray.is_far() {
-            span.longest_s = plan(machine, mv, largest).duration_s;
-            let shortest_s = mv.length_mm / blended_speed(machine, mv, largest);
-            if shortest_s < span.longest_s && !is_independent(machine, mv) {
-                span.shortest_s = shortest_s;
-            }
+        if self.watch.is_some() {
+            let known = Known::lasting(span(machine, mv, largest));
+            self.unknown(model, mv, parts, kept, known);
         }
-        watch.unknown(model, mv, parts, kept, span);
     }
+
+    /// A move that does not run in turn, with the largest speeds around and what else is
+    /// known of it.
+    pub fn unknown(
+        &mut self,
+        model: &PowerModel,
+        mv: &Move,
+        parts: &[Part<'_>],
+        kept: &mut Kept,
+        known: Known,
+    ) {
+        if let Some(watch) = &mut self.watch {
+            watch.unknown(model, mv, parts, kept, known);
+        }
+    }
+}
+
+/// For how long a move may last: no longer than with a stop at both ends, and no shorter
+/// than at full speed.
+pub(super) fn span(machine: &Machine, mv: &Move, largest: Overrides) -> Span {
+    let mut span = Span::ANY;
+    if mv.unknown_start.is_empty() && !mv.stray.is_far() {
+        span.longest_s = plan(machine, mv, largest).duration_s;
+        let shortest_s = mv.length_mm / blended_speed(machine, mv, largest);
+        if shortest_s < span.longest_s && !is_independent(machine, mv) {
+            span.shortest_s = shortest_s;
+        }
+    }
+    span
 }
 
 /// The largest speeds and accelerations of a move.

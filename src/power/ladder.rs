@@ -15,7 +15,7 @@ use super::assess::Assessor;
 use super::demand::Want;
 use super::watch::Rating;
 use crate::interpret::{Action, Move};
-use crate::machine::{Machine, OverrideAt};
+use crate::machine::{CornerRule, Machine, OverrideAt};
 
 /// Where all settings are divided first, of one knob and of two.
 const FIRST: [f64; 10] = [1.0, 0.64, 0.41, 0.26, 0.17, 0.11, 0.07, 0.045, 0.03, 0.0];
@@ -347,10 +347,19 @@ impl Assessor<'_> {
     #[must_use]
     pub fn with_lower(mut self, lower: Vec<Self>, watched: &[bool]) -> Self {
         self.lower = lower;
+        let planner = &self.machine.controller.planner;
+        let corner = planner.look_ahead.map(|rules| rules.corner);
+        let overlap = matches!(corner, Some(CornerRule::LinuxCnc { .. }));
+        // Moves that are at once, or ahead of their plan, count with their peaks.
+        let floor_w = if overlap || !self.machine.force_curves.is_empty() {
+            f64::NEG_INFINITY
+        } else {
+            f64::INFINITY
+        };
         let peaks = Want {
             energy: false,
-            floor_w: f64::INFINITY,
-            regen_floor_w: f64::INFINITY,
+            floor_w,
+            regen_floor_w: floor_w,
             accel: false,
         };
         for lower in &mut self.lower {

@@ -79,7 +79,8 @@ fn glided(machine: &Machine, program: &str, floor_w: f64) -> f64 {
             times.into_iter().zip(slow_times).all(alike)
                 && (times != slow_times || peaks.into_iter().zip(slow_peaks).all(alike))
                 && kind(quick) == kind(slow),
-            "line {line}: {found:?} in\n{program}"
+            "line {line}: {found:?}, {:?} in\n{program}",
+            [quick, slow].map(kind)
         );
     }
     gliding as f64 / quick.len() as f64

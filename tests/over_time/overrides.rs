@@ -277,8 +277,12 @@ fn sweep(seed: u64, programs: usize, overrides: usize) -> Found {
                 _ => feed,
             };
             let one = over_time(&at(&open, feed, rapid), &text, once);
+            if one.iter().any(|it| it.rating.lasting) {
+                // Moves that overlap are bounded by themselves.
+                continue;
+            }
             for ((worst, one), knobs) in worst.iter_mut().zip(one).zip(&mut knobs) {
-                if one.rating.load_ratio() > worst.rating.load_ratio() && !one.rating.lasting {
+                if one.rating.load_ratio() > worst.rating.load_ratio() {
                     *worst = one;
                     *knobs = [feed, rapid];
                 }

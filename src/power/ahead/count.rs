@@ -93,7 +93,7 @@ impl Ahead {
                 open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;
             if doubtful {
                 self.ride(model, planned, true, times);
-                let certain = self.is_certain(eye, planned, number, number);
+                let certain = self.is_certain(planned, number, number);
                 if let Some(open) = self.open.get_mut(number) {
                     open.certain &= certain;
                 }
@@ -170,7 +170,7 @@ impl Ahead {
                 demand.include(&turned);
             }
         }
-        let certain = !peaks || self.is_certain(eye, planned, from, to);
+        let certain = !peaks || self.is_certain(planned, from, to);
         // Half of a blend belongs to what is after it, if that is another move: it
         // may lie between two chords of one arc.
         let halves = if to == own { 1.0 } else { 0.5 };
@@ -240,7 +240,7 @@ impl Ahead {
         if peaks {
             for number in ride.moves[0]..=ride.moves[1] {
                 if let Some(open) = self.open.get_mut(number) {
-                    open.alone = false;
+                    (open.alone, open.in_turn) = (false, false);
                 }
             }
         }
@@ -275,7 +275,7 @@ impl Ahead {
 
     /// Whether a piece runs as planned whatever happened where the motion was in
     /// doubt before it.
-    fn is_certain(&mut self, eye: &Eye, planned: &Planned<u64>, from: u64, to: u64) -> bool {
+    fn is_certain(&mut self, planned: &Planned<u64>, from: u64, to: u64) -> bool {
         let blend = matches!(planned.piece, Piece::Blend(_));
         for number in from..=to {
             if let Some(open) = self.open.get_mut(number)
@@ -287,9 +287,7 @@ impl Ahead {
             }
         }
         let end2 = planned.speeds2.end;
-        // Limits over time take one move after the other.
-        let in_turn = !(planned.overlaps && eye.watch.is_some());
-        if !(planned.certain && in_turn) {
+        if !planned.certain {
             self.reach2 = (end2 > 0.0).then_some(0.0);
             return false;
         }

@@ -11,11 +11,10 @@ use super::open::Open;
 use crate::machine::Machine;
 use crate::plan::{Overrides, blended_bound, ramps};
 use crate::power::demand::Want;
-use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 
 impl Open {
-    /// Counts what the curves of force permit; over time the robust bound does.
+    /// Counts what the curves of force permit, over time for as long as it may last.
     /// It begins and ends at `ends_mm_s` at most.
     #[cold]
     pub(super) fn drive(
@@ -23,13 +22,9 @@ impl Open {
         ends_mm_s: [f64; 2],
         machine: &Machine,
         model: &PowerModel,
-        eye: &Eye,
         largest: Overrides,
     ) {
-        if eye.watch.is_some() {
-            self.certain = false;
-            return;
-        }
+        self.in_turn = false;
         let mv = &self.mv;
         if mv.arc.is_some() {
             // Where on its circle it speeds up is not known.

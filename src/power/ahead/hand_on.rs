@@ -5,13 +5,14 @@ use super::open::Open;
 use super::queue::Leaving;
 use crate::interpret::Move;
 use crate::machine::Machine;
-use crate::plan::{Overrides, blended_bound, blended_speed};
+use crate::plan::{Overrides, SpeedBound, blended_bound, blended_speed};
 use crate::power::assessment::{Assessment, Certificate};
-use crate::power::demand::Demand;
-use crate::power::eye::Eye;
+use crate::power::demand::{Demand, Want, larger};
+use crate::power::eye::{Eye, span};
 use crate::power::late::unpaced;
 use crate::power::model::PowerModel;
 use crate::power::robust::{Extremes, Part};
+use crate::power::watch::{Known, Span};
 
 impl Ahead {
     /// Hands on the moves that are finished, and whose neighbours are. All, when
@@ -58,7 +59,8 @@ impl Ahead {
             };
             let next = next.filter(|_| !own.rests);
             let before = before.filter(|before| !before.rests);
-            if self.driven && !own.steady {
+            let driven = self.driven && !own.steady;
+            if driven {
                 let largest = self.largest.overrides;
                 let doubtful = self.in_doubt || self.unwaited.is_some();
                 let ends_mm_s = [before, next].map(|beside| match beside {
@@ -66,7 +68,7 @@ impl Ahead {
                     Some(beside) => blended_speed(machine, &unpaced(&beside.mv), largest),
                     None => 0.0,
                 });
-                own.drive(ends_mm_s, machine, model, eye, largest);
+                own.drive(ends_mm_s, machine, model, largest);
             }
             if self.surges.is_some()
                 && let Some(cruises) = model.cruises(&own.mv, own.assessment.top_speed_mm_s)
@@ -90,8 +92,16 @@ impl Ahead {
             let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;
             if planned && own.certain && certain(before) && certain(next) {
                 own.assessment.blended = !own.alone;
-                if own.assessment.ahead {
+                if own.assessment.ahead && own.in_turn {
                     eye.kept(model, &own.mv, &mut own.kept);
+                } else if own.assessment.ahead {
+                    let overrides = self.largest.overrides;
+                    let span = if driven {
+                        span(machine, &own.mv, overrides)
+                    } else {
+                        Span::of(own.assessment.fastest_s)
+                    };
+                    own.watch([before, next], span, (machine, model), eye, overrides);
                 } else {
                     eye.alone(machine, model, &own.mv, self.largest.overrides);
                 }
@@ -135,7 +145,7 @@ impl Open {
     /// bound covers.
     fn bound(
         &mut self,
-        [before, next]: [Option<&Self>; 2],
+        beside: [Option<&Self>; 2],
         unwaited: &mut Option<Extremes>,
         machine: &Machine,
         model: &PowerModel,
@@ -143,23 +153,14 @@ impl Open {
         largest: Overrides,
     ) {
         let mut kept = std::mem::take(&mut self.kept);
-        let mut demand = {
-            let own = &*self;
-            let beside = [before.unwrap_or(own), own, next.unwrap_or(own)];
-            // A change of pace is part of what is not known.
-            let bounds = beside.map(|open| blended_bound(machine, &unpaced(&open.mv), largest));
-            let [first, own, last] = &bounds;
-            let part = |bound, index: usize| Part {
-                bound,
-                accel_mm_s2: &beside[index].mv.accel_mm_s2,
-            };
-            let first = unwaited.as_ref().map_or(part(first, 0), Extremes::part);
-            let window = [first, part(own, 1), part(last, 2)];
-            eye.blended(machine, model, &self.mv, &window, &mut kept, largest);
-            let demand = model.robust_over(&self.mv, &window, self.want);
-            *unwaited = Some(Extremes::of(&window));
-            demand
-        };
+        let bounds = self.bounds(beside, machine, largest);
+        let mut window = self.window(beside, &bounds);
+        if let Some(unwaited) = unwaited {
+            window[0] = unwaited.part();
+        }
+        eye.blended(machine, model, &self.mv, &window, &mut kept, largest);
+        let mut demand = model.robust_over(&self.mv, &window, self.want);
+        let covered = Extremes::of(&window);
         // Chords of a small arc may ask for more than the axes' limits.
         demand.include(&self.assessment.demand);
         self.assessment.demand = Demand {
@@ -167,5 +168,67 @@ impl Open {
             ..demand
         };
         self.assessment.certificate = Certificate::Robust;
+        *unwaited = Some(covered);
+    }
+
+    /// Over time it counts with no more than its peaks, where these are known of the
+    /// converter, for as long as it may last.
+    #[cold]
+    fn watch(
+        &mut self,
+        beside: [Option<&Self>; 2],
+        span: Span,
+        (machine, model): (&Machine, &PowerModel),
+        eye: &mut Eye,
+        largest: Overrides,
+    ) {
+        if eye.watch.is_none() {
+            return;
+        }
+        let mut kept = std::mem::take(&mut self.kept);
+        let bounds = self.bounds(beside, machine, largest);
+        let window = self.window(beside, &bounds);
+        let Demand {
+            peak_w, regen_w, ..
+        } = self.assessment.demand;
+        let Want {
+            floor_w,
+            regen_floor_w,
+            ..
+        } = self.want;
+        let most_w = [larger(peak_w, floor_w), larger(regen_w, regen_floor_w)];
+        let known = Known {
+            span,
+            most_w: (model.converters.len() == 1).then_some(most_w),
+        };
+        eye.unknown(model, &self.mv, &window, &mut kept, known);
+    }
+
+    /// The speeds of the one before it, its own, and those of the one after it.
+    fn bounds(
+        &self,
+        [before, next]: [Option<&Self>; 2],
+        machine: &Machine,
+        largest: Overrides,
+    ) -> [SpeedBound; 3] {
+        // A change of pace is part of what is not known.
+        [before.unwrap_or(self), self, next.unwrap_or(self)]
+            .map(|open| blended_bound(machine, &unpaced(&open.mv), largest))
+    }
+
+    fn window<'a>(
+        &'a self,
+        [before, next]: [Option<&'a Self>; 2],
+        [first, own, last]: &'a [SpeedBound; 3],
+    ) -> [Part<'a>; 3] {
+        let part = |bound, open: &'a Self| Part {
+            bound,
+            accel_mm_s2: &open.mv.accel_mm_s2,
+        };
+        [
+            part(first, before.unwrap_or(self)),
+            part(own, self),
+            part(last, next.unwrap_or(self)),
+        ]
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Open {
     pub assessment: Assessment,
     pub want: Want,
     pub certain: bool,
+    /// It runs in turn, and as planned over time; else only its figures are known.
+    pub in_turn: bool,
     /// The speed with which it begins is not certain.
     pub in_doubt: bool,
     /// It ends at rest whatever follows.
@@ -57,6 +59,7 @@ impl Open {
             assessment: Assessment::AHEAD,
             want,
             certain: true,
+            in_turn: true,
             in_doubt: false,
             rests: false,
             moves: false,
@@ -77,7 +80,8 @@ impl Open {
         self.text.extend_from_slice(text);
         self.assessment = Assessment::AHEAD;
         self.want = want;
-        (self.certain, self.alone, self.steady) = (true, true, true);
+        (self.certain, self.in_turn) = (true, true);
+        (self.alone, self.steady) = (true, true);
         (self.in_doubt, self.rests, self.moves) = (false, false, false);
         self.kept.clear();
     }

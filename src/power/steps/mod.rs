@@ -74,6 +74,9 @@ impl Span {
     }
 }
 
+/// Share by which spans are kept for longer than they are looked at: see `NO_TIME`.
+const REACH: f64 = 1e-6;
+
 /// A span in its place.
 #[derive(Debug, Clone, Copy)]
 struct Placed {
@@ -178,7 +181,8 @@ impl Steps {
             return false;
         }
         let start_s = self.end_s;
-        let reach_s = start_s - 2.0 * self.response_s;
+        // What is there but for rounding is kept.
+        let reach_s = start_s - 2.0 * self.response_s * (1.0 + REACH);
         while let Some(first) = self.spans.front()
             && first.start_s + first.span.duration_s < reach_s
         {

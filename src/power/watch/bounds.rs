@@ -8,7 +8,7 @@ use crate::plan::{Plan, Profile, SpeedBound, Trajectory};
 use crate::power::model::PowerModel;
 use crate::power::robust::Part;
 use crate::power::surge::{Surge, surge_powers};
-use crate::power::trace::{Flow, Tracer};
+use crate::power::trace::{Flow, Slice, Tracer};
 
 impl Watch {
     /// At lower overrides a piece may be sped up or braked where it is not at the
@@ -39,6 +39,13 @@ impl Watch {
             if let Some(terms) = kept.terms(index) {
                 terms.surge_w = terms.surge_w.max(power_w);
                 terms.surge_s += lasts_s;
+            }
+            if let Some(step) = kept.step(index).copied()
+                && step.more_w > 0.0
+            {
+                // It may fall into the step of speed before the piece.
+                let both = Slice::constant(lasts_s.min(step.lasts_s), power_w + step.more_w);
+                kept.push_late(index, both);
             }
         }
     }

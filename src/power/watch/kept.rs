@@ -21,6 +21,15 @@ struct Own {
     line: Option<(f64, Line)>,
     /// Of a bound over all lower overrides what else it has to know.
     terms: Terms,
+    /// What the step of speed before the last piece adds.
+    step: Added,
+}
+
+/// A power that comes on top for so long at most.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Added {
+    pub more_w: f64,
+    pub lasts_s: f64,
 }
 
 impl Kept {
@@ -30,6 +39,7 @@ impl Kept {
             own.late.clear();
             own.line = None;
             own.terms = Terms::default();
+            own.step = Added::default();
         }
     }
 
@@ -64,6 +74,11 @@ impl Kept {
     /// What else a bound has to know.
     pub(super) fn terms(&mut self, track: usize) -> Option<&mut Terms> {
         self.own(track).map(|own| &mut own.terms)
+    }
+
+    /// What the step of speed before the last piece adds.
+    pub(super) fn step(&mut self, track: usize) -> Option<&mut Added> {
+        self.own(track).map(|own| &mut own.step)
     }
 
     /// The largest power of the slices of a track from one on.

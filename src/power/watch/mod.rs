@@ -40,9 +40,10 @@ mod store;
 mod terms;
 
 pub(super) use beside::{Beside, Level, Steps};
+use kept::Added;
 pub(super) use kept::Kept;
 pub use rating::{Measure, Rating};
-pub(super) use span::Span;
+pub(super) use span::{Known, Span};
 
 use super::model::PowerModel;
 use super::piece::straight_line;
@@ -290,6 +291,12 @@ impl Watch {
                 });
             }
             if track.bounds {
+                if let Some(added) = kept.step(index) {
+                    *added = Added {
+                        more_w,
+                        lasts_s: step.map_or(0.0, |step| step.response_s),
+                    };
+                }
                 let rest_w = tracer.rest_w(mv);
                 let cruise_w = match &planned.piece {
                     Piece::Along { .. } if mv.arc.is_none() => {
@@ -330,15 +337,15 @@ impl Watch {
     }
 
     /// Takes a move whose timing is not known: its largest speeds and those of
-    /// its neighbours, pieces of its plan that may ask for more, and for how long
-    /// it may last.
+    /// its neighbours, pieces of its plan that may ask for more, for how long
+    /// it may last, and what it draws and feeds back at most where that is known.
     pub fn unknown(
         &mut self,
         model: &PowerModel,
         mv: &Move,
         parts: &[Part<'_>],
         kept: &mut Kept,
-        span: Span,
+        Known { span, most_w }: Known,
     ) {
         let place = Place::of(mv);
         for (index, track) in self.tracks.iter().enumerate() {
@@ -352,6 +359,9 @@ impl Watch {
             *of_flow = slices.fold(*of_flow, |most, slice| {
                 super::demand::larger(most, slice.peak_w())
             });
+            if let Some(most_w) = most_w {
+                powers = std::array::from_fn(|side| powers[side].min(most_w[side]));
+            }
             let rest_w = track.still_w(own, mv, parts);
             self.powers.push([powers[0], powers[1], rest_w]);
         }

@@ -16,6 +16,14 @@ impl Span {
         longest_s: f64::INFINITY,
     };
 
+    /// So long.
+    pub const fn of(duration_s: f64) -> Self {
+        Self {
+            shortest_s: duration_s,
+            longest_s: duration_s,
+        }
+    }
+
     /// The time that is worse for something that grows above a limit and shrinks
     /// below it.
     pub fn worse_s(self, above: bool) -> f64 {
@@ -24,5 +32,20 @@ impl Span {
         } else {
             self.shortest_s
         }
+    }
+}
+
+/// What is known of a move that does not run in turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::power) struct Known {
+    pub span: Span,
+    /// What it draws and feeds back at most, W; nothing but the bound where `None`.
+    pub most_w: Option<[f64; 2]>,
+}
+
+impl Known {
+    /// For how long it may last.
+    pub const fn lasting(span: Span) -> Self {
+        Self { span, most_w: None }
     }
 }

@@ -178,7 +178,8 @@ impl Ahead {
     fn begin_gliding(&mut self, model: &PowerModel, eye: &mut Eye) -> Option<Glide> {
         self.largest.planner.settle();
         self.pump(model, eye);
-        if self.steps.is_doubtful() {
+        // What has become final may have left a doubt.
+        if self.steps.is_doubtful() || self.reach2.is_some() {
             return None;
         }
         let planner = &self.largest.planner;
