@@ -365,16 +365,35 @@ fn limits_hold_at_any_override() {
     assert!(3 * loose <= all, "{found:?}");
 }
 
-/// Some minutes.
-#[test]
-#[ignore = "many programs; run it after changes of limits over time or of look-ahead"]
-fn limits_of_many_programs_hold_at_any_override() {
-    let mut missed = 0;
-    for seed in 100..140 {
-        let found = sweep(seed, 50, 20);
-        eprintln!("{seed}: {found:?}");
-        missed += found.missed;
-    }
-    // Arcs whose chords follow the feed, and ramps that begin between two settings.
-    assert!(missed <= 5, "{missed}");
+/// A tenth of 2,000 programs, which takes some minutes.
+macro_rules! tenths {
+    ($($name:ident: $seed:expr),* $(,)?) => {
+        /// `cargo test -- --ignored overrides::many`
+        mod many {
+            $(
+                #[test]
+                #[ignore = "many programs; run it after changes of limits over time or of look-ahead"]
+                fn $name() {
+                    for seed in $seed..$seed + 4 {
+                        let found = super::sweep(seed, 50, 20);
+                        eprintln!("{seed}: {found:?}");
+                        assert_eq!(found.missed, 0);
+                    }
+                }
+            )*
+        }
+    };
 }
+
+tenths!(
+    limits_hold_at_any_override_0: 100,
+    limits_hold_at_any_override_1: 104,
+    limits_hold_at_any_override_2: 108,
+    limits_hold_at_any_override_3: 112,
+    limits_hold_at_any_override_4: 116,
+    limits_hold_at_any_override_5: 120,
+    limits_hold_at_any_override_6: 124,
+    limits_hold_at_any_override_7: 128,
+    limits_hold_at_any_override_8: 132,
+    limits_hold_at_any_override_9: 136,
+);

@@ -76,7 +76,8 @@ impl Steps {
         // Which span the mean begins in; 0: before all.
         let mut begun = begun;
         let mut stepped = self.stepped(begun, tau);
-        while end_s < until_s {
+        // What rounding leaves of the last part has no step within.
+        while until_s - end_s > NO_TIME * tau {
             let from_s = end_s - tau;
             let placed = begun.checked_sub(1).and_then(|index| self.spans.get(index));
             let leaves_s = placed.map_or(first.start_s, Placed::end_s);

@@ -209,6 +209,7 @@ impl Ahead {
             let each = self.open.get_mut(first + index as u64)?;
             let glides = terms.suit(&each.mv)
                 && each.mv.feed_mm_s == feed_mm_s
+                && each.certain
                 && !each.in_doubt
                 && is_plain(model, &each.mv, speed_mm_s, each.want)
                 && terms.describe(&mut line, &each.mv, each.mv.moving, speed_mm_s);
