@@ -1,5 +1,6 @@
 //! Limits over time and series from outside: what the commands say and write.
 
+mod figures;
 mod lower;
 mod overrides;
 mod worked;

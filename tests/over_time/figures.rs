@@ -1,0 +1,50 @@
+//! Limits over time do not change what a program draws.
+
+use crate::shop::Shop;
+
+/// S-shaped arcs: `LinuxCNC` cannot lay an arc between them, and lets them overlap.
+const OVERLAPPING: &str = "G21 G90 G94 G64\nF3000\nG2 X0 Y2.5 R5\nG3 X2.5 Y-2.5 R5\n\
+                           G2 X5 Y2.5 R5\nG3 X7.5 Y-2.5 R5\nG2 X10 Y2.5 R5\nM2\n";
+const LINES: &str = "G21 G90 G94\nF20000\nG1 X100\nG1 X200 Y3\nG1 X90 Y8\nG0 X0 Y0\nM2\n";
+
+/// Peak, certificate and limits over time.
+fn found(shop: &Shop) -> (f64, String, Vec<f64>) {
+    let (_, told, errors) = shop.run("check a.ngc --format json");
+    let told: serde_json::Value = serde_json::from_str(&told).expect(&errors);
+    let values = told[0]["over_time"].as_array();
+    let values = values.map(|all| all.iter().filter_map(|it| it["value"].as_f64()).collect());
+    (
+        told[0]["peak_w"].as_f64().unwrap(),
+        told[0]["certificate"].to_string(),
+        values.unwrap_or_default(),
+    )
+}
+
+#[test]
+fn limits_over_time_change_no_peak() {
+    let curve = "force_curve = [{ speed_mm_min = 0, force_n = 900 }, { speed_mm_min = 15000, force_n = 900 }, { speed_mm_min = 30000, force_n = 500 }]";
+    for (controller, program, axis) in [
+        ("linuxcnc", OVERLAPPING, ""),
+        ("linuxcnc", LINES, ""),
+        ("linuxcnc", LINES, curve),
+        ("grbl", LINES, curve),
+        ("grbl", OVERLAPPING, ""),
+    ] {
+        let of = |ratings: &str| {
+            let rest = "[path]\nrapid = \"linear\"";
+            let ratings = format!("peak_power_w = 5000\n{ratings}");
+            let shop = Shop::mill(controller, &ratings, rest, axis);
+            shop.put("a.ngc", program);
+            found(&shop)
+        };
+        let (peak_w, certificate, _) = of("");
+        assert_eq!(certificate, "\"planned\"", "{controller}");
+        let over_time = "continuous_power_w = 4000\nwindow_s = 10\n\
+                         brake_power_w = 1000\nbrake_energy_j = 1e6";
+        let (watched_w, watched, values) = of(over_time);
+        assert_eq!((watched_w, watched), (peak_w, certificate), "{controller}");
+        // A mean exceeds no peak.
+        assert!(values[0] <= peak_w * (1.0 + 1e-9), "{values:?} {peak_w}");
+        assert!(values[0] > 100.0, "{values:?}");
+    }
+}
