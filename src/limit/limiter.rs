@@ -17,6 +17,7 @@ use super::split::{SPLIT_TRIES, Split};
 use super::window;
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{Machine, RapidJoint};
+use crate::plan::plan;
 use crate::power::{Assessment, Certificate};
 
 /// What was decided for one move.
@@ -79,6 +80,9 @@ pub struct Limiter<'m> {
     solver: Solver<'m>,
     slots: VecDeque<Slot>,
     depths: Depths,
+    /// The speed at which the last move ends, mm/s, where that is known to be slower than
+    /// it was.
+    arrives_mm_s: Option<f64>,
     /// A move has been changed since the spindle was steady last: those after
     /// it meet its run later than in the original.
     shifted: bool,
@@ -93,6 +97,7 @@ impl<'m> Limiter<'m> {
             solver: Solver::new(machine, how),
             slots: VecDeque::new(),
             depths,
+            arrives_mm_s: None,
             shifted: false,
         }
     }
@@ -131,9 +136,13 @@ impl<'m> Limiter<'m> {
             };
             let outcome = self.alone(mv, assessment, ends, find);
             self.shifted |= outcome.change.is_some();
+            if self.splits() && mv.length_mm > 0.0 {
+                self.arrives_mm_s = self.arrival(mv, assessment, &outcome, find);
+            }
             sink(outcome);
             return;
         }
+        self.arrives_mm_s = None;
         if !assessment.blended {
             let outcome = self.alone(mv, assessment, Ends::Rest, find);
             self.shifted |= outcome.change.is_some();
@@ -247,8 +256,14 @@ impl<'m> Limiter<'m> {
         {
             return outcome;
         }
-        let deeper = assessment.ahead && self.depth(mv) > 0;
-        let fits = self.solver.model.fits(&assessment.demand) && !deeper;
+        let tries = if self.splits() {
+            self.depths.of(mv)
+        } else {
+            self.depth(mv)
+        };
+        let deeper = assessment.ahead && tries > 0;
+        let fits_alone = self.solver.model.fits(&assessment.demand);
+        let fits = fits_alone && !deeper;
         let later = self.shifted && assessment.spindle.runs;
         let always = self.solver.how.always;
         if fits && !later && !always {
@@ -275,11 +290,10 @@ impl<'m> Limiter<'m> {
         let solved = self.solver.solve(mv, assessment, &permit, ends);
         let mut outcome = Outcome::default();
         if self.splits() && !fits {
-            let otherwise = solved.as_ref().ok();
-            let tries = self.depths.of(mv);
-            let pieces = self
-                .solver
-                .pieces(mv, assessment, &permit, tries, otherwise);
+            // What fits by itself is no measure next to its neighbours.
+            let otherwise = solved.as_ref().ok().filter(|_| !fits_alone);
+            let how = (tries - u8::from(fits_alone), self.arrives_mm_s);
+            let pieces = self.solver.pieces(mv, assessment, &permit, how, otherwise);
             match pieces {
                 Ok(split) => {
                     let last = split.pieces.last().and_then(|piece| piece.accel);
@@ -292,6 +306,7 @@ impl<'m> Limiter<'m> {
                     outcome.split = Some(Box::new(split));
                     return outcome;
                 }
+                Err(_) if fits_alone && self.depth(mv) == 0 => return outcome,
                 Err(reason) => outcome.unsplit = Some(reason),
             }
         }
@@ -304,6 +319,36 @@ impl<'m> Limiter<'m> {
 }
 
 impl Limiter<'_> {
+    /// The speed at which a move ends with what was decided for it, where that is slower
+    /// than it was.
+    fn arrival<'a>(
+        &self,
+        mv: &Move,
+        assessment: &Assessment,
+        outcome: &Outcome,
+        find: &impl Fn(usize) -> Option<Waiting<'a>>,
+    ) -> Option<f64> {
+        let [start_mm_s, end_mm_s] = assessment.ends2.map(f64::sqrt);
+        let slower = |speed_mm_s: f64| (speed_mm_s < end_mm_s * (1.0 - 1e-9)).then_some(speed_mm_s);
+        if let Some(split) = &outcome.split {
+            return slower(split.end_mm_s);
+        }
+        if outcome.change.is_none() && self.arrives_mm_s.is_none() {
+            return None;
+        }
+        let (machine, largest) = (self.solver.machine, self.solver.largest);
+        let start_mm_s = self.arrives_mm_s.unwrap_or(start_mm_s);
+        let planned = match &outcome.change {
+            Some(change) => {
+                let Waiting { permit, .. } = find(self.slots.len())?;
+                plan(machine, &change.apply(machine, mv, &permit), largest)
+            }
+            None => plan(machine, mv, largest),
+        };
+        let reached2 = start_mm_s * start_mm_s + 2.0 * planned.accel_mm_s2 * mv.length_mm;
+        slower(reached2.sqrt().min(planned.speed_limit_mm_s))
+    }
+
     /// What a move gets that is held to a speed by measure, or by how far it exceeds the
     /// limit next to its neighbours; `None` where it is solved like others.
     fn by_measure<'a>(

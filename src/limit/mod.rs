@@ -4,6 +4,7 @@
 //! Output: for each move, in order, the [`Change`] that makes it fit, or why
 //! there is none. The limiter never sees text.
 
+mod accels;
 mod along;
 mod bounds;
 mod by_axis;
@@ -13,6 +14,7 @@ mod depth;
 mod first_feed;
 mod halt;
 mod held;
+mod joints;
 mod law;
 mod level;
 mod lever;

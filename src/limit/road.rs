@@ -4,15 +4,17 @@
 //! fit, begun and ended as the move is. Stages up and stages down (`stages`) meet at the
 //! speed that the length of the way leaves, or with a cruise between them.
 
+use super::accels::{Accels, GRID};
 use super::along::straight_accel_mm_s2;
 use super::case::Case;
 use super::change::Change;
 use super::solver::Solver;
+use super::split::SPLIT_TRIES;
 use super::stages::{Stages, Terms, stages};
 use crate::interpret::Move;
 use crate::machine::AxisValues;
 use crate::plan::lookahead::Speeds2;
-use crate::plan::{Phase, PhaseKind, Plan, Profile, Trajectory, plan};
+use crate::plan::{Plan, Profile, Trajectory, plan};
 use crate::power::Want;
 
 /// The load that stretches are designed for, and the one that they must keep as they will
@@ -21,14 +23,13 @@ const AIM: f64 = 1.0 - 4e-5;
 pub(super) const MOST: f64 = 1.0 - 1e-5;
 /// What the drives' response takes where it is modelled, as a share of the limit.
 const RESPONSE: f64 = 4e-4;
-/// How much longer stretches are, and for how much less of the limit, where finer ones did
-/// not fit next to the block's neighbours.
-const LONGER: f64 = 3.0;
-const LESS: f64 = 5e-3;
+/// By which factor stretches are longer, and for how much less of the limit, each time that
+/// others did not fit: short ones next to what bounds say of the drives' response, and all
+/// next to the block's neighbours.
+const COARSER: [(f64, f64); SPLIT_TRIES as usize] =
+    [(1.0, 0.0), (1.0, 3e-3), (2.5, 5e-3), (6.0, 1e-2)];
 /// Halvings in the search for an acceleration and for the top speed.
-const HALVINGS: u32 = 40;
-/// Speeds at which the largest accelerations are looked up.
-const GRID: usize = 96;
+pub(super) const HALVINGS: u32 = 40;
 /// The shortest stretch, mm: many times what places are rounded by.
 pub(super) const SHORTEST_MM: f64 = 0.1;
 /// What a stretch more must bring in, as a share of the time.
@@ -39,6 +40,11 @@ const PRICE: f64 = 2e-5;
 const EARLIER: f64 = 0.01;
 /// Accelerations that are tried for the last stages.
 const TRIES: u32 = 60;
+/// By what share the square of the speed is below the top where a hill begins on which
+/// nothing but its acceleration holds the speed.
+const HILL: f64 = 0.01;
+/// By how much stages are designed longer than they must be, since their ends still move.
+const SPARE: f64 = 1.02;
 
 /// Why there are no stretches.
 pub(super) const NO_FIT: &str =
@@ -48,7 +54,7 @@ pub(super) const SHORT: &str = "its pieces would be shorter than the control can
 /// An acceleration that the knob can say, mm/s², with its value.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
-    accel_mm_s2: f64,
+    pub(super) accel_mm_s2: f64,
     pub(super) value: Option<(usize, AxisValues)>,
 }
 
@@ -64,24 +70,34 @@ pub(super) struct Stretch {
 pub(super) struct Way {
     pub(super) stretches: Vec<Stretch>,
     /// The first one that is meant for braking.
-    brakes_from: usize,
+    pub(super) brakes_from: usize,
 }
 
 /// The line, and what holds on it.
 pub(super) struct Road<'a> {
-    solver: &'a Solver<'a>,
+    pub(super) solver: &'a Solver<'a>,
     case: Case<'a>,
     knob: usize,
-    /// Speeds at its ends and its largest, mm/s.
-    ends_mm_s: [f64; 2],
+    /// Speeds at its ends, that of its F or axes, and the largest that is aimed at, mm/s.
+    pub(super) ends_mm_s: [f64; 2],
+    pub(super) limit_mm_s: f64,
     pub(super) top_mm_s: f64,
     /// Acceleration along the path that is in force, and what the knob acts on of it.
-    accel_mm_s2: f64,
+    pub(super) accel_mm_s2: f64,
     axes_accel_mm_s2: f64,
     /// The load that is aimed at.
-    aim: f64,
+    pub(super) aim: f64,
     /// The shortest piece, s.
-    shortest_s: f64,
+    pub(super) shortest_s: f64,
+}
+
+/// What stretches have to keep to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Lengths {
+    /// They last as long as a block has to.
+    Usable,
+    /// The control runs none of them at a lower F than their speed while its queue is short.
+    AtSpeed,
 }
 
 impl<'a> Road<'a> {
@@ -90,11 +106,8 @@ impl<'a> Road<'a> {
         let Case { mv, assessment, .. } = case;
         let machine = solver.machine;
         let planner = &machine.controller.planner;
-        let mut shortest_s = planner.shortest_block_s;
         let mut aim = AIM;
         if planner.look_ahead.is_some() {
-            // Shorter ones are lost in the response of the drives.
-            shortest_s = shortest_s.max(machine.path.response_time_s);
             aim -= RESPONSE;
         }
         let axes_accel_mm_s2 = straight_accel_mm_s2(mv);
@@ -104,24 +117,46 @@ impl<'a> Road<'a> {
             case,
             knob,
             ends_mm_s: assessment.ends2.map(f64::sqrt),
+            limit_mm_s: planned.speed_limit_mm_s,
             top_mm_s: planned.speed_limit_mm_s,
             accel_mm_s2: planned.accel_mm_s2,
             axes_accel_mm_s2: own_mm_s2,
             aim,
-            shortest_s,
+            shortest_s: planner.shortest_block_s,
         }
     }
 
-    /// Longer pieces, for less of the limit.
+    /// Begins a way at a lower speed than the move did.
+    pub(super) fn begin(&mut self, start_mm_s: f64) {
+        let [start, _] = &mut self.ends_mm_s;
+        *start = start.min(start_mm_s);
+    }
+
+    /// Holds a way to a speed that is below its F, or that of its axes.
+    pub(super) fn hold(&mut self, top_mm_s: f64) {
+        self.top_mm_s = self.top_mm_s.min(top_mm_s);
+    }
+
+    /// Longer pieces, for less of the limit, after so many tries.
     pub(super) fn coarser(&mut self, tries: u8) {
-        for _ in 0..tries {
-            self.shortest_s *= LONGER;
-            self.aim -= LESS;
+        if let Some((longer, less)) = COARSER.get(usize::from(tries)) {
+            self.shortest_s *= longer;
+            self.aim -= less;
+        }
+    }
+
+    /// The least ratio of speeds at the ends of a piece: a control that sees `n` blocks ahead
+    /// must be able to stop in the next `n`, which takes v² of what they gain together.
+    fn least_ratio(&self) -> f64 {
+        let rules = self.solver.machine.controller.planner.look_ahead;
+        match rules.and_then(|rules| rules.blocks) {
+            Some(blocks) if blocks > 1 => libm::exp2(0.5 / f64::from(blocks - 1)),
+            _ => 1.0,
         }
     }
 
     /// The load ratio of a profile.
-    fn load(&self, profile: Profile) -> f64 {
+    pub(super) fn load(&self, profile: Profile) -> f64 {
         let top_speed_mm_s = profile.top_speed_mm_s();
         let plan = Plan {
             duration_s: profile.duration_s(),
@@ -135,48 +170,6 @@ impl<'a> Road<'a> {
         let demand = model.with_cruises(demand, self.case.mv, top_speed_mm_s);
         let share = &self.case.assessment.spindle;
         model.load_beside(&demand, share, top_speed_mm_s)
-    }
-
-    /// The load of a ramp between two speeds.
-    fn ramp_load(&self, from_mm_s: f64, to_mm_s: f64, accel_mm_s2: f64) -> f64 {
-        let mut profile = Profile::default();
-        profile.phases.push(Phase {
-            kind: PhaseKind::ConstantAcceleration,
-            duration_s: (to_mm_s - from_mm_s).abs() / accel_mm_s2,
-            position_mm: 0.0,
-            velocity_mm_s: from_mm_s,
-            end_velocity_mm_s: to_mm_s,
-            accel_mm_s2: accel_mm_s2.copysign(to_mm_s - from_mm_s),
-        });
-        self.load(profile)
-    }
-
-    /// The largest acceleration with which a ramp between rest and a speed fits; `None`
-    /// where hardly any does.
-    fn largest_mm_s2(&self, top_mm_s: f64, brakes: bool) -> Option<f64> {
-        let [from_mm_s, to_mm_s] = if brakes {
-            [top_mm_s, 0.0]
-        } else {
-            [0.0, top_mm_s]
-        };
-        let load = |accel: f64| self.ramp_load(from_mm_s, to_mm_s, accel);
-        if load(self.accel_mm_s2) <= self.aim {
-            return Some(self.accel_mm_s2);
-        }
-        let (mut low, mut high) = (1e-4 * self.accel_mm_s2, self.accel_mm_s2);
-        let least = load(low);
-        if least > self.aim || least.is_nan() {
-            return None;
-        }
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(low, high);
-            if load(middle) <= self.aim {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(low)
     }
 
     /// An acceleration as the knob says it, rounded down.
@@ -200,90 +193,163 @@ impl<'a> Road<'a> {
         })
     }
 
-    /// The way in stretches, each with its acceleration.
-    pub(super) fn way(&self, shortest_mm: f64) -> Result<Way, &'static str> {
-        let grid = |index: usize| self.top_mm_s * index as f64 / GRID as f64;
-        let mut tables = [Vec::with_capacity(GRID), Vec::with_capacity(GRID)];
-        for (table, brakes) in tables.iter_mut().zip([false, true]) {
-            for index in 1..=GRID {
-                match self.largest_mm_s2(grid(index), brakes) {
-                    Some(accel) => table.push(accel),
-                    None => break,
-                }
-            }
-        }
-        let known = tables.iter().map(Vec::len).min().unwrap_or(0);
-        let reach_mm_s = grid(known);
-        let [start_mm_s, end_mm_s] = self.ends_mm_s;
-        let least_mm_s = start_mm_s.max(end_mm_s);
-        if reach_mm_s <= least_mm_s {
-            return Err(NO_FIT);
-        }
-        let look_up = |table: &[f64], speed_mm_s: f64| {
-            let place = speed_mm_s / self.top_mm_s * GRID as f64 - 1.0;
-            let low = (place.max(0.0) as usize).min(known - 1);
-            let high = (low + 1).min(known - 1);
-            let share = (place - low as f64).clamp(0.0, 1.0);
-            table[low] + share * (table[high] - table[low])
+    /// Stages up to one speed and down from another.
+    fn ramps(
+        &self,
+        accels: &Accels,
+        lengths: Lengths,
+        [crest_mm_s, top_mm_s]: [f64; 2],
+    ) -> Option<[Stages; 2]> {
+        let at_speed_s = match lengths {
+            Lengths::Usable => 0.0,
+            Lengths::AtSpeed => SPARE * self.solver.machine.controller.planner.shortest_at_feed_s,
         };
         let terms = Terms {
-            shortest_s: 1.02 * self.shortest_s,
-            shortest_mm: 1.02 * shortest_mm,
+            shortest_s: SPARE * self.shortest_s,
+            shortest_mm: SPARE * SHORTEST_MM,
+            at_foot_s: 0.0,
+            at_top_s: 0.0,
+            ratio: 1.0,
             price_s: PRICE * (self.case.mv.length_mm / self.top_mm_s),
         };
-        let [up, down] = &tables;
-        let ramps = |top_mm_s: f64| {
-            let up = stages(start_mm_s, top_mm_s, |v| look_up(up, v), terms)?;
-            let down = stages(end_mm_s, top_mm_s, |v| look_up(down, v), terms)?;
-            Some([up, down])
+        // What speeds up must not be held back at its top; what brakes, not below its end.
+        let rising = Terms {
+            at_top_s: at_speed_s,
+            ratio: self.least_ratio(),
+            ..terms
         };
-        let length_mm = self.case.mv.length_mm;
-        let has_room = |[up, down]: &[Stages; 2]| up.length_mm + down.length_mm <= length_mm;
-        let mut found = ramps(reach_mm_s);
-        if found.as_ref().is_some_and(has_room) {
-            if known < GRID {
-                return Err(NO_FIT);
-            }
-        } else {
-            found = None;
-            let (mut low, mut high) = (least_mm_s, reach_mm_s);
-            for _ in 0..HALVINGS {
-                let middle = f64::midpoint(low, high);
-                match ramps(middle) {
-                    Some(ramps) if has_room(&ramps) => (low, found) = (middle, Some(ramps)),
-                    // Ramps to lower speeds have shorter stages.
-                    None => low = middle,
-                    Some(_) => high = middle,
+        let falling = Terms {
+            at_foot_s: at_speed_s,
+            ..terms
+        };
+        let [start_mm_s, end_mm_s] = self.ends_mm_s;
+        let up = stages(start_mm_s, crest_mm_s, |v| accels.at(v, false), rising)?;
+        let down = stages(end_mm_s, top_mm_s, |v| accels.at(v, true), falling)?;
+        Some([up, down])
+    }
+
+    /// The way in stretches, each with its acceleration.
+    pub(super) fn way(&self, lengths: Lengths) -> Result<Way, &'static str> {
+        let accels = self.accels();
+        let reach_mm_s = self.top_mm_s * accels.known() as f64 / GRID as f64;
+        let [start_mm_s, end_mm_s] = self.ends_mm_s;
+        let least_mm_s = start_mm_s.max(end_mm_s);
+        if reach_mm_s <= start_mm_s {
+            return Err(NO_FIT);
+        }
+        let ramps = |speeds| {
+            let ramps = self.ramps(&accels, lengths, speeds)?;
+            let length_mm = ramps.iter().map(|it| it.length_mm).sum::<f64>();
+            Some((ramps, length_mm <= self.case.mv.length_mm))
+        };
+        if reach_mm_s <= least_mm_s {
+            return self.open(ramps, reach_mm_s).ok_or(NO_FIT);
+        }
+        let top = ramps([reach_mm_s; 2]);
+        if accels.known() < GRID && matches!(top, Some((_, true))) {
+            return Err(NO_FIT);
+        }
+        let mut most_mm_s = reach_mm_s;
+        if self.top_mm_s < self.limit_mm_s {
+            // Nothing but accelerations holds it to its largest speed. A hill with this share
+            // of v² lasts for two of the shortest pieces, however short the way.
+            let lasts_s = 2.0 * self.shortest_s;
+            let share = lasts_s * accels.at(reach_mm_s, false) / reach_mm_s;
+            for share in [HILL, share.clamp(HILL, 0.5)] {
+                let foot_mm_s = reach_mm_s * (1.0 - share).sqrt();
+                most_mm_s = foot_mm_s.max(least_mm_s);
+                let Some(([mut up, down], true)) = ramps([most_mm_s, reach_mm_s]) else {
+                    continue;
+                };
+                up.tops_mm_s.push(reach_mm_s);
+                let hill = self.close(&up.tops_mm_s, &down.tops_mm_s, true);
+                if let Ok(way) = hill
+                    && self.duration_s(&way.stretches).is_some()
+                {
+                    return Ok(way);
                 }
             }
         }
-        let [up, down] = found.ok_or(SHORT)?;
-        self.close(&up.tops_mm_s, &down.tops_mm_s)
+        let mut found = ramps([most_mm_s; 2]).filter(|(_, fits)| *fits);
+        if found.is_none() {
+            found = highest([least_mm_s, most_mm_s], |speed_mm_s| ramps([speed_mm_s; 2]));
+        }
+        match found {
+            Some(([up, down], _)) => self.close(&up.tops_mm_s, &down.tops_mm_s, false),
+            None => self.open(ramps, reach_mm_s).ok_or(SHORT),
+        }
+    }
+
+    /// A way that speeds up all along, and ends more slowly than the move did.
+    fn open(
+        &self,
+        ramps: impl Fn([f64; 2]) -> Option<([Stages; 2], bool)>,
+        reach_mm_s: f64,
+    ) -> Option<Way> {
+        let [start_mm_s, end_mm_s] = self.ends_mm_s;
+        let most_mm_s = end_mm_s.min(reach_mm_s);
+        if most_mm_s <= start_mm_s || matches!(ramps([most_mm_s, end_mm_s]), Some((_, true))) {
+            return None;
+        }
+        let ramps = |speed_mm_s| ramps([speed_mm_s, end_mm_s]);
+        let ([up, _], _) = highest([start_mm_s, most_mm_s], ramps)?;
+        let (mut stretches, low_mm_s, mut step) = self.side(&up.tops_mm_s, start_mm_s, false)?;
+        let length_mm = self.case.mv.length_mm - gone_mm(&stretches);
+        for _ in 0..TRIES {
+            let top2 = low_mm_s * low_mm_s + 2.0 * step.accel_mm_s2 * length_mm;
+            if self.ramp_load(low_mm_s, top2.sqrt(), step.accel_mm_s2) <= self.aim {
+                stretches.push(Stretch { length_mm, step });
+                let brakes_from = stretches.len();
+                return Some(Way {
+                    stretches,
+                    brakes_from,
+                });
+            }
+            step = self.lower(step)?;
+        }
+        None
+    }
+
+    /// The stretches of stages but the last one, the speed at which that begins, and its
+    /// acceleration.
+    fn side(
+        &self,
+        tops_mm_s: &[f64],
+        from_mm_s: f64,
+        brakes: bool,
+    ) -> Option<(Vec<Stretch>, f64, Step)> {
+        let (top, lower) = tops_mm_s.split_last()?;
+        let mut stretches = Vec::with_capacity(tops_mm_s.len() + 1);
+        let mut low = from_mm_s;
+        for top in lower {
+            let step = self.step(self.largest_mm_s2(*top, brakes)?)?;
+            stretches.push(Stretch {
+                length_mm: 0.5 * (top * top - low * low) / step.accel_mm_s2,
+                step,
+            });
+            low = *top;
+        }
+        let step = self.step(self.largest_mm_s2(*top, brakes)?)?;
+        Some((stretches, low, step))
     }
 
     /// Stretches for the stages, of which the last before the top and the first after it
-    /// meet at the speed that the way leaves.
-    fn close(&self, up: &[f64], down: &[f64]) -> Result<Way, &'static str> {
+    /// meet at the speed that the way leaves. On a hill the acceleration of the last before
+    /// the top is what takes it there, and no further.
+    fn close(&self, up: &[f64], down: &[f64], hill: bool) -> Result<Way, &'static str> {
         let [start_mm_s, end_mm_s] = self.ends_mm_s;
-        let side = |tops: &[f64], from_mm_s: f64, brakes: bool| {
-            let (top, lower) = tops.split_last()?;
-            let mut stretches = Vec::with_capacity(tops.len() + 1);
-            let mut low = from_mm_s;
-            for top in lower {
-                let step = self.step(self.largest_mm_s2(*top, brakes)?)?;
-                stretches.push(Stretch {
-                    length_mm: 0.5 * (top * top - low * low) / step.accel_mm_s2,
-                    step,
-                });
-                low = *top;
-            }
-            let step = self.step(self.largest_mm_s2(*top, brakes)?)?;
-            Some((stretches, low, step))
-        };
-        let mut first = side(up, start_mm_s, false).ok_or(SHORT)?;
-        let mut last = side(down, end_mm_s, true).ok_or(SHORT)?;
-        let gone = |stretches: &[Stretch]| stretches.iter().map(|it| it.length_mm).sum::<f64>();
-        let left_mm = self.case.mv.length_mm - gone(&first.0) - gone(&last.0);
+        let mut first = self.side(up, start_mm_s, false).ok_or(SHORT)?;
+        let mut last = self.side(down, end_mm_s, true).ok_or(SHORT)?;
+        let left_mm = self.case.mv.length_mm - gone_mm(&first.0) - gone_mm(&last.0);
+        let kept = 1.0 - EARLIER;
+        let foot2 = last.1 * last.1;
+        if hill {
+            // The same as below, for a.
+            let (low2, top2) = (first.1 * first.1, self.top_mm_s * self.top_mm_s);
+            let way_mm = 2.0 * left_mm - kept * (top2 - foot2) / last.2.accel_mm_s2;
+            let rise_mm_s2 = ((1.0 + EARLIER) * top2 - low2 - EARLIER * foot2) / way_mm;
+            first.2 = self.step(rise_mm_s2).ok_or(SHORT)?;
+        }
         for _ in 0..TRIES {
             let (low, rise) = (first.1, first.2);
             let (foot, fall) = (last.1, last.2);
@@ -291,8 +357,6 @@ impl<'a> Road<'a> {
             // The stretch before the brakes has to slow down for the last hundredth of
             // v² − foot²: 2·a·l = 2·v² − low² − (foot² + kept·(v² − foot²)) with
             // l = left − kept·(v² − foot²)/2d.
-            let kept = 1.0 - EARLIER;
-            let foot2 = foot * foot;
             let top2 = (low * low + 2.0 * a * left_mm + (EARLIER + kept * a / d) * foot2)
                 / (1.0 + EARLIER + kept * a / d);
             let top = top2.max(0.0).sqrt().min(self.top_mm_s);
@@ -331,60 +395,6 @@ impl<'a> Road<'a> {
         (lower.accel_mm_s2 < step.accel_mm_s2).then_some(lower)
     }
 
-    /// How long the way lasts in these stretches, as a planner runs them; `None` where one
-    /// of them is too short, or draws too much.
-    pub(super) fn duration_s(&self, stretches: &[Stretch]) -> Option<f64> {
-        let top2 = self.top_mm_s * self.top_mm_s;
-        let [start2, end2] = self.ends_mm_s.map(|end| end * end);
-        let mut joints = vec![start2];
-        for stretch in stretches {
-            let before = joints.last().copied()?;
-            joints.push((before + stretch.gain2()).min(top2));
-        }
-        let last = joints.last_mut()?;
-        *last = last.min(end2);
-        for index in (0..stretches.len()).rev() {
-            let most = joints.get(index + 1)? + stretches.get(index)?.gain2();
-            let joint = joints.get_mut(index)?;
-            *joint = joint.min(most);
-        }
-        let mut duration_s = 0.0;
-        for (stretch, joint) in stretches.iter().zip(joints.windows(2)) {
-            let [start, end] = *joint else { return None };
-            let speeds2 = Speeds2 {
-                start,
-                end,
-                top: top2,
-            };
-            let profile = Profile::between(stretch.length_mm, speeds2, stretch.step.accel_mm_s2);
-            let lasts_s = profile.duration_s();
-            let usable = lasts_s >= self.shortest_s && stretch.length_mm >= SHORTEST_MM;
-            if !usable || self.load(profile) > MOST {
-                return None;
-            }
-            duration_s += lasts_s;
-        }
-        Some(duration_s)
-    }
-
-    /// Whether the top speed is reached before the brakes even where the control runs short
-    /// pieces at a lower F. After a slower one there would be room to speed up in a stretch
-    /// that is meant for braking.
-    pub(super) fn recovers(&self, way: &Way) -> bool {
-        let at_feed_s = self.solver.machine.controller.planner.shortest_at_feed_s;
-        if at_feed_s == 0.0 {
-            return true;
-        }
-        let before = way.brakes_from.checked_sub(1);
-        let Some(last) = before.and_then(|last| way.stretches.get(last)) else {
-            return false;
-        };
-        let slowest = way.stretches.iter().map(|it| it.length_mm / at_feed_s);
-        let slowest_mm_s = slowest.fold(self.top_mm_s, f64::min);
-        let missing2 = self.top_mm_s * self.top_mm_s - slowest_mm_s * slowest_mm_s;
-        slowest_mm_s >= self.top_mm_s || missing2 <= (1.0 - EARLIER) * last.gain2()
-    }
-
     /// How long the way lasts in one piece with a change.
     pub(super) fn whole_s(&self, change: &Change) -> f64 {
         let (machine, largest) = (self.solver.machine, self.solver.largest);
@@ -392,6 +402,8 @@ impl<'a> Road<'a> {
         let planned = plan(machine, &changed, largest);
         let top2 = planned.speed_limit_mm_s * planned.speed_limit_mm_s;
         let [start, end] = self.ends_mm_s.map(|end| (end * end).min(top2));
+        let gain2 = 2.0 * planned.accel_mm_s2 * changed.length_mm;
+        let (start, end) = (start.min(end + gain2), end.min(start + gain2));
         let speeds2 = Speeds2 {
             start,
             end,
@@ -401,9 +413,32 @@ impl<'a> Road<'a> {
     }
 }
 
+/// The stages to the highest of the speeds between two for which there is room.
+fn highest(
+    [mut low, mut high]: [f64; 2],
+    ramps: impl Fn(f64) -> Option<([Stages; 2], bool)>,
+) -> Option<([Stages; 2], bool)> {
+    let mut found = None;
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        match ramps(middle) {
+            Some((ramps, true)) => (low, found) = (middle, Some((ramps, true))),
+            // Ramps to lower speeds have shorter stages.
+            None => low = middle,
+            Some(_) => high = middle,
+        }
+    }
+    found
+}
+
+/// How far stretches reach.
+fn gone_mm(stretches: &[Stretch]) -> f64 {
+    stretches.iter().map(|it| it.length_mm).sum()
+}
+
 impl Stretch {
     /// By how much the square of the speed may change in it, mm²/s².
-    fn gain2(&self) -> f64 {
+    pub(super) fn gain2(&self) -> f64 {
         2.0 * self.step.accel_mm_s2 * self.length_mm
     }
 }

@@ -10,7 +10,7 @@
 use super::case::{Case, Ends};
 use super::change::{Change, Permit};
 use super::lever::{Levers, levers};
-use super::road::{MOST, NO_FIT, Road, SHORTEST_MM};
+use super::road::{Lengths, MOST, NO_FIT, Road, SHORT};
 use super::solver::Solver;
 use super::steps;
 use crate::interpret::{Corner, Move, MoveKind};
@@ -19,7 +19,7 @@ use crate::plan::{is_independent, plan};
 use crate::power::{Assessment, Certificate, plans_lines};
 
 /// How often pieces are tried next to the block's neighbours, each time coarser ones.
-pub(super) const SPLIT_TRIES: u8 = 2;
+pub(super) const SPLIT_TRIES: u8 = 4;
 /// What pieces must bring in, as a share of the time.
 const GAIN: f64 = 1e-3;
 
@@ -34,6 +34,8 @@ const BESIDE: &str = "next to its neighbours the pieces would exceed the limit";
 pub struct Split {
     /// In their order, at least two.
     pub pieces: Vec<Piece>,
+    /// The speed at which they end, mm/s.
+    pub end_mm_s: f64,
     /// The knob by which their hills need no cruise, where they would otherwise.
     pub cruise: Option<usize>,
 }
@@ -49,7 +51,8 @@ pub struct Piece {
 
 impl Solver<'_> {
     /// The pieces in which a block fits and is done sooner than with the change
-    /// `otherwise`.
+    /// `otherwise`. What is before it ends at `arrives_mm_s`, where that is known to be
+    /// slower than it was.
     ///
     /// # Errors
     /// Why it stays one block.
@@ -58,7 +61,7 @@ impl Solver<'_> {
         mv: &Move,
         assessment: &Assessment,
         permit: &Permit,
-        tries: u8,
+        (tries, arrives_mm_s): (u8, Option<f64>),
         otherwise: Option<&Change>,
     ) -> Result<Split, &'static str> {
         if let Some(reason) = permit.unsplit {
@@ -76,11 +79,15 @@ impl Solver<'_> {
         }
         let mut road = self.road(case, &levers(self.machine, self.how, mv, permit))?;
         road.coarser(tries);
-        let mut way = road.way(SHORTEST_MM)?;
-        let at_feed_mm = self.machine.controller.planner.shortest_at_feed_s * road.top_mm_s;
+        road.begin(arrives_mm_s.unwrap_or(f64::INFINITY));
+        let mut way = road.way(Lengths::Usable)?;
         if !road.recovers(&way) {
-            way = road.way(at_feed_mm.max(SHORTEST_MM))?;
+            way = road.way(Lengths::AtSpeed)?;
+            if !road.recovers(&way) {
+                return Err(SHORT);
+            }
         }
+        let end_mm_s = road.end_mm_s(&way).ok_or(NO_FIT)?;
         let stretches = way.stretches;
         let soonest_s = road.duration_s(&stretches).ok_or(NO_FIT)?;
         let whole_s = otherwise.map_or(f64::INFINITY, |change| road.whole_s(change));
@@ -99,6 +106,7 @@ impl Solver<'_> {
         });
         Ok(Split {
             pieces: pieces.collect(),
+            end_mm_s,
             cruise: self.cruise_knob(mv),
         })
     }
@@ -129,13 +137,9 @@ impl Solver<'_> {
             && assessment.certificate == Certificate::Planned
             && assessment.ends2.iter().all(|end2| end2.is_finite())
             && match rules {
-                // What is reached without a cruise is no faster than what was.
                 Some(rules) => {
                     assessment.ahead
-                        && (cruise_ratio(mv, &rules) == 0.0
-                            || self.cruise_knob(mv).is_some()
-                                && assessment.top_speed_mm_s
-                                    >= planned.speed_limit_mm_s * (1.0 - 1e-9))
+                        && (cruise_ratio(mv, &rules) == 0.0 || self.cruise_knob(mv).is_some())
                 }
                 // Between two stops, since nothing is known of corners.
                 None => {
@@ -160,7 +164,14 @@ impl Solver<'_> {
         if steps::load(self, case, mv).is_some() || assessment.loads.steps > MOST {
             return Err(NO_FIT);
         }
-        Ok(Road::new(self, case, knob, &planned))
+        let mut road = Road::new(self, case, knob, &planned);
+        if self.cruise_knob(mv).is_some()
+            && assessment.top_speed_mm_s < planned.speed_limit_mm_s * (1.0 - 1e-9)
+        {
+            // What is reached without a cruise is to be no faster than what was.
+            road.hold(assessment.top_speed_mm_s);
+        }
+        Ok(road)
     }
 }
 

@@ -6,8 +6,9 @@
 //! many there are follows from that: one more must bring in its price, and none is
 //! shorter than the control can use.
 
-/// Speeds at which a stage may end.
-const LEVELS: usize = 128;
+/// Speeds at which a stage may end: many for each of the shortest stages, which would last
+/// longer than they have to otherwise.
+const LEVELS: usize = 512;
 
 /// What stages have to keep to.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +16,12 @@ pub(super) struct Terms {
     /// The shortest time of a stage, s, and its shortest path, mm.
     pub(super) shortest_s: f64,
     pub(super) shortest_mm: f64,
+    /// The shortest time that a stage would last at the speed of its foot, and at that of
+    /// its top, s.
+    pub(super) at_foot_s: f64,
+    pub(super) at_top_s: f64,
+    /// The least ratio of the speed of its top to that of its foot.
+    pub(super) ratio: f64,
     /// What one stage more must gain, s.
     pub(super) price_s: f64,
 }
@@ -55,16 +62,21 @@ pub(super) fn stages(
         length_mm: 0.0,
         from: 0,
     }));
+    // Stages to higher levels begin no lower.
+    let mut lowest = 0;
     for level in 1..=LEVELS {
         let top = speed(level);
         let accel = accel_mm_s2(top);
         let mut best: Option<Way> = None;
-        for (from, way) in ways.iter().enumerate() {
+        for (from, way) in ways.iter().enumerate().skip(lowest) {
             let Some(way) = way else { continue };
             let low = speed(from);
             let lasts_s = (top - low) / accel;
             let length_mm = 0.5 * (top + low) * lasts_s;
-            if !(lasts_s >= terms.shortest_s && length_mm >= terms.shortest_mm) {
+            let at_speed_mm = (terms.at_foot_s * low).max(terms.at_top_s * top);
+            let shortest_mm = terms.shortest_mm.max(at_speed_mm);
+            let long = lasts_s >= terms.shortest_s && length_mm >= shortest_mm;
+            if !long || top < terms.ratio * low {
                 // Stages from higher levels are shorter still.
                 break;
             }
@@ -77,6 +89,7 @@ pub(super) fn stages(
                 });
             }
         }
+        lowest = best.map_or(lowest, |best| best.from);
         ways.push(best);
     }
     let mut tops_mm_s = Vec::new();
@@ -100,6 +113,9 @@ mod tests {
     const TERMS: Terms = Terms {
         shortest_s: 0.001,
         shortest_mm: 0.0,
+        at_foot_s: 0.0,
+        at_top_s: 0.0,
+        ratio: 1.0,
         price_s: 1e-5,
     };
 
@@ -158,5 +174,37 @@ mod tests {
         };
         assert_eq!(stages(0.0, 500.0, accel, long), None);
         assert!(stages(7.0, 7.0, accel, long).unwrap().tops_mm_s.is_empty());
+    }
+
+    /// What speeds up is not held back at its top, and a queue of few blocks sees enough.
+    #[test]
+    fn stages_keep_to_a_time_at_speed_and_to_a_ratio() {
+        let accel = |speed: f64| (5e5 / speed).min(5000.0);
+        let pairs = |terms: Terms| {
+            let tops = stages(0.0, 500.0, accel, terms).unwrap().tops_mm_s;
+            let mut low = 0.0;
+            let pairs = tops
+                .into_iter()
+                .map(|top| (std::mem::replace(&mut low, top), top));
+            pairs.collect::<Vec<_>>()
+        };
+        let length = |(low, top): (f64, f64)| 0.5 * (top * top - low * low) / accel(top);
+        let slow = pairs(Terms {
+            at_top_s: 0.02,
+            ..TERMS
+        });
+        assert!(slow.len() > 3, "{slow:?}");
+        assert!(slow.iter().all(|it| length(*it) >= 0.02 * it.1), "{slow:?}");
+        let slow = pairs(Terms {
+            at_foot_s: 0.02,
+            ..TERMS
+        });
+        assert!(slow.iter().all(|it| length(*it) >= 0.02 * it.0), "{slow:?}");
+        let few = pairs(Terms {
+            ratio: 1.1,
+            ..TERMS
+        });
+        assert!(few.len() > 3, "{few:?}");
+        assert!(few.iter().all(|(low, top)| *top >= 1.1 * low), "{few:?}");
     }
 }
