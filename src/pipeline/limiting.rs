@@ -264,7 +264,11 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(machine));
                 ladder.take(&certified.summary.lower);
                 let worth = certified.reasons.count == 0 && certified.summary.fits_at_largest();
-                rungs = if worth { ladder.ask() } else { Lower::default() };
+                rungs = if worth {
+                    ladder.ask()
+                } else {
+                    Lower::default()
+                };
                 if rungs.is_empty() {
                     certified.summary.settle(ladder);
                     return Ok(conclude(machine, target, paths, how, written, certified));

@@ -311,6 +311,7 @@ mod tests {
                 rests: false,
                 overlap_s: 0.0,
                 overlaps: false,
+                late_mm_s: 0.0,
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);
             let (mut peaks, mut energy_j) = ([0.0_f64; 2], 0.0);
@@ -375,6 +376,7 @@ mod tests {
                 rests: false,
                 overlap_s: 0.0,
                 overlaps: false,
+                late_mm_s: 0.0,
             };
             let exact = piece_demand(&model, &mv, &planned, Want::PEAKS);
             let extremes = [planned.top_speed_mm_s(), planned.largest_accel_mm_s2()];

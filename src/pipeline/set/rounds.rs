@@ -286,7 +286,11 @@ fn again(rounds: &mut [Round], certified: &[Certified], machine: &Machine) -> bo
         let ladder = round.ladder.get_or_insert_with(|| summary.ladder(machine));
         ladder.take(&summary.lower);
         let worth = certified.reasons.count == 0 && summary.fits_at_largest();
-        round.rungs = if worth { ladder.ask() } else { Lower::default() };
+        round.rungs = if worth {
+            ladder.ask()
+        } else {
+            Lower::default()
+        };
         again |= !round.rungs.is_empty();
     }
     again

@@ -32,8 +32,11 @@ pub(super) struct Pending<T> {
     pub expected_mm_s: f64,
     /// The pace of the element before it, which it is entered at.
     pub pace_before: f64,
-    /// It may be entered faster than it runs, and the change of pace comes late.
+    /// It may be entered faster than it runs, the change of pace comes late, and it is too
+    /// short to come down to its own.
     pub lags: bool,
+    /// See [`Planned::late_mm_s`](super::Planned::late_mm_s).
+    pub late_mm_s: f64,
     /// Share of the acceleration given up to the kinks before and after.
     pub kink_before: f64,
     pub kink_behind: f64,
@@ -63,6 +66,7 @@ impl<T: Copy> Pending<T> {
             expected_mm_s: element.feed_mm_s,
             pace_before: element.pace,
             lags: false,
+            late_mm_s: 0.0,
             kink_before: 0.0,
             kink_behind: 0.0,
             blended_before: false,
@@ -83,7 +87,7 @@ impl<T: Copy> Pending<T> {
         } else {
             element.feed_mm_s / element.pace * feed_ratio
         };
-        (self.pace_before, self.lags) = (element.pace, false);
+        (self.pace_before, self.lags, self.late_mm_s) = (element.pace, false, 0.0);
         self.from_mm = 0.0;
         self.length_mm = element.length_mm;
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());

@@ -82,6 +82,9 @@ pub struct Planned<T> {
     pub overlap_s: f64,
     /// True where it or the piece after it may do so: next to a parabolic blend.
     pub overlaps: bool,
+    /// The speed up to which it may still speed up and from which it may brake, mm/s, since
+    /// a lower pace comes late, at this setting or a lower one; 0 where none does.
+    pub late_mm_s: f64,
 }
 
 impl<T> Planned<T> {
@@ -183,6 +186,7 @@ pub(super) struct Load<T> {
     pub rests: bool,
     pub overlap_s: f64,
     pub overlaps: bool,
+    pub late_mm_s: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -333,6 +337,7 @@ impl<T: Copy> PathPlanner<T> {
             rests: false,
             overlap_s: 0.0,
             overlaps: false,
+            late_mm_s: 0.0,
         };
         let top2 = after.top_mm_s * after.top_mm_s;
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
@@ -435,6 +440,7 @@ impl<T> Planned<T> {
             rests: span.payload.rests,
             overlap_s: span.payload.overlap_s,
             overlaps: span.payload.overlaps,
+            late_mm_s: span.payload.late_mm_s,
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 use crate::power::piece::{is_quiet, piece_demand};
 use crate::power::steps::StepEnergy;
+use crate::power::surge::{Surge, surge_demand};
 use crate::power::tandem::{Ride, tandem_demand, tandem_demand_at_any};
 use crate::power::tandem_energy::shared_energy_j;
 
@@ -73,10 +74,15 @@ impl Ahead {
             }
         }
         if peaks {
+            let late = self.late(model, planned);
             let surge = self.surge(model, eye, planned);
             let Some(open) = self.open.get_mut(number) else {
                 return;
             };
+            if let Some(late) = late {
+                open.assessment.demand.include(&late);
+                open.in_turn = false;
+            }
             if let Some(surge) = surge {
                 open.assessment.demand.include(&surge);
             }
@@ -101,6 +107,27 @@ impl Ahead {
         } else {
             self.ride(model, planned, false, times);
         }
+    }
+
+    /// What a piece asks for where a lower pace comes into force late, or before it has come
+    /// down to that.
+    fn late(&mut self, model: &PowerModel, planned: &Planned<u64>) -> Option<Demand> {
+        if planned.late_mm_s > 0.0 {
+            let brakes_mm = planned.late_mm_s * planned.late_mm_s / planned.accel_mm_s2;
+            self.late = Some((brakes_mm, planned.late_mm_s));
+        }
+        let (left_mm, late_mm_s) = self.late?;
+        let left_mm = left_mm - planned.length_mm;
+        let goes_on = left_mm > 0.0 && planned.speeds2.end > 0.0;
+        self.late = goes_on.then_some((left_mm, late_mm_s));
+        let open = self.open.get(planned.tag)?;
+        let surge = Surge {
+            rises_mm_s: Some(late_mm_s),
+            falls_mm_s: Some(late_mm_s),
+            accel_mm_s2: planned.accel_mm_s2,
+            section: None,
+        };
+        Some(surge_demand(model, &open.mv, planned, surge, open.want))
     }
 
     /// The step of speed before a piece, at the largest overrides or at 100 %.
@@ -159,7 +186,15 @@ impl Ahead {
             demand.energy_j += step.supplied_j(model);
         }
         self.ride(model, planned, peaks, times);
+        let late = if peaks {
+            self.late(model, planned)
+        } else {
+            None
+        };
         if peaks {
+            if let Some(late) = &late {
+                demand.include(late);
+            }
             if let Some(surge) = self.surge(model, eye, planned) {
                 demand.include(&surge);
             }
@@ -195,6 +230,7 @@ impl Ahead {
             };
             let assessment = &mut open.assessment;
             open.certain &= certain;
+            open.in_turn &= late.is_none();
             open.alone &= from == to && rests && is_whole(&open.mv, planned);
             open.steady &= planned.speeds2.are_one();
             if times {

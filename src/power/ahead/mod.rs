@@ -57,6 +57,8 @@ pub(super) struct Ahead {
     /// What the motion reaches at least, from rest where it was in doubt last,
     /// mm²/s²; nothing once that is as fast as planned.
     reach2: Option<f64>,
+    /// How far a lower pace may still come late, mm, and up to which speed, mm/s.
+    late: Option<(f64, f64)>,
     /// What was handed on last, and what before that, where nobody waited for what
     /// may be blended with it.
     unwaited: Option<Extremes>,
@@ -129,6 +131,7 @@ impl Ahead {
             at_rest: true,
             in_doubt: false,
             reach2: None,
+            late: None,
             unwaited: None,
             driven: false,
             surges: machine.limits.counts_lower().then(|| Surges::new(&rules)),

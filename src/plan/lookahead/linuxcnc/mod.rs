@@ -152,16 +152,30 @@ impl<T: Copy> LinuxCnc<T> {
 
     /// The pace changes at a joint that is not a stop: up to there the next element is seen
     /// at the pace before. A lower one comes into force after some cycles, in which the
-    /// motion may still speed up.
+    /// motion may still speed up; at lower overrides, where the joint may be passed as fast,
+    /// it brakes then.
     fn change_pace(&self, before: &Pending<T>, next: &mut Pending<T>, way: &Way) {
         let joint_mm_s = match way {
-            Way::Stop | Way::Parabolic => return,
+            Way::Stop => return,
+            // Rapids may be rounded there at a lower override.
+            Way::Parabolic if before.element.rapid && next.element.rapid => before.run_speed(),
+            Way::Parabolic => return,
             Way::Pass(speed) => *speed,
             Way::Blend(fit) => fit.speed,
         };
-        next.pace_before = before.element.pace;
-        let late_mm_s = joint_mm_s + LATE_CYCLES * self.cycle_s * next.accel();
-        next.lags = next.pace_before > next.element.pace && late_mm_s > next.run_speed();
+        let overlaps = matches!(way, Way::Parabolic);
+        if !overlaps {
+            next.pace_before = before.element.pace;
+        }
+        if before.element.pace <= next.element.pace {
+            return;
+        }
+        let accel = next.accel();
+        next.late_mm_s = joint_mm_s + LATE_CYCLES * self.cycle_s * accel;
+        // With half of the acceleration, which blends may leave.
+        let brakes_mm = next.late_mm_s * next.late_mm_s / accel;
+        let faster = !overlaps && next.late_mm_s > next.run_speed();
+        next.lags = faster && next.length_mm < brakes_mm;
     }
 
     /// An element that nothing has changed yet.
@@ -319,6 +333,7 @@ impl<T: Copy> LinuxCnc<T> {
             rests: false,
             overlap_s: 0.0,
             overlaps: false,
+            late_mm_s: 0.0,
         };
         let jerk = before.element.jerk_mm_s3.min(next.element.jerk_mm_s3);
         let top2 = top * top;
@@ -400,6 +415,7 @@ impl<T: Copy> LinuxCnc<T> {
             rests: of.rests,
             overlap_s: of.overlap_s(last),
             overlaps: of.overlaps(),
+            late_mm_s: of.late_mm_s,
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let seen = of.seen_speed().min(max_speed);

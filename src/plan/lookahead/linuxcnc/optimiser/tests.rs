@@ -30,6 +30,7 @@ fn node(index: usize, part: &Part) -> Node<Load<usize>> {
         rests: false,
         overlap_s: 0.0,
         overlaps: false,
+        late_mm_s: 0.0,
     };
     let mut node = Node::new(0.5 * part.ramp2, 1e9, 1.0, part.limit2, load);
     node.block = !part.blend;
