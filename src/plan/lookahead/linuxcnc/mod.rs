@@ -156,10 +156,9 @@ impl<T: Copy> LinuxCnc<T> {
     /// it brakes then.
     fn change_pace(&self, before: &Pending<T>, next: &mut Pending<T>, way: &Way) {
         let joint_mm_s = match way {
-            Way::Stop => return,
             // Rapids may be rounded there at a lower override.
             Way::Parabolic if before.element.rapid && next.element.rapid => before.run_speed(),
-            Way::Parabolic => return,
+            Way::Stop | Way::Parabolic => return,
             Way::Pass(speed) => *speed,
             Way::Blend(fit) => fit.speed,
         };
