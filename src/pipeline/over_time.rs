@@ -22,7 +22,8 @@ impl Summary {
     /// What settles limits over time at lower overrides.
     pub(super) fn ladder(&self, machine: &Machine) -> Ladder {
         let ratings: Vec<Rating> = self.over_time.iter().map(|found| found.rating).collect();
-        Ladder::new(machine, &ratings, self.moves, self.knobs)
+        let peaks_w = [self.peak_w, self.regen_w];
+        Ladder::new(machine, &ratings, self.moves, self.knobs, peaks_w)
     }
 
     /// Takes what it found.

@@ -19,5 +19,5 @@ pub(super) fn watching_at<'m>(
     options: &Options,
 ) -> Assessor<'m> {
     let lower = rungs.machines.iter().map(|rung| watching(rung, options));
-    watching(machine, options).with_lower(lower.collect(), &rungs.watched)
+    watching(machine, options).with_lower(lower.collect(), rungs)
 }

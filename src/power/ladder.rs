@@ -15,7 +15,7 @@ use super::assess::Assessor;
 use super::demand::Want;
 use super::watch::Rating;
 use crate::interpret::{Action, Move};
-use crate::machine::{CornerRule, Machine, OverrideAt};
+use crate::machine::{Machine, OverrideAt};
 
 /// Where all settings are divided first, of one knob and of two.
 const FIRST: [f64; 10] = [1.0, 0.64, 0.41, 0.26, 0.17, 0.11, 0.07, 0.045, 0.03, 0.0];
@@ -33,8 +33,8 @@ const LONGER: f64 = 1.5;
 /// So many are looked at, at most, of a program of so many moves at most, and so many at a
 /// time.
 const RANGES_MAX: usize = 640;
-const MOVES_MAX: u64 = 1_000_000;
-const RANGES_MIN: usize = 160;
+const MOVES_MAX: u64 = 150_000;
+const RANGES_MIN: usize = 32;
 const AT_ONCE: usize = 64;
 
 /// Which knobs matter: that of feeds, that of rapids.
@@ -47,6 +47,8 @@ pub struct Lower {
     pub machines: Vec<Machine>,
     /// Which of the limits are watched there.
     pub watched: Vec<bool>,
+    /// What is drawn and fed back at most at any setting, W: no smaller peak matters.
+    pub peaks_w: [f64; 2],
 }
 
 impl Lower {
@@ -88,6 +90,8 @@ pub struct Ladder {
     watched: Vec<bool>,
     left: usize,
     machine: Machine,
+    /// What the program draws and feeds back at most at any setting, W.
+    peaks_w: [f64; 2],
 }
 
 /// What came of a limit.
@@ -181,9 +185,16 @@ fn grid(feeds: &[f64], rapids: &[f64]) -> Vec<Range> {
 }
 
 impl Ladder {
-    /// Nothing has been looked at but the largest overrides, of a program of so many moves.
+    /// Nothing has been looked at but the largest overrides, of a program of so many moves
+    /// that draws and feeds back so much at any setting.
     #[must_use]
-    pub fn new(machine: &Machine, largest: &[Rating], moves: u64, knobs: Knobs) -> Self {
+    pub fn new(
+        machine: &Machine,
+        largest: &[Rating],
+        moves: u64,
+        knobs: Knobs,
+        peaks_w: [f64; 2],
+    ) -> Self {
         let verdict = |rating: &Rating| {
             if rating.bound.is_some() {
                 Verdict::Open
@@ -204,6 +215,7 @@ impl Ladder {
             watched: vec![true; largest.len()],
             left: most.clamp(RANGES_MIN, RANGES_MAX),
             machine: machine.clone(),
+            peaks_w,
         }
     }
 
@@ -236,6 +248,7 @@ impl Ladder {
         Lower {
             machines: machines.map(|range| within(&self.machine, range)).collect(),
             watched: self.watched.clone(),
+            peaks_w: self.peaks_w,
         }
     }
 
@@ -345,27 +358,19 @@ impl Assessor<'_> {
     /// Watches the program at lower overrides too, each by an assessor for itself, which
     /// watches some of the limits.
     #[must_use]
-    pub fn with_lower(mut self, lower: Vec<Self>, watched: &[bool]) -> Self {
+    pub fn with_lower(mut self, lower: Vec<Self>, at: &Lower) -> Self {
         self.lower = lower;
-        let planner = &self.machine.controller.planner;
-        let corner = planner.look_ahead.map(|rules| rules.corner);
-        let overlap = matches!(corner, Some(CornerRule::LinuxCnc { .. }));
-        // Moves that are at once, or ahead of their plan, count with their peaks.
-        let floor_w = if overlap || !self.machine.force_curves.is_empty() {
-            f64::NEG_INFINITY
-        } else {
-            f64::INFINITY
-        };
+        let [floor_w, regen_floor_w] = at.peaks_w;
         let peaks = Want {
             energy: false,
             floor_w,
-            regen_floor_w: floor_w,
+            regen_floor_w,
             accel: false,
         };
         for lower in &mut self.lower {
             lower.want = peaks;
             if let Some(watch) = &mut lower.eye.watch {
-                watch.only(watched);
+                watch.only(&at.watched);
             }
         }
         self

@@ -240,9 +240,10 @@ impl Limits {
             list.push(worst.rating(*measure, converter, *limit));
         }
         if let Some((rms, measure, limit)) = &self.continuous {
-            let supply_w = self.bus.as_ref().map_or(0.0, |bus| bus.store.taken_w());
+            let bus = self.bus.as_ref().filter(|_| lead_s > 0.0);
+            let supply_w = bus.map_or(0.0, |bus| bus.store.taken_w());
             let worst = if repeated {
-                rms.repeated(supply_w * supply_w * lead_s)
+                rms.repeated(supply_w, lead_s)
             } else {
                 rms.result()
             };

@@ -8,6 +8,7 @@
 //! once more, or as often as it fits; what is left of its last cell comes on top of the
 //! first.
 
+use super::super::demand::larger;
 use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
@@ -33,6 +34,8 @@ pub(super) struct Continuous {
     lasting: Rms,
     /// From the first such move on.
     dense: Option<Rms>,
+    /// The largest power so far, which no mean exceeds, W.
+    most_w: f64,
 }
 
 impl Continuous {
@@ -40,10 +43,12 @@ impl Continuous {
         Self {
             lasting: Rms::new(window_s),
             dense: None,
+            most_w: 0.0,
         }
     }
 
     pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        self.most_w = larger(self.most_w, slice.peak_w());
         self.lasting.take(slice, time_s, place);
         if let Some(dense) = &mut self.dense {
             dense.take(slice, time_s, place);
@@ -52,6 +57,7 @@ impl Continuous {
 
     /// A power that lasts for a time that is not known.
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
+        self.most_w = larger(self.most_w, power_w);
         let dense = self.dense.get_or_insert_with(|| self.lasting.clone());
         dense.burst(power_w, span, time_s, place);
         self.lasting.last(power_w, time_s, place);
@@ -65,6 +71,7 @@ impl Continuous {
     /// A move begins.
     pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
         let rest_w = terms.rest_w;
+        self.most_w = larger(self.most_w, rest_w);
         for rms in self.ways() {
             if terms.least_share > 0.0 {
                 rms.own_floor_w = rest_w;
@@ -87,6 +94,7 @@ impl Continuous {
 
     /// A power that comes in addition.
     pub fn surge(&mut self, power_w: f64, duration_s: f64, time_s: f64, place: Place) {
+        self.most_w = larger(self.most_w, power_w);
         for rms in self.ways() {
             let square = rms.beyond(power_w) * duration_s;
             rms.edge = rms.edge.max(square);
@@ -106,6 +114,7 @@ impl Continuous {
         if duration_s <= 0.0 {
             return;
         }
+        self.most_w = larger(self.most_w, rest_w + most_w);
         for rms in self.ways() {
             let at_most_s = if most_w > 0.0 { work_j / most_w } else { 0.0 };
             let square = rms.beyond(rest_w + most_w) * at_most_s;
@@ -118,16 +127,18 @@ impl Continuous {
 
     /// The worst mean as its root, in W.
     pub fn result(&self) -> Worst {
-        self.least(Rms::result)
+        self.least(self.most_w, Rms::result)
     }
 
-    /// The same over all runs, where the program runs again and again; each begins with
-    /// so much more of P²·t, W²·s.
-    pub fn repeated(&self, more: f64) -> Worst {
-        self.least(|rms| rms.repeated(more))
+    /// The same over all runs, where the program runs again and again; each begins with a
+    /// power for so long in addition, W and s.
+    pub fn repeated(&self, lead_w: f64, lead_s: f64) -> Worst {
+        self.least(larger(self.most_w, lead_w), |rms| {
+            rms.repeated(lead_w * lead_w * lead_s)
+        })
     }
 
-    fn least(&self, of: impl Fn(&Rms) -> Worst) -> Worst {
+    fn least(&self, most_w: f64, of: impl Fn(&Rms) -> Worst) -> Worst {
         let of = |rms: &Rms| {
             let mut worst = of(rms);
             if rms.edge > 0.0 {
@@ -138,9 +149,11 @@ impl Continuous {
         };
         let lasting = of(&self.lasting);
         let dense = self.dense.as_ref().map(of);
-        dense
+        let mut least = dense
             .filter(|dense| dense.value < lasting.value)
-            .unwrap_or(lasting)
+            .unwrap_or(lasting);
+        least.value = least.value.min(most_w);
+        least
     }
 }
 
