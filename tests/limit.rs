@@ -125,6 +125,13 @@ impl Rig {
         summary.reasons
     }
 
+    /// The first reason for that, in one line.
+    pub(crate) fn first_refusal(&self, program: &str) -> String {
+        let found = self.refusal(program);
+        let first = found.first().expect("a reason");
+        format!("{}: {}", first.rule, first.message)
+    }
+
     /// Why a program was refused.
     pub(crate) fn refusal(&self, program: &str) -> Vec<Diagnostic> {
         match self.limit(program.as_bytes()) {

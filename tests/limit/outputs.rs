@@ -13,12 +13,6 @@ const HAL: Rig = Rig {
     ..RIG
 };
 
-fn said(rig: Rig, program: &str) -> String {
-    let found = rig.refusal(program);
-    let first = found.first().expect("a reason");
-    format!("{}: {}", first.rule, first.message)
-}
-
 /// 1250 W of 1000 W: 0.8 of the acceleration, rounded down. 400 mm at 0.5 m/s take 0.8 s +
 /// 0.1 s before and 0.8 s + 0.125 s after, and the axes stand for 10 ms at each change.
 #[test]
@@ -155,7 +149,7 @@ fn words_that_leave_the_acceleration_open_are_refused() {
             "knob-value: the acceleration changes under cutter compensation",
         ),
     ] {
-        let said = said(rig, program);
+        let said = rig.first_refusal(program);
         assert!(said.starts_with(reason), "{program}: {said}");
     }
 }

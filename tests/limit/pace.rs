@@ -22,12 +22,6 @@ fn figures(rig: Rig, program: &str) -> (f64, f64) {
     (read.duration_s, read.peak_w)
 }
 
-fn said(rig: Rig, program: &str) -> String {
-    let found = rig.refusal(program);
-    let first = found.first().expect("a reason");
-    format!("{}: {}", first.rule, first.message)
-}
-
 /// 1250 W of 1000 W: 0.8 of the speed. 400 mm take 0.8 s + 0.1 s before, and 1 s + 0.08 s
 /// after; the axes stand for M52, M68 and M52 once each.
 #[test]
@@ -183,11 +177,11 @@ fn words_that_leave_the_speed_open_are_refused() {
         (under("M67 E1 Q0.5"), held),
         (under("M52 P1"), held),
     ] {
-        assert_eq!(said(free, &program), reason, "{program}");
+        assert_eq!(free.first_refusal(&program), reason, "{program}");
     }
     let bare = Rig { rest: "", ..free };
     assert_eq!(
-        said(bare, "M52 P1\nG0 X1\nM2\n"),
+        bare.first_refusal("M52 P1\nG0 X1\nM2\n"),
         "adaptive-feed: under M52 a signal from outside sets the speed"
     );
 }
