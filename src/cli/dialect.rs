@@ -12,7 +12,8 @@ Examples:
   gwatt dialect programs/* -m vmc
   gwatt check part.nc -m vmc --dialect auto
 
-Exit status: 2 where a file is no program that any profile reads, else 0.";
+Exit status: 2 where a file is known to be in a language that no profile reads, or cannot be
+read; else 0, also where no mark of a controller is seen.";
 
 /// Arguments of `dialect`.
 #[derive(Debug, Args)]
