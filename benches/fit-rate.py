@@ -26,6 +26,8 @@ LATHES = {"fanuc-lathe", "fanuc-lathe-b", "haas-lathe", "okuma-lathe"}
 # Controls that return to reference points of the machine, from places that offsets and tool
 # lengths make known.
 MILLS = {"fanuc", "haas", "mitsubishi", "mazak", "syntec", "iso"}
+# Those whose reference points are kept in the control, from places that offsets make known.
+KEPT = {"grbl", "linuxcnc", "nist"}
 OFFSETS = "".join(f"G5{n} = {{ X = -{100 * n}, Y = -250, Z = -400 }}\n" for n in range(4, 10))
 LATHE_OFFSETS = "".join(f"G5{n} = {{ X = -150, Z = {-100 * n} }}\n" for n in range(4, 10))
 TOOLS = "".join(f"T{n} P{n} Z{50 + n}\n" for n in range(1, 1000))
@@ -48,7 +50,7 @@ def machine(profile, peak_w):
     text += f"[converter]\npeak_power_w = {peak_w!r}\n[limits]\nmargin = 0.0\n"
     if profile == "siemens":
         text += "[language]\npower_on_feed_mm_min = 1000\n"
-    if profile in MILLS:
+    if profile in MILLS | KEPT:
         text += "[offsets]\n" + OFFSETS
     if profile in LATHES:
         text += "[offsets]\n" + LATHE_OFFSETS

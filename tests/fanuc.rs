@@ -195,7 +195,7 @@ fn alarms_and_state() {
     let program = "IF[#5405GE6000]THEN#3000=15(TOOL LIFE)\nG91 G18 G20\n#1=#4003\n#2=#4002\n#3=#4006\nG0 G90 G21 X#1 Y#2 Z#3\n#3006=1(CHECK)\n#3000=1(STOP)\nG0 X500.\n";
     assert_snapshot!(moves("fanuc", program), @"6 rapid X91.0000 Y18.0000 Z20.0000");
     let found = notes("fanuc", program);
-    for note in ["alarm-not-raised", "alarm", "behind-the-end"] {
+    for note in ["alarm-not-raised", "alarm", "after-the-end"] {
         assert!(found.contains(&note), "{found:?}");
     }
     let time = moves("fanuc", "#3001=0\n#1=#3001\nG0 X#1\n");

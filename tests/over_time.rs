@@ -33,6 +33,11 @@ fn a_single_override_is_shown() {
     let (code, _, told) = shop.run("check a.ngc --override rapid=120%");
     assert_eq!(code, 2);
     assert!(told.contains("no override exceeds it"), "{told}");
+    let above = |overrides: &str| {
+        let (_, _, notes) = shop.run(&format!("check a.ngc --override {overrides}"));
+        notes.contains("override-above-largest")
+    };
+    assert!(above("150%") && !above("100%"));
 }
 
 #[test]

@@ -204,7 +204,7 @@ fn such_blocks_can_be_lowered() {
     );
     let rig = Rig {
         controller: "linuxcnc",
-        peak_w: 150.0,
+        peak_w: 100.0,
         ..RIG
     };
     let program = "G1 F600 X10\nG3 X0 Y10.028 I-10 J0 F6000\nG1 X-20 F600\nM2\n";

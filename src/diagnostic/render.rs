@@ -28,6 +28,10 @@ impl Diagnostic {
         let title = level.clone().primary_title(message).id(self.rule);
         let report = if self.line == 0 {
             vec![title.element(Origin::path(file)).elements(help)]
+        } else if self.text.is_empty() {
+            // The line is known, its text is not.
+            let origin = Origin::path(file).line(self.shown_line());
+            vec![title.element(origin).elements(help)]
         } else {
             let shown = Shown::new(self);
             let line = self.shown_line();
@@ -111,6 +115,18 @@ mod tests {
              |      ^
              |
              = help: write F
+        "##);
+    }
+
+    #[test]
+    fn a_line_whose_text_is_not_known() {
+        let mut found = Diagnostic::error("overload", "1.00 s of 0.20 s").help("wait");
+        found.line = 7;
+        assert_snapshot!(found.render("part.ngc", false), @r##"
+        error[overload]: 1.00 s of 0.20 s
+         --> part.ngc:7
+          |
+          = help: wait
         "##);
     }
 

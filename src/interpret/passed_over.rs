@@ -17,7 +17,7 @@ impl Control<'_> {
         if self.ended {
             if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
                 report.note_once(
-                    "behind-the-end",
+                    "after-the-end",
                     "what follows the end of the program is not executed",
                     all,
                 );

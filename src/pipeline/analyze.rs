@@ -4,7 +4,7 @@ use std::io::{Read, Seek};
 use std::slice;
 
 use super::advice::{Adviser, Circumstances};
-use super::conditions::conditions;
+use super::conditions::{above_largest, conditions};
 use super::front::Front;
 use super::relay::relay;
 use super::summary::AT_LENGTH_MAX;
@@ -73,6 +73,7 @@ fn analyze_way<R: Read + Seek + Send>(
         summary.settle(&ladder);
     }
     summary.conditions = conditions(machine, slice::from_ref(options), &summary);
+    summary.notes.extend(above_largest(machine));
     Ok(summary)
 }
 

@@ -2,6 +2,7 @@
 
 use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
+use crate::diagnostic::Diagnostic;
 use crate::interpret::BlockDelete;
 use crate::machine::{CornerRule, KnobTarget, Machine, PathMode, Spindle, SpindleWait};
 
@@ -57,6 +58,20 @@ fn overrides_condition(machine: &Machine) -> String {
     };
     let [feed, rapid, spindle] = [feed, rapid, spindle].map(percent);
     format!("{what}: feed {feed} %, rapid {rapid} %, spindle {spindle} %")
+}
+
+/// What is said where a single setting lies above the machine's largest.
+pub(super) fn above_largest(machine: &Machine) -> Option<Diagnostic> {
+    let limits = &machine.limits;
+    let at = limits.override_at?;
+    let above = at.feed > limits.feed_override_max || at.spindle > limits.spindle_override_max;
+    let percent = |factor: f64| (factor * 1000.0).round() / 10.0;
+    let [feed, spindle] = [limits.feed_override_max, limits.spindle_override_max].map(percent);
+    let message = format!(
+        "the override lies above the machine's largest: feed {feed} %, spindle {spindle} %"
+    );
+    let help = "give the largest as override_max_percent under [limits] of the machine file";
+    above.then(|| Diagnostic::note("override-above-largest", message).help(help))
 }
 
 /// For which overrides limits over time hold.

@@ -300,10 +300,13 @@ impl Entry {
                 "--with-subprograms writes the files of subprograms too, certified together with \
                  all programs that are given"
             }
-            UNKNOWN_FEED => {
+            UNKNOWN_FEED if language.family == Family::Siemens => {
                 "write F before it; or give the F of power-on, which no written one exceeds \
-                 (SINUMERIK: setting data 42110): power_on_feed_mm_min under [language] of the \
-                 machine file"
+                 (setting data 42110): power_on_feed_mm_min under [language] of the machine file"
+            }
+            UNKNOWN_FEED => {
+                "write F before it; or give the F of power-on, which no written one exceeds: \
+                 power_on_feed_mm_min under [language] of the machine file"
             }
             PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
                 "program G98 (feed per minute) and F in it before the rapid"

@@ -50,9 +50,16 @@ pub(super) fn lower_further(
     // Where capacitors take peaks, the peaks have had no limit at all so far.
     let tried = if credited { BEYOND } else { 1.0 };
     let shares = credited.then_some(1.0).into_iter().chain(SHARES);
+    // Shares of what nothing reaches would be too coarse.
+    let alone = machine.converters.len() == 1 && !credited;
     let mut search = Search {
         machine,
         before: first.before,
+        drawn_w: if alone {
+            first.after.peak_w
+        } else {
+            f64::INFINITY
+        },
         regen_w: first.after.regen_w,
         sides,
         attempt,
@@ -113,7 +120,9 @@ struct Search<'a> {
     machine: &'a Machine,
     /// The program as it came, under the machine's own limits.
     before: Summary,
-    /// What is fed back at most, where the machine sets no limit to it.
+    /// What is drawn at most, where that is known of the converter, W.
+    drawn_w: f64,
+    /// What is fed back at most, where the machine sets no limit to it, W.
     regen_w: f64,
     sides: Sides,
     attempt: &'a mut dyn FnMut(&Machine) -> Result<LimitSummary, Failure>,
@@ -153,10 +162,12 @@ impl Search<'_> {
         let kept = 1.0 - target.limits.margin;
         for converter in &mut target.converters {
             if self.sides.drawn {
-                converter.peak_power_w *= share;
+                let largest_w = converter.peak_power_w.min(self.drawn_w / kept);
+                converter.peak_power_w = share * largest_w;
             }
             if self.sides.fed_back {
-                let largest_w = converter.regen_power_w.unwrap_or(self.regen_w / kept);
+                let own_w = self.regen_w / kept;
+                let largest_w = converter.regen_power_w.unwrap_or(own_w);
                 converter.regen_power_w = Some(share * largest_w);
             }
             converter.ratings.credit_capacitance = false;

@@ -87,9 +87,8 @@ impl OverTime {
     #[must_use]
     pub fn help(&self) -> &'static str {
         if self.rating.lasting {
-            return "where moves overlap, or are blended in a way that is not known, the largest \
-                    power counts for as long as it may last: use exact stop, or lower the feed \
-                    here";
+            return "where it is not known when a move draws what, its largest power counts for \
+                    as long as it may last: use exact stop, or lower the feed here";
         }
         match self.rating.measure {
             Measure::Overload { .. } | Measure::Continuous { .. } => {

@@ -7,10 +7,11 @@
 
 use super::arc::{axis_speed, excess, plane_share, tangent_ranges};
 use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
+use super::lookahead::Blend;
 use super::trajectory::{Caps, Overrides};
 use crate::interpret::{Arc, FeedMode, Move, MoveKind};
 use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Largest speed of each axis, mm/s or degrees/s, not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -142,6 +143,50 @@ impl PathShares {
         }
         shares
     }
+
+    /// The same of a stretch of a blend, the line that leads into it included.
+    #[must_use]
+    pub fn of_blend(blend: &Blend, ends_mm: [f64; 2]) -> Self {
+        let turned = ends_mm.map(|mm| (mm - blend.lead_mm).max(0.0) / blend.radius_mm);
+        let mut shares = Self::default();
+        for (axis, (tangent, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
+            for share in swung([tangent, normal], turned) {
+                shares.along.raise(axis, share);
+            }
+            // Towards the centre is a quarter of a turn on.
+            let inward = swung([normal, -tangent], turned).into_iter();
+            let largest = inward.fold(0.0, |most: f64, share| most.max(share.abs()));
+            shares.across[axis] = largest / blend.radius_mm;
+        }
+        shares
+    }
+}
+
+/// The least and the largest of `t·cos θ + n·sin θ` between two angles, rad.
+fn swung([tangent, normal]: [f64; 2], ends: [f64; 2]) -> [f64; 2] {
+    let at = |angle: f64| {
+        let (sin, cos) = libm::sincos(angle);
+        tangent * cos + normal * sin
+    };
+    let [first, last] = ends.map(at);
+    let swing = (tangent * tangent + normal * normal).sqrt();
+    let largest = libm::atan2(normal, tangent);
+    let inside = |angle: f64| {
+        let mut turns = [-2.0 * PI, 0.0, 2.0 * PI].into_iter();
+        turns.any(|turn| (ends[0]..=ends[1]).contains(&(angle + turn)))
+    };
+    [
+        if inside(largest + PI) {
+            -swing
+        } else {
+            first.min(last)
+        },
+        if inside(largest) {
+            swing
+        } else {
+            first.max(last)
+        },
+    ]
 }
 
 /// Path speed in mm/s (degrees/s) to which [`blended_bound`] belongs.

@@ -22,6 +22,9 @@ use crate::plan::{Blend, Phase, PhaseKind, Profile};
 use arrayvec::ArrayVec;
 use std::f64::consts::PI;
 
+/// The axes that a blend may move, whatever the line before it moves.
+pub(super) const BLENDED: AxisSet = AxisSet(0b111);
+
 /// The converter's share of a blend after the line `mv`.
 pub(super) fn totals(
     model: &PowerModel,

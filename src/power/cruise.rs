@@ -11,6 +11,7 @@
 //! Where a blend turns, the robust bound counts for what such a weight feeds back.
 
 use super::axis::Side;
+use super::blend::BLENDED;
 use super::demand::{Demand, Totals, Want, larger};
 use super::interval::{Interval, Ramp};
 use super::model::{ConverterPower, PowerModel};
@@ -62,7 +63,7 @@ impl PowerModel {
         }
         // Slower, viscous friction takes less of what braking feeds back.
         let brakes = !planned.speeds2.are_one() && self.has_viscous(mv);
-        if !brakes && !self.lets_down(mv) {
+        if !brakes && !self.lets_down(BLENDED) {
             return None;
         }
         let surge = Surge {
@@ -79,10 +80,10 @@ impl PowerModel {
         Some(self.fed_back(mv, &turned))
     }
 
-    /// Whether a moving axis has a weight that its friction does not hold, and feeds back
-    /// out of proportion to its speed.
-    fn lets_down(&self, mv: &Move) -> bool {
-        mv.moving.iter().any(|axis| {
+    /// Whether one of these axes has a weight that its friction does not hold, and feeds
+    /// back out of proportion to its speed.
+    fn lets_down(&self, axes: AxisSet) -> bool {
+        axes.iter().any(|axis| {
             let own = &self.axes[axis];
             let held = own.coulomb * own.friction_factor(Side::Regen);
             own.is_curved() && own.gravity.abs() > held

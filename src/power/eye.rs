@@ -9,6 +9,7 @@ use super::motion::Motion;
 use super::robust::Part;
 use super::steps::StepEnergy;
 use super::surge::Surge;
+use super::tandem::Tandem;
 use super::watch::{Beside, Kept, Known, Span, Watch};
 use crate::interpret::Move;
 use crate::machine::Machine;
@@ -155,6 +156,14 @@ impl Eye {
     ) {
         if let Some(watch) = &self.watch {
             watch.surge(model, mv, planned, surge, kept);
+        }
+    }
+
+    /// Two moves that share some of their time, of which the pieces are kept.
+    #[inline]
+    pub fn together(&self, model: &PowerModel, mv: &Move, tandem: &Tandem, kept: [&mut Kept; 2]) {
+        if let Some(watch) = &self.watch {
+            watch.together(model, mv, tandem, kept);
         }
     }
 

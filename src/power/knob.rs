@@ -13,6 +13,7 @@
 //! o₁ and o₂ do.
 
 use super::axis::{AxisPower, Side};
+use super::blend::BLENDED;
 use super::demand::{Demand, Totals, Want, larger};
 use super::independent;
 use super::model::{ConverterPower, PowerModel};
@@ -139,17 +140,21 @@ impl PowerModel {
 }
 
 impl PowerModel {
-    /// Whether friction that grows with speed counts in a move.
+    /// Whether friction that grows with speed counts in a move, or in a blend after it.
     pub(super) fn has_viscous(&self, mv: &Move) -> bool {
-        let mut axes = mv.moving.iter();
-        axes.any(|axis| self.axes.get(axis).is_some_and(|it| it.viscous > 0.0))
+        self.has(mv, |axis| axis.viscous > 0.0)
     }
 
-    /// Whether an axis that moves loses power in its copper: turned or sped up more gently
-    /// it may feed more back.
+    /// Whether an axis that moves in it, or in a blend after it, loses power in its copper:
+    /// turned or sped up more gently it may feed more back.
     pub(super) fn has_copper(&self, mv: &Move) -> bool {
-        let mut axes = mv.moving.iter();
-        axes.any(|axis| self.axes.get(axis).is_some_and(|it| it.copper > 0.0))
+        self.has(mv, |axis| axis.copper > 0.0)
+    }
+
+    fn has(&self, mv: &Move, what: impl Fn(&AxisPower) -> bool) -> bool {
+        let axes = AxisSet(mv.moving.0 | BLENDED.0);
+        axes.iter()
+            .any(|axis| self.axes.get(axis).is_some_and(&what))
     }
 
     /// Includes what is asked for on an arc at lower overrides, if that is of interest.
@@ -191,6 +196,11 @@ impl PowerModel {
             lower.include(&self.demand(mv, &plan, Want::PEAKS));
         }
         demand.include_slower(lower);
+        if self.has_copper(mv) {
+            // Just below its largest speed it turns without being sped up or braked.
+            let plan = at(fastest_mm_s * slower::JUST_BELOW / asked_mm_s);
+            demand.include(&self.demand(mv, &plan, Want::PEAKS));
+        }
     }
 
     /// The same without losses in the copper.

@@ -13,7 +13,7 @@
 
 use super::assess::Assessor;
 use super::demand::Want;
-use super::watch::Rating;
+use super::watch::{Measure, Rating};
 use crate::interpret::{Action, Move};
 use crate::machine::{Machine, OverrideAt};
 
@@ -47,7 +47,8 @@ pub struct Lower {
     pub machines: Vec<Machine>,
     /// Which of the limits are watched there.
     pub watched: Vec<bool>,
-    /// What is drawn and fed back at most at any setting, W: no smaller peak matters.
+    /// What is drawn and fed back at most at any setting, W: no smaller peak matters, and no
+    /// limit sees more.
     pub peaks_w: [f64; 2],
 }
 
@@ -99,6 +100,8 @@ pub struct Ladder {
 enum Verdict {
     /// It is kept everywhere, or missed at the largest.
     Known,
+    /// It is kept everywhere, since nothing draws or feeds back so much.
+    Beyond,
     /// Ranges are looked at.
     Open,
     /// Some setting misses it.
@@ -195,11 +198,14 @@ impl Ladder {
         knobs: Knobs,
         peaks_w: [f64; 2],
     ) -> Self {
+        let one = machine.converters.len() == 1;
         let verdict = |rating: &Rating| {
-            if rating.bound.is_some() {
-                Verdict::Open
-            } else {
+            if rating.bound.is_none() {
                 Verdict::Known
+            } else if one && is_beyond(rating, peaks_w) {
+                Verdict::Beyond
+            } else {
+                Verdict::Open
             }
         };
         let most = (MOVES_MAX / moves.max(1)) as usize;
@@ -314,9 +320,14 @@ impl Ladder {
     pub fn conclude<'a>(&self, ratings: impl Iterator<Item = &'a mut Rating>) {
         let found = self.verdicts.iter().zip(&self.worst).zip(&self.largest);
         for (rating, ((verdict, worst), largest)) in ratings.zip(found) {
-            let Some(bound) = largest.bound else {
+            let Some(mut bound) = largest.bound else {
                 continue;
             };
+            if self.machine.converters.len() == 1
+                && matches!(largest.measure, Measure::Continuous { .. })
+            {
+                bound = bound.min(self.peaks_w[0]);
+            }
             let looked_at = Rating {
                 bound: None,
                 looked_at: true,
@@ -324,6 +335,10 @@ impl Ladder {
             };
             *rating = match verdict {
                 Verdict::Known | Verdict::Missed => looked_at,
+                Verdict::Beyond => Rating {
+                    bound: None,
+                    ..*rating
+                },
                 Verdict::TooNear(bound) => Rating {
                     value: *bound,
                     any: true,
@@ -336,6 +351,16 @@ impl Ladder {
                 },
             };
         }
+    }
+}
+
+/// Whether a limit is kept by all that draws and feeds back no more than so much, W.
+fn is_beyond(rating: &Rating, [drawn_w, fed_back_w]: [f64; 2]) -> bool {
+    match rating.measure {
+        Measure::Overload { above_w, .. } => drawn_w <= above_w,
+        Measure::Continuous { .. } => drawn_w <= rating.limit,
+        Measure::Brake { power_w } => fed_back_w <= power_w,
+        Measure::LowestVoltage | Measure::HighestVoltage => false,
     }
 }
 
@@ -371,6 +396,9 @@ impl Assessor<'_> {
             lower.want = peaks;
             if let Some(watch) = &mut lower.eye.watch {
                 watch.only(&at.watched);
+                if let [_] = lower.model.converters.as_slice() {
+                    watch.cap(at.peaks_w);
+                }
             }
         }
         self

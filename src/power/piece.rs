@@ -91,37 +91,56 @@ fn below(model: &PowerModel, own: &Demand, found: Option<&Demand>) -> Want {
     }
 }
 
-/// What a chord of an arc asks for that is sped up or braked as planned, but from or to
+/// How a piece that turns goes on where one of its ends is passed more slowly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shift {
+    /// It is a chord: as planned it may turn round within, where a slower one goes on.
+    Chord,
+    /// Its other end is passed as planned.
+    Whole,
+}
+
+impl Shift {
+    /// The speeds of a piece with an end at `low2`: its last one where it is braked.
+    fn speeds2(self, planned: &Planned<u64>, low2: f64, falls: bool) -> Speeds2 {
+        let Speeds2 { start, end, top } = planned.speeds2;
+        let ramp2 = 2.0 * planned.accel_mm_s2 * planned.length_mm;
+        let reached2 = low2 + ramp2;
+        let other2 = if falls { start } else { end };
+        let (high2, top) = match self {
+            Self::Chord => (top.min(reached2), top.min(reached2)),
+            Self::Whole => (other2.min(reached2), top.min(0.5 * (other2 + reached2))),
+        };
+        let top = top.max(high2);
+        let (start, end) = if falls { (high2, low2) } else { (low2, high2) };
+        Speeds2 { start, end, top }
+    }
+}
+
+/// What a piece that turns asks for that is sped up or braked as planned, but from or to
 /// any lower speed: at lower overrides each place is passed with `v² = x − δ`, x the
-/// square of the planned speed, or a little more where it began to brake.
+/// square of the planned speed, and the ramp goes on to places where the planned one has
+/// turned round.
 /// `sides`: whether it is sped up so, and braked; `found` as in [`slower_demand`].
 pub(super) fn shifted_demand(
     model: &PowerModel,
     mv: &Move,
     planned: &Planned<u64>,
-    sides: [bool; 2],
+    (shift, sides): (Shift, [bool; 2]),
     found: Option<&Demand>,
 ) -> Demand {
     let mut demand = piece_demand(model, mv, planned, EXACT);
     let want = below(model, &demand, found);
-    let Speeds2 { start, end, top } = planned.speeds2;
-    let ramp2 = 2.0 * planned.accel_mm_s2 * planned.length_mm;
+    let Speeds2 { start, end, .. } = planned.speeds2;
     let mut lower = Demand::NONE;
     for (side, (low2, falls)) in sides.into_iter().zip([(start, false), (end, true)]) {
         let low_mm_s = low2.sqrt();
-        // As planned it may turn round within the chord, where a slower one goes on.
+        // As planned a chord may turn round within, where a slower one goes on.
         let ends = [low_mm_s, 0.0];
         let speeds_mm_s = ends.into_iter().chain(speeds_mm_s(low_mm_s));
         for low_mm_s in speeds_mm_s.filter(|_| side) {
-            let low2 = low_mm_s * low_mm_s;
-            let high2 = top.min(low2 + ramp2);
-            let (start, end) = if falls { (high2, low2) } else { (low2, high2) };
             let piece = Planned {
-                speeds2: Speeds2 {
-                    start,
-                    end,
-                    top: high2,
-                },
+                speeds2: shift.speeds2(planned, low_mm_s * low_mm_s, falls),
                 ..planned.clone()
             };
             if !is_quiet(model, mv, &piece, want) {

@@ -19,6 +19,8 @@ const FAR: i32 = 3;
 const NEAREST: f64 = 0.96;
 /// The least that a share of a speed may be here.
 pub(super) const LEAST: f64 = 1e-3;
+/// A share of the largest speed that is hardly less.
+pub(super) const JUST_BELOW: f64 = 1.0 - 1e-6;
 /// What may lie between two of them.
 pub(super) const BETWEEN: f64 = 1.01;
 

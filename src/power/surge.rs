@@ -5,14 +5,14 @@
 //! Output: its [`Demand`]. On a line it is that of the ramps themselves. Where the
 //! path turns it is the robust bound, over short stretches of an arc.
 
-use super::demand::{Demand, Want};
+use super::demand::{Demand, Want, larger};
 use super::model::PowerModel;
 use super::piece::straight_line;
 use super::robust::Part;
 use crate::interpret::Move;
 use crate::machine::AxisValues;
 use crate::plan::lookahead::{Piece, Planned, Speeds2};
-use crate::plan::{Blend, PathShares, Plan, Section, Trajectory};
+use crate::plan::{PathShares, Plan, Section, Trajectory};
 use std::f64::consts::PI;
 
 /// Stretches of a turn over which the directions change little, and of a piece at most.
@@ -44,15 +44,13 @@ pub(super) fn surge_demand(
         ..want
     };
     match &planned.piece {
-        Piece::Along { from_mm, to_mm } if mv.arc.is_some() => {
-            arc_demand(model, mv, [*from_mm, *to_mm], surge)
-        }
+        Piece::Along { .. } if mv.arc.is_some() => turn_demand(model, mv, &planned.piece, surge),
         Piece::Along { .. } => line_demand(model, mv, surge, want),
         Piece::Joined { direction } => {
             let line = straight_line(mv, direction, planned.length_mm);
             line_demand(model, &line, surge, want)
         }
-        Piece::Blend(blend) => blend_demand(model, mv, blend, surge),
+        Piece::Blend(_) => turn_demand(model, mv, &planned.piece, surge),
     }
 }
 
@@ -64,37 +62,29 @@ pub(super) fn surge_powers(
     planned: &Planned<u64>,
     surge: Surge,
 ) -> [f64; 2] {
-    let shares = match &planned.piece {
-        Piece::Along { from_mm, to_mm } => PathShares::of(mv, [*from_mm, *to_mm]),
-        Piece::Joined { direction } => {
-            let line = straight_line(mv, direction, planned.length_mm);
-            PathShares::of(&line, [0.0, planned.length_mm])
-        }
-        Piece::Blend(blend) => {
-            let mut shares = PathShares::default();
-            for (axis, (tangent, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate()
-            {
-                let swing = (tangent * tangent + normal * normal).sqrt();
-                shares.along.positive[axis] = swing;
-                shares.along.negative[axis] = swing;
-                shares.across[axis] = swing / blend.radius_mm;
-            }
-            shares
-        }
-    };
     let speed_mm_s = surge.speed_mm_s();
-    let (mut bound, mut accels) = (shares.along, AxisValues::default());
-    for (axis, accel) in accels.iter_mut().enumerate() {
-        let share = bound.positive[axis].max(bound.negative[axis]);
-        *accel = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
-        bound.positive[axis] *= speed_mm_s;
-        bound.negative[axis] *= speed_mm_s;
-    }
-    let part = Part {
-        bound: &bound,
-        accel_mm_s2: &accels,
+    let of = |shares: &PathShares| {
+        let (mut bound, mut accels) = (shares.along, AxisValues::default());
+        for (axis, accel) in accels.iter_mut().enumerate() {
+            let share = bound.positive[axis].max(bound.negative[axis]);
+            *accel = share * surge.accel_mm_s2 + shares.across[axis] * speed_mm_s * speed_mm_s;
+            bound.positive[axis] *= speed_mm_s;
+            bound.negative[axis] *= speed_mm_s;
+        }
+        let part = Part {
+            bound: &bound,
+            accel_mm_s2: &accels,
+        };
+        model.robust_powers(converter, mv, &[part])
     };
-    model.robust_powers(converter, mv, &[part])
+    if let Piece::Joined { direction } = &planned.piece {
+        let line = straight_line(mv, direction, planned.length_mm);
+        return of(&PathShares::of(&line, [0.0, planned.length_mm]));
+    }
+    let powers = stretches(mv, &planned.piece).map(|shares| of(&shares));
+    powers.fold([0.0; 2], |most, own| {
+        [0, 1].map(|i| larger(most[i], own[i]))
+    })
 }
 
 impl Surge {
@@ -167,15 +157,32 @@ fn line_demand(model: &PowerModel, mv: &Move, surge: Surge, want: Want) -> Deman
     demand
 }
 
-fn arc_demand(model: &PowerModel, mv: &Move, [from_mm, to_mm]: [f64; 2], surge: Surge) -> Demand {
-    let sweep_rad = mv.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs());
-    let turns = sweep_rad * (to_mm - from_mm) / (mv.length_mm * 2.0 * PI);
-    let stretches = libm::ceil(turns * STRETCHES_A_TURN).clamp(1.0, STRETCHES_MAX);
+/// Stretches of an arc or a blend over which the directions change little; of a line all of it.
+fn stretches<'a>(mv: &'a Move, piece: &'a Piece) -> impl Iterator<Item = PathShares> + 'a {
+    let (ends_mm, turns) = match piece {
+        Piece::Blend(blend) => (blend.ends_mm(), blend.sweep_rad / (2.0 * PI)),
+        Piece::Along { from_mm, to_mm } => {
+            let sweep_rad = mv.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs());
+            let turns = sweep_rad * (to_mm - from_mm) / (mv.length_mm * 2.0 * PI);
+            ([*from_mm, *to_mm], turns)
+        }
+        Piece::Joined { .. } => ([0.0; 2], 0.0),
+    };
+    let count = libm::ceil(turns * STRETCHES_A_TURN).clamp(1.0, STRETCHES_MAX);
+    let [from_mm, to_mm] = ends_mm;
+    let at = move |stretch: u32| from_mm + (to_mm - from_mm) * f64::from(stretch) / count;
+    (0..count as u32).map(move |stretch| {
+        let ends_mm = [at(stretch), at(stretch + 1)];
+        match piece {
+            Piece::Blend(blend) => PathShares::of_blend(blend, ends_mm),
+            _ => PathShares::of(mv, ends_mm),
+        }
+    })
+}
+
+fn turn_demand(model: &PowerModel, mv: &Move, piece: &Piece, surge: Surge) -> Demand {
     let mut demand = Demand::NONE;
-    for stretch in 0..stretches as u32 {
-        let at = |share: f64| from_mm + (to_mm - from_mm) * share / stretches;
-        let ends_mm = [at(f64::from(stretch)), at(f64::from(stretch) + 1.0)];
-        let shares = PathShares::of(mv, ends_mm);
+    for shares in stretches(mv, piece) {
         demand.include(&turning_demand(model, mv, &shares, surge));
     }
     demand
@@ -214,30 +221,4 @@ fn turning_demand(model: &PowerModel, mv: &Move, shares: &PathShares, surge: Sur
         }
     }
     demand
-}
-
-/// The directions of a blend are those between its tangents.
-fn blend_demand(model: &PowerModel, mv: &Move, blend: &Blend, surge: Surge) -> Demand {
-    let mut shares = PathShares::default();
-    let (sin, cos) = libm::sincos(blend.sweep_rad);
-    for (axis, (first, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
-        let last = first * cos + normal * sin;
-        let swing = (first * first + normal * normal).sqrt();
-        // Where the part of an axis is largest inside.
-        let peak = libm::atan2(normal, first);
-        let inside = |angle: f64| angle > 0.0 && angle < blend.sweep_rad;
-        let most = |sign: f64, angle: f64| {
-            let ends = (sign * first).max(sign * last).max(0.0);
-            let turned = [angle, angle + 2.0 * PI];
-            if turned.into_iter().any(inside) {
-                swing
-            } else {
-                ends
-            }
-        };
-        shares.along.positive[axis] = most(1.0, peak);
-        shares.along.negative[axis] = most(-1.0, peak + PI);
-        shares.across[axis] = swing / blend.radius_mm;
-    }
-    turning_demand(model, mv, &shares, surge)
 }

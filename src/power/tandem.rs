@@ -1,8 +1,8 @@
 //! Two moves at once: in a parabolic blend of `LinuxCNC` the next move begins while
 //! the last one comes to rest, each on its own path.
 //!
-//! Input: both pieces of path with their profiles. Output: the robust bound for the
-//! time that they share, from the speeds and accelerations that they have then:
+//! Input: both pieces of path with their profiles. Output: the speeds and accelerations
+//! that they have at most in the time that they share, and the robust bound from these:
 //!
 //! ```text
 //! v̂ = max over t of s₁·v₁(t) + s₂·v₂(t),   â = Σ s·â + c·v̂²
@@ -15,15 +15,17 @@
 use super::demand::Demand;
 use super::model::PowerModel;
 use super::piece::straight_line;
+use super::robust::Extremes;
 use super::slower::speeds_mm_s;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{PathShares, Phase, PhaseKind, Profile, SpeedBound, State};
+use arrayvec::ArrayVec;
 
 /// Slices of the time that two moves share, of which one turns: over each the
 /// directions change little.
-const SLICES: u32 = 8;
+const SLICES: usize = 8;
 /// Halvings in the search for the override at which they share most.
 const HALVINGS: u32 = 40;
 /// By what share two times may differ by rounding.
@@ -143,81 +145,100 @@ impl Ride {
     }
 }
 
-/// What two rides ask for while they share their time at any override: where the ramps
-/// at the largest are as long as the paths, they share more of it at lower ones, as long
-/// as the longer ramp lasts. `overlap_s` is that at the largest.
-pub(super) fn tandem_demand_at_any(
-    model: &PowerModel,
-    mv: &Move,
-    rides: [&Ride; 2],
-    overlap_s: f64,
-) -> Demand {
-    let mut demand = tandem_demand(model, mv, rides, overlap_s);
-    // As long as the longer ramp lasts, unless a path is passed sooner: the one falls with
-    // the speeds, the other grows.
-    let lasts_s = |share: f64| {
-        let speeds = rides.map(|ride| ride.speed_mm_s(share));
-        let ramps_s = [0, 1].map(|i| speeds[i] / rides[i].accel_mm_s2);
-        let paths_s = [0, 1].map(|i| rides[i].length_mm / speeds[i]);
-        let longer_s = ramps_s[0].max(ramps_s[1]);
-        (longer_s, paths_s[0].min(paths_s[1]), ramps_s[0], speeds[1])
-    };
-    let (longer_s, passed_s, own_s, _) = lasts_s(1.0);
-    let at_largest_s = longer_s.min(passed_s).min(own_s);
-    if longer_s <= passed_s || overlap_s < at_largest_s * (1.0 - ROUNDING) {
-        // The tolerance may end it sooner, at any override.
-        return demand;
-    }
-    let mut shares_of = [0.0, 1.0];
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (shares_of[0] + shares_of[1]);
-        let (longer_s, passed_s, ..) = lasts_s(middle);
-        shares_of[usize::from(longer_s > passed_s)] = middle;
-    }
-    let longest = shares_of[1];
-    let mut slower = Demand::NONE;
-    let asked_mm_s = rides[1].asked_mm_s;
-    let shares = speeds_mm_s(asked_mm_s).map(|speed| speed / asked_mm_s);
-    for share in shares.take_while(|share| *share > longest).chain([longest]) {
-        let (longer_s, passed_s, own_s, speed_mm_s) = lasts_s(share);
-        let lower_s = longer_s.min(passed_s).min(own_s);
-        if lower_s > overlap_s * (1.0 + ROUNDING) {
-            let [first, next] = rides;
-            let first = first.ramp(0.0, lower_s, false);
-            let next = next.ramp(speed_mm_s, lower_s, true);
-            slower.include(&tandem_demand(model, mv, [&first, &next], lower_s));
-        }
-    }
-    demand.include_slower(slower);
-    demand
+/// What two rides come to while they share their time.
+#[derive(Debug)]
+pub(super) struct Tandem {
+    /// At the largest overrides, in slices of the time that last equally long.
+    pub largest: ArrayVec<Extremes, SLICES>,
+    /// At lower overrides at which they share more of it.
+    pub slower: Vec<Extremes>,
+    /// How long that is at the largest overrides, and at any at most, s.
+    pub overlap_s: f64,
+    pub longest_s: f64,
 }
 
-/// What two rides ask for while they share their time: `overlap_s` before the end of
-/// the first. Of `mv` only the switched loads are read.
-pub(super) fn tandem_demand(
-    model: &PowerModel,
-    mv: &Move,
-    rides: [&Ride; 2],
-    overlap_s: f64,
-) -> Demand {
+impl Tandem {
+    /// Two rides that share the last `overlap_s` of the first one, at these overrides alone.
+    pub fn new(rides: [&Ride; 2], overlap_s: f64) -> Self {
+        Self {
+            largest: shared(rides, overlap_s).collect(),
+            slower: Vec::new(),
+            overlap_s,
+            longest_s: overlap_s,
+        }
+    }
+
+    /// The same at any override: where the ramps at the largest are as long as the paths, they
+    /// share more of it at lower ones, as long as the longer ramp lasts.
+    pub fn at_any(rides: [&Ride; 2], overlap_s: f64) -> Self {
+        let mut tandem = Self::new(rides, overlap_s);
+        // As long as the longer ramp lasts, unless a path is passed sooner: the one falls with
+        // the speeds, the other grows.
+        let lasts_s = |share: f64| {
+            let speeds = rides.map(|ride| ride.speed_mm_s(share));
+            let ramps_s = [0, 1].map(|i| speeds[i] / rides[i].accel_mm_s2);
+            let paths_s = [0, 1].map(|i| rides[i].length_mm / speeds[i]);
+            let longer_s = ramps_s[0].max(ramps_s[1]);
+            (longer_s, paths_s[0].min(paths_s[1]), ramps_s[0], speeds[1])
+        };
+        let (longer_s, passed_s, own_s, _) = lasts_s(1.0);
+        let at_largest_s = longer_s.min(passed_s).min(own_s);
+        if longer_s <= passed_s || overlap_s < at_largest_s * (1.0 - ROUNDING) {
+            // The tolerance may end it sooner, at any override.
+            return tandem;
+        }
+        // With a knob for each, the second may be so slow that all of the first ramp is shared.
+        tandem.longest_s = overlap_s.max(own_s);
+        let mut shares_of = [0.0, 1.0];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (shares_of[0] + shares_of[1]);
+            let (longer_s, passed_s, ..) = lasts_s(middle);
+            shares_of[usize::from(longer_s > passed_s)] = middle;
+        }
+        let longest = shares_of[1];
+        let asked_mm_s = rides[1].asked_mm_s;
+        let shares = speeds_mm_s(asked_mm_s).map(|speed| speed / asked_mm_s);
+        for share in shares.take_while(|share| *share > longest).chain([longest]) {
+            let (longer_s, passed_s, own_s, speed_mm_s) = lasts_s(share);
+            let lower_s = longer_s.min(passed_s).min(own_s);
+            if lower_s > overlap_s * (1.0 + ROUNDING) {
+                let [first, next] = rides;
+                let first = first.ramp(0.0, lower_s, false);
+                let next = next.ramp(speed_mm_s, lower_s, true);
+                tandem.slower.extend(shared([&first, &next], lower_s));
+            }
+        }
+        tandem
+    }
+
+    /// The robust bound. Of `mv` only the switched loads are read.
+    pub fn demand(&self, model: &PowerModel, mv: &Move) -> Demand {
+        let most = |all: &[Extremes]| {
+            let mut demand = Demand::NONE;
+            for Extremes { bound, accel_mm_s2 } in all {
+                demand.include(&model.robust(mv, bound, accel_mm_s2));
+            }
+            demand
+        };
+        let mut demand = most(&self.largest);
+        if !self.slower.is_empty() {
+            demand.include_slower(most(&self.slower));
+        }
+        demand
+    }
+}
+
+/// The slices of the time that two rides share: the last `overlap_s` of the first.
+fn shared(rides: [&Ride; 2], overlap_s: f64) -> impl Iterator<Item = Extremes> {
     let turns = rides.iter().any(|ride| ride.path.arc.is_some());
     let slices = if turns { SLICES } else { 1 };
-    let at = |slice: u32| overlap_s * f64::from(slice) / f64::from(slices);
-    let mut demand = Demand::NONE;
-    for slice in 0..slices {
-        let (bound, accels) = extremes(rides, overlap_s, [at(slice), at(slice + 1)]);
-        demand.include(&model.robust(mv, &bound, &accels));
-    }
-    demand
+    let at = move |slice: usize| overlap_s * slice as f64 / slices as f64;
+    (0..slices).map(move |slice| extremes(rides, overlap_s, [at(slice), at(slice + 1)]))
 }
 
 /// The largest speeds and accelerations of the axes between two instants of the time
 /// that they share.
-fn extremes(
-    rides: [&Ride; 2],
-    overlap_s: f64,
-    [from_s, to_s]: [f64; 2],
-) -> (SpeedBound, AxisValues) {
+fn extremes(rides: [&Ride; 2], overlap_s: f64, [from_s, to_s]: [f64; 2]) -> Extremes {
     let begins_s = [rides[0].duration_s() - overlap_s, 0.0];
     let switches = rides.iter().zip(begins_s);
     let switches =
@@ -245,5 +266,8 @@ fn extremes(
             *accel += along + shares.across[axis] * top * top;
         }
     }
-    (bound, accels)
+    Extremes {
+        bound,
+        accel_mm_s2: accels,
+    }
 }

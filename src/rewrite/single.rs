@@ -31,7 +31,7 @@ const LATHE: [u16; 7] = [710, 720, 730, 740, 750, BOX, FACE];
 const BOX: u16 = 770;
 const FACE: u16 = 790;
 /// Words that belong to a cycle alone.
-const CYCLE_LETTERS: &[u8] = b"XYZABCUVWIJKRQPLDE";
+const CYCLE_LETTERS: &[u8] = b"XYZABCUVWIJKRQPLDE@^";
 
 /// A block of a canned cycle.
 #[derive(Debug, Clone, Copy)]

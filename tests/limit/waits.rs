@@ -3,12 +3,18 @@
 
 use crate::shop::Shop;
 
-/// 100 W at rest; X at F20000 draws 0.3333·100/0.8 = 42 W more, by a rapid 62.5 W. Over
+/// 50 W at rest; X at F20000 draws 0.3333·100/0.8 = 42 W more, by a rapid 62.5 W. Over
 /// 30 s no more than `power_w` may be drawn.
 fn shop(controller: &str, power_w: f64) -> Shop {
     let converter = format!("peak_power_w = 2000\ncontinuous_power_w = {power_w}\nwindow_s = 30");
     let path = "[path]\nmode = \"exact-stop\"\nrapid = \"linear\"";
-    Shop::mill(controller, &converter, path, "")
+    let shop = Shop::mill(controller, &converter, path, "");
+    let machine = shop.get("mill.toml");
+    shop.put(
+        "mill.toml",
+        &machine.replace("base_load_w = 100", "base_load_w = 50"),
+    );
+    shop
 }
 
 /// Exit code, what is written and what is said.
@@ -31,7 +37,7 @@ fn dwells(text: &str, word: &str) -> Vec<f64> {
 /// The feeds may not be lowered, and slower rapids are not enough.
 #[test]
 fn the_program_waits_between_rapids() {
-    let shop = shop("iso", 135.0);
+    let shop = shop("iso", 84.0);
     let (code, _, errors) = limited(&shop, PROGRAM, "");
     assert_eq!(code, 1, "{errors}");
     let (code, text, errors) = limited(&shop, PROGRAM, "--allow pause --json r.json");
@@ -83,7 +89,7 @@ fn the_program_waits_between_rapids() {
 #[test]
 fn each_control_waits_in_its_own_words() {
     for (controller, word) in [("fanuc", "G4 X"), ("haas", "G4 P"), ("siemens", "G4 F")] {
-        let shop = shop(controller, 135.0);
+        let shop = shop(controller, 84.0);
         let program = PROGRAM.replace("G21 ", "");
         let (code, text, errors) = limited(&shop, &program, "--allow pause");
         assert_eq!(code, 0, "{controller}: {errors}");
@@ -96,7 +102,7 @@ fn each_control_waits_in_its_own_words() {
 /// Where lower speeds cost less, they are taken.
 #[test]
 fn lower_speeds_that_cost_less_are_taken() {
-    let shop = shop("iso", 152.0);
+    let shop = shop("iso", 102.0);
     let lowered = limited(&shop, PROGRAM, "--allow feed");
     let both = limited(&shop, PROGRAM, "--allow feed,pause --json r.json");
     assert_eq!((lowered.0, both.0), (0, 0), "{}", both.2);
@@ -118,7 +124,7 @@ fn where_the_program_may_not_wait() {
         format!("G21 G90\n#1=0\nWHILE [#1 LT 3] DO1\nG0 Z20.\nG0 Z0.\n{cut}#1=#1+1\nEND1\nM30\n"),
         format!("G21 G90\n/G0 Z20.\n/G0 Z0.\n{cut}{cut}M30\n"),
     ] {
-        let shop = shop("fanuc", 120.0);
+        let shop = shop("fanuc", 70.0);
         let (code, _, errors) = limited(&shop, &program, "--allow pause");
         assert_eq!(code, 1, "{program}{errors}");
         assert!(

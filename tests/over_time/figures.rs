@@ -48,3 +48,33 @@ fn limits_over_time_change_no_peak() {
         assert!(values[0] > 100.0, "{values:?}");
     }
 }
+
+/// Under G64 the feed begins while the rapid comes to rest, for a tenth of a second of 4 s.
+/// Only that much of both counts together, at the largest overrides and in the bound.
+#[test]
+fn moves_that_overlap_count_together_while_they_do() {
+    let rest = "[path]\nrapid = \"linear\"";
+    let means = |mode: &str| -> Vec<f64> {
+        let ratings = "peak_power_w = 5000\ncontinuous_power_w = 60\nwindow_s = 4";
+        let shop = Shop::mill("linuxcnc", ratings, rest, "");
+        shop.put(
+            "a.ngc",
+            &format!("G21 G90 {mode}\nF300\nG0 X200\nG1 Y20\nG0 X0\nG1 Y40\nM2\n"),
+        );
+        let all = ["--override 100%", "--override 60%", "--override 30%", ""];
+        let all = all.map(|overrides| {
+            let (_, told, errors) =
+                shop.run(format!("check a.ngc --format json {overrides}").trim_end());
+            let told: serde_json::Value = serde_json::from_str(&told).expect(&errors);
+            told[0]["over_time"][0]["value"].as_f64().unwrap()
+        });
+        all.to_vec()
+    };
+    let [apart, together] = ["G61", "G64"].map(means);
+    for (apart, together) in apart.iter().zip(&together) {
+        assert!(
+            (0.99..1.1).contains(&(together / apart)),
+            "{together} {apart}"
+        );
+    }
+}

@@ -33,6 +33,14 @@ pub struct Blend {
     pub normal: [f64; 3],
 }
 
+impl Blend {
+    /// Where it begins and ends on its path, mm.
+    #[must_use]
+    pub fn ends_mm(&self) -> [f64; 2] {
+        [0.0, self.lead_mm + self.radius_mm * self.sweep_rad]
+    }
+}
+
 /// What a piece of the plan stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Piece {

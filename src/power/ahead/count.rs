@@ -10,7 +10,7 @@ use crate::power::model::PowerModel;
 use crate::power::piece::{is_quiet, piece_demand};
 use crate::power::steps::StepEnergy;
 use crate::power::surge::{Surge, surge_demand};
-use crate::power::tandem::{Ride, tandem_demand, tandem_demand_at_any};
+use crate::power::tandem::{Ride, Tandem};
 use crate::power::tandem_energy::shared_energy_j;
 
 impl Ahead {
@@ -98,14 +98,14 @@ impl Ahead {
             let doubtful =
                 open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;
             if doubtful {
-                self.ride(model, planned, true, times);
+                self.ride(model, eye, planned, true, times);
                 let certain = self.is_certain(planned, number, number);
                 if let Some(open) = self.open.get_mut(number) {
                     open.certain &= certain;
                 }
             }
         } else {
-            self.ride(model, planned, false, times);
+            self.ride(model, eye, planned, false, times);
         }
     }
 
@@ -185,7 +185,7 @@ impl Ahead {
         if with_energy && let Some(step) = &step {
             demand.energy_j += step.supplied_j(model);
         }
-        self.ride(model, planned, peaks, times);
+        self.ride(model, eye, planned, peaks, times);
         let late = if peaks {
             self.late(model, planned)
         } else {
@@ -248,7 +248,14 @@ impl Ahead {
 
     /// A piece that may share its time with another one, and what both ask for
     /// together.
-    fn ride(&mut self, model: &PowerModel, planned: &Planned<u64>, peaks: bool, times: bool) {
+    fn ride(
+        &mut self,
+        model: &PowerModel,
+        eye: &Eye,
+        planned: &Planned<u64>,
+        peaks: bool,
+        times: bool,
+    ) {
         let last = self.side(peaks).last_ride.take();
         if !planned.overlaps {
             return;
@@ -260,10 +267,13 @@ impl Ahead {
         let Some(ride) = ride else {
             return;
         };
-        if let Some(last) = last.filter(|_| planned.overlap_s > 0.0) {
+        let apart = |last: &Ride| last.moves[1] < ride.moves[0];
+        let last = last.filter(|last| planned.overlap_s > 0.0 && apart(last));
+        let together = last.is_some();
+        if let Some(last) = last {
             let rides = [&last, &ride];
             if peaks {
-                self.ride_together(model, rides, planned.overlap_s);
+                self.ride_together(model, eye, rides, planned.overlap_s);
             }
             if times
                 && let Some(open) = self.open.get_mut(planned.tag)
@@ -276,7 +286,8 @@ impl Ahead {
         if peaks {
             for number in ride.moves[0]..=ride.moves[1] {
                 if let Some(open) = self.open.get_mut(number) {
-                    (open.alone, open.in_turn) = (false, false);
+                    open.alone = false;
+                    open.in_turn &= together || planned.overlap_s <= 0.0;
                 }
             }
         }
@@ -292,16 +303,23 @@ impl Ahead {
     }
 
     /// What two pieces ask for that share some of their time.
-    fn ride_together(&mut self, model: &PowerModel, rides: [&Ride; 2], overlap_s: f64) {
+    fn ride_together(&mut self, model: &PowerModel, eye: &Eye, rides: [&Ride; 2], overlap_s: f64) {
         let [last, ride] = rides;
-        let Some(open) = self.open.get(ride.moves[1]) else {
+        let tandem = if self.surges.is_some() {
+            Tandem::at_any(rides, overlap_s)
+        } else {
+            Tandem::new(rides, overlap_s)
+        };
+        let [before, own] = [last.moves[1], ride.moves[1]];
+        let mut kept = self.open.take_kept(before);
+        let Some(open) = self.open.get_mut(own) else {
             return;
         };
-        let demand = if self.surges.is_some() {
-            tandem_demand_at_any(model, &open.mv, rides, overlap_s)
-        } else {
-            tandem_demand(model, &open.mv, rides, overlap_s)
-        };
+        let demand = tandem.demand(model, &open.mv);
+        eye.together(model, &open.mv, &tandem, [&mut kept, &mut open.kept]);
+        if let Some(open) = self.open.get_mut(before) {
+            open.kept = kept;
+        }
         for number in last.moves[0]..=ride.moves[1] {
             if let Some(open) = self.open.get_mut(number) {
                 open.assessment.demand.include(&demand);

@@ -90,6 +90,15 @@ impl Course {
 }
 
 impl Pace {
+    /// That of both at once: as fast as either.
+    pub fn or_faster(&self, other: &Self) -> Self {
+        Self {
+            asked2: self.asked2.max(other.asked2),
+            cap2: self.cap2.max(other.cap2),
+            ..*self
+        }
+    }
+
     /// Whether the asked speed is its cap.
     pub fn is_asked(&self) -> bool {
         self.asked2 <= self.cap2 * (1.0 + ROUNDING)

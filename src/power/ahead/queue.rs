@@ -6,6 +6,7 @@
 use super::open::Open;
 use crate::interpret::Move;
 use crate::power::demand::Want;
+use crate::power::watch::Kept;
 
 /// A smaller ring is no gain.
 const RING_MIN: usize = 8;
@@ -86,6 +87,12 @@ impl Queue {
         let (slot, waits) = (self.slot(number), self.waits(number));
         let slot = self.slots.get_mut(slot)?;
         slot.as_deref_mut().filter(|_| waits)
+    }
+
+    /// Takes what is kept of a move over time.
+    pub fn take_kept(&mut self, number: u64) -> Kept {
+        let open = self.get_mut(number);
+        open.map_or_else(Kept::default, |open| std::mem::take(&mut open.kept))
     }
 
     /// The last one.

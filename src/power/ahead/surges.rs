@@ -10,7 +10,7 @@ use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
-use crate::power::piece::{piece_demand, shifted_demand, slower_demand};
+use crate::power::piece::{Shift, piece_demand, shifted_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
 
 /// What is known of the path before and after a piece.
@@ -173,20 +173,29 @@ impl Ahead {
         let is_own = planned.next.is_none() && planned.first == planned.tag;
         let found = is_own.then_some(&open.assessment.demand);
         let slower = slower_demand(model, &open.mv, planned, open.want, found);
+        // A blend may be passed as fast as the faster of both moves asks for.
+        let next = planned.next.and_then(|next| self.open.get(next));
+        let pace = next.map_or(open.pace, |next| open.pace.or_faster(&next.pace));
         // From a lower speed a ramp lasts longer, unless all speeds fall together.
-        let longer = !open.pace.is_asked() || !surges.are_one(open.pace.rapid, course.top2);
+        let longer = !pace.is_asked() || !surges.are_one(pace.rapid, course.top2);
         surges.runs.forget(planned.first);
         let mut shifted = [false; 2];
+        let mut shift = Shift::Whole;
         let surge = if let Some(section) = &planned.section {
             surges.free(section, planned)
         } else {
-            let rises2 = surges.past.pass(&open.pace, &course);
+            let rises2 = surges.past.pass(&pace, &course);
             let is_chord = surges.runs_chords && open.mv.arc.is_some();
-            let on2 = surges.advance(planned.tag, &open.pace, course.ramp2, is_chord);
-            let falls2 = surges.runs.falls2(planned.tag, &open.pace, &course, on2);
+            let on2 = surges.advance(planned.tag, &pace, course.ramp2, is_chord);
+            let falls2 = surges.runs.falls2(planned.tag, &pace, &course, on2);
+            let ramps = [course.start2, course.end2].map(|low2| course.is_ramp_from(low2));
             if is_chord {
-                shifted = [(rises2, course.start2), (falls2, course.end2)]
-                    .map(|(reached2, low2)| reached2.is_some() && course.is_ramp_from(low2));
+                shift = Shift::Chord;
+                shifted = [rises2.is_some() && ramps[0], falls2.is_some() && ramps[1]];
+            } else if !straight {
+                // What turns asks for more where a ramp from a lower speed goes on.
+                let moves = [course.start2, course.end2].map(|low2| low2 > 0.0);
+                shifted = [ramps[0] && moves[0], ramps[1] && moves[1]];
             }
             Surge::between([rises2, falls2], planned.accel_mm_s2)
         };
@@ -216,12 +225,13 @@ impl Ahead {
         let open = self.open.get(planned.tag)?;
         let shift = (shifted != [false; 2]).then(|| {
             let found = is_own.then_some(&open.assessment.demand);
-            let mut demand = shifted_demand(model, &open.mv, planned, shifted, found);
+            let how = (shift, shifted);
+            let mut demand = shifted_demand(model, &open.mv, planned, how, found);
             if model.has_copper(&open.mv)
                 && let Some(surges) = self.surges.as_mut()
             {
                 let lossless = surges.lossless(model);
-                demand.include(&shifted_demand(lossless, &open.mv, planned, shifted, found));
+                demand.include(&shifted_demand(lossless, &open.mv, planned, how, found));
             }
             demand
         });

@@ -138,29 +138,59 @@ impl Tracer<'_> {
         let turns = mv.arc.as_ref().map_or(0.0, |arc| {
             arc.sweep_rad.abs() * part.length_mm() / (mv.length_mm * 2.0 * PI)
         });
-        let ramp = if part.is_cruise() { 1.0 } else { 4.0 };
-        let parts = libm::ceil(turns * PARTS_A_TURN).clamp(ramp, PARTS_MAX);
-        for own in split(part, parts) {
-            let speed_mm_s = own.velocity_mm_s.max(own.end_velocity_mm_s);
-            let length_mm = own.length_mm();
-            let ends_mm = [own.position_mm, own.position_mm + length_mm];
-            let shares = PathShares::of(mv, ends_mm);
-            let mut floor_w = self.turned_w(mv, &shares.along, speed_mm_s);
-            if !own.is_cruise() && speed_mm_s > 0.0 && length_mm > 0.0 {
-                let cruise = Phase {
-                    kind: PhaseKind::ConstantAcceleration,
-                    duration_s: length_mm / speed_mm_s,
-                    velocity_mm_s: speed_mm_s,
-                    end_velocity_mm_s: speed_mm_s,
-                    accel_mm_s2: 0.0,
-                    ..own
-                };
-                self.turning(circle, &cruise, &mut |slice| {
-                    floor_w = floor_w.max(slice.peak_w());
-                });
-            }
+        let shares = |ends_mm| PathShares::of(mv, ends_mm);
+        for own in parts_of_turn(part, turns) {
+            let floor_w = self.turned_floor_w(mv, circle, &own, &shares);
             self.turning(circle, &own, &mut |slice| out(raise(&slice, floor_w)));
         }
+    }
+
+    /// A part of a phase on the circle of a blend in which no axis turns back.
+    pub(super) fn raised_blend(
+        &self,
+        lead: &Move,
+        (blend, circle): (&Blend, &super::super::arc::Circle<'_>),
+        part: &Phase,
+        out: &mut impl FnMut(Slice),
+    ) {
+        let turns = part.length_mm() / (blend.radius_mm * 2.0 * PI);
+        let shares = |ends_mm| PathShares::of_blend(blend, ends_mm);
+        for own in parts_of_turn(part, turns) {
+            let floor_w = self.turned_floor_w(lead, circle, &own, &shares);
+            let span_s = (0.0, own.duration_s);
+            self.chords(circle, &own, span_s, &mut |slice| {
+                out(raise(&slice, floor_w));
+            });
+        }
+    }
+
+    /// What a part of a turn asks for at its largest speed without being sped up or braked,
+    /// and without the turn as well, W.
+    fn turned_floor_w(
+        &self,
+        mv: &Move,
+        circle: &super::super::arc::Circle<'_>,
+        own: &Phase,
+        shares: &impl Fn([f64; 2]) -> PathShares,
+    ) -> f64 {
+        let speed_mm_s = own.velocity_mm_s.max(own.end_velocity_mm_s);
+        let length_mm = own.length_mm();
+        let shares = shares([own.position_mm, own.position_mm + length_mm]);
+        let mut floor_w = self.turned_w(mv, &shares.along, speed_mm_s);
+        if !own.is_cruise() && speed_mm_s > 0.0 && length_mm > 0.0 {
+            let cruise = Phase {
+                kind: PhaseKind::ConstantAcceleration,
+                duration_s: length_mm / speed_mm_s,
+                velocity_mm_s: speed_mm_s,
+                end_velocity_mm_s: speed_mm_s,
+                accel_mm_s2: 0.0,
+                ..*own
+            };
+            self.turning(circle, &cruise, &mut |slice| {
+                floor_w = floor_w.max(slice.peak_w());
+            });
+        }
+        floor_w
     }
 
     /// A part of a phase on an arc that runs backwards: its bound.
@@ -179,28 +209,6 @@ impl Tracer<'_> {
             part.duration_s,
             self.robust_w(mv, &bound, &accels),
         ));
-    }
-
-    /// A part of a phase on the circle of a blend.
-    pub(super) fn raised_blend(
-        &self,
-        lead: &Move,
-        blend: &Blend,
-        part: &Phase,
-        out: &mut impl FnMut(Slice),
-    ) {
-        let speed_mm_s = part.velocity_mm_s.max(part.end_velocity_mm_s);
-        let turning = speed_mm_s * speed_mm_s / blend.radius_mm;
-        let accel_mm_s2 = part.accel_mm_s2.abs().max(part.end_accel_mm_s2().abs());
-        let (mut bound, mut accels) = (SpeedBound::default(), AxisValues::default());
-        for (axis, (tangent, normal)) in blend.tangent.into_iter().zip(blend.normal).enumerate() {
-            let swing = (tangent * tangent + normal * normal).sqrt();
-            bound.positive[axis] = swing * speed_mm_s;
-            bound.negative[axis] = swing * speed_mm_s;
-            accels[axis] = swing * (accel_mm_s2 + turning);
-        }
-        let power_w = self.robust_w(lead, &bound, &accels);
-        out(Slice::constant(part.duration_s, power_w));
     }
 
     /// What axes draw or feed back at a speed of the path in directions of these shares,
@@ -269,6 +277,15 @@ impl Tracer<'_> {
         }
         Some(apart)
     }
+}
+
+/// Parts of a phase in which the directions of a turn change little.
+fn parts_of_turn(part: &Phase, turns: f64) -> impl Iterator<Item = Phase> {
+    let ramp = if part.is_cruise() { 1.0 } else { 4.0 };
+    split(
+        part,
+        libm::ceil(turns * PARTS_A_TURN).clamp(ramp, PARTS_MAX),
+    )
 }
 
 /// Equal parts of a phase.

@@ -71,7 +71,7 @@ impl Tracer<'_> {
                     let idle_w = self.idle_w(lead, on_lead);
                     self.straight_phase(&leading, &piece, idle_w, out);
                 } else if self.raised {
-                    self.raised_blend(lead, blend, &piece, out);
+                    self.raised_blend(lead, (blend, &circle), &piece, out);
                 } else if piece.duration_s > 0.0 {
                     self.chords(&circle, &piece, (0.0, piece.duration_s), out);
                 }
@@ -144,7 +144,7 @@ impl Tracer<'_> {
     }
 
     /// Raised chords between two instants between which no axis turns back.
-    fn chords(
+    pub(super) fn chords(
         &self,
         circle: &Circle<'_>,
         phase: &Phase,

@@ -5,9 +5,11 @@ use super::{Kept, Span, Track, Watch};
 use crate::interpret::{Move, MoveKind};
 use crate::plan::lookahead::Planned;
 use crate::plan::{Plan, Profile, SpeedBound, Trajectory};
+use crate::power::demand::larger;
 use crate::power::model::PowerModel;
-use crate::power::robust::Part;
+use crate::power::robust::{Extremes, Part};
 use crate::power::surge::{Surge, surge_powers};
+use crate::power::tandem::Tandem;
 use crate::power::trace::{Flow, Slice, Tracer};
 
 impl Watch {
@@ -22,16 +24,27 @@ impl Watch {
         surge: &Surge,
         kept: &mut Kept,
     ) {
-        let lasts_s = surge.lasts_s(planned.speeds2, lower_of(self.least_shares));
-        if lasts_s <= 0.0 {
-            return;
-        }
+        let least_share = self.least_share(mv);
+        let copper = model.has_copper(mv);
         for (index, track) in self.tracks.iter().enumerate() {
             if !track.bounds {
                 continue;
             }
+            // Sped up an axis feeds no more back than in a cruise, and braked it draws no
+            // more, but for what is lost in copper.
+            let less = match track.flow {
+                Flow::Drawn => [false, !copper],
+                Flow::FedBack => [!copper, false],
+            };
+            let Some(surge) = surge.without(less) else {
+                continue;
+            };
+            let lasts_s = surge.lasts_s(planned.speeds2, least_share);
+            if lasts_s <= 0.0 {
+                continue;
+            }
             let own = track.model(model, &self.models);
-            let [drawn_w, fed_back_w] = surge_powers(own, track.converter, mv, planned, *surge);
+            let [drawn_w, fed_back_w] = surge_powers(own, track.converter, mv, planned, surge);
             let power_w = match track.flow {
                 Flow::Drawn => drawn_w,
                 Flow::FedBack => fed_back_w,
@@ -47,6 +60,74 @@ impl Watch {
                 let both = Slice::constant(lasts_s.min(step.lasts_s), power_w + step.more_w);
                 kept.push_late(index, both);
             }
+        }
+    }
+
+    /// Two moves that share some of their time: what both ask for then stands in place of
+    /// the end of the one and the beginning of the other. At lower overrides they may
+    /// share less of it, so that places of both are passed by themselves, or more.
+    #[cold]
+    pub fn together(
+        &self,
+        model: &PowerModel,
+        mv: &Move,
+        tandem: &Tandem,
+        [before, own]: [&mut Kept; 2],
+    ) {
+        let shared_s = tandem.overlap_s;
+        let least_share = self.least_share(mv);
+        for (index, track) in self.tracks.iter().enumerate() {
+            let model = track.model(model, &self.models);
+            let power_w = |extremes: &Extremes| {
+                let [drawn_w, fed_back_w] =
+                    model.robust_powers(track.converter, mv, &[extremes.part()]);
+                match track.flow {
+                    Flow::Drawn => drawn_w,
+                    Flow::FedBack => fed_back_w,
+                }
+            };
+            let ends = [
+                before.take_end(index, shared_s),
+                own.take_start(index, shared_s),
+            ];
+            let slice_s = shared_s / tandem.largest.len() as f64;
+            let largest = tandem.largest.iter().map(power_w);
+            if !track.bounds {
+                own.put_first(
+                    index,
+                    largest.map(|most_w| Slice::constant(slice_s, most_w)),
+                );
+                continue;
+            }
+            let all = largest.chain(tandem.slower.iter().map(power_w));
+            let most_w = all.fold(0.0, larger);
+            own.put_first(index, std::iter::once(Slice::constant(shared_s, most_w)));
+            // Places where one of both brakes or speeds up for longer than they share then,
+            // which is so much of the time at the largest overrides at least.
+            let [end, start] = ends;
+            let shares_s = [least_share, least_share * least_share].map(|share| share * shared_s);
+            before.push_passed(index, within(&end, [0.0, shared_s - shares_s[0]]));
+            before.push_passed(index, within(&start, [shares_s[1], shared_s]));
+            let more_s = tandem.longest_s - shared_s;
+            if more_s > 0.0 {
+                before.push_late(index, Slice::constant(more_s, most_w));
+            }
+            // What is passed then counts in the move before.
+            let next = own.terms(index).copied().unwrap_or_default();
+            if let Some(terms) = before.terms(index) {
+                terms.rest_w = terms.rest_w.max(next.rest_w);
+                terms.cruise_w = terms.cruise_w.max(next.cruise_w).max(most_w);
+            }
+        }
+    }
+
+    /// The share of its speed that a move keeps which is planned together with others: both
+    /// knobs have a say unless the motion stops between rapids and feeds.
+    pub(super) fn least_share(&self, mv: &Move) -> f64 {
+        if self.apart {
+            least_share(self.least_shares, mv)
+        } else {
+            lower_of(self.least_shares)
         }
     }
 
@@ -87,7 +168,19 @@ impl Track {
     }
 }
 
-/// The smaller of two shares: where moves are planned together both knobs have a say.
+/// What of some slices lies between two instants, s after their beginning.
+fn within(slices: &[Slice], [from_s, to_s]: [f64; 2]) -> impl Iterator<Item = Slice> {
+    let mut start_s = 0.0;
+    slices.iter().filter_map(move |slice| {
+        let [_, after] = slice.cut(from_s - start_s);
+        let begun_s = from_s.max(start_s);
+        start_s += slice.duration_s;
+        let [own, _] = after?.cut(to_s - begun_s);
+        own
+    })
+}
+
+/// The smaller of two shares: where both knobs have a say.
 pub(super) fn lower_of([feed, rapid]: [f64; 2]) -> f64 {
     feed.min(rapid)
 }

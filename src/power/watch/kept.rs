@@ -17,6 +17,8 @@ struct Own {
     slices: Vec<Slice>,
     /// What may come when the move is over at the largest overrides, of a bound.
     late: Vec<Slice>,
+    /// The same of places that are passed more slowly then.
+    passed: Vec<Slice>,
     /// Instead of slices: no more power than this, and what the slices come from.
     line: Option<(f64, Line)>,
     /// Of a bound over all lower overrides what else it has to know.
@@ -37,6 +39,7 @@ impl Kept {
         for own in &mut self.0 {
             own.slices.clear();
             own.late.clear();
+            own.passed.clear();
             own.line = None;
             own.terms = Terms::default();
             own.step = Added::default();
@@ -61,6 +64,60 @@ impl Kept {
     pub(super) fn push_late(&mut self, track: usize, slice: Slice) {
         if let Some(own) = self.own(track) {
             own.late.push(slice);
+        }
+    }
+
+    /// The same of places that are passed more slowly then.
+    pub(super) fn push_passed(&mut self, track: usize, slices: impl Iterator<Item = Slice>) {
+        if let Some(own) = self.own(track) {
+            own.passed.extend(slices);
+        }
+    }
+
+    /// Takes the last seconds.
+    pub(super) fn take_end(&mut self, track: usize, lasts_s: f64) -> Vec<Slice> {
+        let Some(Own { slices, .. }) = self.own(track) else {
+            return Vec::new();
+        };
+        let (mut taken, mut left_s) = (Vec::new(), lasts_s);
+        while left_s > 0.0
+            && let Some(slice) = slices.pop()
+        {
+            let [rest, end] = slice.cut(slice.duration_s - left_s);
+            left_s -= slice.duration_s;
+            slices.extend(rest);
+            taken.extend(end);
+        }
+        taken.reverse();
+        taken
+    }
+
+    /// Takes the first seconds.
+    pub(super) fn take_start(&mut self, track: usize, lasts_s: f64) -> Vec<Slice> {
+        let Some(Own { slices, .. }) = self.own(track) else {
+            return Vec::new();
+        };
+        let (mut taken, mut left_s) = (Vec::new(), lasts_s);
+        let mut rest = None;
+        let mut count = 0;
+        for slice in &*slices {
+            if left_s <= 0.0 {
+                break;
+            }
+            let [start, after] = slice.cut(left_s);
+            left_s -= slice.duration_s;
+            taken.extend(start);
+            rest = after;
+            count += 1;
+        }
+        slices.splice(..count, rest);
+        taken
+    }
+
+    /// Puts slices before the others.
+    pub(super) fn put_first(&mut self, track: usize, first: impl Iterator<Item = Slice>) {
+        if let Some(own) = self.own(track) {
+            own.slices.splice(..0, first);
         }
     }
 
@@ -109,7 +166,7 @@ impl Track {
     ) {
         let terms = kept.0.get(index).map(|own| own.terms);
         let terms = terms.filter(|_| self.bounds);
-        let terms = terms.map(|terms| terms.raised(beside.lasting_w()));
+        let terms = terms.map(|terms| terms.raised(beside.lasting_w()).capped(self.most_w));
         if let Some(terms) = &terms {
             self.limits.begin(terms, self.time_s, place);
             if let Some(apart) = &terms.apart {
@@ -121,10 +178,15 @@ impl Track {
         let largest_w = beside.largest_w();
         self.take_slices(index, model, kept, beside, place);
         if let Some(terms) = &terms {
-            let late = kept.0.get(index).map_or(&[][..], |own| &own.late);
-            for slice in late {
-                let slice = slice.raised(largest_w);
-                self.limits.late(&slice, self.time_s, place);
+            if let Some(Own { late, passed, .. }) = kept.0.get(index) {
+                for slice in late {
+                    let slice = self.capped(&slice.raised(largest_w));
+                    self.limits.late(&slice, self.time_s, place);
+                }
+                for slice in passed {
+                    let slice = self.capped(&slice.raised(largest_w));
+                    self.limits.passed(&slice, self.time_s, place);
+                }
             }
             self.limits.end(terms, self.time_s, place);
         }
@@ -200,6 +262,7 @@ mod tests {
             time_s: 0.0,
             bounds: false,
             ends: false,
+            most_w: f64::INFINITY,
         };
         let (mut quick, mut general) = (track(), track());
         let mut seed = 1_u32;

@@ -2,9 +2,9 @@
 
 use super::super::trace::Slice;
 use super::Span;
+use super::continuous::Continuous;
 use super::overload::Overload;
 use super::rating::{Measure, Place, Rating};
-use super::rms::Continuous;
 use super::store::Store;
 use crate::machine::{Capacitor, Converter};
 

@@ -30,6 +30,7 @@
 
 mod beside;
 mod bounds;
+mod continuous;
 mod kept;
 mod limits;
 mod overload;
@@ -51,7 +52,7 @@ use super::robust::Part;
 use super::steps::StepEnergy;
 use super::trace::{Flow, Slice, Tracer};
 use crate::interpret::Move;
-use crate::machine::Machine;
+use crate::machine::{Machine, RapidJoint};
 use crate::plan::lookahead::{Piece, Planned};
 use crate::plan::{Plan, Trajectory};
 use beside::{Levels, Waiting, Waits};
@@ -76,6 +77,8 @@ pub(super) struct Watch {
     /// The least shares of the largest overrides that bounds go down to: of feeds, of
     /// rapids.
     least_shares: [f64; 2],
+    /// Between rapids and feeds the motion stops.
+    apart: bool,
 }
 
 /// One converter and one direction of its power.
@@ -90,6 +93,8 @@ struct Track {
     bounds: bool,
     /// These are no lower than some share of the largest.
     ends: bool,
+    /// No power is larger at any time, W.
+    most_w: f64,
 }
 
 impl Watch {
@@ -115,6 +120,7 @@ impl Watch {
                     time_s: 0.0,
                     bounds,
                     ends: lower_of(machine.limits.least_shares()) > 0.0,
+                    most_w: f64::INFINITY,
                 })
             })
         };
@@ -140,6 +146,7 @@ impl Watch {
                 repeated: false,
                 models: Models::new(model, lower),
                 least_shares: machine.limits.least_shares(),
+                apart: machine.controller.planner.rapid_joint != RapidJoint::All,
             })
         })
     }
@@ -154,6 +161,17 @@ impl Watch {
             }
         }
         self.tracks.retain(|track| !track.limits.is_empty());
+    }
+
+    /// Nothing of what is bounded exceeds the largest powers of the program, drawn and fed
+    /// back, W. They are known of a single converter.
+    pub fn cap(&mut self, [drawn_w, fed_back_w]: [f64; 2]) {
+        for track in &mut self.tracks {
+            track.most_w = match track.flow {
+                Flow::Drawn => drawn_w,
+                Flow::FedBack => fed_back_w,
+            };
+        }
     }
 
     /// Whether it has to be told what the spindle does.
@@ -311,7 +329,7 @@ impl Watch {
                 if let Some(terms) = kept.terms(index) {
                     terms.rest_w = terms.rest_w.max(rest_w);
                     terms.cruise_w = terms.cruise_w.max(cruise_w);
-                    terms.least_share = lower_of(self.least_shares);
+                    terms.least_share = self.least_share(mv);
                 }
             }
         }
@@ -423,8 +441,29 @@ impl Track {
 
     /// All power passes here, slice by slice.
     fn take(&mut self, slice: &Slice, place: Place) {
-        self.limits.take(slice, self.time_s, place);
-        self.time_s += slice.duration_s;
+        if self.most_w == f64::INFINITY || slice.keeps_below(self.most_w) {
+            self.limits.take(slice, self.time_s, place);
+            self.time_s += slice.duration_s;
+            return;
+        }
+        for (part, above) in slice.sides(self.most_w) {
+            let part = if above {
+                Slice::constant(part.duration_s, self.most_w)
+            } else {
+                part
+            };
+            self.limits.take(&part, self.time_s, place);
+            self.time_s += part.duration_s;
+        }
+    }
+
+    /// What may come after a move, no more than there is at any time.
+    fn capped(&self, slice: &Slice) -> Slice {
+        if slice.peak_w() > self.most_w {
+            Slice::constant(slice.duration_s, self.most_w)
+        } else {
+            *slice
+        }
     }
 
     /// A power that lasts for a time that is not known.
@@ -433,8 +472,9 @@ impl Track {
             Flow::Drawn => powers[0],
             Flow::FedBack => powers[1],
         };
+        let power_w = power_w.min(self.most_w);
         let terms = Terms {
-            rest_w: powers[2],
+            rest_w: powers[2].min(self.most_w),
             cruise_w: power_w,
             // The span is as long as it may be.
             least_share: if self.ends { 1.0 } else { 0.0 },

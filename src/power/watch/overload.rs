@@ -152,11 +152,20 @@ impl Overload {
 
     /// What may come after a move.
     pub fn late(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        self.come(slice, 1.0, time_s, place);
+    }
+
+    /// The same of places that are passed more slowly then.
+    pub fn passed(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        self.come(slice, self.stretch, time_s, place);
+    }
+
+    fn come(&mut self, slice: &Slice, stretch: f64, time_s: f64, place: Place) {
         let above = slice.sides(self.calm_w()).into_iter();
         let above = above.filter(|(_, above)| *above || self.all_above);
         let lasts_s: f64 = above.map(|(part, _)| part.duration_s).sum();
         if lasts_s > 0.0 {
-            self.above(lasts_s, time_s, place);
+            self.above(lasts_s * stretch, time_s, place);
         }
     }
 

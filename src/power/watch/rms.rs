@@ -8,11 +8,9 @@
 //! once more, or as often as it fits; what is left of its last cell comes on top of the
 //! first.
 
-use super::super::demand::larger;
-use super::super::trace::{Apart, Slice};
+use super::super::trace::Slice;
 use super::Span;
 use super::rating::{Place, Worst};
-use super::terms::Terms;
 
 /// Cells of a window.
 const CELLS: f64 = 4096.0;
@@ -26,140 +24,9 @@ const WINDOW_MIN_S: f64 = 1e-3;
 const LONG: f64 = 48.0;
 const STEPS: f64 = 16.0;
 
-/// The mean over windows, bounded in two ways where the timing of moves is not
-/// known: such a move counts as if it lasted for ever, or with the square of its
-/// power over its longest time in the place of its shortest. The lower bound holds.
-#[derive(Debug, Clone)]
-pub(super) struct Continuous {
-    lasting: Rms,
-    /// From the first such move on.
-    dense: Option<Rms>,
-    /// The largest power so far, which no mean exceeds, W.
-    most_w: f64,
-}
-
-impl Continuous {
-    pub fn new(window_s: f64) -> Self {
-        Self {
-            lasting: Rms::new(window_s),
-            dense: None,
-            most_w: 0.0,
-        }
-    }
-
-    pub fn take(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        self.most_w = larger(self.most_w, slice.peak_w());
-        self.lasting.take(slice, time_s, place);
-        if let Some(dense) = &mut self.dense {
-            dense.take(slice, time_s, place);
-        }
-    }
-
-    /// A power that lasts for a time that is not known.
-    pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
-        self.most_w = larger(self.most_w, power_w);
-        let dense = self.dense.get_or_insert_with(|| self.lasting.clone());
-        dense.burst(power_w, span, time_s, place);
-        self.lasting.last(power_w, time_s, place);
-    }
-
-    /// Both ways, where this is a bound: see [`Terms`](super::terms::Terms).
-    fn ways(&mut self) -> impl Iterator<Item = &mut Rms> {
-        std::iter::once(&mut self.lasting).chain(&mut self.dense)
-    }
-
-    /// A move begins.
-    pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
-        let rest_w = terms.rest_w;
-        self.most_w = larger(self.most_w, rest_w);
-        for rms in self.ways() {
-            if terms.least_share > 0.0 {
-                rms.own_floor_w = rest_w;
-                rms.own_more = rest_w * rest_w * (terms.longest_ratio() - 1.0);
-            } else {
-                rms.rest(rest_w, time_s, place);
-            }
-        }
-    }
-
-    /// It ends.
-    pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
-        for rms in self.ways() {
-            (rms.own_floor_w, rms.own_more) = (0.0, 0.0);
-        }
-        if terms.surge_s > 0.0 {
-            self.surge(terms.surge_w, terms.surge_s, time_s, place);
-        }
-    }
-
-    /// A power that comes in addition.
-    pub fn surge(&mut self, power_w: f64, duration_s: f64, time_s: f64, place: Place) {
-        self.most_w = larger(self.most_w, power_w);
-        for rms in self.ways() {
-            let square = rms.beyond(power_w) * duration_s;
-            rms.edge = rms.edge.max(square);
-            rms.cell += square;
-            rms.total += square;
-            rms.last = (time_s, place);
-        }
-    }
-
-    /// Axes that run for themselves: their work at no more than their largest power.
-    pub fn apart(&mut self, apart: &Apart, rest_w: f64, time_s: f64, place: Place) {
-        let Apart {
-            most_w,
-            work_j,
-            duration_s,
-        } = *apart;
-        if duration_s <= 0.0 {
-            return;
-        }
-        self.most_w = larger(self.most_w, rest_w + most_w);
-        for rms in self.ways() {
-            let at_most_s = if most_w > 0.0 { work_j / most_w } else { 0.0 };
-            let square = rms.beyond(rest_w + most_w) * at_most_s;
-            rms.edge = rms.edge.max(square);
-            let floor2 = rms.floor_w * rms.floor_w;
-            let even_w = (floor2 + square / duration_s).sqrt();
-            rms.take(&Slice::constant(duration_s, even_w), time_s, place);
-        }
-    }
-
-    /// The worst mean as its root, in W.
-    pub fn result(&self) -> Worst {
-        self.least(self.most_w, Rms::result)
-    }
-
-    /// The same over all runs, where the program runs again and again; each begins with a
-    /// power for so long in addition, W and s.
-    pub fn repeated(&self, lead_w: f64, lead_s: f64) -> Worst {
-        self.least(larger(self.most_w, lead_w), |rms| {
-            rms.repeated(lead_w * lead_w * lead_s)
-        })
-    }
-
-    fn least(&self, most_w: f64, of: impl Fn(&Rms) -> Worst) -> Worst {
-        let of = |rms: &Rms| {
-            let mut worst = of(rms);
-            if rms.edge > 0.0 {
-                let over_s = rms.window_s.min(rms.elapsed_s);
-                worst.value = (worst.value * worst.value + rms.edge / over_s).sqrt();
-            }
-            worst
-        };
-        let lasting = of(&self.lasting);
-        let dense = self.dense.as_ref().map(of);
-        let mut least = dense
-            .filter(|dense| dense.value < lasting.value)
-            .unwrap_or(lasting);
-        least.value = least.value.min(most_w);
-        least
-    }
-}
-
 /// Means over windows.
 #[derive(Debug, Clone)]
-struct Rms {
+pub(super) struct Rms {
     window_s: f64,
     cell_s: f64,
     /// The integrals of P² over the last full cells, N at most, W²·s.
@@ -218,12 +85,55 @@ impl Rms {
     }
 
     /// How far the square of a power lies above that of what all slices count at least.
-    fn beyond(&self, power_w: f64) -> f64 {
+    pub fn beyond(&self, power_w: f64) -> f64 {
         (power_w * power_w - self.floor_w * self.floor_w).max(0.0)
     }
 
+    /// A move begins: what its slices count at least, W, and by how much longer it may last.
+    pub fn begin(&mut self, rest_w: f64, longest_ratio: f64) {
+        self.own_floor_w = rest_w;
+        self.own_more = rest_w * rest_w * (longest_ratio - 1.0);
+    }
+
+    /// It ends.
+    pub fn end(&mut self) {
+        (self.own_floor_w, self.own_more) = (0.0, 0.0);
+    }
+
+    /// What comes on top of the squares of the move at hand, W².
+    pub fn own_more(&self) -> f64 {
+        self.own_more
+    }
+
+    /// What all slices count at least, W.
+    pub fn floor_w(&self) -> f64 {
+        self.floor_w
+    }
+
+    /// With what a window may hold more of than was found.
+    pub fn with_edge(&self, mut worst: Worst) -> Worst {
+        if self.edge > 0.0 {
+            let over_s = self.window_s.min(self.elapsed_s);
+            worst.value = (worst.value * worst.value + self.edge / over_s).sqrt();
+        }
+        worst
+    }
+
+    /// It is not known when so much of what is taken comes.
+    pub fn blur(&mut self, square: f64) {
+        self.edge = self.edge.max(square);
+    }
+
+    /// So much comes in addition, anywhere in the move at hand.
+    pub fn come(&mut self, square: f64, time_s: f64, place: Place) {
+        self.blur(square);
+        self.cell += square;
+        self.total += square;
+        self.last = (time_s, place);
+    }
+
     /// A power that may last as long as it will at low overrides.
-    fn rest(&mut self, power_w: f64, time_s: f64, place: Place) {
+    pub fn rest(&mut self, power_w: f64, time_s: f64, place: Place) {
         if power_w > self.floor_w {
             self.lift(power_w);
             let square = power_w * power_w * self.window_s;
@@ -231,8 +141,8 @@ impl Rms {
         }
     }
 
-    /// See [`Continuous::repeated`].
-    fn repeated(&self, more: f64) -> Worst {
+    /// See [`Continuous::repeated`](super::continuous::Continuous::repeated).
+    pub fn repeated(&self, more: f64) -> Worst {
         if self.window_s < WINDOW_MIN_S || self.elapsed_s <= 0.0 {
             return self.result();
         }
@@ -413,7 +323,7 @@ impl Rms {
 
     /// A power that lasts for a time that is not known: all of its longest time in
     /// its shortest.
-    fn burst(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
+    pub fn burst(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
         self.bursts = true;
         let Span {
             shortest_s,

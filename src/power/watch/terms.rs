@@ -57,6 +57,14 @@ impl Terms {
         self
     }
 
+    /// With no more than there is at any time, W.
+    pub fn capped(mut self, most_w: f64) -> Self {
+        self.rest_w = self.rest_w.min(most_w);
+        self.cruise_w = self.cruise_w.min(most_w);
+        self.surge_w = self.surge_w.min(most_w);
+        self
+    }
+
     /// By how much anything may last longer; endless where overrides go down to 0.
     pub fn longest_ratio(&self) -> f64 {
         if self.least_share > 0.0 {
@@ -124,6 +132,21 @@ impl Limits {
         }
         if let Some((continuous, ..)) = &mut self.continuous {
             continuous.surge(slice.peak_w(), slice.duration_s, time_s, place);
+        }
+        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
+        let brake = self.brake.iter_mut().map(|(store, ..)| store);
+        for store in bus.chain(brake) {
+            store.late(slice, time_s, place);
+        }
+    }
+
+    /// The same of places that are passed more slowly then.
+    pub fn passed(&mut self, slice: &Slice, time_s: f64, place: Place) {
+        for (overload, ..) in &mut self.overload {
+            overload.passed(slice, time_s, place);
+        }
+        if let Some((continuous, ..)) = &mut self.continuous {
+            continuous.passed(slice, time_s, place);
         }
         let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
         let brake = self.brake.iter_mut().map(|(store, ..)| store);

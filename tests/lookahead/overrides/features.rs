@@ -115,6 +115,37 @@ fn an_arc_of_chords_that_brakes_for_a_slower_line_after_the_next() {
     covers(&machine, program, 2.0);
 }
 
+/// The blend at the end of the second line speeds up from 5 mm/s there; from a lower speed it
+/// does so for longer, and turned further towards the heavy axis.
+#[test]
+fn a_blend_that_speeds_up_for_longer() {
+    let machine = machine("linuxcnc", "rapid = \"linear\"", &LIGHT_AND_HEAVY);
+    let program = "G64\nG1 Y2.8 F300\nG1 Z0.601 F8000\n";
+    let drawn = |share: f64| most(&at(&machine, share, share), program)[0];
+    assert!(drawn(0.3) > 1.01 * drawn(1.0));
+    assert!(most(&machine, program)[0] < 1.1 * drawn(0.3));
+}
+
+const LIGHT_AND_HEAVY: [(&str, Axis); 2] = [
+    ("Y", (24000.0, 1000.0, 5.0, 200.0, "efficiency = 0.8")),
+    ("Z", (9000.0, 1000.0, 400.0, 200.0, "efficiency = 0.8")),
+];
+
+/// With limits of jerk a short line after a corner is not known to be planned again. At 40 %
+/// the corner holds nothing back, and is passed faster than the short line alone would let it.
+#[test]
+fn a_corner_before_a_short_line_with_limits_of_jerk() {
+    let axes = [
+        ("X", (8676.0, 953.0, 6.82, 2.2, "jerk_mm_s3 = 9784")),
+        ("Y", (12607.0, 4385.0, 64.49, 35.1, "jerk_mm_s3 = 102623")),
+        ("Z", (43772.0, 1374.0, 28.5, 11.3, "jerk_mm_s3 = 241884")),
+    ];
+    let machine = machine("linuxcnc", "rapid = \"linear\"", &axes);
+    let program = "G64 P0.05\nG1 X21.0359 Y-27.0287 Z-4.3775 F9197.9\n\
+                   G1 X21.2866 Y-27.3508 F3054.3\nG0 X23.6842 Y-30.4314\n";
+    covers(&machine, program, 4.0);
+}
+
 /// From 215 mm/s down the drive feeds back (339 − 2442·v)·v: most at 69 mm/s.
 #[test]
 fn friction_that_grows_with_speed() {
@@ -207,8 +238,13 @@ fn any_path(dice: &mut Dice, controller: &str) -> String {
         );
     }
     let (mut x, mut y, mut z, mut turn) = (0.0, 0.0, 0.0, dice.next() * 6.25);
+    let short = dice.chance(0.4);
     for block in 0..=(dice.next() * 6.0) as usize {
-        let length = dice.between(0.3, 150.0);
+        let length = if short && dice.chance(0.7) {
+            dice.between(0.1, 3.0)
+        } else {
+            dice.between(0.3, 150.0)
+        };
         if dice.chance(0.6) {
             turn += (dice.next() + dice.next() - 1.0) * 1.2;
         }

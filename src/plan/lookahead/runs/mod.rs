@@ -372,11 +372,16 @@ impl<P> Runs<P> {
         let current = self.current.as_mut()?;
         let element = self.elements.pop_front()?;
         let mut span = current.give(element);
-        if current.left == 0 {
+        // Where less is asked for, the joint may not hold the motion back: then it is passed
+        // at the speed that it permits, faster than here.
+        let permitted = if current.left == 0 {
             self.now = current.curve.end;
             self.current = None;
-        }
-        span.certain &= self.is_renewed(span.end2.sqrt());
+            self.closed.front().map_or(0.0, |next| next.entry)
+        } else {
+            current.cap
+        };
+        span.certain &= self.is_renewed(permitted);
         Some(span)
     }
 
