@@ -134,7 +134,10 @@ impl Ahead {
             late: None,
             unwaited: None,
             driven: false,
-            surges: machine.limits.counts_lower().then(|| Surges::new(&rules)),
+            surges: machine
+                .limits
+                .counts_lower()
+                .then(|| Surges::new(machine, &rules)),
             steps: joints::steps_of(machine, &rules),
         }
     }

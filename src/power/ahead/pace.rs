@@ -19,7 +19,8 @@
 //!   goes on for longer;
 //! * what starts at an element j does so only if its F is lower, `F_j < F_i`, and
 //!   within `2·ΔA < x·(1 − F_j²/F_i²)`, x that of the largest overrides at the edge of i
-//!   (`o²·F_j² + 2·ΔA` is neither above `o²·F_i²` nor above x); unless j is a rapid and i a feed, or the other way: these have
+//!   (`o²·F_j² + 2·ΔA` is neither above `o²·F_i²` nor above x, o being no less than the
+//!   lowest override that counts); unless j is a rapid and i a feed, or the other way: these have
 //!   knobs of their own;
 //! * at the largest overrides i speeds up there as well, to a higher x, if its F is
 //!   its cap: `o²·(F_i² − F_j²)` grows with o. It does not where r is the cap, or
@@ -42,8 +43,9 @@ pub(super) const SUM_ROUNDING: f64 = 1e-13;
 pub(super) struct Pace {
     /// Which knob it has: that of rapids or that of feeds.
     pub rapid: bool,
-    /// The speed that is asked for.
+    /// The speed that is asked for, and at the lowest override that counts.
     pub asked2: f64,
+    pub least2: f64,
     /// The same as far as axes and curvature permit it.
     pub cap2: f64,
     /// Σ 2·a·L of the elements before it, and its own, at least.
@@ -94,6 +96,7 @@ impl Pace {
     pub fn or_faster(&self, other: &Self) -> Self {
         Self {
             asked2: self.asked2.max(other.asked2),
+            least2: self.least2.max(other.least2),
             cap2: self.cap2.max(other.cap2),
             ..*self
         }
@@ -120,7 +123,7 @@ impl Pace {
         kept: bool,
     ) -> Option<f64> {
         let distance2 = distance2.max(0.0);
-        if distance2 >= edge2 {
+        if slower.least2 + distance2 >= edge2 {
             return None;
         }
         if slower.rapid == self.rapid {
@@ -142,8 +145,9 @@ impl Pace {
 pub(super) struct Slow {
     /// Which knob it has.
     pub rapid: bool,
-    /// The speed that is asked for, squared.
+    /// The speed that is asked for, squared, and at the lowest override that counts.
     pub asked2: f64,
+    pub least2: f64,
     /// Σ 2·a·L at the side that faces the others.
     pub at2: f64,
 }
@@ -216,6 +220,7 @@ impl Past {
         slower.push(Slow {
             rapid: pace.rapid,
             asked2: pace.asked2,
+            least2: pace.least2,
             at2: self.now2,
         });
     }

@@ -34,6 +34,7 @@ impl Runs {
             let slow = Slow {
                 rapid: pace.rapid,
                 asked2: pace.asked2,
+                least2: pace.least2,
                 at2: self.sum2,
             };
             self.runs.push_back(Run {

@@ -4,7 +4,7 @@
 use super::Ahead;
 use super::pace::{Course, Pace, Past};
 use super::runs::Runs;
-use crate::machine::{CornerRule, LookAhead};
+use crate::machine::{CornerRule, LookAhead, Machine};
 use crate::plan::Section;
 use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
@@ -25,6 +25,8 @@ pub(super) struct Surges {
     lossless: Option<Box<PowerModel>>,
     /// Of the acceleration that is certain: kinks may take of it.
     ramp_share: f64,
+    /// The least shares of the largest overrides that count: of feeds, of rapids.
+    least_shares: [f64; 2],
     path_accel_mm_s2: f64,
     runs_chords: bool,
     /// The move whose chords come, and Σ 2·a·L of those that have come.
@@ -32,7 +34,7 @@ pub(super) struct Surges {
 }
 
 impl Surges {
-    pub fn new(rules: &LookAhead) -> Self {
+    pub fn new(machine: &Machine, rules: &LookAhead) -> Self {
         let ramp_share = match rules.corner {
             CornerRule::LinuxCnc { kink_ratio, .. } => 1.0 - kink_ratio,
             _ => 1.0,
@@ -43,6 +45,7 @@ impl Surges {
             reached2: 0.0,
             lossless: None,
             ramp_share,
+            least_shares: machine.limits.least_shares(),
             path_accel_mm_s2: rules.path_accel_mm_s2,
             runs_chords: rules.chords.is_some(),
             chords: (u64::MAX, 0.0),
@@ -61,9 +64,15 @@ impl Surges {
         let accel = element.accel_mm_s2.min(element.drive_accel_mm_s2);
         let accel = accel.min(self.path_accel_mm_s2);
         let (asked2, cap2) = (asked_mm_s * asked_mm_s, top_mm_s * top_mm_s);
+        let least = self.least_shares[usize::from(element.rapid)];
         let mut pace = Pace {
             rapid: element.rapid,
             asked2,
+            least2: if least > 0.0 {
+                least * least * asked2
+            } else {
+                0.0
+            },
             cap2,
             before2: 0.0,
             own2: 2.0 * self.ramp_share * accel * element.length_mm,
