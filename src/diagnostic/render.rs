@@ -124,9 +124,8 @@ mod tests {
         found.line = 7;
         assert_snapshot!(found.render("part.ngc", false), @r##"
         error[overload]: 1.00 s of 0.20 s
-         --> part.ngc:7
-          |
-          = help: wait
+        --> part.ngc:7
+         = help: wait
         "##);
     }
 
