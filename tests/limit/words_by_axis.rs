@@ -369,7 +369,11 @@ proptest! {
             let faults = ["changed-motion", "changed-sequence", "went-up", "changed-feed", "unreadable-output", "edit"];
             prop_assert!(!faults.contains(&reason.rule), "{reason:?}\n{program}");
         }
-        prop_assert!(summary.certified || strategy == How::Accel, "{:?}\n{program}", summary.reasons);
+        // Rapids one after the other, blended in a way that is not known, may exceed in the last
+        // round what each was lowered to: such a program is refused.
+        let too_near = summary.reasons.iter().all(|reason| reason.rule == "does-not-fit");
+        let refused = strategy == How::Accel || too_near;
+        prop_assert!(summary.certified || refused, "{:?}\n{program}", summary.reasons);
         if summary.certified {
             let (old, new) = (read(&program), read(&text));
             prop_assert_eq!(old.1, new.1, "{}", &text);
