@@ -211,26 +211,7 @@ impl Ahead {
         if let Some(surge) = surge {
             self.follow_surge(model, planned, &surge);
         }
-        if eye.watch.is_some()
-            && let Some(open) = self.open.get_mut(planned.tag)
-        {
-            if let Some(surge) = &surge {
-                eye.surge(model, &open.mv, planned, surge, &mut open.kept);
-            }
-            let longer = longer && planned.section.is_none();
-            let ends2 = [course.start2, course.end2];
-            let [rises_mm_s, falls_mm_s] =
-                ends2.map(|end2| (longer && course.top2 > end2 && end2 > 0.0).then(|| end2.sqrt()));
-            if rises_mm_s.is_some() || falls_mm_s.is_some() {
-                let ramps = Surge {
-                    rises_mm_s,
-                    falls_mm_s,
-                    accel_mm_s2: planned.accel_mm_s2,
-                    section: None,
-                };
-                eye.surge(model, &open.mv, planned, &ramps, &mut open.kept);
-            }
-        }
+        self.watch_surge(model, eye, planned, surge.as_ref(), longer);
         let open = self.open.get(planned.tag)?;
         let shift = (shifted != [false; 2]).then(|| {
             let found = is_own.then_some(&open.assessment.demand);
@@ -263,6 +244,41 @@ impl Ahead {
                 all.include(&one);
                 all
             })
+    }
+
+    /// Holds what a piece may do at lower overrides against limits over time, where there are
+    /// any; `longer`: from a lower speed its ramps may last longer.
+    fn watch_surge(
+        &mut self,
+        model: &PowerModel,
+        eye: &Eye,
+        planned: &Planned<u64>,
+        surge: Option<&Surge>,
+        longer: bool,
+    ) {
+        if eye.watch.is_none() {
+            return;
+        }
+        let Some(open) = self.open.get_mut(planned.tag) else {
+            return;
+        };
+        if let Some(surge) = surge {
+            eye.surge(model, &open.mv, planned, surge, &mut open.kept);
+        }
+        let longer = longer && planned.section.is_none();
+        let top_mm_s = planned.top_speed_mm_s();
+        let ends2 = [planned.speeds2.start, planned.speeds2.end];
+        let [rises_mm_s, falls_mm_s] = ends2
+            .map(|end2| (longer && top_mm_s * top_mm_s > end2 && end2 > 0.0).then(|| end2.sqrt()));
+        if rises_mm_s.is_some() || falls_mm_s.is_some() {
+            let ramps = Surge {
+                rises_mm_s,
+                falls_mm_s,
+                accel_mm_s2: planned.accel_mm_s2,
+                section: None,
+            };
+            eye.surge(model, &open.mv, planned, &ramps, &mut open.kept);
+        }
     }
 
     /// What a surge asks for, if that is of interest.
