@@ -393,10 +393,10 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             let place = (original.text, original.line);
-            let planned = after.ahead || original.split.is_some();
-            if planned && !original.hopeless && !self.model.fits(&after.demand) {
-                // Under the robust bound the neighbours count as well.
-                let robust = after.certificate == Certificate::Robust;
+            // Under the robust bound the neighbours count as well.
+            let robust = after.certificate == Certificate::Robust;
+            let by_neighbours = after.ahead || robust || original.split.is_some();
+            if by_neighbours && !original.hopeless && !self.model.fits(&after.demand) {
                 let next_to = |place| Deeper { place, paced: None };
                 let before = self.before.filter(|_| robust);
                 self.deeper.extend(before.map(next_to));

@@ -90,7 +90,7 @@ impl Assessor<'_> {
         let plain = self.bus.is_none() && self.eye.watch.is_none() && self.eye.motions.is_none();
         let fits = !modelled && planned && plain && self.line.blocks.len() < BLOCKS_MAX;
         let runs = fits && self.joins(last, mv) && self.may_run(last) && self.may_run(mv);
-        if !(runs && straight_on(last, mv)) {
+        if !(runs && straight_on(last, mv) && self.knows_change(last, mv)) {
             return false;
         }
         if let Some(held) = self.held.take_if(|_| self.line.is_empty()) {
@@ -100,6 +100,15 @@ impl Assessor<'_> {
         self.line.blocks.push((mv.clone(), text.to_vec()));
         self.rested = self.ends_at_rest(mv).unwrap_or(self.rested);
         true
+    }
+
+    /// Whether both have the same acceleration, or the words that change it are known to act
+    /// between two moves that run into each other.
+    fn knows_change(&self, last: &Move, mv: &Move) -> bool {
+        let mut knobs = self.machine.controller.knobs.iter();
+        let same = last.accel_mm_s2 == mv.accel_mm_s2;
+        same && last.path_accel_mm_s2 == mv.path_accel_mm_s2
+            || knobs.all(|knob| knob.between_moves || !knob.sets_accel())
     }
 
     /// Whether a move may be one of a line: its axes speed up and brake as the line does.
