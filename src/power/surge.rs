@@ -44,13 +44,13 @@ pub(super) fn surge_demand(
         ..want
     };
     match &planned.piece {
-        Piece::Along { .. } if mv.arc.is_some() => turn_demand(model, mv, &planned.piece, surge),
+        Piece::Along { .. } if mv.arc.is_some() => turn_demand(model, mv, planned, surge),
         Piece::Along { .. } => line_demand(model, mv, surge, want),
         Piece::Joined { direction } => {
             let line = straight_line(mv, direction, planned.length_mm);
             line_demand(model, &line, surge, want)
         }
-        Piece::Blend(_) => turn_demand(model, mv, &planned.piece, surge),
+        Piece::Blend(_) => turn_demand(model, mv, planned, surge),
     }
 }
 
@@ -77,11 +77,7 @@ pub(super) fn surge_powers(
         };
         model.robust_powers(converter, mv, &[part])
     };
-    if let Piece::Joined { direction } = &planned.piece {
-        let line = straight_line(mv, direction, planned.length_mm);
-        return of(&PathShares::of(&line, [0.0, planned.length_mm]));
-    }
-    let powers = stretches(mv, &planned.piece).map(|shares| of(&shares));
+    let powers = stretches(mv, planned).map(|shares| of(&shares));
     powers.fold([0.0; 2], |most, own| {
         [0, 1].map(|i| larger(most[i], own[i]))
     })
@@ -157,32 +153,34 @@ fn line_demand(model: &PowerModel, mv: &Move, surge: Surge, want: Want) -> Deman
     demand
 }
 
-/// Stretches of an arc or a blend over which the directions change little; of a line all of it.
-fn stretches<'a>(mv: &'a Move, piece: &'a Piece) -> impl Iterator<Item = PathShares> + 'a {
-    let (ends_mm, turns) = match piece {
+/// Stretches of a piece over which the directions change little; a line is one.
+fn stretches<'a>(mv: &'a Move, planned: &'a Planned<u64>) -> impl Iterator<Item = PathShares> + 'a {
+    let ([from_mm, to_mm], turns) = match &planned.piece {
         Piece::Blend(blend) => (blend.ends_mm(), blend.sweep_rad / (2.0 * PI)),
         Piece::Along { from_mm, to_mm } => {
             let sweep_rad = mv.arc.as_ref().map_or(0.0, |arc| arc.sweep_rad.abs());
             let turns = sweep_rad * (to_mm - from_mm) / (mv.length_mm * 2.0 * PI);
             ([*from_mm, *to_mm], turns)
         }
-        Piece::Joined { .. } => ([0.0; 2], 0.0),
+        Piece::Joined { .. } => ([0.0, planned.length_mm], 0.0),
     };
     let count = libm::ceil(turns * STRETCHES_A_TURN).clamp(1.0, STRETCHES_MAX);
-    let [from_mm, to_mm] = ends_mm;
     let at = move |stretch: u32| from_mm + (to_mm - from_mm) * f64::from(stretch) / count;
     (0..count as u32).map(move |stretch| {
         let ends_mm = [at(stretch), at(stretch + 1)];
-        match piece {
+        match &planned.piece {
             Piece::Blend(blend) => PathShares::of_blend(blend, ends_mm),
-            _ => PathShares::of(mv, ends_mm),
+            Piece::Along { .. } => PathShares::of(mv, ends_mm),
+            Piece::Joined { direction } => {
+                PathShares::of(&straight_line(mv, direction, planned.length_mm), ends_mm)
+            }
         }
     })
 }
 
-fn turn_demand(model: &PowerModel, mv: &Move, piece: &Piece, surge: Surge) -> Demand {
+fn turn_demand(model: &PowerModel, mv: &Move, planned: &Planned<u64>, surge: Surge) -> Demand {
     let mut demand = Demand::NONE;
-    for shares in stretches(mv, piece) {
+    for shares in stretches(mv, planned) {
         demand.include(&turning_demand(model, mv, &shares, surge));
     }
     demand

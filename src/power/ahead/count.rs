@@ -186,15 +186,11 @@ impl Ahead {
             demand.energy_j += step.supplied_j(model);
         }
         self.ride(model, eye, planned, peaks, times);
-        let late = if peaks {
-            self.late(model, planned)
-        } else {
-            None
-        };
+        let late = peaks.then(|| self.late(model, planned)).flatten();
+        if let Some(late) = &late {
+            demand.include(late);
+        }
         if peaks {
-            if let Some(late) = &late {
-                demand.include(late);
-            }
             if let Some(surge) = self.surge(model, eye, planned) {
                 demand.include(&surge);
             }
@@ -311,12 +307,14 @@ impl Ahead {
             Tandem::new(rides, overlap_s)
         };
         let [before, own] = [last.moves[1], ride.moves[1]];
-        let mut kept = self.open.take_kept(before);
-        let Some(open) = self.open.get_mut(own) else {
+        let Some(open) = self.open.get(own) else {
             return;
         };
         let demand = tandem.demand(model, &open.mv);
-        eye.together(model, &open.mv, &tandem, [&mut kept, &mut open.kept]);
+        let mut kept = self.open.take_kept(before);
+        if let Some(open) = self.open.get_mut(own) {
+            eye.together(model, &open.mv, &tandem, [&mut kept, &mut open.kept]);
+        }
         if let Some(open) = self.open.get_mut(before) {
             open.kept = kept;
         }

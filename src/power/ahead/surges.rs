@@ -10,7 +10,7 @@ use crate::plan::lookahead::{Element, Piece, Planned};
 use crate::power::demand::{Demand, Want};
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
-use crate::power::piece::{Shift, piece_demand, shifted_demand, slower_demand};
+use crate::power::piece::{Shift, is_quiet, piece_demand, shifted_demand, slower_demand};
 use crate::power::surge::{Surge, surge_demand};
 
 /// What is known of the path before and after a piece.
@@ -213,7 +213,8 @@ impl Ahead {
         }
         self.watch_surge(model, eye, planned, surge.as_ref(), longer);
         let open = self.open.get(planned.tag)?;
-        let shift = (shifted != [false; 2]).then(|| {
+        let matters = shifted != [false; 2] && !is_quiet(model, &open.mv, planned, open.want);
+        let shift = matters.then(|| {
             let found = is_own.then_some(&open.assessment.demand);
             let how = (shift, shifted);
             let mut demand = shifted_demand(model, &open.mv, planned, how, found);

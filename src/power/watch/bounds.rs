@@ -106,8 +106,8 @@ impl Watch {
             // which is so much of the time at the largest overrides at least.
             let [end, start] = ends;
             let shares_s = [least_share, least_share * least_share].map(|share| share * shared_s);
-            before.push_passed(index, within(&end, [0.0, shared_s - shares_s[0]]));
-            before.push_passed(index, within(&start, [shares_s[1], shared_s]));
+            before.push_passed(index, between(&end, [0.0, shared_s - shares_s[0]]));
+            before.push_passed(index, between(&start, [shares_s[1], shared_s]));
             let more_s = tandem.longest_s - shared_s;
             if more_s > 0.0 {
                 before.push_late(index, Slice::constant(more_s, most_w));
@@ -169,7 +169,7 @@ impl Track {
 }
 
 /// What of some slices lies between two instants, s after their beginning.
-fn within(slices: &[Slice], [from_s, to_s]: [f64; 2]) -> impl Iterator<Item = Slice> {
+fn between(slices: &[Slice], [from_s, to_s]: [f64; 2]) -> impl Iterator<Item = Slice> {
     let mut start_s = 0.0;
     slices.iter().filter_map(move |slice| {
         let [_, after] = slice.cut(from_s - start_s);

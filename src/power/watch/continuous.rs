@@ -6,6 +6,7 @@ use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
 use super::rms::Rms;
+use super::span::Late;
 use super::terms::Terms;
 
 /// The mean over windows, bounded in two ways where the timing of moves is not
@@ -74,7 +75,7 @@ impl Continuous {
     }
 
     /// A power that comes in addition.
-    pub fn surge(&mut self, power_w: f64, duration_s: f64, time_s: f64, place: Place) {
+    fn surge(&mut self, power_w: f64, duration_s: f64, time_s: f64, place: Place) {
         self.most_w = larger(self.most_w, power_w);
         for rms in self.ways() {
             let square = rms.beyond(power_w) * duration_s;
@@ -82,12 +83,13 @@ impl Continuous {
         }
     }
 
-    /// The same of places of the move at hand that are passed more slowly then.
-    pub fn passed(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        let most_w = slice.peak_w();
+    /// What may come after a move.
+    pub fn late(&mut self, late: &Late, time_s: f64, place: Place) {
+        let most_w = late.slice.peak_w();
         self.most_w = larger(self.most_w, most_w);
         for rms in self.ways() {
-            let square = (rms.beyond(most_w) + rms.own_more()) * slice.duration_s;
+            let more = if late.slower { rms.own_more() } else { 0.0 };
+            let square = (rms.beyond(most_w) + more) * late.slice.duration_s;
             rms.come(square, time_s, place);
         }
     }

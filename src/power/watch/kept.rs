@@ -3,6 +3,7 @@
 use super::Track;
 use super::beside::Levels;
 use super::rating::Place;
+use super::span::Late;
 use super::terms::Terms;
 use crate::power::model::PowerModel;
 use crate::power::trace::{Line, Slice};
@@ -16,9 +17,7 @@ pub(in crate::power) struct Kept(Vec<Own>);
 struct Own {
     slices: Vec<Slice>,
     /// What may come when the move is over at the largest overrides, of a bound.
-    late: Vec<Slice>,
-    /// The same of places that are passed more slowly then.
-    passed: Vec<Slice>,
+    late: Vec<Late>,
     /// Instead of slices: no more power than this, and what the slices come from.
     line: Option<(f64, Line)>,
     /// Of a bound over all lower overrides what else it has to know.
@@ -39,7 +38,6 @@ impl Kept {
         for own in &mut self.0 {
             own.slices.clear();
             own.late.clear();
-            own.passed.clear();
             own.line = None;
             own.terms = Terms::default();
             own.step = Added::default();
@@ -63,14 +61,16 @@ impl Kept {
     /// What may come when the move is over at the largest overrides.
     pub(super) fn push_late(&mut self, track: usize, slice: Slice) {
         if let Some(own) = self.own(track) {
-            own.late.push(slice);
+            let slower = false;
+            own.late.push(Late { slice, slower });
         }
     }
 
     /// The same of places that are passed more slowly then.
     pub(super) fn push_passed(&mut self, track: usize, slices: impl Iterator<Item = Slice>) {
         if let Some(own) = self.own(track) {
-            own.passed.extend(slices);
+            let slower = true;
+            own.late.extend(slices.map(|slice| Late { slice, slower }));
         }
     }
 
@@ -178,15 +178,11 @@ impl Track {
         let largest_w = beside.largest_w();
         self.take_slices(index, model, kept, beside, place);
         if let Some(terms) = &terms {
-            if let Some(Own { late, passed, .. }) = kept.0.get(index) {
-                for slice in late {
-                    let slice = self.capped(&slice.raised(largest_w));
-                    self.limits.late(&slice, self.time_s, place);
-                }
-                for slice in passed {
-                    let slice = self.capped(&slice.raised(largest_w));
-                    self.limits.passed(&slice, self.time_s, place);
-                }
+            let late = kept.0.get(index).map_or(&[][..], |own| &own.late);
+            for late in late {
+                let slice = self.capped(&late.slice.raised(largest_w));
+                self.limits
+                    .late(&Late { slice, ..*late }, self.time_s, place);
             }
             self.limits.end(terms, self.time_s, place);
         }

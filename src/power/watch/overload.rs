@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
+use super::span::Late;
 use super::terms::Terms;
 
 /// Intervals that are kept of a window; with more, neighbours are joined, the
@@ -151,17 +152,9 @@ impl Overload {
     }
 
     /// What may come after a move.
-    pub fn late(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        self.come(slice, 1.0, time_s, place);
-    }
-
-    /// The same of places that are passed more slowly then.
-    pub fn passed(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        self.come(slice, self.stretch, time_s, place);
-    }
-
-    fn come(&mut self, slice: &Slice, stretch: f64, time_s: f64, place: Place) {
-        let above = slice.sides(self.calm_w()).into_iter();
+    pub fn late(&mut self, late: &Late, time_s: f64, place: Place) {
+        let stretch = if late.slower { self.stretch } else { 1.0 };
+        let above = late.slice.sides(self.calm_w()).into_iter();
         let above = above.filter(|(_, above)| *above || self.all_above);
         let lasts_s: f64 = above.map(|(part, _)| part.duration_s).sum();
         if lasts_s > 0.0 {

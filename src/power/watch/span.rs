@@ -1,5 +1,7 @@
 //! For how long a move lasts whose timing is not known.
 
+use crate::power::trace::Slice;
+
 /// The shortest and the longest time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::power) struct Span {
@@ -48,4 +50,12 @@ impl Known {
     pub const fn lasting(span: Span) -> Self {
         Self { span, most_w: None }
     }
+}
+
+/// What may come when a move is over at the largest overrides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Late {
+    pub slice: Slice,
+    /// It is that of places which are passed more slowly then; else it lasts no longer.
+    pub slower: bool,
 }

@@ -26,9 +26,10 @@
 
 use super::limits::Limits;
 use super::rating::Place;
+use super::span::Late;
 use crate::power::axis::AxisPower;
 use crate::power::model::PowerModel;
-use crate::power::trace::{Apart, Slice};
+use crate::power::trace::Apart;
 
 /// See the module.
 #[derive(Debug, Clone, Copy, Default)]
@@ -126,32 +127,17 @@ impl Limits {
     }
 
     /// At the end of a move what may come when it is over at the largest overrides.
-    pub fn late(&mut self, slice: &Slice, time_s: f64, place: Place) {
+    pub fn late(&mut self, late: &Late, time_s: f64, place: Place) {
         for (overload, ..) in &mut self.overload {
-            overload.late(slice, time_s, place);
+            overload.late(late, time_s, place);
         }
         if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.surge(slice.peak_w(), slice.duration_s, time_s, place);
+            continuous.late(late, time_s, place);
         }
         let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
         let brake = self.brake.iter_mut().map(|(store, ..)| store);
         for store in bus.chain(brake) {
-            store.late(slice, time_s, place);
-        }
-    }
-
-    /// The same of places that are passed more slowly then.
-    pub fn passed(&mut self, slice: &Slice, time_s: f64, place: Place) {
-        for (overload, ..) in &mut self.overload {
-            overload.passed(slice, time_s, place);
-        }
-        if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.passed(slice, time_s, place);
-        }
-        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
-        let brake = self.brake.iter_mut().map(|(store, ..)| store);
-        for store in bus.chain(brake) {
-            store.late(slice, time_s, place);
+            store.late(&late.slice, time_s, place);
         }
     }
 
