@@ -150,10 +150,14 @@ fn axes_mm_s(machine: &Machine, mv: &Move) -> f64 {
         let Some(data) = &machine.axes[axis] else {
             continue;
         };
-        let turns = mv.arc.as_ref().is_some_and(|arc| arc.plane.contains(&axis));
-        let way_mm = (mv.end[axis] - mv.start[axis]).abs();
-        let of_path = if turns { 1.0 } else { mv.length_mm / way_mm };
-        speed_mm_s = speed_mm_s.min(data.rapid_mm_s * of_path);
+        // In its plane each axis of an arc has to keep up with the whole speed there, of which
+        // the path's is more in a helix.
+        let arc = mv.arc.as_ref().filter(|arc| arc.plane.contains(&axis));
+        let way_mm = match arc {
+            Some(arc) => arc.radius_mm * arc.sweep_rad.abs(),
+            None => (mv.end[axis] - mv.start[axis]).abs(),
+        };
+        speed_mm_s = speed_mm_s.min(data.rapid_mm_s * mv.length_mm / way_mm);
     }
     speed_mm_s
 }

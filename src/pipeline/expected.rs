@@ -2,7 +2,7 @@
 
 use super::Row;
 use super::split::Line;
-use crate::interpret::{Action, ActionKind, Arc, Corner, Move, MoveKind};
+use crate::interpret::{Action, ActionKind, Arc, Corner, FeedMode, Move, MoveKind};
 use crate::machine::{AxisSet, AxisValues, Machine, PathMode};
 use crate::power::Assessment;
 
@@ -20,6 +20,75 @@ pub(super) enum Expected {
     Spindle(Box<Row>, u32),
 }
 
+/// What a program asks of the speed and the acceleration of a move. What the control makes of
+/// it depends on the moves around it as well: whether it plans them together, and with which
+/// rules for arcs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked {
+    kind: MoveKind,
+    feed_mode: FeedMode,
+    feed_mm_s: f64,
+    rapid_factor: f64,
+    pace: f64,
+    path_accel_mm_s2: f64,
+    axis_accel_mm_s2: AxisValues,
+}
+
+impl Asked {
+    pub(super) fn of(mv: &Move) -> Self {
+        Self {
+            kind: mv.kind,
+            feed_mode: mv.feed_mode,
+            feed_mm_s: mv.feed_mm_s,
+            rapid_factor: mv.rapid_factor,
+            pace: mv.pace,
+            path_accel_mm_s2: mv.path_accel_mm_s2,
+            axis_accel_mm_s2: mv.accel_mm_s2,
+        }
+    }
+
+    /// Whether it is a move of the same kind, with F meant in the same way.
+    fn is_like(&self, mv: &Move) -> bool {
+        self.kind == mv.kind && self.feed_mode == mv.feed_mode
+    }
+
+    /// What is asked for along the path here and by a move, pair by pair.
+    fn along(&self, mv: &Move) -> [(f64, f64); 4] {
+        [
+            (self.feed_mm_s, mv.feed_mm_s),
+            (self.rapid_factor, mv.rapid_factor),
+            (self.pace, mv.pace),
+            (self.path_accel_mm_s2, mv.path_accel_mm_s2),
+        ]
+    }
+
+    /// The same for each axis that moves.
+    fn by_axis(&self, mv: &Move) -> impl Iterator<Item = (f64, f64)> {
+        let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
+        axes.iter()
+            .map(|axis| (self.axis_accel_mm_s2[axis], mv.accel_mm_s2[axis]))
+    }
+
+    /// Whether a move asks for the same, to the last digit.
+    pub(super) fn is_of(&self, mv: &Move) -> bool {
+        let mut pairs = self.along(mv).into_iter().chain(self.by_axis(mv));
+        self.is_like(mv) && pairs.all(|(before, after)| before == after)
+    }
+
+    /// Whether a move like it asks for a higher speed; `rounding` is a share.
+    pub(super) fn is_faster(&self, mv: &Move, rounding: f64) -> bool {
+        let [feed, rapid, pace, _] = self.along(mv);
+        let mut speeds = [feed, rapid, pace].into_iter();
+        self.is_like(mv) && speeds.any(|(before, after)| after > before * (1.0 + rounding))
+    }
+
+    /// Whether a move gives an axis more acceleration; `rounding` is a share.
+    pub(super) fn is_harder(&self, mv: &Move, rounding: f64) -> bool {
+        let mut axes = self.by_axis(mv);
+        axes.any(|(before, after)| after > before * (1.0 + rounding))
+    }
+}
+
 /// A move of the original, as far as the written one must equal it. It starts
 /// where the one before ends.
 #[derive(Debug)]
@@ -34,7 +103,8 @@ pub(super) struct ExpectedMove {
     pub(super) corner: Corner,
     pub(super) loads: u32,
     pub(super) dwell_s: f64,
-    pub(super) axis_accel_mm_s2: AxisValues,
+    /// What the program asks for.
+    pub(super) asked: Asked,
     /// Effective path speed and acceleration.
     pub(super) speed_mm_s: f64,
     pub(super) accel_mm_s2: f64,
@@ -76,7 +146,7 @@ impl ExpectedMove {
             corner: mv.corner,
             loads: mv.loads,
             dwell_s: mv.dwell_s,
-            axis_accel_mm_s2: mv.accel_mm_s2,
+            asked: Asked::of(mv),
             speed_mm_s: 0.0,
             accel_mm_s2: 0.0,
             changed: false,
@@ -182,4 +252,76 @@ pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static s
         return None;
     };
     Some(message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Asked;
+    use crate::diagnostic::Severity;
+    use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
+    use crate::machine::Machine;
+    use crate::source::lines;
+    use crate::syntax::{Block, scan_line};
+
+    /// The last move of a program.
+    fn last(program: &str) -> Move {
+        let text = "schema = 1\nname = \"a\"\ncontroller = \"linuxcnc\"\n[converter]\n\
+                    peak_power_w = 1000\n[outputs]\nspeed = 1\n\
+                    [axes.X]\nrapid_mm_min = 9000\naccel_mm_s2 = 2000\nmass_kg = 100\n\
+                    [axes.Y]\nrapid_mm_min = 9000\naccel_mm_s2 = 2000\nmass_kg = 100\n";
+        let machine = Machine::from_toml("a.toml", text).unwrap().0;
+        let mut interpreter = Interpreter::new(&machine, &Reading::default());
+        let (mut block, mut steps, mut facts) = (Block::default(), Vec::new(), Facts::default());
+        let mut diagnostics = Diagnostics::default();
+        for (number, text) in (1..).zip(lines(program.as_bytes())) {
+            scan_line(text, number == 1, &mut block);
+            interpreter.execute(
+                number,
+                text,
+                &mut block,
+                &mut steps,
+                &mut facts,
+                &mut diagnostics,
+            );
+        }
+        let mut found = diagnostics.list.iter();
+        assert!(found.all(|it| it.severity != Severity::Error));
+        let mut moves = steps.into_iter().rev();
+        moves
+            .find_map(|step| match step {
+                Step::Move(mv) => Some(mv),
+                Step::Action(_) => None,
+            })
+            .unwrap()
+    }
+
+    /// The last digit of F counts, and so do its meaning and the share of the speed; a word for
+    /// the share that leaves it at 1 changes nothing.
+    #[test]
+    fn what_is_asked_for_is_compared_exactly() {
+        let feed = last("G1 X10 F1000\n");
+        let asked = Asked::of(&feed);
+        let same = last("M52 P1\nM67 E1 Q1\nG1 X10 F1000\n");
+        assert!(asked.is_of(&feed) && asked.is_of(&same));
+        for (program, faster) in [
+            ("G1 X10 F1000.01\n", true),
+            ("G1 X10 F999.99\n", false),
+            ("M52 P1\nM67 E1 Q0.999\nG1 X10 F1000\n", false),
+            ("M52 P1\nM67 E1 Q0.5\nG1 X10 F2000\n", false),
+            ("G93 G1 X10 F100\n", false),
+            ("G0 X10\n", false),
+        ] {
+            let other = last(program);
+            assert!(!asked.is_of(&other), "{program}");
+            assert_eq!(asked.is_faster(&other, 1e-9), faster, "{program}");
+            assert!(!asked.is_harder(&other, 1e-9), "{program}");
+        }
+        let mut harder = feed.clone();
+        harder.accel_mm_s2[0] += 1.0;
+        assert!(!asked.is_of(&harder) && asked.is_harder(&harder, 1e-9));
+        // Y stands.
+        let mut elsewhere = feed;
+        elsewhere.accel_mm_s2[1] += 1.0;
+        assert!(asked.is_of(&elsewhere));
+    }
 }

@@ -1,6 +1,6 @@
 //! LinuxCNC: the adaptive feed, where the machine file says which output it is wired to.
 
-use super::{RIG, Rig, run};
+use super::{RIG, Rig, Run, run};
 use gwatt::machine::{Machine, OverrideAt};
 use gwatt::pipeline::{Options, analyze};
 use proptest::prelude::*;
@@ -215,6 +215,71 @@ fn the_machine_file_says_what_is_wired() {
         found.contains("the controller `iso` has no word for an output that acts on the speed"),
         "{found}"
     );
+}
+
+/// A bench whose Z is slower than X and Y.
+fn bench(peak_w: f64) -> Machine {
+    let mut text = format!(
+        "schema = 1\nname = \"bench\"\ncontroller = \"linuxcnc\"\n[converter]\n\
+         peak_power_w = {peak_w:?}\nbase_load_w = 10\n{WIRED}\n"
+    );
+    for (axis, rapid, accel, mass) in [
+        ("X", 9000, 2000, 250),
+        ("Y", 9000, 2000, 280),
+        ("Z", 6000, 1500, 220),
+    ] {
+        let _ = write!(
+            text,
+            "[axes.{axis}]\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\nmass_kg = {mass}\n\
+             coulomb_n = 200\nefficiency = 0.8\n"
+        );
+    }
+    Machine::from_toml("bench.toml", &text)
+        .expect("a machine")
+        .0
+}
+
+/// The axes of a helix keep up with less than its whole speed in its plane: at half of the
+/// share it has half of the speed that F and all of them leave, and no less.
+#[test]
+fn a_helix_has_its_share_of_what_the_axes_leave() {
+    let time_s = |program: &str| {
+        let read = analyze(Cursor::new(program), &bench(1e4), &Options::default(), None);
+        read.expect("figures").duration_s
+    };
+    let helix = "G18 G2 X0 Z0 Y100 I-20 K0";
+    // 125.7 mm in the plane, 160.6 mm along the path, of which Z permits 127.8 mm/s.
+    let length_mm = (125.663_706_f64.powi(2) + 1e4).sqrt();
+    let half_mm_min = 0.5 * 60.0 * 100.0 * length_mm / 125.663_706;
+    let shared_s = time_s(&format!("G64\nM52 P1\nM67 E1 Q0.5\n{helix} F20000\nM2\n"));
+    let slow_s = time_s(&format!("G64\n{helix} F{half_mm_min:.4}\nM2\n"));
+    assert!((shared_s - slow_s).abs() < 0.02, "{shared_s} {slow_s}");
+}
+
+/// An arc after a lowered rapid asks for what it did, next to the words for the share too.
+#[test]
+fn a_helix_after_a_lowered_rapid_is_no_slower() {
+    let program = b"G64\nF8177\nG1 X0.2231 Y0\nG1 Y-71.8456 Z-3.3356 X-10.1277\n\
+                    G1 X-11.4578 Y-71.6025\nG18\nG0 Y31.0809 X-25.1672\n\
+                    G2 K3.9374 I-13.4159 Y17.7194\nM2\n";
+    let mut paced = 0;
+    for peak_w in (80..132).step_by(4) {
+        for allow_feed in [false, true] {
+            let options = Run {
+                allow_feed,
+                ..RIG.options
+            };
+            let (text, summary) =
+                run(&bench(f64::from(peak_w)), options, program).expect("a program");
+            let mut reasons = summary.reasons.iter();
+            let only_power =
+                reasons.all(|it| ["feed-not-allowed", "no-solution"].contains(&it.rule));
+            assert!(only_power, "{peak_w} W: {:?}", summary.reasons);
+            let text = String::from_utf8(text).expect("text");
+            paced += usize::from(summary.certified && text.contains("M67 E1 Q0."));
+        }
+    }
+    assert!(paced > 6, "{paced}");
 }
 
 /// A block of a random program: a rapid or a feed in either axis, or a share.

@@ -1,4 +1,5 @@
-//! What is judged of a move by itself.
+//! What is judged of a move by itself: whether it fits, and whether it asks for no more than
+//! the original.
 
 use super::pieces::rounding;
 use super::{BUG, Reasons};
@@ -28,19 +29,22 @@ pub(super) fn compare(
         let help = "another strategy, or --allow feed, may help";
         reasons.push(place, "does-not-fit", message, help, text);
     }
+    let asked = &original.asked;
+    // What the control makes of a block that asks for the same depends on its neighbours, which
+    // may have changed: next to a stop an arc is not planned with others.
+    if asked.is_of(mv) {
+        return;
+    }
     let rounding = rounding(original, mv, ROUNDING);
     let rises = |before: f64, after: f64| after > before * (1.0 + rounding);
-    let axis_rises = !original.as_feed
-        && mv
-            .moving
-            .iter()
-            .any(|axis| rises(original.axis_accel_mm_s2[axis], mv.accel_mm_s2[axis]));
+    let asks_more =
+        asked.is_faster(mv, rounding) || !original.as_feed && asked.is_harder(mv, rounding);
     // A slower arc, and a slower move under a curve of force, may leave more to the
     // acceleration along the path than a faster one.
     let slower = after.speed_mm_s < original.speed_mm_s;
-    if rises(original.speed_mm_s, after.speed_mm_s)
+    if asks_more
+        || rises(original.speed_mm_s, after.speed_mm_s)
         || !slower && rises(original.accel_mm_s2, after.accel_mm_s2)
-        || axis_rises
     {
         let message = "a speed or an acceleration went up".to_owned();
         reasons.push(place, "went-up", message, BUG, text);
