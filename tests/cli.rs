@@ -1,5 +1,6 @@
 //! The binary from outside: exit codes, messages, and what is left on the disk.
 
+mod advice;
 mod dialects;
 mod identify;
 #[cfg(unix)]

@@ -3,7 +3,7 @@
 use super::level::level_of;
 use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
 use crate::machine::{
-    AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
+    AXES, AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
 };
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -159,6 +159,18 @@ impl Change {
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
+    }
+
+    /// The knobs that it turns with their values, in the order in which they are written.
+    #[must_use]
+    pub fn knobs(&self, machine: &Machine) -> [Option<(usize, AxisValues)>; 4] {
+        let rapid = self.rapid_percent.map(|(knob, percent)| {
+            let data = machine.controller.knobs.get(knob);
+            let value = data.map_or(percent, |data| data.of_percent(percent));
+            (knob, [value; AXES])
+        });
+        let cruise = self.cruise.map(|knob| (knob, [0.0; AXES]));
+        [self.accel, self.speed, cruise, rapid]
     }
 
     /// How corners and hills of a move are taken.

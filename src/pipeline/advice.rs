@@ -4,7 +4,7 @@ use super::entry::{positions, turns_apart};
 use super::hints::FITS;
 use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
-use crate::machine::{AxisSet, AxisValues, Machine, RapidJoint};
+use crate::machine::{AxisValues, Machine, RapidJoint};
 use crate::power::Assessment;
 
 /// What helps where the spindle alone is too much.
@@ -109,31 +109,7 @@ impl<'m> Adviser<'m> {
 
     /// The words that a change writes.
     fn words(&self, mv: &Move, change: &Change, free: bool) -> String {
-        let mut words = Vec::new();
-        if let Some(feed) = change.feed {
-            words.push(format!(
-                "{}F{feed}",
-                if change.as_feed { "G1 " } else { "" }
-            ));
-        }
-        let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
-        let least = |(knob, values): (usize, AxisValues)| {
-            let least = axes.iter().map(|axis| values[axis]);
-            (knob, least.fold(f64::INFINITY, f64::min))
-        };
-        let settings = [
-            change.rapid_percent.map(|(knob, percent)| {
-                let data = self.machine.controller.knobs.get(knob);
-                (knob, data.map_or(percent, |data| data.of_percent(percent)))
-            }),
-            change.accel.map(least),
-            change.speed.map(least),
-        ];
-        // An infinite value leaves the axes that move here as they are.
-        let settings = settings.into_iter().flatten();
-        for (knob, value) in settings.filter(|(_, value)| value.is_finite()) {
-            words.push(super::describe::knob_words(self.machine, knob, value));
-        }
+        let words = super::describe::words(self.machine, change);
         if words.is_empty() {
             return NEIGHBOURS_HELP.to_owned();
         }
@@ -142,6 +118,6 @@ impl<'m> Adviser<'m> {
         } else {
             ""
         };
-        format!("{FITS}{}{option}", words.join(" and "))
+        format!("{FITS}{words}{option}")
     }
 }

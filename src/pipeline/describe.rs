@@ -4,8 +4,9 @@ use super::Row;
 use super::tally::axes;
 use crate::interpret::Move;
 use crate::limit::{Change, Split};
-use crate::machine::{AXES, AxisSet, AxisValues, KnobArgument, KnobTarget, KnobUnit, Machine};
+use crate::machine::{AxisSet, AxisValues, KnobArgument, KnobTarget, KnobUnit, Machine};
 use crate::power::{Assessment, PowerModel};
+use crate::rewrite::{SWITCH_ON, knob_lines};
 
 /// The row of a judged move that begins at `start_s`.
 pub(super) fn row(
@@ -33,6 +34,7 @@ pub(super) fn row(
         energy_j: demand.energy_j,
         action: "",
         knob: String::new(),
+        words: String::new(),
         value_before: None,
         value_after: None,
         peak_after_w: None,
@@ -123,6 +125,29 @@ pub(super) fn describe(
         names.extend(machine.controller.language.stop_word());
     }
     row.knob = names.join(" ");
+    row.words = words(machine, change);
+}
+
+/// The words of a change as the control takes them, each with its value.
+pub(super) fn words(machine: &Machine, change: &Change) -> String {
+    let mut words = Vec::new();
+    if let Some(feed) = change.feed {
+        let motion = if change.as_feed { "G1 " } else { "" };
+        words.push(format!("{motion}F{feed}"));
+    }
+    let knobs = change.knobs(machine);
+    for (knob, values) in knobs.into_iter().flatten() {
+        let data = machine.controller.knobs.get(knob);
+        // It acts only where it is switched on.
+        if data.is_some_and(|data| data.target == KnobTarget::SpeedShare) {
+            words.push(SWITCH_ON.to_owned());
+        }
+        words.extend(knob_lines(machine, knob, &values).into_iter().flatten());
+    }
+    if change.stop {
+        words.extend(machine.controller.language.stop_word());
+    }
+    words.join(" and ")
 }
 
 /// The same for a block in pieces; the value is that of the piece with the lowest.
@@ -155,12 +180,6 @@ fn level_word(machine: &Machine, knob: usize, values: &AxisValues) -> Option<Str
     let levels = machine.controller.knobs.get(knob)?.levels.as_ref()?;
     let level = levels.list.get(values[0] as usize)?;
     Some(level.text().replace(' ', ""))
-}
-
-/// A knob with its value, or the word of a level.
-pub(super) fn knob_words(machine: &Machine, knob: usize, value: f64) -> String {
-    let level = level_word(machine, knob, &[value; AXES]);
-    level.unwrap_or_else(|| format!("{} {value}", knob_name(machine, knob)))
 }
 
 /// The word of a knob, such as `G131`.

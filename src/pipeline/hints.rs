@@ -114,7 +114,7 @@ impl RowSink for Written {
             return Ok(());
         };
         let value = row.value_after;
-        if !row.file.is_empty() || value.is_none() && row.knob.is_empty() {
+        if !row.file.is_empty() || value.is_none() && row.words.is_empty() {
             return Ok(());
         }
         // A level has no value.
@@ -123,7 +123,7 @@ impl RowSink for Written {
             (value, _) => value.is_some(),
         };
         if known.as_ref().is_none_or(|(lowest, _)| lower(*lowest)) {
-            *known = Some((value, words(row, value)));
+            *known = Some((value, words(row)));
         }
         Ok(())
     }
@@ -136,23 +136,9 @@ impl Restart for Written {
     }
 }
 
-/// What the limiter writes for a move: its words, with the value of the first.
-fn words(row: &Row, value: Option<f64>) -> String {
-    let mut names = row.knob.split(' ');
-    let first = names.next().unwrap_or_default();
-    let (before, blank) = match first {
-        "F" if row.kind == MoveKind::Rapid => ("G1 ", ""),
-        "F" => ("", ""),
-        _ => ("", " "),
-    };
-    let value = value.map_or_else(String::new, |value| format!("{blank}{value}"));
-    let mut words = format!("{FITS}{before}{first}{value}");
-    for name in names {
-        words.push_str(" and ");
-        words.push_str(name);
-    }
-    if first == "F" && row.kind != MoveKind::Rapid {
-        words.push_str(" (limit --allow feed)");
-    }
-    words
+/// What the limiter writes for a move.
+fn words(row: &Row) -> String {
+    let cuts = row.kind != MoveKind::Rapid && row.knob.split(' ').next() == Some("F");
+    let option = if cuts { " (limit --allow feed)" } else { "" };
+    format!("{FITS}{}{option}", row.words)
 }

@@ -38,11 +38,14 @@ pub struct Row {
     pub energy_j: f64,
     /// What was done, such as `lower feed`; empty for nothing.
     pub action: &'static str,
-    /// The word that was used, such as `F` or `G131`; empty without one.
+    /// The names of the words that were used, such as `F` or `G131`; empty without one.
     pub knob: String,
-    /// Value of that word before, in program units.
+    /// The words as the control takes them, each with its value, such as
+    /// `SET_VELOCITY_LIMIT ACCEL=500`; empty without one.
+    pub words: String,
+    /// Value of the first of them before, in program units.
     pub value_before: Option<f64>,
-    /// Value of that word after.
+    /// Value of it after.
     pub value_after: Option<f64>,
     /// Peak in the written program; `None` in a report without limiting.
     pub peak_after_w: Option<f64>,

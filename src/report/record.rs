@@ -128,6 +128,7 @@ pub(super) fn example() -> Row {
         energy_j: 1234.5,
         action: "write as feed",
         knob: "F".into(),
+        words: "G1 F12345.678".into(),
         value_before: None,
         value_after: Some(12345.678),
         peak_after_w: Some(3149.999),

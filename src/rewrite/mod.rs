@@ -29,3 +29,4 @@ pub(crate) use knob_line::lines as knob_lines;
 pub use rapid_mark::{Comment, RapidMark, RapidMarkError};
 pub use single::{CycleBlock, Singles};
 pub use state::Mark;
+pub(crate) use turned::SWITCH_ON;

@@ -6,7 +6,7 @@ use crate::limit::Change;
 use crate::machine::{AXES, AxisValues, Knob, KnobArgument, KnobTarget, Machine};
 
 /// The words that switch `LinuxCNC`'s adaptive feed.
-const SWITCH_ON: &str = "M52 P1";
+pub(crate) const SWITCH_ON: &str = "M52 P1";
 const SWITCH_OFF: &str = "M52 P0";
 
 /// See the module.
@@ -60,18 +60,9 @@ impl<'m> Turned<'m> {
         in_force: InForce<'_>,
     ) -> Vec<String> {
         let mut lines = Vec::new();
-        let none = [change.accel, change.speed] == [None; 2]
-            && change.cruise.is_none()
-            && change.rapid_percent.is_none();
-        if none && self.knobs.is_empty() {
+        let wanted = change.knobs(self.machine);
+        if wanted == [None; 4] && self.knobs.is_empty() {
             return lines;
-        }
-        let mut wanted: [Option<(usize, AxisValues)>; 4] = [change.accel, change.speed, None, None];
-        wanted[2] = change.cruise.map(|knob| (knob, [0.0; AXES]));
-        if let Some((knob, percent)) = change.rapid_percent {
-            let data = self.machine.controller.knobs.get(knob);
-            let value = data.map_or(percent, |data| data.of_percent(percent));
-            wanted[3] = Some((knob, [value; AXES]));
         }
         for (knob, values) in wanted.into_iter().flatten() {
             if self.knobs.contains(&(knob, values)) {

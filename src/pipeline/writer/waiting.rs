@@ -130,6 +130,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             energy_j: 0.0,
             action: "pause",
             knob: "G4".to_owned(),
+            words: String::new(),
             value_before: None,
             value_after: Some(mv.dwell_s),
             peak_after_w: None,
