@@ -83,7 +83,7 @@ pub(super) fn preset(
             .map(|axis| preset.speed_mm_s[axis] / speeds[axis])
             .fold(1.0, f64::min);
         if share < 1.0 {
-            let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
+            let lever = levers.speed.ok_or_else(|| no_lever(solver, "speed"))?;
             scale_speed(solver, case, lever, share, &mut change)?;
         }
     }
@@ -94,13 +94,13 @@ pub(super) fn preset(
         }
         if accel != case.mv.accel_mm_s2 {
             let knob = levers.accel_word(solver.machine);
-            let knob = knob.ok_or_else(|| no_lever("acceleration"))?;
+            let knob = knob.ok_or_else(|| no_lever(solver, "acceleration"))?;
             let least = axes.iter().map(|axis| accel[axis]);
             let values = match solver.along_path(knob, case.mv) {
                 Some(own) => solver.path_values(knob, least.fold(own, f64::min)),
                 None => solver.knob_values(knob, &accel, case.permit),
             };
-            let values = values.ok_or_else(|| no_lever("acceleration"))?;
+            let values = values.ok_or_else(|| no_lever(solver, "acceleration"))?;
             change.accel = Some((knob, values));
             change.exact_stop |= solver.halts(case, knob);
         }
@@ -142,12 +142,12 @@ pub(super) fn squared_ratio(
     let mut change = Change::default();
     if strategy == Strategy::Accel {
         let knob = levers.accel_word(solver.machine);
-        let knob = knob.ok_or_else(|| no_lever("acceleration"))?;
+        let knob = knob.ok_or_else(|| no_lever(solver, "acceleration"))?;
         return solver
             .accel_change(case, knob, factor, &change)
-            .ok_or_else(|| no_lever("acceleration"));
+            .ok_or_else(|| no_lever(solver, "acceleration"));
     }
-    let lever = levers.speed.ok_or_else(|| no_lever("speed"))?;
+    let lever = levers.speed.ok_or_else(|| no_lever(solver, "speed"))?;
     scale_speed(solver, case, lever, factor, &mut change)?;
     Ok(change)
 }
@@ -172,14 +172,14 @@ fn scale_speed(
         return if percent > 0.0 {
             Ok(())
         } else {
-            Err(no_lever("speed"))
+            Err(no_lever(solver, "speed"))
         };
     }
     if let SpeedLever::Cap(knob) = lever {
         let speed_mm_s = case.assessment.speed_mm_s * share;
         let values = solver.cap_values(case, knob, speed_mm_s);
         change.speed = values.map(|values| (knob, values));
-        return values.map(|_| ()).ok_or_else(|| no_lever("speed"));
+        return values.map(|_| ()).ok_or_else(|| no_lever(solver, "speed"));
     }
     change.as_feed = lever == SpeedLever::AsFeed;
     change.exact_stop = change.as_feed && case.exact_stop;
@@ -196,10 +196,12 @@ fn axis_speeds(bound: &SpeedBound) -> AxisValues {
     speeds
 }
 
-fn no_lever(what: &str) -> Obstacle {
-    Obstacle::new(
-        NO_KNOB,
-        format!("no permitted word lowers the {what} of this block"),
-        "use --allow feed for feeds, or another strategy",
-    )
+fn no_lever(solver: &Solver<'_>, what: &str) -> Obstacle {
+    let help = if solver.how.allowed.feed {
+        "use another strategy"
+    } else {
+        "use --allow feed for feeds, or another strategy"
+    };
+    let message = format!("no permitted word lowers the {what} of this block");
+    Obstacle::new(NO_KNOB, message, help)
 }

@@ -100,6 +100,16 @@ impl Allowed {
         unverified: false,
     };
 
+    /// What may help where no value of the permitted words is enough.
+    #[must_use]
+    pub(crate) fn else_helps(self) -> &'static str {
+        if self.feed {
+            "another strategy may help"
+        } else {
+            "another strategy, or --allow feed, may help"
+        }
+    }
+
     /// The names that the command line has for it, with commas.
     #[must_use]
     pub fn names(self) -> String {

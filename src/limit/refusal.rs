@@ -5,11 +5,21 @@ use super::change::Change;
 use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
 use super::options::{Allowed, LimitOptions};
 use super::solver::Solver;
-use crate::interpret::MoveKind;
+use crate::interpret::{CYCLE, MoveKind, TURNING_CYCLE};
 use crate::machine::{RapidKnob, RapidPath};
 
 /// What can always be done about a block that may not be changed.
 const BY_HAND: &str = "change it by hand";
+/// The same for a cycle that could not be written out.
+const STAYS_A_CYCLE: &str = "it cannot be written out as single blocks here: more power, slower \
+     axes or blocks written by hand are needed";
+
+/// The same for rapids whose axes move each for itself, and where they may run along lines.
+const NOT_STRAIGHT: &str = "where the control moves them along a line (a parameter), say rapid = \
+     \"linear\" under [path]; or permit lines where there is room: `clearance` under [path] and \
+     --allow straighten";
+const BELOW_CLEARANCE: &str = "where the control moves them along a line (a parameter), say \
+     rapid = \"linear\" under [path]; it may become a line only beyond the `clearance` under [path]";
 
 impl Solver<'_> {
     pub(super) fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
@@ -19,7 +29,7 @@ impl Solver<'_> {
             return Obstacle::new(
                 UNTOUCHABLE,
                 format!("the block may not be changed: {}", permit.reason),
-                permit.help_or(BY_HAND),
+                self.help_or(case, BY_HAND),
             );
         }
         if mv.kind != MoveKind::Rapid {
@@ -54,9 +64,11 @@ impl Solver<'_> {
                 NO_KNOB,
                 "the rapid may not be written as a feed: its axes move each for itself, not along \
                  a line",
-                "where the control moves them along a line (a parameter), say rapid = \"linear\" \
-                 under [path]; or permit lines where there is room: `clearance` under [path] and \
-                 --allow straighten",
+                if self.how.allowed.straighten {
+                    BELOW_CLEARANCE
+                } else {
+                    NOT_STRAIGHT
+                },
             );
         }
         let message = if permit.reason.is_empty() {
@@ -67,9 +79,19 @@ impl Solver<'_> {
         } else {
             format!("the rapid may not be written as a feed: {}", permit.reason)
         };
-        let help = permit
-            .help_or("write the move as a feed by hand, or lower the rapid speed of the machine");
+        let usual = "write the move as a feed by hand, or lower the rapid speed of the machine";
+        let help = self.help_or(case, usual);
         Obstacle::new(NO_KNOB, message, help)
+    }
+
+    /// What can be done about the reason for which a block may not be changed, or else what
+    /// `usual` says. What is permitted already is not named.
+    fn help_or(&self, case: Case<'_>, usual: &'static str) -> &'static str {
+        let cycle = [CYCLE, TURNING_CYCLE].contains(&case.permit.reason);
+        if cycle && self.how.allowed.expand {
+            return STAYS_A_CYCLE;
+        }
+        case.permit.help_or(usual)
     }
 
     /// The same where cutting feeds may be lowered.
@@ -90,7 +112,7 @@ impl Solver<'_> {
     pub(super) fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
         if !case.permit.edit {
             let message = format!("the block may not be changed: {}", case.permit.reason);
-            return Obstacle::new(UNTOUCHABLE, message, case.permit.help_or(BY_HAND));
+            return Obstacle::new(UNTOUCHABLE, message, self.help_or(case, BY_HAND));
         }
         let message = format!(
             "the controller `{}` has no word for this acceleration",
@@ -110,4 +132,14 @@ pub(super) fn too_much(case: Case<'_>) -> Obstacle {
         ),
         "base load and friction leave too little: a larger converter, or another strategy",
     )
+}
+
+/// No value helps a block that the control blends with its neighbours.
+pub(super) fn no_value_for_all(allowed: Allowed) -> Obstacle {
+    let help = "a word for acceleration, or path.mode = \"exact-stop\" if the machine stops at \
+                every block";
+    let message = "no value of the permitted words brings this block and its neighbours down to \
+                   the limit";
+    let feed = if allowed.feed { "" } else { "--allow feed, " };
+    Obstacle::new("no-solution", message, format!("{feed}{help}"))
 }

@@ -301,7 +301,11 @@ impl<'m> Solver<'m> {
                 "friction alone takes {:.1} % of the limit at the wanted speed",
                 load * 100.0
             ),
-            "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
+            if self.how.allowed.feed {
+                "lower the speed: --strategy optimal or speed"
+            } else {
+                "lower the speed: --strategy optimal or speed, with --allow feed for feeds"
+            },
         ))
     }
 

@@ -17,6 +17,7 @@ use super::level;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::limiter::{Outcome, Slot, Waiting};
 use super::options::{Law, Strategy};
+use super::refusal::no_value_for_all;
 use super::root::largest;
 use super::solver::Solver;
 use crate::interpret::Move;
@@ -491,10 +492,6 @@ fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64
 fn obstacle(solver: &Solver<'_>, case: Case<'_>) -> Obstacle {
     match solver.solve(case.mv, case.assessment, case.permit, Ends::Rest) {
         Err(obstacle) if obstacle.rule != "no-solution" => obstacle,
-        _ => Obstacle::new(
-            "no-solution",
-            "no value of the permitted words brings this block and its neighbours down to the limit",
-            "--allow feed, a word for acceleration, or path.mode = \"exact-stop\" if the machine stops at every block",
-        ),
+        _ => no_value_for_all(solver.how.allowed),
     }
 }

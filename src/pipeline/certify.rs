@@ -14,6 +14,7 @@ mod spindle;
 
 use std::collections::VecDeque;
 
+pub(super) use compare::DOES_NOT_FIT;
 use compare::compare;
 use pieces::{Found, Pieces};
 pub(super) use reasons::Reasons;

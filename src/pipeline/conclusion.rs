@@ -1,6 +1,6 @@
 //! What limiting a program comes to.
 
-use super::certify::{Certified, Reasons};
+use super::certify::{Certified, DOES_NOT_FIT, Reasons};
 use super::conditions::conditions;
 use super::over_time::OverTime;
 use super::writer::Written;
@@ -37,6 +37,11 @@ pub(super) fn conclude(
         reasons = Reasons::default();
     }
     reasons.extend(found);
+    for reason in &mut reasons.list {
+        if reason.rule == DOES_NOT_FIT {
+            reason.help = Some(how.allowed.else_helps().to_owned());
+        }
+    }
     let missed = after.over_time.iter().filter(|it| !it.rating.fits());
     for reason in missed.map(OverTime::reason) {
         reasons.count += 1;

@@ -88,16 +88,15 @@ pub fn take_hints<R: Read + Seek + Send>(
     }
     let written_out = reasons(true, None)?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
-        let Some(reason) = as_it_stands
-            .get(&unfit.line)
-            .filter(|_| unfit.file.is_empty())
-        else {
+        if !unfit.file.is_empty() || !as_it_stands.contains_key(&unfit.line) {
             continue;
-        };
-        unfit.help = match (written_out.get(&unfit.line), &reason.help) {
-            (None, _) => EXPAND.to_owned(),
-            (Some(_), Some(help)) => format!("{}: {help}", reason.message),
-            (Some(_), None) => reason.message.clone(),
+        }
+        // Where it stays as it is although cycles may be written out, nothing asks for that.
+        let written_out = written_out.get(&unfit.line);
+        unfit.help = match written_out.map(|it| (&it.message, &it.help)) {
+            None => EXPAND.to_owned(),
+            Some((message, Some(help))) => format!("{message}: {help}"),
+            Some((message, None)) => message.clone(),
         };
     }
     Ok(())

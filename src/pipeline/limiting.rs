@@ -26,7 +26,7 @@ use super::whole::Whole;
 use super::writer::{Plan, Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Depths, Limiter};
+use crate::limit::{Allowed, Depths, Limiter};
 use crate::machine::Machine;
 use crate::power::{Lower, PowerModel};
 
@@ -275,7 +275,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 }
             } else if !depths.deepen(&certified.deeper) {
                 let mut stopped = conclude(machine, target, paths, how, written, certified);
-                stopped.reasons.push(last_round(&depths));
+                stopped.reasons.push(last_round(&depths, how.allowed));
                 return Ok(stopped);
             }
             // The changes made neighbours exceed the limit: planned anew with more.
@@ -307,13 +307,13 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
 }
 
 /// Why there is no further round.
-pub(super) fn last_round(depths: &Depths) -> Diagnostic {
+pub(super) fn last_round(depths: &Depths, allowed: Allowed) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
         LAST_ROUND,
         format!("blocks exceed the limit next to others that were lowered, after {rounds} rounds"),
     )
-    .help("another strategy, or --allow feed, may help")
+    .help(allowed.else_helps())
 }
 
 /// One round of limiting.

@@ -64,3 +64,40 @@ fn check_names_the_words_that_limit_writes() {
         }
     }
 }
+
+/// A cycle that cannot be written out, rapids of independent axes below the clearance, and
+/// a feed that no value brings down.
+#[test]
+fn what_is_permitted_is_not_advised() {
+    let tap = "G21 G90\nG0 X0 Y0 Z50.\nM29 S500\nG84 X100. Z-20. R2. F500.\nG80\nM30\n";
+    let low = "G21 G90\nG64\nG0 X0 Y0 Z-50.\nG0 X100. Y20.\nM30\n";
+    let loaded = "G21 G90\nM8\nG1 X100. F3000\nM30\n";
+    let load = "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 1500";
+    let room = "[path]\nclearance = { Z = 50 }";
+    for (rest, program, permission) in [
+        (STOPS, tap, "expand"),
+        (room, low, "straighten"),
+        (load, loaded, "feed"),
+    ] {
+        let shop = Shop::mill("fanuc", "peak_power_w = 200", rest, "");
+        shop.put("a.nc", program);
+        let asks = format!("--allow {permission}");
+        let (code, _, errors) = shop.run(&format!("limit a.nc {asks}"));
+        assert_eq!(code, 1, "{permission}: {errors}");
+        let advice: Vec<&str> = errors
+            .lines()
+            .filter(|line| line.contains("= help: "))
+            .collect();
+        assert!(!advice.is_empty(), "{errors}");
+        assert!(!advice.iter().any(|line| line.contains(&asks)), "{errors}");
+    }
+    // To write out what stays a cycle is not advised either.
+    let shop = Shop::mill("fanuc", "peak_power_w = 300", STOPS, "");
+    shop.put("a.nc", tap);
+    let (code, told, _) = shop.run("check a.nc");
+    assert_eq!(code, 1);
+    assert!(
+        told.contains("it cannot be written out") && !told.contains("--allow expand"),
+        "{told}"
+    );
+}

@@ -40,7 +40,9 @@ fn a_rapid_of_several_axes_needs_room() {
     for (path, options) in [("", permit), ("[path]\nclearance = { Z = 50 }", "")] {
         let (code, _, errors) = limited(&shop(path, 600.0), program, options);
         assert!(code == 1 && errors.contains(each), "{errors}");
-        assert!(errors.contains("--allow straighten"), "{errors}");
+        // What is given already is not asked for.
+        assert_eq!(errors.contains(permit), options.is_empty(), "{errors}");
+        assert!(errors.contains("`clearance` under [path]"), "{errors}");
     }
     // The last rapid goes below it.
     let roomy = shop("[path]\nclearance = { Z = 50 }", 600.0);

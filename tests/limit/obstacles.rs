@@ -67,19 +67,29 @@ fn loads_alone() {
 
 #[test]
 fn friction_alone() {
-    stopped(
-        Rig {
+    for (allow_feed, help) in [
+        (true, "lower the speed: --strategy optimal or speed"),
+        (
+            false,
+            "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
+        ),
+    ] {
+        let mut rig = Rig {
             axis: "coulomb_n = 2500",
             ..ISG
         }
-        .strategy(Strategy::Accel),
-        // 0.1 % of 5 m/s² is the least: within 90 m more than 0.4 m/s.
-        "G0 X90000\n",
-        1,
-        "friction-alone",
-        "friction alone takes 125.0 % of the limit at the wanted speed",
-        "lower the speed: --strategy optimal or speed, with --allow feed for feeds",
-    );
+        .strategy(Strategy::Accel);
+        rig.options.allow_feed = allow_feed;
+        stopped(
+            rig,
+            // 0.1 % of 5 m/s² is the least: within 90 m more than 0.4 m/s.
+            "G0 X90000\n",
+            1,
+            "friction-alone",
+            "friction alone takes 125.0 % of the limit at the wanted speed",
+            help,
+        );
+    }
 }
 
 #[test]

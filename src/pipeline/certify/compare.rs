@@ -7,6 +7,9 @@ use crate::interpret::Move;
 use crate::pipeline::expected::ExpectedMove;
 use crate::power::{Assessment, PowerModel};
 
+/// The rule of moves that draw too much; what helps depends on what is permitted.
+pub(in crate::pipeline) const DOES_NOT_FIT: &str = "does-not-fit";
+
 /// Rounding that speeds and accelerations may differ by, as a share.
 const ROUNDING: f64 = 1e-9;
 
@@ -26,8 +29,7 @@ pub(super) fn compare(
             "the block still needs {:.1} W of {limit_w:.1} W",
             after.demand.peak_w
         );
-        let help = "another strategy, or --allow feed, may help";
-        reasons.push(place, "does-not-fit", message, help, text);
+        reasons.push(place, DOES_NOT_FIT, message, "", text);
     }
     let asked = &original.asked;
     // What the control makes of a block that asks for the same depends on its neighbours, which

@@ -85,9 +85,10 @@ impl Reasons {
         self.faulty |= FAULTS.contains(&rule);
         if self.list.len() < Summary::KEPT {
             let span = Span::new(0, split_line_end(text).0.len());
-            let mut reason = Diagnostic::error(rule, message)
-                .at(line, span, text)
-                .help(help);
+            let mut reason = Diagnostic::error(rule, message).at(line, span, text);
+            if !help.is_empty() {
+                reason = reason.help(help);
+            }
             let name = usize::from(file).checked_sub(1);
             reason.file = name.and_then(|name| self.files.get(name)).cloned();
             self.list.push(reason);
