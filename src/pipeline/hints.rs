@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
+use super::pause;
 use super::summary::AT_LENGTH_MAX;
 use super::{
     Allowed, Failure, Law, LimitOptions, Options, Restart, RestartRows, Row, RowSink, Strategy,
@@ -33,6 +34,9 @@ pub fn take_hints<R: Read + Seek + Send>(
     options: &Options,
     summary: &mut Summary,
 ) -> Result<(), Failure> {
+    input.rewind().map_err(Failure::Input)?;
+    let over_time = summary.over_time.iter_mut();
+    pause::advise(&mut input, machine, options, over_time)?;
     if summary.unfit_count == 0 {
         return Ok(());
     }

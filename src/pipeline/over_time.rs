@@ -16,6 +16,8 @@ pub struct OverTime {
     pub converter: String,
     /// The file that the line stands in; empty for the program itself.
     pub file: String,
+    /// The program is known to have a place where it could wait, which is not permitted yet.
+    pub may_pause: bool,
 }
 
 impl Summary {
@@ -47,6 +49,7 @@ impl OverTime {
                     rating,
                     converter: converter.map_or_else(String::new, |it| it.name.clone()),
                     file: file(rating.text),
+                    may_pause: false,
                 }
             })
             .collect()
@@ -83,6 +86,15 @@ impl OverTime {
         title
     }
 
+    /// Whether to wait may help: a power over time is missed.
+    pub(super) fn pausing_helps(&self) -> bool {
+        let means = matches!(
+            self.rating.measure,
+            Measure::Overload { .. } | Measure::Continuous { .. }
+        );
+        means && !self.rating.lasting && !self.rating.fits()
+    }
+
     /// What helps where the limit is not kept.
     #[must_use]
     pub fn help(&self) -> &'static str {
@@ -91,8 +103,12 @@ impl OverTime {
                     as long as it may last: use exact stop, or lower the feed here";
         }
         match self.rating.measure {
+            Measure::Overload { .. } | Measure::Continuous { .. } if self.may_pause => {
+                "lower speeds or accelerations around this line, or let it pause (limit --allow \
+                 pause)"
+            }
             Measure::Overload { .. } | Measure::Continuous { .. } => {
-                "lower speeds or accelerations around this line, or let it pause"
+                "lower speeds or accelerations around this line"
             }
             Measure::LowestVoltage => "lower speeds or accelerations here",
             Measure::HighestVoltage | Measure::Brake { .. } => "brake more slowly around this line",

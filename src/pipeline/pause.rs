@@ -4,13 +4,18 @@
 //! try is certified by the whole analysis, at every override that counts (a dwell lasts as
 //! long at any), so nothing rests on how the figures depend on the dwell.
 
+use std::io::{Read, Seek, sink};
 use std::iter::once;
 
 use super::lower::lower_further;
-use super::writer::Plan;
-use super::{Failure, LimitSummary};
+use super::over_time::OverTime;
+use super::ways::has_ways;
+use super::writer::{Plan, Writer};
+use super::{Failure, LimitOptions, LimitSummary, Options};
 use crate::diagnostic::Diagnostic;
+use crate::limit::{Depths, Limiter};
 use crate::machine::Machine;
+use crate::power::PowerModel;
 
 /// The shortest dwell that is tried, s, and the longest that all of them may come to.
 const SHORTEST_S: f64 = 0.1;
@@ -32,6 +37,50 @@ pub struct Pause {
 /// Limits the program once: the machine whose limits are aimed at, where it waits, and
 /// whether something was written before.
 type Attempt<'a> = dyn FnMut(&Machine, Option<Plan>, bool) -> Result<LimitSummary, Failure> + 'a;
+
+/// Whether there is a place where a program could wait, if that were permitted.
+///
+/// # Errors
+/// See [`Failure`].
+pub(super) fn has_place<R: Read + Seek>(
+    input: R,
+    machine: &Machine,
+    options: &Options,
+) -> Result<bool, Failure> {
+    let waits = machine.controller.language.dwell_block(SHORTEST_S);
+    if waits.is_none() || has_ways(options) {
+        return Ok(false);
+    }
+    let limiter = Limiter::new(machine, LimitOptions::USUAL, Depths::default());
+    let model = PowerModel::new(machine);
+    let writer = Writer::new(input, machine, options, limiter, false, sink(), None, model);
+    let written = writer.pausing(Some(Plan::NEVER)).run(&mut |batch| {
+        batch.clear();
+        Ok(())
+    })?;
+    // What may be skipped is limited for all its ways at once, without dwells.
+    Ok(written.is_some_and(|it| !it.may_skip && !it.places.is_empty()))
+}
+
+/// Says of the limits over time that are missed that the program could wait, where it could.
+///
+/// # Errors
+/// See [`Failure`].
+pub(super) fn advise<'a, R: Read + Seek>(
+    input: R,
+    machine: &Machine,
+    options: &Options,
+    over_time: impl Iterator<Item = &'a mut OverTime>,
+) -> Result<(), Failure> {
+    let missed: Vec<_> = over_time.filter(|it| it.pausing_helps()).collect();
+    if missed.is_empty() || !has_place(input, machine, options)? {
+        return Ok(());
+    }
+    for found in missed {
+        found.may_pause = true;
+    }
+    Ok(())
+}
 
 /// Tries dwells as well as lower peaks, and takes what costs less.
 pub(super) fn limit_waiting(

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
+use super::pause;
 use super::summary::AT_LENGTH_MAX;
 use super::{
     Allowed, Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, Row, RowSink,
@@ -36,6 +37,9 @@ pub fn price<R: Read + Seek + Send>(
     how: LimitOptions,
     refused: &mut LimitSummary,
 ) -> Result<(), Failure> {
+    if !refused.certified && !how.allowed.pause {
+        advise_pause(&mut input, machine, options, refused)?;
+    }
     if refused.certified || refused.before.moves > AT_LENGTH_MAX {
         return Ok(());
     }
@@ -57,6 +61,31 @@ pub fn price<R: Read + Seek + Send>(
             });
             feeds.take_into(refused);
             break;
+        }
+    }
+    Ok(())
+}
+
+/// Says where the program could wait, in the reasons too.
+fn advise_pause<R: Read + Seek>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    refused: &mut LimitSummary,
+) -> Result<(), Failure> {
+    input.rewind().map_err(Failure::Input)?;
+    let (before, after) = (&mut refused.before.over_time, &mut refused.after.over_time);
+    pause::advise(
+        input,
+        machine,
+        options,
+        before.iter_mut().chain(&mut *after),
+    )?;
+    for found in after.iter().filter(|found| found.may_pause) {
+        let said = found.reason();
+        let own = |it: &&mut Diagnostic| it.rule == said.rule && it.message == said.message;
+        if let Some(reason) = refused.reasons.iter_mut().find(own) {
+            reason.help = said.help;
         }
     }
     Ok(())

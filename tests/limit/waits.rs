@@ -134,6 +134,30 @@ fn where_the_program_may_not_wait() {
     }
 }
 
+/// To wait is advised where there is a place for it and it is not permitted yet.
+#[test]
+fn to_wait_is_advised_where_the_program_can() {
+    let cut = "G21 G90\nG1 X900. F20000.\nG1 X0.\nG1 X900.\nG1 X0.\nM30\n";
+    let skipped = PROGRAM.replace("G0 Z20.\nM2", "/G0 Z20.\nM2");
+    for (program, can) in [(PROGRAM, true), (cut, false), (&*skipped, false)] {
+        let shop = shop("fanuc", 70.0);
+        let (code, _, errors) = limited(&shop, program, "");
+        assert_eq!(code, 1, "{errors}");
+        let advice = "  = help: lower speeds or accelerations around this line";
+        let advice = if can {
+            format!("{advice}, or let it pause (limit --allow pause)\n")
+        } else {
+            format!("{advice}\n")
+        };
+        assert!(errors.contains(advice.trim_start()), "{errors}");
+        let (code, told, _) = shop.run("check a.nc");
+        assert_eq!(code, 1, "{told}");
+        assert_eq!(told.contains("or let it pause"), can, "{told}");
+        let (_, _, errors) = limited(&shop, program, "--allow pause");
+        assert!(!errors.contains("let it pause"), "{errors}");
+    }
+}
+
 /// The spindle keeps turning, and each override is looked at: a dwell lasts as long at any.
 #[test]
 fn waiting_beside_a_spindle() {
