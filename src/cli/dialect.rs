@@ -12,8 +12,8 @@ Examples:
   gwatt dialect programs/* -m vmc
   gwatt check part.nc -m vmc --dialect auto
 
-Exit status: 2 where a file is known to be in a language that no profile reads, or cannot be
-read; else 0, also where no mark of a controller is seen.";
+Exit status: 2 where a file is known to be in a language that no profile reads, is no text, has
+no program in it or cannot be read; else 0, also where no mark of a controller is seen.";
 
 /// Arguments of `dialect`.
 #[derive(Debug, Args)]

@@ -35,12 +35,12 @@ pub fn run(args: &DialectArgs, terminal: Terminal) -> Result<Verdict> {
                 continue;
             }
         };
-        if found.foreign.is_some() {
+        if found.foreign.is_some() || found.no_program.is_some() {
             worst = Verdict::Refused;
         }
         let tried = setup.as_ref().map_or(String::new(), |setup| {
             let read = read_without_errors(setup, program, &found.profiles);
-            if found.profiles.is_empty() {
+            if found.profiles.is_empty() || found.no_program.is_some() {
                 String::new()
             } else if read.is_empty() {
                 "; not read without errors on this machine".to_owned()
@@ -56,6 +56,9 @@ pub fn run(args: &DialectArgs, terminal: Terminal) -> Result<Verdict> {
 
 /// The answer in words.
 fn verdict(found: &Recognised) -> String {
+    if let Some(why) = &found.no_program {
+        return format!("none: {why}");
+    }
     match &found.foreign {
         Some(foreign) => format!("none: this is {}; {}", foreign.what, foreign.help),
         None if found.profiles.is_empty() => {

@@ -44,6 +44,11 @@ impl Line {
         self.raw.is_empty()
     }
 
+    /// More than comments and signs stands in it.
+    pub(super) fn has_words(&self) -> bool {
+        self.code.bytes().any(|byte| byte.is_ascii_alphanumeric())
+    }
+
     /// The line with its comments.
     pub(super) fn raw(&self) -> &str {
         &self.raw

@@ -27,6 +27,8 @@ const POINTS_MIN: u32 = 3;
 pub struct Recognised {
     /// It is no program that any profile reads.
     pub foreign: Option<Foreign>,
+    /// Why it is no program at all: it ends to be text, or no line of it has a word.
+    pub no_program: Option<String>,
     /// The profiles with the most points, in the order of the built-in list; empty if
     /// there are too few marks to say.
     pub profiles: Vec<&'static str>,
@@ -59,17 +61,28 @@ pub fn recognise(mut input: impl Read, file: &str) -> io::Result<Recognised> {
     let mut found = Found::of_name(file);
     let mut lines = LineReader::new(head.chain(input));
     let mut line = Line::default();
+    let mut no_program = None;
     loop {
         match lines.next_line() {
             Ok(Some((number, bytes))) if number <= LINES_MAX => {
                 line.set(bytes);
                 found.look(&line, number);
             }
-            Ok(_) | Err(SourceError::Binary { .. } | SourceError::LineTooLong { .. }) => break,
+            Ok(_) => break,
             Err(SourceError::Io(error)) => return Err(error),
+            Err(error @ (SourceError::Binary { .. } | SourceError::LineTooLong { .. })) => {
+                no_program = Some(error.to_string());
+                break;
+            }
         }
     }
-    Ok(found.judge())
+    if no_program.is_none() && !found.has_words {
+        no_program = Some("there is no program in this file; give a part program".to_owned());
+    }
+    Ok(Recognised {
+        no_program,
+        ..found.judge()
+    })
 }
 
 /// What was seen so far.
@@ -78,6 +91,8 @@ struct Found {
     /// For each mark the line that it was seen in first.
     lines: [Option<u64>; MARKS.len()],
     ending: Option<&'static marks::Ending>,
+    /// A line has more than comments.
+    has_words: bool,
 }
 
 impl Found {
@@ -88,6 +103,7 @@ impl Found {
             ending: ENDINGS
                 .iter()
                 .find(|known| known.letters.eq_ignore_ascii_case(ending)),
+            has_words: false,
         }
     }
 
@@ -95,6 +111,7 @@ impl Found {
         if line.is_empty() {
             return;
         }
+        self.has_words |= line.has_words();
         for (mark, seen) in MARKS.iter().zip(&mut self.lines) {
             if seen.is_none() && (mark.seen)(line) {
                 *seen = Some(number);
@@ -140,6 +157,7 @@ impl Found {
             .map(|(line, what)| format!("{what} in line {line}"));
         Recognised {
             foreign: None,
+            no_program: None,
             marks: of_name.into_iter().chain(of_marks).collect(),
             profiles,
         }

@@ -63,6 +63,34 @@ fn dialect_says_what_it_saw() {
     assert_eq!(found.code, 2);
 }
 
+/// What is no program has no controller: no text, a line without end, nothing or comments.
+#[test]
+fn dialect_refuses_what_is_no_program() {
+    let shop = Shop::new();
+    shop.put("binary.nc", b"G0 X1\nG1 \0\x01\x02\n");
+    shop.put("empty.nc", "");
+    shop.put("blank.nc", "\n \n%\n(no blocks)\n%\n");
+    let none = "none: there is no program in this file; give a part program";
+    for (name, said) in [
+        (
+            "binary.nc",
+            "none: line 2 holds a NUL byte: this is a binary file",
+        ),
+        ("empty.nc", none),
+        ("blank.nc", none),
+    ] {
+        let found = shop.run(&["dialect", name]);
+        let said = format!("{name}: {said}");
+        assert!(found.stdout.starts_with(&said), "{}", found.stdout);
+        assert_eq!((found.code, &*found.stderr), (2, ""));
+        // As `check` refuses it.
+        assert_eq!(shop.run(&["check", name]).code, 2);
+    }
+    let several = shop.run(&["dialect", "gentle.ngc", "empty.nc"]);
+    assert_eq!(several.code, 2);
+    assert_eq!(shop.run(&["dialect", "gentle.ngc"]).code, 0);
+}
+
 #[test]
 fn auto_says_what_it_chose() {
     let shop = Shop::new();
