@@ -152,7 +152,13 @@ impl<'m> Turned<'m> {
             return knob_line::lines(self.machine, knob, &[f64::from(level); AXES]);
         }
         if data.target == KnobTarget::SpeedShare {
-            return knob_line::lines(self.machine, knob, &[speed_share(state); AXES]);
+            // What the program has set does nothing where it has not switched it on.
+            let share = if state.adaptive {
+                speed_share(state)
+            } else {
+                1.0
+            };
+            return knob_line::lines(self.machine, knob, &[share; AXES]);
         }
         if data.argument == KnobArgument::Value {
             let value = match data.target {

@@ -69,6 +69,18 @@ fn a_share_of_the_program_comes_back() {
     );
 }
 
+/// A share that the program has set and not switched on does nothing, and comes back only once
+/// it is switched off again.
+#[test]
+fn a_share_that_is_not_switched_on_stays_without_effect() {
+    let text = HAL.fits("G64\nM67 E1 Q0.9\nG0 X400\nG1 X401 F100\nM2\n");
+    assert_eq!(
+        text,
+        "G64\nM67 E1 Q0.9\nM52 P1\nM67 E1 Q0.8\nG0 X400\nM67 E1 Q1\nG1 X401 F100\n\
+         M68 E1 Q0.9\nM52 P0\nM2\n"
+    );
+}
+
 /// Where lines run again and again a feed costs less than words for each run.
 #[test]
 fn a_line_that_runs_again_becomes_a_feed() {
