@@ -222,7 +222,7 @@ mod tests {
     use super::piece_demand;
     use crate::machine::{AxisSet, Machine};
     use crate::plan::Blend;
-    use crate::plan::lookahead::{Piece, Planned, Speeds2};
+    use crate::plan::lookahead::{Piece, Planned, Slack, Speeds2};
     use crate::plan::random::Random;
     use crate::power::sample::any_move;
     use crate::power::{PowerModel, Want};
@@ -331,6 +331,7 @@ mod tests {
                 overlap_s: 0.0,
                 overlaps: false,
                 late_mm_s: 0.0,
+                slack: Slack::default(),
             };
             let demand = piece_demand(&model, &mv, &planned, Want::ALL);
             let (mut peaks, mut energy_j) = ([0.0_f64; 2], 0.0);
@@ -396,6 +397,7 @@ mod tests {
                 overlap_s: 0.0,
                 overlaps: false,
                 late_mm_s: 0.0,
+                slack: Slack::default(),
             };
             let exact = piece_demand(&model, &mv, &planned, Want::PEAKS);
             let extremes = [planned.top_speed_mm_s(), planned.largest_accel_mm_s2()];

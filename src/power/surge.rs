@@ -5,7 +5,7 @@
 //! Output: its [`Demand`]. On a line it is that of the ramps themselves. Where the
 //! path turns it is the robust bound, over short stretches of an arc.
 
-use super::demand::{Demand, Want, larger};
+use super::demand::{Demand, Totals, Want, larger};
 use super::model::PowerModel;
 use super::piece::straight_line;
 use super::robust::Part;
@@ -190,12 +190,9 @@ fn turn_demand(model: &PowerModel, mv: &Move, planned: &Planned<u64>, surge: Sur
 /// by the turn, and while it is braked none is sped up but by that; what is lost in copper grows
 /// either way.
 fn turning_demand(model: &PowerModel, mv: &Move, shares: &PathShares, surge: Surge) -> Demand {
-    let mut demand = Demand::NONE;
-    let copper = model.has_copper(mv);
-    for (speed_mm_s, falls) in [(surge.rises_mm_s, false), (surge.falls_mm_s, true)] {
-        let Some(speed_mm_s) = speed_mm_s.filter(|speed| *speed > 0.0) else {
-            continue;
-        };
+    let sides = [(surge.rises_mm_s, false), (surge.falls_mm_s, true)];
+    let sides = sides.map(|(speed_mm_s, falls)| {
+        let speed_mm_s = speed_mm_s.filter(|speed| *speed > 0.0)?;
         let mut bound = shares.along;
         let (mut both, mut turn) = (AxisValues::default(), AxisValues::default());
         for (axis, (both, turn)) in both.iter_mut().zip(&mut turn).enumerate() {
@@ -205,17 +202,29 @@ fn turning_demand(model: &PowerModel, mv: &Move, shares: &PathShares, surge: Sur
             bound.positive[axis] *= speed_mm_s;
             bound.negative[axis] *= speed_mm_s;
         }
-        for (index, converter) in model.converters.iter().enumerate() {
-            let mut totals = model.robust_totals(converter, mv, &bound, &both);
+        Some((falls, bound, both, turn))
+    });
+    let mut demand = Demand::NONE;
+    let copper = model.has_copper(mv);
+    for (index, converter) in model.converters.iter().enumerate() {
+        // A demand takes each converter once.
+        let mut most: Option<Totals> = None;
+        for (falls, bound, both, turn) in sides.iter().flatten() {
+            let mut totals = model.robust_totals(converter, mv, bound, both);
             if !copper {
-                let turning = model.robust_totals(converter, mv, &bound, &turn);
-                if falls {
+                let turning = model.robust_totals(converter, mv, bound, turn);
+                if *falls {
                     totals.peak_w = turning.peak_w;
                 } else {
                     totals.regen_w = turning.regen_w;
                 }
             }
-            demand.add(index, converter, totals);
+            let most = most.get_or_insert(totals);
+            most.raise_peak(totals.peak_w);
+            most.raise_regen(totals.regen_w);
+        }
+        if let Some(most) = most {
+            demand.add(index, converter, most);
         }
     }
     demand

@@ -4,7 +4,7 @@
 //! straight elements under the same tag.
 
 use super::element::{Curve, Element};
-use crate::machine::ChordRule;
+use crate::machine::{AxisValues, ChordRule};
 
 /// Chords of one arc that are followed.
 const CHORDS_MAX: f64 = 16_384.0;
@@ -22,6 +22,14 @@ impl ChordRule {
         arc.curve
             .as_ref()
             .is_none_or(|curve| self.number(curve, asked_mm_s(arc)) <= CHORDS_MAX)
+    }
+
+    /// The largest speed, squared, at which a lower feed makes more than so many chords.
+    fn finer_speed2(&self, curve: &Curve, count: u32) -> Option<f64> {
+        let flat_mm = curve.radius_mm * curve.sweep_rad.abs();
+        let chord_mm = flat_mm / f64::from(count);
+        let speed = self.per_second * chord_mm;
+        (self.per_second > 0.0 && chord_mm > self.min_mm).then_some(speed * speed)
     }
 
     /// The number of chords, without bounds.
@@ -51,6 +59,17 @@ fn asked_mm_s<T>(arc: &Element<T>) -> f64 {
     arc.feed_mm_s.min(arc.speed_mm_s)
 }
 
+/// What lower overrides may make of a chord whose length follows the feed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Finer {
+    /// The largest acceleration along shorter chords in its place, mm/s².
+    pub accel_mm_s2: f64,
+    /// The largest speed, squared, at which they may be run.
+    pub speed2: f64,
+    /// Where the arc heads at both ends, which the first and the last of them come closer to.
+    pub tangents: [AxisValues; 2],
+}
+
 /// The chords of an arc.
 #[derive(Debug, Clone)]
 pub(super) struct Chords<T> {
@@ -67,6 +86,9 @@ pub(super) struct Chords<T> {
     /// arc's piece.
     shorter: f64,
     stretch: f64,
+    /// See [`Finer::speed2`]; nothing where lower overrides make the same chords.
+    finer_speed2: Option<f64>,
+    tangents: [AxisValues; 2],
 }
 
 impl<T: Copy> Chords<T> {
@@ -107,6 +129,54 @@ impl<T: Copy> Chords<T> {
             step_rad,
             shorter,
             stretch,
+            finer_speed2: rule.finer_speed2(&curve, count),
+            tangents: [arc.start, arc.end],
+        })
+    }
+
+    /// What lower overrides may make of the chord that was given last.
+    ///
+    /// A shorter one points to some direction of the arc between half a chord before this
+    /// one and half a chord after it, and `a = min(aᵢ/|uᵢ|)` of that is no more than with the
+    /// least |uᵢ| there, nor than √(a₁² + a₂²) of the axes of the plane in it.
+    pub fn finer(&self) -> Option<Finer> {
+        let speed2 = self.finer_speed2?;
+        let chord = &self.chord;
+        // Of an axis across the plane: its share of the arc.
+        let mut least = chord.start.map(|part| part * self.stretch);
+        let half = 0.5 * self.step_rad;
+        let middle = (f64::from(self.next) - 0.5) * self.step_rad;
+        let sweep = self.curve.sweep_rad;
+        let ends = [middle - 2.0 * half, middle + 2.0 * half];
+        let ends = ends.map(|end| end.clamp(sweep.min(0.0), sweep.max(0.0)));
+        let [x, y] = self.along;
+        let parts = ends.map(|angle| {
+            let (sin, cos) = libm::sincos(angle);
+            [x * cos - y * sin, x * sin + y * cos]
+        });
+        let turns = (ends[1] - ends[0]).abs() > std::f64::consts::FRAC_PI_2;
+        let mut limit2 = 0.0;
+        for (index, axis) in self.curve.plane.into_iter().enumerate() {
+            let [a, b] = parts.map(|part| part[index]);
+            let crosses = turns || a * b <= 0.0;
+            let part = if crosses { 0.0 } else { a.abs().min(b.abs()) };
+            if let Some(least) = least.get_mut(axis) {
+                *least = part * self.shorter / self.stretch;
+            }
+            let limit = chord.axis_accel_mm_s2.get(axis).copied();
+            let limit = limit.unwrap_or(f64::INFINITY);
+            limit2 += limit * limit;
+        }
+        let flat = (x * x + y * y).sqrt() * self.shorter / self.stretch;
+        let limits = chord.axis_accel_mm_s2.iter().zip(&least);
+        let moving = limits.filter(|(_, part)| **part != 0.0);
+        let accel = moving.fold(limit2.sqrt() / flat, |accel, (limit, part)| {
+            accel.min(limit / part.abs())
+        });
+        Some(Finer {
+            accel_mm_s2: accel.min(chord.path_accel_mm_s2),
+            speed2,
+            tangents: self.tangents,
         })
     }
 

@@ -32,6 +32,8 @@ pub(super) struct Before {
     /// Direction at the joint, how many axes it needs, and whether X, Y and Z
     /// make a unit of it.
     end: AxisValues,
+    /// Of the last chord of an arc: where that heads, which shorter ones come closer to.
+    pub tangent: Option<AxisValues>,
     span: usize,
     is_unit: bool,
     is_curved: bool,
@@ -45,6 +47,28 @@ pub(super) struct Before {
 }
 
 impl Before {
+    /// The largest speed, squared, at which the joint with the element after it is passed.
+    pub fn joint2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> f64 {
+        if self.joint == Joint::Stop {
+            return 0.0;
+        }
+        let (before, next) = (self.top_mm_s, after.top_mm_s);
+        let most2 = if before < next {
+            before * before
+        } else {
+            next * next
+        };
+        let own2 = speed2(rule, self, after, most2);
+        let Some(end) = self.tangent else {
+            return own2;
+        };
+        let tangent = Self {
+            end,
+            ..self.clone()
+        };
+        own2.max(speed2(rule, &tangent, after, most2))
+    }
+
     /// Whether the element is straight, as long as its part in X, Y and Z, and runs
     /// through the joint if the corner permits it.
     pub fn is_straight(&self) -> bool {
@@ -120,6 +144,7 @@ impl<'e, T> After<'e, T> {
             joint: element.joint,
             top_mm_s: self.top_mm_s,
             end: element.end,
+            tangent: None,
             is_curved: element.curve.is_some(),
             span: match element.curve {
                 Some(_) => span(&element.end),

@@ -24,4 +24,4 @@ pub use element::{Curve, Element, Joint};
 pub(crate) use glide::{Gliding, Line};
 pub(crate) use linuxcnc::LATE_CYCLES;
 pub use planner::{Blend, PathPlanner, Piece, Planned};
-pub use ramp::Speeds2;
+pub use ramp::{Slack, Speeds2};

@@ -7,11 +7,11 @@
 //! Where an axis of the machine limits its jerk, `runs` is the window.
 
 use super::blend::Axes;
-use super::chord::Chords;
-use super::corner::{self, After, Before};
-use super::element::{Element, Joint};
+use super::chord::{Chords, Finer};
+use super::corner::{After, Before};
+use super::element::Element;
 use super::linuxcnc::{LinuxCnc, RENEWED};
-use super::ramp::Speeds2;
+use super::ramp::{Slack, Speeds2};
 use super::window::{Node, Span, Window};
 use crate::machine::{AxisValues, CornerRule, LookAhead, Machine};
 use crate::plan::{Profile, Section};
@@ -93,6 +93,8 @@ pub struct Planned<T> {
     /// The speed up to which it may still speed up and from which it may brake, mm/s, since
     /// a lower pace comes late, at this setting or a lower one; 0 where none does.
     pub late_mm_s: f64,
+    /// How far lower overrides may go beyond that.
+    pub slack: Slack,
 }
 
 impl<T> Planned<T> {
@@ -195,6 +197,7 @@ pub(super) struct Load<T> {
     pub overlap_s: f64,
     pub overlaps: bool,
     pub late_mm_s: f64,
+    pub slack: Slack,
 }
 
 #[derive(Debug, Clone)]
@@ -299,13 +302,18 @@ impl<T: Copy> PathPlanner<T> {
         }
         let rule = self.look_ahead.chords.as_ref();
         let Some(mut chords) = rule.and_then(|rule| Chords::of(rule, element)) else {
-            self.push_corner(element, [0.0, element.length_mm]);
+            self.push_corner(element, [0.0, element.length_mm], None);
             return None;
         };
-        let mut ramp2 = 0.0;
+        let (mut ramp2, mut last) = (0.0, None);
         while let Some(at) = chords.advance() {
             ramp2 += 2.0 * chords.chord.accel_mm_s2 * chords.chord.length_mm;
-            self.push_corner(&chords.chord, at);
+            let finer = chords.finer();
+            self.push_corner(&chords.chord, at, finer);
+            last = finer;
+        }
+        if let (Some(finer), Rule::Corner(Some(before))) = (last, &mut self.rule) {
+            before.tangent = Some(finer.tangents[1]);
         }
         Some(ramp2)
     }
@@ -346,6 +354,7 @@ impl<T: Copy> PathPlanner<T> {
             overlap_s: 0.0,
             overlaps: false,
             late_mm_s: 0.0,
+            slack: Slack::default(),
         };
         let top2 = after.top_mm_s * after.top_mm_s;
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
@@ -359,22 +368,31 @@ impl<T: Copy> PathPlanner<T> {
         (after, node)
     }
 
-    fn push_corner(&mut self, element: &Element<T>, at: [f64; 2]) {
+    /// `finer`: of a chord that lower overrides may make shorter.
+    fn push_corner(&mut self, element: &Element<T>, at: [f64; 2], finer: Option<Finer>) {
         let (after, mut node) = self.node(element, at);
         let Rule::Corner(before) = &mut self.rule else {
             return;
         };
-        node.entry2 = match before {
-            Some(before) if before.joint != Joint::Stop => {
-                let before2 = before.top_mm_s * before.top_mm_s;
-                let top2 = after.top_mm_s * after.top_mm_s;
-                let most2 = if before2 < top2 { before2 } else { top2 };
-                corner::speed2(&self.look_ahead.corner, before, &after, most2)
-            }
-            _ => 0.0,
-        };
+        let rule = &self.look_ahead.corner;
+        let joint2 =
+            |after: &After<'_, T>| before.as_ref().map_or(0.0, |it| it.joint2(rule, after));
+        node.entry2 = joint2(&after);
+        if let Some(finer) = finer.filter(|_| at[0] <= 0.0) {
+            let start = finer.tangents[0];
+            let tangent = Element { start, ..*element };
+            node.entry2 = node.entry2.max(joint2(&After::new(rule, &tangent)));
+        }
         if node.entry2 == 0.0 {
             self.window.stop();
+        }
+        node.payload.slack.joint2 = node.entry2;
+        if let Some(finer) = finer {
+            node.payload.slack.accel_mm_s2 = finer.accel_mm_s2;
+            node.payload.slack.chord2 = finer.speed2;
+            // Shorter ones turn by less, and are passed faster: that is not followed.
+            let asked2 = after.top_mm_s * after.top_mm_s;
+            node.payload.certain = at[0] <= 0.0 || node.entry2 >= finer.speed2.min(asked2);
         }
         self.window.push(node);
         *before = Some(after.before());
@@ -449,6 +467,7 @@ impl<T> Planned<T> {
             overlap_s: span.payload.overlap_s,
             overlaps: span.payload.overlaps,
             late_mm_s: span.payload.late_mm_s,
+            slack: span.payload.slack,
         }
     }
 }

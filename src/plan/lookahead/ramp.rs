@@ -11,6 +11,17 @@ fn differ(v: f64, other: f64) -> bool {
     (v - other).abs() > ROUNDING * v
 }
 
+/// How far lower overrides may go beyond a plan, under the rules of corners; 0: no further.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Slack {
+    /// The largest speed, squared, at which the joint before a piece may be passed.
+    pub joint2: f64,
+    /// The largest acceleration along it, mm/s², as other chords may have it.
+    pub accel_mm_s2: f64,
+    /// The largest speed, squared, at which there are such chords.
+    pub chord2: f64,
+}
+
 /// Speeds of a path element, squared, in mm²/s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speeds2 {

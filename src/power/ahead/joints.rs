@@ -7,7 +7,7 @@ use crate::machine::{AXES, AxisValues, CornerRule, LookAhead, Machine};
 use crate::plan::lookahead::{Piece, Planned};
 use crate::power::demand::Demand;
 use crate::power::model::PowerModel;
-use crate::power::steps::{Heading, Span, StepEnergy, Steps, close_spans, spans, velocity};
+use crate::power::steps::{Beyond, Heading, Span, StepEnergy, Steps, close_spans, spans, velocity};
 use crate::power::surge::Surge;
 use std::ops::RangeInclusive;
 
@@ -83,6 +83,7 @@ impl Ahead {
         if is_arc && self.largest.planner.runs_chords() {
             heading = heading.of_chord([from_mm, to_mm]);
         }
+        let mut beyond = (self.surges.as_ref()).map_or(Beyond::NONE, |it| it.beyond(planned));
         let profile = planned.profile();
         // The power of an arc is that of the mean over its chords, where these are
         // shorter than the drives' response, at lower overrides too if those count.
@@ -92,10 +93,10 @@ impl Ahead {
         for phase in &profile.phases {
             let mut phase = *phase;
             phase.position_mm += from_mm;
-            spans(&heading, &phase, joint, &mut |span| {
+            spans(&heading, &phase, joint, beyond, &mut |span| {
                 take(steps, &mut self.open, model, number..=number, span);
             });
-            joint = false;
+            (joint, beyond.joint) = (false, 1.0);
         }
     }
 
@@ -113,7 +114,9 @@ impl Ahead {
         };
         let sides = [surge.rises_mm_s, surge.falls_mm_s].map(|it| it.is_some());
         let extremes = Heading::of_piece(&own.mv, &planned.piece).extremes();
-        steps.surge(&extremes, sides, surge.accel_mm_s2);
+        // Of an S-curve no more is known than how fast it may be.
+        let speed_mm_s = surge.section.map_or(0.0, |_| surge.speed_mm_s());
+        steps.surge(&extremes, sides, surge.accel_mm_s2, speed_mm_s);
         if steps.is_surged() && !steps.is_quiet(model, &own.mv, own.want) {
             let demand = steps.surged_demand(model, &own.mv);
             include(&mut self.open, moves_of(planned), &demand);

@@ -102,6 +102,11 @@ impl Pace {
         }
     }
 
+    /// Whether some override asks it for a lower speed than another one.
+    pub fn may_be_slower(&self, than: &Self) -> bool {
+        self.rapid != than.rapid || self.asked2 < than.asked2 * (1.0 - ROUNDING)
+    }
+
     /// Whether the asked speed is its cap.
     pub fn is_asked(&self) -> bool {
         self.asked2 <= self.cap2 * (1.0 + ROUNDING)

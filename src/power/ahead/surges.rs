@@ -6,11 +6,12 @@ use super::pace::{Course, Pace, Past};
 use super::runs::Runs;
 use crate::machine::{CornerRule, LookAhead, Machine};
 use crate::plan::Section;
-use crate::plan::lookahead::{Element, Piece, Planned};
+use crate::plan::lookahead::{Element, Piece, Planned, Speeds2};
 use crate::power::demand::{Demand, Want};
 use crate::power::eye::Eye;
 use crate::power::model::PowerModel;
 use crate::power::piece::{Shift, is_quiet, piece_demand, shifted_demand, slower_demand};
+use crate::power::steps::Beyond;
 use crate::power::surge::{Surge, surge_demand};
 
 /// What is known of the path before and after a piece.
@@ -21,6 +22,9 @@ pub(super) struct Surges {
     /// With limits of jerk the speed, squared, that is not exceeded at the end of the
     /// last piece, mm²/s².
     reached2: f64,
+    /// The speed, squared, of a blend that a slower move comes after, as far as that has not
+    /// surely braked, mm²/s².
+    late2: f64,
     /// The machine without losses in copper, once it is needed.
     lossless: Option<Box<PowerModel>>,
     /// Of the acceleration that is certain: kinks may take of it.
@@ -43,6 +47,7 @@ impl Surges {
             past: Past::default(),
             runs: Runs::default(),
             reached2: 0.0,
+            late2: 0.0,
             lossless: None,
             ramp_share,
             least_shares: machine.limits.least_shares(),
@@ -100,6 +105,18 @@ impl Surges {
         self.chords.1
     }
 
+    /// The speed, squared, from which a piece may have to brake since the blend before it is
+    /// passed at the pace of a faster move; `slows_after`: so it is with the one after this.
+    fn late2(&mut self, course: &Course, slows_after: bool) -> Option<f64> {
+        let late2 = self.late2;
+        self.late2 = if slows_after {
+            course.end2
+        } else {
+            (late2 - course.ramp2).min(course.end2)
+        };
+        (late2 > 0.0).then(|| late2.min(course.start2))
+    }
+
     /// The machine without losses in copper.
     fn lossless(&mut self, model: &PowerModel) -> &PowerModel {
         let lossless = &mut self.lossless;
@@ -135,10 +152,56 @@ impl Surges {
         })
     }
 
+    /// How far lower overrides may go beyond a piece: with limits of jerk the joint before it
+    /// may be passed faster, and other chords may be steeper.
+    pub fn beyond(&self, planned: &Planned<u64>) -> Beyond {
+        let start2 = planned.speeds2.start;
+        let mut beyond = Beyond::NONE;
+        if planned.section.is_none() {
+            beyond.ramp = (planned.slack.accel_mm_s2 / planned.accel_mm_s2).max(1.0);
+        } else if start2 > 0.0 {
+            let most2 = planned.slack.joint2.min(self.reached2);
+            beyond.joint = (most2 / start2).sqrt().max(1.0);
+        }
+        beyond
+    }
+
     /// Whether nothing but one knob has a say at a speed, squared.
     pub fn are_one(&self, rapid: bool, speed2: f64) -> bool {
         self.runs.are_one(rapid) && !self.past.is_mixed(rapid, speed2)
     }
+}
+
+/// A chord that ramps, as shorter ones in its place may do it: they may be steeper, and so
+/// as much faster at both ends.
+fn steeper(planned: &Planned<u64>) -> Option<Planned<u64>> {
+    let ratio = planned.slack.accel_mm_s2 / planned.accel_mm_s2;
+    let Speeds2 { start, end, top } = planned.speeds2;
+    let steeper = ratio > 1.0 && planned.section.is_none() && !planned.speeds2.are_one();
+    let top = top.min(planned.slack.chord2);
+    steeper.then(|| Planned {
+        accel_mm_s2: planned.slack.accel_mm_s2,
+        speeds2: Speeds2 {
+            start: top.min(ratio * start),
+            end: top.min(ratio * end),
+            top,
+        },
+        ..planned.clone()
+    })
+}
+
+/// The same as if it sped up and braked with all that, wherever it does so: over time, and with
+/// limits of jerk.
+fn any_ramp(planned: &Planned<u64>, most_mm_s: f64) -> Option<Surge> {
+    let slack = &planned.slack;
+    let speed_mm_s = most_mm_s.min(slack.chord2.sqrt());
+    let ramps = slack.accel_mm_s2 > planned.accel_mm_s2 && !planned.speeds2.are_one();
+    ramps.then_some(Surge {
+        rises_mm_s: Some(speed_mm_s),
+        falls_mm_s: Some(speed_mm_s),
+        accel_mm_s2: slack.accel_mm_s2,
+        section: None,
+    })
 }
 
 impl Ahead {
@@ -179,12 +242,14 @@ impl Ahead {
             };
             piece_demand(lossless, &open.mv, planned, want)
         });
+        let slows = straight && course.brakes() && model.has_viscous(&open.mv);
         let is_own = planned.next.is_none() && planned.first == planned.tag;
         let found = is_own.then_some(&open.assessment.demand);
         let slower = slower_demand(model, &open.mv, planned, open.want, found);
         // A blend may be passed as fast as the faster of both moves asks for.
         let next = planned.next.and_then(|next| self.open.get(next));
         let pace = next.map_or(open.pace, |next| open.pace.or_faster(&next.pace));
+        let slows_after = next.is_some_and(|next| next.pace.may_be_slower(&open.pace));
         // From a lower speed a ramp lasts longer, unless all speeds fall together.
         let longer = !pace.is_asked() || !surges.are_one(pace.rapid, course.top2);
         surges.runs.forget(planned.first);
@@ -197,6 +262,10 @@ impl Ahead {
             let is_chord = surges.runs_chords && open.mv.arc.is_some();
             let on2 = surges.advance(planned.tag, &pace, course.ramp2, is_chord);
             let falls2 = surges.runs.falls2(planned.tag, &pace, &course, on2);
+            let late2 = surges.late2(&course, slows_after);
+            let falls2 = falls2.map_or(late2, |falls2| {
+                Some(late2.map_or(falls2, |it| it.max(falls2)))
+            });
             let ramps = [course.start2, course.end2].map(|low2| course.is_ramp_from(low2));
             if is_chord {
                 shift = Shift::Chord;
@@ -212,23 +281,21 @@ impl Ahead {
             self.follow_surge(model, planned, &surge);
         }
         self.watch_surge(model, eye, planned, surge.as_ref(), longer);
-        let open = self.open.get(planned.tag)?;
-        let matters = shifted != [false; 2] && !is_quiet(model, &open.mv, planned, open.want);
-        let shift = matters.then(|| {
-            let found = is_own.then_some(&open.assessment.demand);
-            let how = (shift, shifted);
-            let mut demand = shifted_demand(model, &open.mv, planned, how, found);
-            if model.has_copper(&open.mv)
-                && let Some(surges) = self.surges.as_mut()
-            {
-                let lossless = surges.lossless(model);
-                demand.include(&shifted_demand(lossless, &open.mv, planned, how, found));
-            }
-            demand
-        });
+        let most_mm_s = surge.map_or(top_mm_s, |it| it.speed_mm_s().max(top_mm_s));
+        let chords = any_ramp(planned, most_mm_s);
+        if let Some(chords) = &chords {
+            self.watch_surge(model, eye, planned, Some(chords), longer);
+        }
+        let chords = chords.filter(|_| planned.section.is_some());
+        let chords = chords.and_then(|it| self.surged(model, planned, &it, straight));
+        let steeper = steeper(planned);
+        let shift = match &steeper {
+            Some(steeper) => self.shifted(model, steeper, (shift, [true; 2]), is_own),
+            None => self.shifted(model, planned, (shift, shifted), is_own),
+        };
         let mut surge = surge.and_then(|surge| surge.without(shifted));
         // Slower, friction takes less of what is fed back.
-        if straight && course.brakes() && model.has_viscous(&open.mv) {
+        if slows {
             let slowed = surge.get_or_insert(Surge {
                 rises_mm_s: None,
                 falls_mm_s: None,
@@ -238,13 +305,37 @@ impl Ahead {
             slowed.falls_mm_s = Some(slowed.falls_mm_s.unwrap_or(0.0).max(top_mm_s));
         }
         let surged = surge.and_then(|surge| self.surged(model, planned, &surge, straight));
-        [turned, slower, shift, surged]
+        [turned, slower, shift, chords, surged]
             .into_iter()
             .flatten()
             .reduce(|mut all, one| {
                 all.include(&one);
                 all
             })
+    }
+
+    /// What a piece asks for that is sped up or braked from any lower speed, if that is of
+    /// interest.
+    fn shifted(
+        &mut self,
+        model: &PowerModel,
+        planned: &Planned<u64>,
+        how: (Shift, [bool; 2]),
+        is_own: bool,
+    ) -> Option<Demand> {
+        let open = self.open.get(planned.tag)?;
+        if how.1 == [false; 2] || is_quiet(model, &open.mv, planned, open.want) {
+            return None;
+        }
+        let found = is_own.then_some(&open.assessment.demand);
+        let mut demand = shifted_demand(model, &open.mv, planned, how, found);
+        if model.has_copper(&open.mv)
+            && let Some(surges) = self.surges.as_mut()
+        {
+            let lossless = surges.lossless(model);
+            demand.include(&shifted_demand(lossless, &open.mv, planned, how, found));
+        }
+        Some(demand)
     }
 
     /// Holds what a piece may do at lower overrides against limits over time, where there are

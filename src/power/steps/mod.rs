@@ -24,6 +24,8 @@
 //! plan itself asks for, which has no steps.
 
 mod energy;
+mod peaks;
+mod slowed;
 mod spans;
 mod surged;
 mod windows;
@@ -54,6 +56,24 @@ pub(super) struct Span {
     pub top_mm_s: f64,
     /// It begins at a joint.
     pub joint: bool,
+    pub beyond: Beyond,
+}
+
+/// By which factors a span may go beyond the plan at lower overrides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beyond {
+    /// How much faster the joint before it may be passed.
+    pub joint: f64,
+    /// How much larger its acceleration along the path may be.
+    pub ramp: f64,
+}
+
+impl Beyond {
+    /// Not at all.
+    pub const NONE: Self = Self {
+        joint: 1.0,
+        ramp: 1.0,
+    };
 }
 
 impl Span {
@@ -70,6 +90,7 @@ impl Span {
             axes_mm_s: [velocity(direction, from), velocity(direction, to)],
             top_mm_s: if from > to { from } else { to },
             joint,
+            beyond: Beyond::NONE,
         }
     }
 }
@@ -103,7 +124,7 @@ struct Most {
 #[derive(Debug)]
 pub(super) struct Steps {
     response_s: f64,
-    /// Lower overrides count too.
+    /// Beyond overrides count too.
     lower: bool,
     /// See [`Self::turning`].
     turns: bool,
@@ -209,10 +230,10 @@ impl Steps {
             step_mm_s[axis] = from - self.end_mm_s[axis];
             let step = step_mm_s[axis].abs();
             steps |= step > rounding_mm_s;
-            most.step_mm_s[axis] += step;
+            most.step_mm_s[axis] += step * span.beyond.joint;
             let top = larger(from.abs(), to.abs());
             most.speed_mm_s[axis] = larger(most.speed_mm_s[axis], top);
-            let accel = ((to - from) * per_s).abs();
+            let accel = ((to - from) * per_s).abs() * span.beyond.ramp;
             most.accel_mm_s2[axis] = larger(most.accel_mm_s2[axis], accel);
             self.end_mm[axis] += 0.5 * (from + to) * span.duration_s;
             self.end_mm_s[axis] = to;

@@ -1,6 +1,6 @@
 //! Planned pieces as spans: directions of lines and of arcs.
 
-use super::{Span, velocity};
+use super::{Beyond, Span, velocity};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::plan::lookahead::Piece;
@@ -162,6 +162,7 @@ pub(in crate::power) fn spans(
     heading: &Heading,
     phase: &Phase,
     joint: bool,
+    beyond: Beyond,
     out: &mut impl FnMut(&Span),
 ) {
     let steady = phase.kind == PhaseKind::ConstantAcceleration;
@@ -178,12 +179,16 @@ pub(in crate::power) fn spans(
             next.velocity_mm_s = phase.end_velocity_mm_s;
         }
         let middle_mm = 0.5 * (state.position_mm + next.position_mm);
-        out(&Span::straight(
+        let first = index <= 1.0;
+        let span = Span::straight(
             share_s,
             &heading.at(middle_mm),
             [state.velocity_mm_s, next.velocity_mm_s],
-            joint && index <= 1.0,
-        ));
+            joint && first,
+        );
+        let joint = if first { beyond.joint } else { 1.0 };
+        let beyond = Beyond { joint, ..beyond };
+        out(&Span { beyond, ..span });
         state = next;
     }
 }
@@ -199,7 +204,7 @@ pub(in crate::power) fn close_spans(
     out: &mut impl FnMut(&Span),
 ) {
     if heading.is_straight() {
-        return spans(heading, phase, joint, out);
+        return spans(heading, phase, joint, Beyond::NONE, out);
     }
     let reach_s = 2.0 * response_s;
     let whole_s = phase.duration_s;
@@ -238,6 +243,7 @@ pub(in crate::power) fn close_spans(
                 axes_mm_s: [first, last],
                 top_mm_s: state.velocity_mm_s.max(next.velocity_mm_s),
                 joint,
+                beyond: Beyond::NONE,
             });
             (state, first, joint) = (next, last, false);
         }

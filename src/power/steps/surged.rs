@@ -12,7 +12,9 @@
 //! be sped up or braked.
 
 use super::Steps;
-use super::windows::{Mean, NO_TIME, raise};
+use super::peaks::{Mean, raise};
+use super::velocity;
+use super::windows::NO_TIME;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
 use crate::power::demand::{Demand, Totals};
@@ -24,23 +26,32 @@ pub(super) struct Surged {
     pub end_s: f64,
     /// What they may add to the acceleration of each axis, up and down.
     accel_mm_s2: [AxisValues; 2],
+    /// The least and the largest speeds that they may bring.
+    speed_mm_s: [AxisValues; 2],
 }
 
 impl Steps {
     /// The last piece may be sped up or braked, or both, with an acceleration along the
-    /// path; `parts`: the least and the largest share that each axis has in it.
+    /// path, and run as fast as `speed_mm_s` then; `parts`: the least and the largest share
+    /// that each axis has in it.
     pub fn surge(
         &mut self,
         [least, largest]: &[AxisValues; 2],
         [rises, falls]: [bool; 2],
         accel_mm_s2: f64,
+        speed_mm_s: f64,
     ) {
         let mut surged = Surged {
             end_s: self.end_s,
             accel_mm_s2: [[0.0; AXES]; 2],
+            speed_mm_s: [*least, *largest].map(|parts| velocity(&parts, speed_mm_s)),
         };
+        let fastest = &mut self.most[0].speed_mm_s;
         let most = &mut self.most[0].accel_mm_s2;
         for &axis in &self.axes {
+            for speed in surged.speed_mm_s {
+                fastest[axis] = fastest[axis].max(speed[axis].abs());
+            }
             let ahead = largest[axis].max(0.0) * accel_mm_s2;
             let back = (-least[axis]).max(0.0) * accel_mm_s2;
             let mut raise = |side: usize, accel: f64| {
@@ -82,9 +93,12 @@ impl Steps {
         let (mut up, mut down) = ([0.0_f64; AXES], [0.0_f64; AXES]);
         for surged in self.surges.iter().filter(|it| it.end_s >= from_s) {
             let [rises, falls] = &surged.accel_mm_s2;
+            let [slowest, fastest] = &surged.speed_mm_s;
             for &axis in &self.axes {
                 up[axis] = up[axis].max(rises[axis]);
                 down[axis] = down[axis].max(falls[axis]);
+                most.speed[axis] = most.speed[axis].max(fastest[axis]);
+                least.speed[axis] = least.speed[axis].min(slowest[axis]);
             }
         }
         for placed in &self.spans {
@@ -92,13 +106,14 @@ impl Steps {
             // No further away than the means reach.
             let ends = [from_s, until_s].map(|at_s| placed.passed(at_s));
             for &axis in &self.axes {
-                let step = placed.step_mm_s[axis];
+                let step = placed.step_mm_s[axis] * placed.span.beyond.joint;
                 if placed.start_s >= from_s {
                     most.accel[axis] += step.max(0.0) / self.response_s;
                     least.accel[axis] += step.min(0.0) / self.response_s;
                 }
                 if placed.end_s() >= from_s {
                     let accel = (last[axis] - first[axis]) / placed.span.duration_s;
+                    let accel = accel * placed.span.beyond.ramp;
                     up[axis] = up[axis].max(accel);
                     down[axis] = down[axis].max(-accel);
                     for passed in ends {
@@ -117,7 +132,7 @@ impl Steps {
         for (index, converter) in model.converters.iter().enumerate() {
             let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
             let mut totals = Totals::new(idle_w);
-            raise(model, converter, &self.axes, &means, 0.0, &mut totals);
+            raise(model, converter, &self.axes, &means, &mut totals);
             demand.add(index, converter, totals);
         }
         demand

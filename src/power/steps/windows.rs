@@ -1,9 +1,10 @@
 //! Means over the response time, and their power.
 
+use super::peaks::{Mean, raise, raise_closely};
+use super::slowed::{Changes, Window};
 use super::{Placed, Steps};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
-use crate::power::axis::Side;
 use crate::power::demand::{Demand, Totals};
 use crate::power::model::{ConverterPower, PowerModel};
 
@@ -11,19 +12,10 @@ use crate::power::model::{ConverterPower, PowerModel};
 const PARTS: f64 = 4.0;
 /// Share of a response time that is rounding.
 pub(super) const NO_TIME: f64 = 1e-9;
-/// Speeds below are rounding of a mean over places, in m/s or rad/s.
-const AT_REST: f64 = 1e-9;
 /// Shares of the largest overrides at which steps are looked at.
 const RUNGS: [f64; 8] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.45, 0.3, 0.15];
 /// Means longer than the response time that are looked at for one step.
 const LONGER: usize = 8;
-
-/// Mean speeds and accelerations of the axes, mm/s and mm/s².
-#[derive(Clone, Copy)]
-pub(super) struct Mean {
-    pub speed: AxisValues,
-    pub accel: AxisValues,
-}
 
 /// One end of a mean: a span, or rest where there is none, and an instant.
 #[derive(Clone, Copy)]
@@ -57,25 +49,35 @@ impl Steps {
         for (index, converter) in model.converters.iter().enumerate() {
             let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
             let mut totals = Totals::new(idle_w);
-            self.over_response(model, converter, &mut totals);
-            self.over_longer(model, converter, &mut totals);
+            let shares = if self.lower { &RUNGS[..] } else { &RUNGS[..1] };
+            for share in shares {
+                self.over_response(model, converter, *share, &mut totals);
+                self.over_longer(model, converter, *share, &mut totals);
+            }
             demand.add(index, converter, totals);
         }
         demand
     }
 
-    /// Means over the response time.
-    fn over_response(&self, model: &PowerModel, converter: &ConverterPower, totals: &mut Totals) {
+    /// Means over the response time, at the largest overrides or where a share of their
+    /// speeds is left: what takes that long there takes a share of it here.
+    fn over_response(
+        &self,
+        model: &PowerModel,
+        converter: &ConverterPower,
+        share: f64,
+        totals: &mut Totals,
+    ) {
         let (Some(last), Some(first)) = (self.spans.back(), self.spans.front()) else {
             return;
         };
-        let tau = self.response_s;
+        let tau = share * self.response_s;
         let until_s = last.end_s().min(self.last_step_s + tau);
         let mut end_s = last.start_s;
         let begun = self.spans.partition_point(|it| it.start_s <= end_s - tau);
         // Which span the mean begins in; 0: before all.
         let mut begun = begun;
-        let mut stepped = self.stepped(begun, tau);
+        let mut within = self.changes(begun);
         // What rounding leaves of the last part has no step within.
         while until_s - end_s > NO_TIME * tau {
             let from_s = end_s - tau;
@@ -83,7 +85,7 @@ impl Steps {
             let leaves_s = placed.map_or(first.start_s, Placed::end_s);
             if leaves_s - from_s <= NO_TIME * tau && begun < self.spans.len() {
                 begun += 1;
-                stepped = self.stepped(begun, tau);
+                within = self.changes(begun);
                 continue;
             }
             let step_s = (leaves_s - from_s).min(tau / PARTS).min(until_s - end_s);
@@ -98,10 +100,25 @@ impl Steps {
                     tau,
                 )
             });
-            raise(model, converter, &self.axes, &means, step_s, totals);
-            if self.lower {
-                raise_lower(model, converter, &self.axes, &means, &stepped, totals);
-            }
+            let [first_changes, last_changes] = [0.0, step_s].map(|on_s| {
+                let mut changes = within;
+                if self.lower {
+                    changes.ramp(&self.axes, last, [0.0, last.passed(end_s + on_s)]);
+                    if let Some(placed) = placed {
+                        let passed = placed.passed(from_s + on_s);
+                        changes.ramp(&self.axes, placed, [passed, 1.0]);
+                    }
+                }
+                changes
+            });
+            let changes = first_changes.most(&last_changes, &self.axes);
+            let window = Window {
+                means: &means,
+                step_s,
+                over_s: tau,
+                changes,
+            };
+            self.raise_at(model, converter, share, &window, totals);
             let next_s = end_s + step_s;
             if next_s <= end_s {
                 break;
@@ -110,12 +127,18 @@ impl Steps {
         }
     }
 
-    /// Means from one step to another that is further away.
-    fn over_longer(&self, model: &PowerModel, converter: &ConverterPower, totals: &mut Totals) {
+    /// Means from one step to another that is further away; `share` as above.
+    fn over_longer(
+        &self,
+        model: &PowerModel,
+        converter: &ConverterPower,
+        share: f64,
+        totals: &mut Totals,
+    ) {
         let Some(last) = self.spans.back().filter(|last| last.steps) else {
             return;
         };
-        let tau = self.response_s;
+        let tau = share * self.response_s;
         let away_s = |placed: &Placed| last.start_s - placed.start_s;
         let earlier = (0..self.spans.len()).rev();
         let earlier = earlier.filter_map(|index| Some((index, self.spans.get(index)?)));
@@ -135,26 +158,64 @@ impl Steps {
                 at_s: last.start_s,
                 rest_mm: &last.place_mm,
             };
-            let mean = self.mean([from, to], away_s(placed));
-            raise(model, converter, &self.axes, &[mean; 2], 0.0, totals);
-            if self.lower {
-                let stepped = self.stepped(index, away_s(placed));
-                raise_lower(model, converter, &self.axes, &[mean; 2], &stepped, totals);
+            let window = Window {
+                means: &[self.mean([from, to], away_s(placed)); 2],
+                step_s: 0.0,
+                over_s: away_s(placed),
+                changes: self.changes(index),
+            };
+            self.raise_at(model, converter, share, &window, totals);
+        }
+    }
+
+    /// Raises the peaks by a window at the largest overrides, and by what lower ones make of
+    /// it; or by one where a share of the speeds is left.
+    fn raise_at(
+        &self,
+        model: &PowerModel,
+        converter: &ConverterPower,
+        share: f64,
+        window: &Window<'_>,
+        totals: &mut Totals,
+    ) {
+        let axes = &self.axes;
+        if share < 1.0 {
+            // A step is as it is where its joint permits no more at any override.
+            for steps in [share, share * share] {
+                let means = window.slowed(axes, share, steps);
+                raise(model, converter, axes, &means, totals);
+            }
+            return;
+        }
+        let exact = (window.means, window.step_s);
+        raise_closely(model, converter, axes, exact, totals);
+        if self.lower {
+            for share in RUNGS.into_iter().chain([0.0]) {
+                // Where several steps lie within the response time fewer do, down to o² of
+                // their sum.
+                for steps in [1.0, share * share] {
+                    let means = window.partly_slowed(axes, share, steps);
+                    raise(model, converter, axes, &means, totals);
+                }
             }
         }
     }
 
-    /// What the steps at the starts of the spans from `first` on add to a mean, mm/s².
-    fn stepped(&self, first: usize, over_s: f64) -> AxisValues {
-        let mut stepped = [0.0; AXES];
+    /// What the spans from `first` on change with their joints, but for the ramp of the last.
+    fn changes(&self, first: usize) -> Changes {
+        let mut changes = Changes::default();
         if self.lower {
             for placed in self.spans.iter().skip(first) {
                 for &axis in &self.axes {
-                    stepped[axis] += placed.step_mm_s[axis] / over_s;
+                    changes.steps[axis] += placed.step_mm_s[axis];
                 }
             }
+            let whole = self.spans.len().saturating_sub(first + 1);
+            for placed in self.spans.iter().skip(first).take(whole) {
+                changes.ramp(&self.axes, placed, [0.0, 1.0]);
+            }
         }
-        stepped
+        changes
     }
 
     fn mean(&self, ends: [End<'_>; 2], over_s: f64) -> Mean {
@@ -168,95 +229,5 @@ impl Steps {
             mean.speed[axis] = (to[1][axis] - from[1][axis]) / over_s;
         }
         mean
-    }
-}
-
-/// Raises the peaks by all that lies between two means `step_s` apart: the
-/// acceleration changes evenly, and the power of an axis is largest at a corner of
-/// what speed and acceleration may be.
-pub(super) fn raise(
-    model: &PowerModel,
-    converter: &ConverterPower,
-    axes: &[usize],
-    means: &[Mean; 2],
-    step_s: f64,
-    totals: &mut Totals,
-) {
-    let (mut drawn_w, mut fed_back_w) = (0.0, 0.0);
-    for &axis in axes.iter().filter(|axis| converter.axes.contains(**axis)) {
-        let power = &model.axes[axis];
-        let accels = means.map(|mean| mean.accel[axis] * power.si_per_unit);
-        let mut speeds = means.map(|mean| mean.speed[axis] * power.si_per_unit);
-        let [a, b] = accels;
-        if a * b < 0.0 {
-            // Where the acceleration is 0 the speed turns.
-            let turn = speeds[0] + 0.5 * step_s * a * a / (a - b);
-            if a > 0.0 {
-                let top = usize::from(speeds[1] > speeds[0]);
-                speeds[top] = speeds[top].max(turn);
-            } else {
-                let low = usize::from(speeds[1] < speeds[0]);
-                speeds[low] = speeds[low].min(turn);
-            }
-        }
-        let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
-        for v in speeds {
-            let sign = if v.abs() < AT_REST { 0.0 } else { v.signum() };
-            let forces = accels
-                .map(|a| [Side::Regen, Side::Motor].map(|side| power.force(side, v, a, sign)));
-            let [low, high] = [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| {
-                let [a, b] = forces.map(|[a, b]| f(a, b));
-                f(a, b)
-            });
-            most = most.max(power.most(v, [low, high]));
-            least = least.min(power.least(v, [low, high]));
-        }
-        if converter.credit_regen {
-            drawn_w += most;
-            fed_back_w -= least;
-        } else {
-            drawn_w += most.max(0.0);
-            fed_back_w += (-least).max(0.0);
-        }
-    }
-    let credit_w = if converter.credit_regen {
-        totals.idle_w
-    } else {
-        0.0
-    };
-    totals.raise_peak(totals.idle_w + drawn_w);
-    totals.raise_regen(fed_back_w - credit_w);
-}
-
-/// Raises the peaks by what lower overrides make of two means, of which `stepped` comes
-/// from steps.
-///
-/// At the share o of the speed a step is o times as large, and where several lie within
-/// the response time fewer do, down to o² of their sum; and the ramps around may have
-/// ended before. So each axis is accelerated by something between `o·S`, `o²·S` and the
-/// same with the ramp.
-#[cold]
-fn raise_lower(
-    model: &PowerModel,
-    converter: &ConverterPower,
-    axes: &[usize],
-    means: &[Mean; 2],
-    stepped: &AxisValues,
-    totals: &mut Totals,
-) {
-    for share in RUNGS {
-        let mut lower = *means;
-        for &axis in axes {
-            let steps = [share, share * share].map(|share| share * stepped[axis]);
-            let ramps = means.map(|mean| mean.accel[axis] - stepped[axis]);
-            let extreme =
-                |of: fn(f64, f64) -> f64| of(steps[0], steps[1]) + of(of(ramps[0], ramps[1]), 0.0);
-            let accels = [f64::min, f64::max].map(extreme);
-            for (mean, accel) in lower.iter_mut().zip(accels) {
-                mean.speed[axis] *= share;
-                mean.accel[axis] = accel;
-            }
-        }
-        raise(model, converter, axes, &lower, 0.0, totals);
     }
 }

@@ -20,6 +20,7 @@ use super::element::{Element, Joint};
 use super::join::{Joined, Joiner, chords};
 use super::pending::{Braking, Pending};
 use super::planner::{Blend, Load, Piece};
+use super::ramp::Slack;
 use super::vector::{Vector, add, dot, scale, sub};
 use super::window::{Node, Window};
 use optimiser::Optimiser;
@@ -333,6 +334,7 @@ impl<T: Copy> LinuxCnc<T> {
             overlap_s: 0.0,
             overlaps: false,
             late_mm_s: 0.0,
+            slack: Slack::default(),
         };
         let jerk = before.element.jerk_mm_s3.min(next.element.jerk_mm_s3);
         let top2 = top * top;
@@ -415,6 +417,7 @@ impl<T: Copy> LinuxCnc<T> {
             overlap_s: of.overlap_s(last),
             overlaps: of.overlaps(),
             late_mm_s: of.late_mm_s,
+            slack: Slack::default(),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let seen = of.seen_speed().min(max_speed);

@@ -1,6 +1,7 @@
 //! The optimiser against its passes, one by one, over a queue that keeps all.
 
 use super::super::super::planner::{Load, Piece};
+use super::super::super::ramp::Slack;
 use super::super::super::window::Node;
 use super::Optimiser;
 use crate::plan::random::Random;
@@ -31,6 +32,7 @@ fn node(index: usize, part: &Part) -> Node<Load<usize>> {
         overlap_s: 0.0,
         overlaps: false,
         late_mm_s: 0.0,
+        slack: Slack::default(),
     };
     let mut node = Node::new(0.5 * part.ramp2, 1e9, 1.0, part.limit2, load);
     node.block = !part.blend;
