@@ -56,6 +56,30 @@ fn a_clamp_that_is_not_turned_down_is_reached_later() {
     near(rows[2].peak_w, 0.1 * v * v * 0.03 / clamp.powi(3) + 30.0);
 }
 
+/// At 1000 m/min the clamp holds from 318 mm on: at the largest override nothing follows X.
+/// Turned down to 62.8 m/min the spindle follows it as above.
+#[test]
+fn a_clamp_that_holds_all_along_is_left_where_the_speed_is_turned_down() {
+    let mut lathe = machine("linuxcnc", "", "", "");
+    if let Some(spindle) = &mut lathe.spindle {
+        spindle.accel_time_s = Some(3.0);
+    }
+    let program = "G18 G61.1 G8\nG0 X50\nG96 D500 S1000 M3\nG4 P5\nG1 X20 F1800\nG1 X50\n";
+    let omega = 500.0 * std::f64::consts::TAU / 60.0;
+    let most_w = 0.1 * omega * omega * 0.03 / 0.02 + 30.0;
+    let found =
+        |limits_w: [f64; 2]| run(&with_limit(&lathe, limits_w), program, &Options::default());
+    let (rows, summary) = found([most_w - 1.0, 1e5]);
+    assert_eq!(summary.unfit_count, 1);
+    near(rows[2].peak_w, most_w);
+    let (rows, summary) = found([1e5, most_w - 1.0]);
+    assert_eq!(summary.unfit_count, 1);
+    near(rows[3].regen_w, most_w);
+    let (rows, summary) = found([most_w + 1.0; 2]);
+    assert_eq!(summary.unfit_count, 0);
+    near(rows[2].peak_w, 30.0);
+}
+
 /// Z brakes from 1 m/s and gives back 1000 W next to a spindle that hardly changes at 20 mm, 3 N·m at 83.3 rad/s: 250 W are credited, and nothing of them where it is turned
 /// down.
 #[test]

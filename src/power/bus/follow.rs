@@ -5,7 +5,7 @@ use crate::interpret::Move;
 use crate::plan::{blended_speed, plan};
 use crate::power::Assessment;
 use crate::power::spindle_state::SpindleState;
-use crate::power::surface_speed::Surface;
+use crate::power::surface_speed::{Speeds, Surface};
 
 /// What following the surface takes during a move.
 #[derive(Debug)]
@@ -60,11 +60,11 @@ impl SpindleBus<'_> {
         let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
         let has =
             |state: &SpindleState, speed: f64| state.is_steady() && same(state.target(), speed);
+        let top_mm_s = blended_speed(self.machine, mv, self.overrides[0]);
         if same(speeds.range[0], speeds.range[1]) && has(&self.states[0], speeds.end) {
-            return None;
+            return self.follow_lower_alone(mv, &sides[0], &speeds, top_mm_s);
         }
         let follows = has(&self.states[0], speeds.start) && has(&self.states[1], nominal.start);
-        let top_mm_s = blended_speed(self.machine, mv, self.overrides[0]);
         let following = sides[0]
             .following(&self.motor, mv, top_mm_s)
             .filter(|_| follows);
@@ -72,17 +72,7 @@ impl SpindleBus<'_> {
             let planned = plan(self.machine, mv, self.overrides[1]);
             let energy_j = sides[1].energy(&self.motor.power, mv, &planned);
             self.states[0].follow(speeds.end);
-            let most_rpm = self.unturned_clamp_rpm(&surface);
-            let lower = self.slower.as_mut().map(|slower| {
-                slower.follow(speeds.end);
-                let following = sides[0].following_lower(&self.motor, mv, top_mm_s, most_rpm);
-                following.unwrap_or_else(|| {
-                    let [low, high] = speeds.range;
-                    let [low, high] = [low.min(0.0), high.max(0.0)];
-                    let unturned = most_rpm * self.direction;
-                    self.motor.extremes(low.min(unturned), high.max(unturned))
-                })
-            });
+            let lower = self.follow_lower(mv, &sides[0], &speeds, top_mm_s);
             self.states[1].follow(nominal.end);
             return Some(Followed {
                 extremes,
@@ -103,6 +93,49 @@ impl SpindleBus<'_> {
             surface: None,
             target: Some(nominal.end),
         })
+    }
+
+    /// At the largest overrides it stays at one speed, that of the clamp or where X rests; what
+    /// it takes to follow X at lower ones, where these count and that may be.
+    fn follow_lower_alone(
+        &mut self,
+        mv: &Move,
+        surface: &Surface,
+        speeds: &Speeds,
+        top_mm_s: f64,
+    ) -> Option<Followed> {
+        let rests = !mv.moving.contains(0);
+        let lower = self
+            .follow_lower(mv, surface, speeds, top_mm_s)
+            .filter(|_| !rests)?;
+        Some(Followed {
+            extremes: [self.motor.holding_w(speeds.end); 2],
+            lower: Some(lower),
+            energy_j: None,
+            surface: None,
+            target: None,
+        })
+    }
+
+    /// What it takes to follow X at overrides below the largest, where these count: the
+    /// largest and the smallest power, W.
+    fn follow_lower(
+        &mut self,
+        mv: &Move,
+        surface: &Surface,
+        speeds: &Speeds,
+        top_mm_s: f64,
+    ) -> Option<[f64; 2]> {
+        let most_rpm = self.unturned_clamp_rpm(self.surface.as_ref()?);
+        let slower = self.slower.as_mut()?;
+        slower.follow(speeds.end);
+        let following = surface.following_lower(&self.motor, mv, top_mm_s, most_rpm);
+        Some(following.unwrap_or_else(|| {
+            let [low, high] = speeds.range;
+            let [low, high] = [low.min(0.0), high.max(0.0)];
+            let unturned = most_rpm * self.direction;
+            self.motor.extremes(low.min(unturned), high.max(unturned))
+        }))
     }
 
     /// Somewhere between two speeds, and on the way to a target; turned down, at any lower
