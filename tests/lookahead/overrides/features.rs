@@ -318,7 +318,8 @@ fn a_slow_line_after_a_blend_that_is_passed_at_the_pace_of_a_faster_one() {
     let slow = drawn(&at(&machine, 0.0545, 0.0545));
     assert!(slow > 4.0);
     assert!(slow <= drawn(&machine));
-    covers(&machine, program, 3.0);
+    // What is fed back is bounded loosely.
+    covers(&machine, program, 12.0);
 }
 
 /// With limits of jerk an arc may be braked wherever it turns: at 17 % Z gives back more than
