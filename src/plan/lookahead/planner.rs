@@ -201,6 +201,10 @@ pub(super) struct Load<T> {
 }
 
 #[derive(Debug, Clone)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "each planner has one; a box would be followed for each block"
+)]
 pub(super) enum Rule<T> {
     Corner(Option<Before>),
     LinuxCnc(Box<LinuxCnc<T>>),
