@@ -397,6 +397,22 @@ fn runs_of_short_lines_with_jerk_are_bounded() {
     }
 }
 
+/// A full circle that bulges less than Q, by its diameter, is two chords. What would come back
+/// to the start of a line is not joined to it, and the second chord is joined to what comes after.
+#[test]
+fn a_full_circle_within_the_tolerance_goes_there_and_back() {
+    let machine = rig([20, 500, 50], 10, "");
+    let time_s = |program: &str| {
+        let all = rows(&machine, program);
+        all.iter().map(|row| row.duration_s).sum::<f64>()
+    };
+    let circle = time_s("G21 G90 G17 G94 G64 P2\nF3000\nG2 I0 J-0.9799\nG1 X30\nM2\n");
+    let lines = time_s("G21 G90 G17 G94 G64 P2 Q0\nF3000\nG1 Y-1.9598\nG1 X30 Y0\nM2\n");
+    let none = time_s("G21 G90 G17 G94 G64 P2 Q0\nF3000\nG1 X30\nM2\n");
+    assert_close(circle, lines);
+    assert!(circle > none + 0.03, "{circle} {none}");
+}
+
 /// X 20 kg and Y 500 kg at 100 mm/s, and a bend by 0.001 rad, which takes 4 % of the
 /// acceleration of an axis for a cycle of 1 ms: it is passed as it is. What Y gains in speed and
 /// X loses, in two cycles, is drawn next to the friction of 10 N. The next joint is none.

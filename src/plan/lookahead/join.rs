@@ -16,6 +16,9 @@ use std::f64::consts::PI;
 /// Points that are put together, at most: one more ends the line.
 const POINTS_MAX: usize = 101;
 
+/// Two points no further apart are one, mm: sums of ways do not come back exactly.
+const NO_WAY_MM: f64 = 1e-7;
+
 /// A line and what it stands for.
 #[derive(Debug, Clone)]
 pub(super) struct Joined<T> {
@@ -104,7 +107,8 @@ impl<T: Copy> Joiner<T> {
             && last.joint == element.joint
             && last.axis_accel_mm_s2 == element.axis_accel_mm_s2;
         let length2 = dot(end, end);
-        if !same || self.points.is_full() || length2 == 0.0 {
+        // What comes back to the start of the line ends it.
+        if !same || self.points.is_full() || length2 <= NO_WAY_MM * NO_WAY_MM {
             return false;
         }
         self.points.iter().all(|point| {
