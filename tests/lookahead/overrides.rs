@@ -1,5 +1,6 @@
 //! Lower overrides: what holds at the largest holds at each.
 
+mod any;
 mod features;
 
 use std::fmt::Write as _;
