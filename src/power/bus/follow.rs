@@ -104,10 +104,13 @@ impl SpindleBus<'_> {
         speeds: &Speeds,
         top_mm_s: f64,
     ) -> Option<Followed> {
-        let rests = !mv.moving.contains(0);
-        let lower = self
-            .follow_lower(mv, surface, speeds, top_mm_s)
-            .filter(|_| !rests)?;
+        if !mv.moving.contains(0) {
+            return None;
+        }
+        // It may still be on a run there.
+        let [most_w, least_w] = self.wandering()?;
+        let [largest_w, smallest_w] = self.follow_lower(mv, surface, speeds, top_mm_s)?;
+        let lower = [most_w.max(largest_w), least_w.min(smallest_w)];
         Some(Followed {
             extremes: [self.motor.holding_w(speeds.end); 2],
             lower: Some(lower),
