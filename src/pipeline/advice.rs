@@ -1,18 +1,24 @@
 //! What would bring a move down, in a few words.
 
 use super::entry::{positions, turns_apart};
-use super::hints::FITS;
 use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::{AxisValues, Machine, RapidJoint};
 use crate::power::Assessment;
+
+/// How the advice for a move begins.
+pub(super) const FITS: &str = "fits with ";
+
+/// What is said after a change of F that takes a permission.
+pub(super) const FEED_OPTION: &str = " (limit --allow feed)";
 
 /// What helps where the spindle alone is too much.
 pub(super) const SPINDLE_HELP: &str = "a lower S, or a drive that runs up and brakes more slowly \
      (`peak_power_w`, `regen_power_w` or `accel_time_s` in [spindle]); gwatt writes no S";
 
 /// What helps where a move is not run by itself.
-const NEIGHBOURS_HELP: &str = "lower feed or acceleration here and in the neighbouring blocks";
+pub(super) const NEIGHBOURS_HELP: &str =
+    "lower feed or acceleration here and in the neighbouring blocks";
 
 /// What advice depends on next to the move: the state of its block.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,7 +120,7 @@ impl<'m> Adviser<'m> {
             return NEIGHBOURS_HELP.to_owned();
         }
         let option = if mv.kind != MoveKind::Rapid && change.feed.is_some() && !free {
-            " (limit --allow feed)"
+            FEED_OPTION
         } else {
             ""
         };

@@ -2,7 +2,7 @@
 
 use super::Row;
 use super::tally::axes;
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::limit::{Change, Split};
 use crate::machine::{AxisSet, AxisValues, KnobArgument, KnobTarget, KnobUnit, Machine};
 use crate::power::{Assessment, PowerModel};
@@ -35,6 +35,7 @@ pub(super) fn row(
         action: "",
         knob: String::new(),
         words: String::new(),
+        feed_allowed: false,
         value_before: None,
         value_after: None,
         peak_after_w: None,
@@ -124,6 +125,7 @@ pub(super) fn describe(
     if change.stop {
         names.extend(machine.controller.language.stop_word());
     }
+    row.feed_allowed = change.feed.is_some() && mv.kind != MoveKind::Rapid;
     row.knob = names.join(" ");
     row.words = words(machine, change);
 }

@@ -132,6 +132,11 @@ impl Entry {
             && self.key == (mv.text, mv.line)
     }
 
+    /// Whether a move cuts nothing although it obeys F, so that its F needs no permission.
+    pub(super) fn positions(&self, machine: &Machine, mv: &Move) -> bool {
+        self.facts.homes || positions(machine, self.mark.motion, mv) || self.stands_for_rapid(mv)
+    }
+
     /// Keeps the texts of the earlier lines that its moves belong to.
     fn take_earlier(&mut self, line: &Line<'_, '_>) {
         for step in &self.steps {
@@ -273,9 +278,7 @@ impl Entry {
             mm_per_unit: facts.feed_mm_per_unit,
             knob_mm_per_unit: self.mm_per_unit_before,
             feed_before: self.feed_before(),
-            positions: facts.homes
-                || positions(machine, self.mark.motion, mv)
-                || self.stands_for_rapid(mv),
+            positions: self.positions(machine, mv),
             feed_accel_mm_s2,
         }
     }

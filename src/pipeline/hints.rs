@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
+use super::advice::{FEED_OPTION, FITS, NEIGHBOURS_HELP};
 use super::limiting::limit;
 use super::pause;
 use super::summary::AT_LENGTH_MAX;
@@ -12,15 +13,12 @@ use super::{
 };
 
 use crate::diagnostic::Diagnostic;
-use crate::interpret::MoveKind;
 use crate::machine::Machine;
 
 /// What helps where a cycle has to be written out.
 const EXPAND: &str = "`limit --allow expand` writes the canned cycle out and lowers its moves";
 
-/// How the advice for a move begins, and what is said before it where its neighbours were not
-/// looked at.
-pub(super) const FITS: &str = "fits with ";
+/// What is said before the advice for a move whose neighbours were not looked at.
 const BY_ITSELF: &str = "by itself it ";
 
 /// Lets the limiter decide about a program that does not fit: where it could not lower a
@@ -82,7 +80,7 @@ pub fn take_hints<R: Read + Seek + Send>(
         // What was advised for a move by itself gives way to what is written next to others.
         if let Some((_, words)) = words
             && unfit.file.is_empty()
-            && unfit.help.starts_with(FITS)
+            && (unfit.help.starts_with(FITS) || unfit.help == NEIGHBOURS_HELP)
         {
             unfit.help.clone_from(words);
         }
@@ -141,7 +139,6 @@ impl Restart for Written {
 
 /// What the limiter writes for a move.
 fn words(row: &Row) -> String {
-    let cuts = row.kind != MoveKind::Rapid && row.knob.split(' ').next() == Some("F");
-    let option = if cuts { " (limit --allow feed)" } else { "" };
+    let option = if row.feed_allowed { FEED_OPTION } else { "" };
     format!("{FITS}{}{option}", row.words)
 }

@@ -43,6 +43,8 @@ pub struct Row {
     /// The words as the control takes them, each with its value, such as
     /// `SET_VELOCITY_LIMIT ACCEL=500`; empty without one.
     pub words: String,
+    /// Whether lowering the F took `--allow feed`.
+    pub feed_allowed: bool,
     /// Value of the first of them before, in program units.
     pub value_before: Option<f64>,
     /// Value of it after.

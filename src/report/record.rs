@@ -129,6 +129,7 @@ pub(super) fn example() -> Row {
         action: "write as feed",
         knob: "F".into(),
         words: "G1 F12345.678".into(),
+        feed_allowed: false,
         value_before: None,
         value_after: Some(12345.678),
         peak_after_w: Some(3149.999),

@@ -82,6 +82,34 @@ fn a_clamp_that_holds_all_along_is_left_where_the_speed_is_turned_down() {
     near(fits[1][1], 30.0);
 }
 
+/// The clamp holds all along. With S at half of it, and the clamp left where it is, X moves in
+/// faster than 500/min per second can follow: the spindle still runs up while Z starts.
+#[test]
+fn a_spindle_that_cannot_follow_at_a_lower_override_lags_into_the_next_move() {
+    let mut lathe = machine("linuxcnc", "", "", "");
+    if let Some(spindle) = &mut lathe.spindle {
+        spindle.accel_time_s = Some(6.0);
+    }
+    let program = |surface: u32| {
+        format!(
+            "G18 G61.1 G8\nG0 X31\nG96 D500 S{surface} M3\nG4 P9\nG1 X16 F6000\nG1 Z500 F60000\n"
+        )
+    };
+    let z_w = |machine: &Machine, surface: u32| {
+        let (rows, _) = run(machine, &program(surface), &Options::default());
+        rows.last().expect("a move of Z").peak_w
+    };
+    let lagging_w = z_w(&at(&lathe, [1.0; 3]), 50);
+    let at_speed_w = z_w(&at(&lathe, [1.0; 3]), 100);
+    assert!(lagging_w > at_speed_w + 200.0, "{lagging_w} {at_speed_w}");
+    let (_, summary) = run(
+        &with_limit(&lathe, [lagging_w - 1.0, 1e5]),
+        &program(100),
+        &Options::default(),
+    );
+    assert!(summary.unfit_count > 0);
+}
+
 /// Z brakes from 1 m/s and gives back 1000 W next to a spindle that hardly changes at 20 mm, 3 N·m at 83.3 rad/s: 250 W are credited, and nothing of them where it is turned
 /// down.
 #[test]

@@ -65,6 +65,41 @@ fn check_names_the_words_that_limit_writes() {
     }
 }
 
+/// On printers the F of a G0 cuts nothing, and that of a G1 without filament does.
+#[test]
+fn no_permission_is_asked_for_where_f_cuts_nothing() {
+    let shop = Shop::mill("marlin", "peak_power_w = 450", "", "");
+    shop.put("a.nc", "G28\nG0 X200 Y200 F30000\nG1 X0 Y0 F30000\n");
+    let (_, text, errors) = shop.run("check a.nc");
+    let line = |start: &str| {
+        let found = text
+            .lines()
+            .find(|line| line.trim_start().starts_with(start));
+        found.unwrap_or_else(|| panic!("{start}: {text}{errors}"))
+    };
+    assert!(line("line 2").contains("fits with F"), "{text}");
+    assert!(!line("line 2").contains("--allow"), "{text}");
+    assert!(line("line 3").ends_with("(limit --allow feed)"), "{text}");
+}
+
+/// Where moves are blended in ways that are not known, `limit` writes words all the same.
+#[test]
+fn blended_moves_are_advised_what_is_written() {
+    let shop = Shop::mill("isg", "peak_power_w = 450", "", "");
+    shop.put("a.nc", "G0 X200 Y200\nG0 X0 Y0\nM30\n");
+    let (_, text, errors) = shop.run("check a.nc");
+    let words = advised(&text);
+    assert!(!words.is_empty(), "{text}{errors}");
+    let (code, written, errors) = shop.run("limit a.nc");
+    assert_eq!(code, 0, "{errors}");
+    for word in words {
+        assert!(
+            word.starts_with("G231 = ") && written.contains(&word),
+            "{text}{written}"
+        );
+    }
+}
+
 /// A cycle that cannot be written out, rapids of independent axes below the clearance, and
 /// a feed that no value brings down.
 #[test]

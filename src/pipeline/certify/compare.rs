@@ -24,11 +24,19 @@ pub(super) fn compare(
 ) {
     let place = (original.text, original.line);
     if !model.fits(&after.demand) && !original.hopeless {
-        let limit_w = model.limit_w(after.demand.converter);
-        let message = format!(
-            "the block still needs {:.1} W of {limit_w:.1} W",
-            after.demand.peak_w
-        );
+        let demand = &after.demand;
+        let limit_w = model.limit_w(demand.converter);
+        let regen_limit_w = model.regen_limit_w(demand.converter);
+        let message = match regen_limit_w.filter(|_| demand.peak_w <= limit_w) {
+            Some(regen_limit_w) => format!(
+                "the block still feeds back {:.1} W of {regen_limit_w:.1} W",
+                demand.regen_w
+            ),
+            None => format!(
+                "the block still needs {:.1} W of {limit_w:.1} W",
+                demand.peak_w
+            ),
+        };
         reasons.push(place, DOES_NOT_FIT, message, "", text);
     }
     let asked = &original.asked;

@@ -54,6 +54,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             let row = self.exact.then(|| {
                 let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
                 describe(self.machine, mv, change, feed_before, &mut row);
+                row.feed_allowed &= !entry.positions(self.machine, mv);
                 if let Some(split) = split {
                     describe_split(self.machine, mv, split, &mut row);
                 }

@@ -131,6 +131,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             action: "pause",
             knob: "G4".to_owned(),
             words: String::new(),
+            feed_allowed: false,
             value_before: None,
             value_after: Some(mv.dwell_s),
             peak_after_w: None,

@@ -107,10 +107,7 @@ impl SpindleBus<'_> {
         if !mv.moving.contains(0) {
             return None;
         }
-        // It may still be on a run there.
-        let [most_w, least_w] = self.wandering()?;
-        let [largest_w, smallest_w] = self.follow_lower(mv, surface, speeds, top_mm_s)?;
-        let lower = [most_w.max(largest_w), least_w.min(smallest_w)];
+        let lower = self.follow_lower(mv, surface, speeds, top_mm_s)?;
         Some(Followed {
             extremes: [self.motor.holding_w(speeds.end); 2],
             lower: Some(lower),
@@ -121,7 +118,8 @@ impl SpindleBus<'_> {
     }
 
     /// What it takes to follow X at overrides below the largest, where these count: the
-    /// largest and the smallest power, W.
+    /// largest and the smallest power, W. Where the drive cannot follow there, or is still on
+    /// a run, it may lag into the moves that come next.
     fn follow_lower(
         &mut self,
         mv: &Move,
@@ -131,14 +129,15 @@ impl SpindleBus<'_> {
     ) -> Option<[f64; 2]> {
         let most_rpm = self.unturned_clamp_rpm(self.surface.as_ref()?);
         let slower = self.slower.as_mut()?;
-        slower.follow(speeds.end);
-        let following = surface.following_lower(&self.motor, mv, top_mm_s, most_rpm);
-        Some(following.unwrap_or_else(|| {
-            let [low, high] = speeds.range;
-            let [low, high] = [low.min(0.0), high.max(0.0)];
-            let unturned = most_rpm * self.direction;
-            self.motor.extremes(low.min(unturned), high.max(unturned))
-        }))
+        let following = surface
+            .following_lower(&self.motor, mv, top_mm_s, most_rpm)
+            .filter(|_| slower.state.is_steady());
+        if following.is_some() {
+            slower.follow(speeds.end);
+            return following;
+        }
+        self.wander_lower(speeds.range, speeds.end, most_rpm);
+        self.wandering()
     }
 
     /// Somewhere between two speeds, and on the way to a target; turned down, at any lower
@@ -149,15 +148,18 @@ impl SpindleBus<'_> {
         let most_rpm = self
             .surface
             .filter(|_| self.overrides[0].spindle < 1.0)
-            .map(|surface| self.unturned_clamp_rpm(&surface) * self.direction);
-        if let Some(slower) = &mut self.slower {
-            let most_rpm = most_rpm.unwrap_or_default();
-            let range = [
-                range[0].min(0.0).min(most_rpm),
-                range[1].max(0.0).max(most_rpm),
-            ];
-            slower.wander(&self.motor, range, target, self.surface.is_some());
-        }
+            .map(|surface| self.unturned_clamp_rpm(&surface));
+        self.wander_lower(range, target, most_rpm.unwrap_or_default());
+    }
+
+    /// The same at lower overrides alone, where it may be as fast as `most_rpm`.
+    fn wander_lower(&mut self, [low, high]: [f64; 2], target: f64, most_rpm: f64) {
+        let Some(slower) = &mut self.slower else {
+            return;
+        };
+        let most = most_rpm * self.direction;
+        let range = [low.min(0.0).min(most), high.max(0.0).max(most)];
+        slower.wander(&self.motor, range, target, self.surface.is_some());
     }
 
     /// What the spindle may ask for at lower overrides while it wanders, W.
