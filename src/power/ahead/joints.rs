@@ -192,7 +192,7 @@ fn take(
     if steps.is_quiet(model, &own.mv, own.want) {
         return;
     }
-    let mut demand = steps.demand(model, &own.mv);
+    let mut demand = steps.demand(model, &own.mv, own.want);
     if steps.is_surged() {
         demand.include(&steps.surged_demand(model, &own.mv));
     }

@@ -33,9 +33,9 @@ mod windows;
 pub(super) use energy::{StepEnergy, velocity};
 pub(super) use spans::{Heading, close_spans, spans};
 
+use peaks::at_most_w;
 use surged::Surged;
 
-use super::axis::Side;
 use super::demand::{Want, larger};
 use super::model::{ConverterPower, PowerModel};
 use crate::interpret::Move;
@@ -291,19 +291,11 @@ impl Steps {
             if v == 0.0 || !converter.axes.contains(axis) {
                 continue;
             }
-            let power = &model.axes[axis];
             let along = larger(now.accel_mm_s2[axis], before.accel_mm_s2[axis]);
             let steps = (now.step_mm_s[axis] + before.step_mm_s[axis]) / self.response_s;
-            let [v, a] = [v, along + steps].map(|it| it * power.si_per_unit);
-            let weight = power.gravity.abs();
-            let drag = power.coulomb_most() + power.viscous_most() * v + weight;
-            let [motor, regen] = [(Side::Motor, true), (Side::Regen, false)]
-                .map(|(side, grows)| power.mass * a * power.accel_factor(side, grows));
-            let force = larger(motor, regen) + drag;
-            drawn_w += v * (motor + drag) * power.inverse_efficiency;
-            drawn_w += power.copper * force * force;
-            let held = power.coulomb * power.friction_factor(Side::Regen);
-            fed_back_w += v * larger(regen + weight - held, 0.0);
+            let [drawn, fed_back] = at_most_w(&model.axes[axis], v, along + steps);
+            drawn_w += drawn;
+            fed_back_w += fed_back;
         }
         [drawn_w, fed_back_w]
     }

@@ -3,6 +3,7 @@
 use super::Placed;
 use super::peaks::{Mean, swing};
 use crate::machine::AxisValues;
+use crate::power::demand::larger;
 
 /// All means between two, `step_s` apart, and what changes the speeds within.
 pub(super) struct Window<'a> {
@@ -45,6 +46,23 @@ impl Changes {
 }
 
 impl Window<'_> {
+    /// The largest speed of an axis and its largest acceleration, mm/s and mm/s², where a
+    /// share of all speeds is left; `lower`: or of some.
+    pub fn most(&self, axis: usize, share: f64, lower: bool) -> [f64; 2] {
+        let [a, b] = swing(self.means, axis, self.step_s);
+        let [first, last] = self.means;
+        let own = larger(first.accel[axis].abs(), last.accel[axis].abs());
+        let [up, down] = &self.changes.ramps;
+        let changes = share * self.changes.steps[axis].abs() + larger(up[axis], -down[axis]);
+        let changed = if lower { changes / self.over_s } else { 0.0 };
+        let accel = if share < 1.0 {
+            changed
+        } else {
+            larger(own, changed)
+        };
+        [share * larger(a.abs(), b.abs()), accel]
+    }
+
     /// What becomes of it where a share of all speeds is left: it is that much longer, and each
     /// of the ramps around may have ended before or be as it is. `steps`: the share of the
     /// steps within that is left, for the time that they take here.

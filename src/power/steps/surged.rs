@@ -12,12 +12,12 @@
 //! be sped up or braked.
 
 use super::Steps;
-use super::peaks::{Mean, raise};
+use super::peaks::{Mean, Peaks};
 use super::velocity;
 use super::windows::NO_TIME;
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
-use crate::power::demand::{Demand, Totals};
+use crate::power::demand::{Demand, Want};
 use crate::power::model::PowerModel;
 
 /// A piece that lower overrides may speed up or brake.
@@ -130,10 +130,9 @@ impl Steps {
         }
         let mut demand = Demand::NONE;
         for (index, converter) in model.converters.iter().enumerate() {
-            let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
-            let mut totals = Totals::new(idle_w);
-            raise(model, converter, &self.axes, &means, &mut totals);
-            demand.add(index, converter, totals);
+            let mut peaks = Peaks::new(model, converter, &self.axes, mv, Want::PEAKS);
+            peaks.raise(&means);
+            demand.add(index, converter, peaks.totals);
         }
         demand
     }

@@ -1,12 +1,12 @@
 //! Means over the response time, and their power.
 
-use super::peaks::{Mean, raise, raise_closely};
+use super::peaks::{Mean, Peaks};
 use super::slowed::{Changes, Window};
 use super::{Placed, Steps};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
-use crate::power::demand::{Demand, Totals};
-use crate::power::model::{ConverterPower, PowerModel};
+use crate::power::demand::{Demand, Want};
+use crate::power::model::PowerModel;
 
 /// Parts of a response time over which a mean is bounded in one go.
 const PARTS: f64 = 4.0;
@@ -44,30 +44,23 @@ impl End<'_> {
 impl Steps {
     /// What the means ask for that end in the last span and have a step within, on
     /// the loads of `mv`.
-    pub fn demand(&self, model: &PowerModel, mv: &Move) -> Demand {
+    pub fn demand(&self, model: &PowerModel, mv: &Move, want: Want) -> Demand {
         let mut demand = Demand::NONE;
         for (index, converter) in model.converters.iter().enumerate() {
-            let idle_w = converter.idle_w(mv, &model.axes, converter.axes);
-            let mut totals = Totals::new(idle_w);
+            let mut peaks = Peaks::new(model, converter, &self.axes, mv, want);
             let shares = if self.lower { &RUNGS[..] } else { &RUNGS[..1] };
             for share in shares {
-                self.over_response(model, converter, *share, &mut totals);
-                self.over_longer(model, converter, *share, &mut totals);
+                self.over_response(*share, &mut peaks);
+                self.over_longer(*share, &mut peaks);
             }
-            demand.add(index, converter, totals);
+            demand.add(index, converter, peaks.totals);
         }
         demand
     }
 
     /// Means over the response time, at the largest overrides or where a share of their
     /// speeds is left: what takes that long there takes a share of it here.
-    fn over_response(
-        &self,
-        model: &PowerModel,
-        converter: &ConverterPower,
-        share: f64,
-        totals: &mut Totals,
-    ) {
+    fn over_response(&self, share: f64, peaks: &mut Peaks<'_>) {
         let (Some(last), Some(first)) = (self.spans.back(), self.spans.front()) else {
             return;
         };
@@ -118,7 +111,7 @@ impl Steps {
                 over_s: tau,
                 changes,
             };
-            self.raise_at(model, converter, share, &window, totals);
+            self.raise_at(share, &window, peaks);
             let next_s = end_s + step_s;
             if next_s <= end_s {
                 break;
@@ -128,13 +121,7 @@ impl Steps {
     }
 
     /// Means from one step to another that is further away; `share` as above.
-    fn over_longer(
-        &self,
-        model: &PowerModel,
-        converter: &ConverterPower,
-        share: f64,
-        totals: &mut Totals,
-    ) {
+    fn over_longer(&self, share: f64, peaks: &mut Peaks<'_>) {
         let Some(last) = self.spans.back().filter(|last| last.steps) else {
             return;
         };
@@ -164,38 +151,31 @@ impl Steps {
                 over_s: away_s(placed),
                 changes: self.changes(index),
             };
-            self.raise_at(model, converter, share, &window, totals);
+            self.raise_at(share, &window, peaks);
         }
     }
 
     /// Raises the peaks by a window at the largest overrides, and by what lower ones make of
     /// it; or by one where a share of the speeds is left.
-    fn raise_at(
-        &self,
-        model: &PowerModel,
-        converter: &ConverterPower,
-        share: f64,
-        window: &Window<'_>,
-        totals: &mut Totals,
-    ) {
+    fn raise_at(&self, share: f64, window: &Window<'_>, peaks: &mut Peaks<'_>) {
+        if peaks.covers(|axis| window.most(axis, share, self.lower)) {
+            return;
+        }
         let axes = &self.axes;
         if share < 1.0 {
             // A step is as it is where its joint permits no more at any override.
             for steps in [share, share * share] {
-                let means = window.slowed(axes, share, steps);
-                raise(model, converter, axes, &means, totals);
+                peaks.raise(&window.slowed(axes, share, steps));
             }
             return;
         }
-        let exact = (window.means, window.step_s);
-        raise_closely(model, converter, axes, exact, totals);
+        peaks.raise_closely(window.means, window.step_s);
         if self.lower {
             for share in RUNGS.into_iter().chain([0.0]) {
                 // Where several steps lie within the response time fewer do, down to o² of
                 // their sum.
                 for steps in [1.0, share * share] {
-                    let means = window.partly_slowed(axes, share, steps);
-                    raise(model, converter, axes, &means, totals);
+                    peaks.raise(&window.partly_slowed(axes, share, steps));
                 }
             }
         }
