@@ -128,6 +128,10 @@ impl RowSink for Written {
         }
         Ok(())
     }
+
+    fn wants_figures(&self) -> bool {
+        false
+    }
 }
 
 impl Restart for Written {

@@ -18,6 +18,7 @@ use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::readable::readable;
 use super::relay::no_thread;
+use super::row::Detail;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
 use super::unmarked::unmarked;
@@ -362,7 +363,7 @@ impl Job<'_> {
                 rows.as_mut().map(|rows| as_sink(&mut **rows)),
             );
         };
-        let exact = rows.is_some();
+        let detail = Detail::of(rows.as_deref());
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
         let mut certifier = Certifier::new(machine, rungs, options, sink);
         let limiter = Limiter::new(target, how, depths.clone());
@@ -371,7 +372,7 @@ impl Job<'_> {
             target,
             options,
             limiter,
-            exact,
+            detail,
             &mut output,
             None,
             PowerModel::new(machine),

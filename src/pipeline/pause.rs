@@ -9,6 +9,7 @@ use std::iter::once;
 
 use super::lower::lower_further;
 use super::over_time::OverTime;
+use super::row::Detail;
 use super::ways::has_ways;
 use super::writer::{Plan, Writer};
 use super::{Failure, LimitOptions, LimitSummary, Options};
@@ -53,7 +54,16 @@ pub(super) fn has_place<R: Read + Seek>(
     }
     let limiter = Limiter::new(machine, LimitOptions::USUAL, Depths::default());
     let model = PowerModel::new(machine);
-    let writer = Writer::new(input, machine, options, limiter, false, sink(), None, model);
+    let writer = Writer::new(
+        input,
+        machine,
+        options,
+        limiter,
+        Detail::NoRows,
+        sink(),
+        None,
+        model,
+    );
     let written = writer.pausing(Some(Plan::NEVER)).run(&mut |batch| {
         batch.clear();
         Ok(())

@@ -127,6 +127,10 @@ impl RowSink for Feeds {
         }
         Ok(())
     }
+
+    fn wants_figures(&self) -> bool {
+        false
+    }
 }
 
 impl Restart for Feeds {

@@ -5,6 +5,7 @@ use std::io;
 use crate::interpret::MoveKind;
 use crate::machine::AxisSet;
 pub use crate::power::Certificate;
+use crate::power::Want;
 
 /// One move in program order. Reports print it in the order of the fields; a
 /// value that is not known or does not apply is `None` and printed as blank.
@@ -70,6 +71,45 @@ pub trait RowSink: Send {
     /// # Errors
     /// Whatever the writing gives.
     fn row(&mut self, row: &Row) -> io::Result<()>;
+
+    /// Whether the figures of the rows count, all of which are exact then; otherwise peaks below
+    /// those that matter need not be.
+    fn wants_figures(&self) -> bool {
+        true
+    }
+}
+
+/// What is wanted of rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Detail {
+    NoRows,
+    /// What was done, without exact figures.
+    Words,
+    Figures,
+}
+
+impl Detail {
+    pub(super) fn of(rows: Option<&(impl RowSink + ?Sized)>) -> Self {
+        match rows {
+            None => Self::NoRows,
+            Some(rows) if rows.wants_figures() => Self::Figures,
+            Some(_) => Self::Words,
+        }
+    }
+
+    /// Whether there are rows.
+    pub(super) fn has_rows(self) -> bool {
+        self != Self::NoRows
+    }
+
+    /// What is wanted of moves, where there are no rows `otherwise`.
+    pub(super) fn want(self, otherwise: Want) -> Want {
+        if self == Self::Figures {
+            Want::ALL
+        } else {
+            otherwise
+        }
+    }
 }
 
 /// Wants no rows.

@@ -5,6 +5,7 @@ use std::io;
 use super::by_line::ByLine;
 use super::describe::row;
 use super::over_time::OverTime;
+use super::row::Detail;
 use super::{Certificate, Failure, Options, Row, RowSink, Summary, Unfit};
 use crate::interpret::{Move, MoveKind};
 use crate::machine::{AxisSet, Machine};
@@ -63,7 +64,7 @@ impl<'m, 'r> Tally<'m, 'r> {
     /// What is wanted of the next move: peaks below those found so far need
     /// not be exact where no row shows them.
     pub(super) fn want(&self) -> Want {
-        if self.rows.is_some() {
+        if Detail::of(self.rows.as_deref()) == Detail::Figures {
             return Want::ALL;
         }
         let Some([limit_w, regen_limit_w]) = self.floors_w else {

@@ -11,6 +11,7 @@ use super::describe::{describe, row};
 use super::entry::Entry;
 use super::expected::{Expected, ExpectedMove};
 use super::front::{Front, read_whole, too_large};
+use super::row::Detail;
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
 use super::watching::watching_at;
@@ -64,7 +65,8 @@ impl Whole<'_> {
             depths,
             rungs,
         };
-        let (decided, table) = self.decide(slice::from_ref(&source), 0, rows.is_some())?;
+        let (decided, table) =
+            self.decide(slice::from_ref(&source), 0, Detail::of(rows.as_deref()))?;
         let [decided] = <[Decided; 1]>::try_from(decided).map_err(|_| no_way())?;
         let comment = paths.first().and_then(|it| it.comment(self.machine));
         let (text, edited_lines) = write(0, &program, self.machine, &table, comment);
@@ -81,7 +83,7 @@ impl Whole<'_> {
         &self,
         sources: &[Source<'_>],
         with_files: u16,
-        exact: bool,
+        detail: Detail,
     ) -> Result<(Vec<Decided>, Table), Failure> {
         let Self {
             machine,
@@ -108,7 +110,7 @@ impl Whole<'_> {
                     target,
                     options,
                     Limiter::new(target, how, source.depths.clone()),
-                    exact,
+                    detail,
                     std::io::sink(),
                     Some(table),
                     PowerModel::new(machine),
@@ -141,7 +143,13 @@ impl Whole<'_> {
         let mut certified: Option<Certified> = None;
         for (place, (options, written)) in source.paths.iter().zip(paths).enumerate() {
             let rows = if place == worst { rows.take() } else { None };
-            let original = Original::new(source.program, machine, options, table, rows.is_some());
+            let original = Original::new(
+                source.program,
+                machine,
+                options,
+                table,
+                Detail::of(rows.as_deref()),
+            );
             let path = certify(original, text, (machine, source.rungs), written, rows)?;
             certified = Some(match certified {
                 Some(certified) => certified.join(path),
@@ -254,7 +262,7 @@ struct Original<'m, 'p> {
     assessor: Assessor<'m>,
     model: PowerModel,
     table: &'p Table,
-    exact: bool,
+    detail: Detail,
     waiting: Waiting,
     /// Lines executed so far.
     ordinal: u64,
@@ -324,9 +332,9 @@ impl<'m, 'p> Original<'m, 'p> {
         machine: &'m Machine,
         options: &Options,
         table: &'p Table,
-        exact: bool,
+        detail: Detail,
     ) -> Self {
-        let want = if exact { Want::ALL } else { Want::PEAKS };
+        let want = detail.want(Want::PEAKS);
         let mut assessor =
             Assessor::new(machine, options.certificate, want).starting(options.reading.start);
         assessor.want = want;
@@ -336,7 +344,7 @@ impl<'m, 'p> Original<'m, 'p> {
             assessor,
             model: PowerModel::new(machine),
             table,
-            exact,
+            detail,
             waiting: Waiting::default(),
             ordinal: 0,
             files: Vec::new(),
@@ -411,7 +419,7 @@ impl<'m, 'p> Original<'m, 'p> {
 
     /// Rows of the spindle before the next move.
     fn expect_spindle(&mut self, expected: &mut Vec<Expected>) {
-        let of = (self.machine, &self.model, self.exact);
+        let of = (self.machine, &self.model, self.detail.has_rows());
         let spindle = &mut self.waiting.spindle;
         spindle.hand_over(of, &mut self.start_s, expected);
     }
@@ -423,7 +431,7 @@ impl<'m, 'p> Original<'m, 'p> {
             .filter(|_| mv.kind != MoveKind::Dwell);
         let change = decision.map(|decision| &decision.change);
         let hopeless = self.table.hopeless(held.key);
-        let row = self.exact.then(|| {
+        let row = self.detail.has_rows().then(|| {
             let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
             row.file = self
                 .files

@@ -18,6 +18,7 @@ use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
 use super::pause::Pause;
 use super::preset_notes::PresetNotes;
+use super::row::Detail;
 use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
 use super::table::Table;
@@ -27,7 +28,7 @@ use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, Move, MoveKind, Step};
 use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
-use crate::power::{Assessment, Assessor, PowerModel, Want};
+use crate::power::{Assessment, Assessor, PowerModel};
 use crate::rewrite::{BlockView, Comment, Mark, Rewriter};
 pub(super) use waiting::Plan;
 use waiting::Waits;
@@ -82,8 +83,7 @@ pub(super) struct Writer<'m, R, W> {
     reasons: Reasons,
     unsplit: Unsplit,
     presets: PresetNotes,
-    /// Every figure is wanted exactly: there are rows.
-    exact: bool,
+    detail: Detail,
     model: PowerModel,
     /// Time of the original so far, s.
     start_s: f64,
@@ -107,7 +107,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         machine: &'m Machine,
         options: &Options,
         limiter: Limiter<'m>,
-        exact: bool,
+        detail: Detail,
         output: W,
         table: Option<Table>,
         model: PowerModel,
@@ -139,7 +139,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             reasons: Reasons::default(),
             unsplit: Unsplit::default(),
             presets: PresetNotes::default(),
-            exact,
+            detail,
             model,
             start_s: 0.0,
             first_feed: None,
@@ -193,7 +193,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let notes = self.front.finish()?;
         refuse_planned(&self.assessor, self.machine)?;
         self.tally.rate(self.assessor.ratings(), Vec::new());
-        let mut before = self.tally.finish(self.exact);
+        let mut before = self.tally.finish(self.detail == Detail::Figures);
         before.lines = lines;
         before.notes = notes;
         before.notes.append(&mut self.unsplit.notes);
@@ -228,7 +228,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         let mut judged = None;
         if line.facts.plain
             && self.entries.is_empty()
-            && !self.exact
+            && !self.detail.has_rows()
             && self.table.is_none()
             && self.waits.plan.is_none()
             && let [Step::Move(mv)] = line.steps.as_slice()
@@ -315,7 +315,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         // After the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
         for (index, step) in steps.enumerate() {
-            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            assessor.want = self.detail.want(tally.want());
             if let Some(Step::Move(mv)) = step {
                 self.mode = mv.path_mode;
                 flights.push_back(Flight {
@@ -381,7 +381,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 decide(assessment);
                 continue;
             }
-            assessor.want = if self.exact { Want::ALL } else { tally.want() };
+            assessor.want = self.detail.want(tally.want());
             assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
                 tally.add(judged, assessment, text);
                 if spindle.judge(judged, assessment) {

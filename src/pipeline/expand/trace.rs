@@ -75,6 +75,10 @@ impl RowSink for Traced<'_> {
         self.expanded.trace_row(&mut row);
         self.rows.row(&row)
     }
+
+    fn wants_figures(&self) -> bool {
+        self.rows.wants_figures()
+    }
 }
 
 impl Restart for Traced<'_> {

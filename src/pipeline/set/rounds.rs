@@ -14,6 +14,7 @@ use crate::pipeline::conclusion::conclude;
 use crate::pipeline::expand::Expanded;
 use crate::pipeline::limiting::last_round;
 use crate::pipeline::lower::lower_further;
+use crate::pipeline::row::Detail;
 use crate::pipeline::whole::{Decided, Source, Whole, write};
 use crate::pipeline::worst::worst_of;
 use crate::pipeline::{Failure, LimitOptions, LimitSummary, Options, RestartRows, RowSink};
@@ -160,7 +161,8 @@ impl<'a> Job<'a> {
                     rungs: &round.rungs,
                 })
                 .collect();
-            let (decided, table) = whole.decide(&sources, count as u16, rows.is_some())?;
+            let (decided, table) =
+                whole.decide(&sources, count as u16, Detail::of(rows.as_deref()))?;
             let first = paths.iter().flatten().next();
             let comment = first.and_then(|it| it.comment(self.machine));
             let files = self.shelf.files().enumerate().map(|(number, (path, _))| {

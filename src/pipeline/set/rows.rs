@@ -28,6 +28,10 @@ impl RowSink for OfProgram<'_> {
         self.shown.clone_into(&mut row.file);
         self.rows.row(&row)
     }
+
+    fn wants_figures(&self) -> bool {
+        self.rows.wants_figures()
+    }
 }
 
 /// What is said of a program's own lines is said without its name, as of a program by

@@ -13,7 +13,7 @@ use crate::pipeline::split::{BLENDED, Line};
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Tells the certifier of the rows of the spindle before the next move.
     pub(super) fn expect_spindle(&mut self) {
-        let of = (self.machine, &self.model, self.exact);
+        let of = (self.machine, &self.model, self.detail.has_rows());
         let expected = &mut self.batch.expected;
         self.spindle.hand_over(of, &mut self.start_s, expected);
     }
@@ -51,7 +51,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             }
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);
-            let row = self.exact.then(|| {
+            let row = self.detail.has_rows().then(|| {
                 let mut row = row(self.machine, &self.model, mv, assessment, self.start_s);
                 describe(self.machine, mv, change, feed_before, &mut row);
                 row.feed_allowed &= !entry.positions(self.machine, mv);

@@ -30,7 +30,7 @@ impl Table {
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Reads the whole program and decides for its lines, without writing.
     pub(in crate::pipeline) fn decide_all(mut self) -> Result<(Written, Table), Failure> {
-        if self.exact {
+        if self.detail.has_rows() {
             self.tally.keep_lines();
         }
         while self.read_block()? {

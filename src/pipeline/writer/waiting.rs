@@ -87,7 +87,10 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             length_mm: 0.0,
             ..last
         };
-        let row = self.exact.then(|| Box::new(self.pause_row(&mv)));
+        let row = self
+            .detail
+            .has_rows()
+            .then(|| Box::new(self.pause_row(&mv)));
         self.batch.expected.push(Expected::Move(ExpectedMove {
             row,
             ..ExpectedMove::standing(&mv)
