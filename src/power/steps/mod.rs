@@ -314,7 +314,8 @@ impl Placed {
 
     /// Speed of an axis, mm/s, and its way since the start, mm, after a share of the time.
     fn at(&self, axis: usize, passed: f64) -> [f64; 2] {
-        let [from, to] = self.span.axes_mm_s.map(|all| all[axis]);
+        let [first, last] = &self.span.axes_mm_s;
+        let (from, to) = (first[axis], last[axis]);
         let change = (to - from) * passed;
         let way_mm = (from + 0.5 * change) * (passed * self.span.duration_s);
         [from + change, way_mm]

@@ -5,7 +5,7 @@ use super::slowed::{Changes, Window};
 use super::{Placed, Steps};
 use crate::interpret::Move;
 use crate::machine::{AXES, AxisValues};
-use crate::power::demand::{Demand, Want};
+use crate::power::demand::{Demand, Want, larger};
 use crate::power::model::PowerModel;
 
 /// Parts of a response time over which a mean is bounded in one go.
@@ -26,19 +26,26 @@ struct End<'a> {
 }
 
 impl End<'_> {
-    /// Speed and place of each axis; of others 0.
-    fn state(&self, axes: &[usize]) -> [AxisValues; 2] {
-        let mut state = [[0.0; AXES], *self.rest_mm];
-        if let Some(placed) = self.placed {
-            let passed = placed.passed(self.at_s);
-            for &axis in axes {
-                let [speed, way] = placed.at(axis, passed);
-                state[0][axis] = speed;
-                state[1][axis] = placed.place_mm[axis] + way;
-            }
-        }
-        state
+    fn passed(&self) -> f64 {
+        self.placed.map_or(0.0, |placed| placed.passed(self.at_s))
     }
+
+    /// Speed and place of an axis after a share of the span's time.
+    fn state(&self, axis: usize, passed: f64) -> [f64; 2] {
+        match self.placed {
+            Some(placed) => {
+                let [speed, way] = placed.at(axis, passed);
+                [speed, placed.place_mm[axis] + way]
+            }
+            None => [0.0, self.rest_mm[axis]],
+        }
+    }
+}
+
+/// What no mean over the response time exceeds that ends in the last span.
+struct Reach {
+    speed_mm_s: AxisValues,
+    accel_mm_s2: AxisValues,
 }
 
 impl Steps {
@@ -46,16 +53,51 @@ impl Steps {
     /// the loads of `mv`.
     pub fn demand(&self, model: &PowerModel, mv: &Move, want: Want) -> Demand {
         let mut demand = Demand::NONE;
+        let reach = self.reach();
         for (index, converter) in model.converters.iter().enumerate() {
             let mut peaks = Peaks::new(model, converter, &self.axes, mv, want);
             let shares = if self.lower { &RUNGS[..] } else { &RUNGS[..1] };
-            for share in shares {
-                self.over_response(*share, &mut peaks);
-                self.over_longer(*share, &mut peaks);
+            for &share in shares {
+                let most = |axis: usize| [share * reach.speed_mm_s[axis], reach.accel_mm_s2[axis]];
+                if !peaks.covers(most) {
+                    self.over_response(share, &mut peaks);
+                }
+                self.over_longer(share, &mut peaks);
             }
             demand.add(index, converter, peaks.totals);
         }
         demand
+    }
+
+    /// What no mean over the response time or a share of it exceeds, at lower overrides either:
+    /// all steps and the steepest ramp. Where a share of the speeds is left the time is as
+    /// much shorter, and the steps are as much smaller.
+    fn reach(&self) -> Reach {
+        let mut reach = Reach {
+            speed_mm_s: [0.0; AXES],
+            accel_mm_s2: [0.0; AXES],
+        };
+        let mut steps = [0.0; AXES];
+        let last_s = self.spans.back().map_or(0.0, |last| last.start_s);
+        let from_s = last_s - (1.0 + NO_TIME) * self.response_s;
+        let near = self.spans.iter().rev();
+        for placed in near.take_while(|placed| placed.end_s() >= from_s) {
+            let per_s = placed.span.beyond.ramp / placed.span.duration_s;
+            let [first, last] = &placed.span.axes_mm_s;
+            for &axis in &self.axes {
+                let (from, to) = (first[axis], last[axis]);
+                let (speed, ramp) = (larger(from.abs(), to.abs()), (to - from).abs() * per_s);
+                reach.speed_mm_s[axis] = larger(reach.speed_mm_s[axis], speed);
+                reach.accel_mm_s2[axis] = larger(reach.accel_mm_s2[axis], ramp);
+                if placed.start_s >= from_s {
+                    steps[axis] += placed.step_mm_s[axis].abs();
+                }
+            }
+        }
+        for &axis in &self.axes {
+            reach.accel_mm_s2[axis] += steps[axis] / self.response_s;
+        }
+        reach
     }
 
     /// Means over the response time, at the largest overrides or where a share of their
@@ -199,14 +241,17 @@ impl Steps {
     }
 
     fn mean(&self, ends: [End<'_>; 2], over_s: f64) -> Mean {
-        let [from, to] = ends.map(|end| end.state(&self.axes));
+        let [from, to] = &ends;
+        let passed = [from.passed(), to.passed()];
         let mut mean = Mean {
             speed: [0.0; AXES],
             accel: [0.0; AXES],
         };
         for &axis in &self.axes {
-            mean.accel[axis] = (to[0][axis] - from[0][axis]) / over_s;
-            mean.speed[axis] = (to[1][axis] - from[1][axis]) / over_s;
+            let from = from.state(axis, passed[0]);
+            let to = to.state(axis, passed[1]);
+            mean.accel[axis] = (to[0] - from[0]) / over_s;
+            mean.speed[axis] = (to[1] - from[1]) / over_s;
         }
         mean
     }
