@@ -32,6 +32,24 @@ pub(super) struct Tally<'m, 'r> {
     by_line: Option<ByLine>,
 }
 
+/// The limits of the converter, drawn and fed back, W; `None` where there are several.
+fn limits_w(machine: &Machine, model: &PowerModel) -> Option<[f64; 2]> {
+    let regen_limit_w = model.regen_limit_w(0).unwrap_or(f64::INFINITY);
+    (machine.converters.len() <= 1).then(|| [model.limit_w(0), regen_limit_w])
+}
+
+/// What is wanted where it counts alone whether moves fit.
+pub(super) fn whether_fits(machine: &Machine, model: &PowerModel) -> Want {
+    let Some([floor_w, regen_floor_w]) = limits_w(machine, model) else {
+        return Want::PEAKS;
+    };
+    Want {
+        floor_w,
+        regen_floor_w,
+        ..Want::PEAKS
+    }
+}
+
 impl<'m, 'r> Tally<'m, 'r> {
     pub(super) fn new(
         machine: &'m Machine,
@@ -40,10 +58,7 @@ impl<'m, 'r> Tally<'m, 'r> {
     ) -> Self {
         let rows_wanted = rows.is_some();
         let model = PowerModel::new(machine);
-        let floors_w = (machine.converters.len() <= 1).then(|| {
-            let regen_limit_w = model.regen_limit_w(0).unwrap_or(f64::INFINITY);
-            [model.limit_w(0), regen_limit_w]
-        });
+        let floors_w = limits_w(machine, &model);
         let summary = Summary {
             certificate: options.certificate,
             ..Summary::default()

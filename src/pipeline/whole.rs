@@ -14,6 +14,7 @@ use super::front::{Front, read_whole, too_large};
 use super::row::Detail;
 use super::spindle_rows::SpindleRows;
 use super::table::{LineKey, Table};
+use super::tally::whether_fits;
 use super::watching::watching_at;
 use super::ways::turns_switches;
 use super::worst::{worst, worst_of};
@@ -22,7 +23,7 @@ use super::{Failure, LimitOptions, Options, RowSink, Summary};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::limit::{Depths, Limiter};
 use crate::machine::{Machine, PathMode};
-use crate::power::{Assessment, Assessor, Lower, PowerModel, Want};
+use crate::power::{Assessment, Assessor, Lower, PowerModel};
 use crate::rewrite::{BlockView, Comment, Rewriter};
 use crate::source::lines;
 
@@ -334,7 +335,8 @@ impl<'m, 'p> Original<'m, 'p> {
         table: &'p Table,
         detail: Detail,
     ) -> Self {
-        let want = detail.want(Want::PEAKS);
+        let model = PowerModel::new(machine);
+        let want = detail.want(whether_fits(machine, &model));
         let mut assessor =
             Assessor::new(machine, options.certificate, want).starting(options.reading.start);
         assessor.want = want;
@@ -342,7 +344,7 @@ impl<'m, 'p> Original<'m, 'p> {
             machine,
             front: Front::new(Cursor::new(program), machine, options),
             assessor,
-            model: PowerModel::new(machine),
+            model,
             table,
             detail,
             waiting: Waiting::default(),
