@@ -8,6 +8,7 @@ mod readers;
 mod refusals;
 mod rigid;
 mod signals;
+mod verdicts;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -198,7 +199,6 @@ pub(crate) fn choice(method: Method) -> Choice {
     Choice {
         method,
         given: Given::default(),
-        decimation: Vec::new(),
         from_command: false,
     }
 }

@@ -9,6 +9,7 @@ Examples:
   gwatt identify x.csv --axis X
   gwatt identify x.csv --axis X --friction directional --json x.json
   gwatt identify x.csv --axis X --into mill.toml       keep mill.toml.bak
+  gwatt identify x.csv --axis X --into mill.toml --force   whatever the verdict
   gwatt identify x.csv --axis X --model flexible --validate x2.csv
   gwatt identify x.csv --axis X --method frequency --order 4
 
@@ -17,7 +18,12 @@ position_m, position_mm, position_um, position_rad, position_deg;
 velocity_m_s, velocity_mm_s, velocity_mm_min, velocity_rad_s, velocity_rpm;
 accel_m_s2, accel_mm_s2, accel_g, accel_rad_s2; position_command_mm; and
 excitation_nm or excitation_n: what was added to excite a closed loop. An axis
-letter may stand in front (x_position_mm).";
+letter may stand in front (x_position_mm).
+
+What belongs to one model only implies that model: --method, --order, --zeros,
+--delay-ms, --from-command and --response the flexible one.
+
+Exit status 1: the verdict is not good, so that --into wrote nothing.";
 
 /// Arguments of `identify`.
 #[derive(Debug, Args)]
@@ -28,7 +34,7 @@ pub struct IdentifyArgs {
     /// The axis
     #[arg(long, value_name = "LETTER")]
     pub axis: char,
-    /// What the axis is taken for [default: rigid, or flexible with --method]
+    /// What the axis is taken for [default: rigid, or flexible where an option needs it]
     #[arg(long, value_enum)]
     pub model: Option<ModelArg>,
     /// Flexible: how to estimate [default: iv]
@@ -43,15 +49,16 @@ pub struct IdentifyArgs {
     /// Flexible: delay of the drive and the recording [default: searched for]
     #[arg(long, value_name = "MS")]
     pub delay_ms: Option<f64>,
-    /// Flexible: filter and thin the signals first, in stages, such as 2,2,5
-    #[arg(long, value_name = "FACTORS", value_delimiter = ',')]
-    pub decimate: Vec<usize>,
     /// Flexible: take the position command as input, though a force is recorded
     #[arg(long)]
     pub from_command: bool,
+    /// The force (or torque, or command) counts the other way than the motion
+    #[arg(long)]
+    pub reverse: bool,
     /// Rigid: the same friction in both directions, or of its own in each
-    #[arg(long, value_enum, default_value_t = FrictionArg::Symmetric)]
-    pub friction: FrictionArg,
+    /// [default: symmetric]
+    #[arg(long, value_enum)]
+    pub friction: Option<FrictionArg>,
     /// Rigid: band of the filter [default: 30, or a tenth of the rate]
     #[arg(long, value_name = "HZ")]
     pub bandwidth_hz: Option<f64>,
@@ -70,9 +77,13 @@ pub struct IdentifyArgs {
     /// Write the result as TOML, to be put into a machine file
     #[arg(long, value_name = "FILE")]
     pub toml: Option<PathBuf>,
-    /// Put the result into this machine file, and keep it as MACHINE.bak
+    /// Put the result into this machine file if the verdict is good, and keep it as
+    /// MACHINE.bak
     #[arg(long, value_name = "MACHINE")]
     pub into: Option<PathBuf>,
+    /// Put it there whatever the verdict
+    #[arg(long, requires = "into")]
+    pub force: bool,
     /// Flexible: write measured and modelled frequency response as CSV
     #[arg(long, value_name = "FILE")]
     pub response: Option<PathBuf>,

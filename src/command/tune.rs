@@ -16,9 +16,9 @@ use gwatt::report::{Verdict, sections_csv, tune_page, tuned_json, tuned_text};
 use rayon::prelude::*;
 
 use super::clash::refuse_clashes;
-use super::identify::method;
 use super::input::is_dash;
 use super::into::{Merged, axis_of};
+use super::model_choice::method;
 use super::output::{Spool, Target, print};
 use super::terminal::Terminal;
 use crate::cli::{DiscretizeArg, TuneArgs};
@@ -247,7 +247,6 @@ fn choice(args: &TuneArgs) -> Result<Choice> {
             order: args.order,
             ..Given::default()
         },
-        decimation: Vec::new(),
         from_command: args.from_command,
     })
 }

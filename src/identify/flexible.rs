@@ -15,7 +15,7 @@ use super::quality;
 use super::recording::Recording;
 use super::rigid::Figure;
 use super::search::{LAGS, filtered};
-use super::spectrum::{FrequencyResponse, excited_rad_s};
+use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
 use super::trouble::{Outcome, Trouble};
@@ -40,8 +40,6 @@ pub struct Choice {
     pub method: Method,
     /// What is given instead of searched for.
     pub given: Given,
-    /// Factors by which the signals are decimated first, one a stage.
-    pub decimation: Vec<usize>,
     /// The position command is the input, though a force is recorded.
     pub from_command: bool,
 }
@@ -83,6 +81,12 @@ pub struct Flexible {
     pub whiteness: Whiteness,
     /// Order of that filter; 0 for white noise.
     pub noise_order: usize,
+    /// Which share of what is left the input explains, as any linear system could: what
+    /// the model misses of the axis, where the rest is noise.
+    pub missed_share: f64,
+    /// Whiteness of the squares of what is left: noise of one strength has it, what comes
+    /// and goes with the motion has not.
+    pub steadiness: Whiteness,
     /// What leaky integrators lose from sample to sample, through which a position or
     /// speed and the force went to be compared; 0 without them.
     pub leak: f64,
@@ -164,7 +168,7 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
     // From a command both sides are differenced as often as the noise of what was
     // measured stays white: positions not at all. The plain methods know held
     // inputs only.
-    let command = if choice.method == Method::Iv && choice.decimation.is_empty() {
+    let command = if choice.method == Method::Iv {
         CommandInput::spline
     } else {
         CommandInput::held
@@ -193,11 +197,9 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
         early_s: 0.0,
         names: (input_signal.name.clone(), output_signal.name.clone()),
     };
-    decimate(&mut prepared, &choice.decimation);
     if !is_force {
         // A command that runs on between samples is half a period ahead of one that
         // is held: taken early, it comes late in either case.
-        let late_s = late_s + 0.5 * (prepared.period_s - t);
         let lead = libm::ceil(late_s / prepared.period_s + 0.5 - 1e-9);
         take_early(&mut prepared.input, lead as usize);
         prepared.early_s = lead * prepared.period_s - late_s;
@@ -212,22 +214,6 @@ fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
         ));
     }
     Ok(prepared)
-}
-
-fn decimate(prepared: &mut Prepared, stages: &[usize]) {
-    let factor: usize = stages.iter().product();
-    if factor <= 1 {
-        return;
-    }
-    let t = prepared.period_s;
-    prepared.input = arx::decimate(&prepared.input, stages, t);
-    prepared.output = arx::decimate(&prepared.output, stages, t);
-    prepared.excitation = prepared
-        .excitation
-        .as_ref()
-        .map(|r| arx::decimate(r, stages, t));
-    prepared.measured = Measured::Direct;
-    prepared.period_s *= factor as f64;
 }
 
 /// Moves a signal so many samples forward; its end goes on as it was.
@@ -406,6 +392,14 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     for list in [&mut zeros, &mut unclear_zeros, &mut poles] {
         list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
     }
+    let known = data.undisturbed.unwrap_or(compared.input);
+    let missed_share = explained_share(
+        known.get(data.skip()..).unwrap_or_default(),
+        &left,
+        data.period_s,
+    );
+    let white = filtered(&left, &found.noise.taps);
+    let squares: Vec<f64> = white.iter().map(|x| x * x).collect();
     let delay_std = if found.delay_is_free {
         // Where other parameters can take its place, it is no longer straight.
         let alone = std(parameters(&transfer, true).len() - 1);
@@ -428,7 +422,9 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             std: delay_std,
         },
         rel_error,
-        whiteness: Whiteness::of(&filtered(&left, &found.noise.taps), LAGS),
+        whiteness: Whiteness::of(&white, LAGS),
+        missed_share,
+        steadiness: Whiteness::of(&squares, LAGS),
         noise_order: found.noise.taps.len(),
         leak: found.noise.leak,
         response: found.response,

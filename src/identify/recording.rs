@@ -130,6 +130,21 @@ impl Recording {
         Ok(())
     }
 
+    /// Turns force, torque, excitation and command about: they were counted the other
+    /// way than the motion.
+    pub fn reverse(&mut self) {
+        for signal in &mut self.signals {
+            if matches!(
+                signal.quantity,
+                Quantity::Force | Quantity::Excitation | Quantity::Command
+            ) {
+                for value in &mut signal.values {
+                    *value = -*value;
+                }
+            }
+        }
+    }
+
     /// The signal of a quantity.
     #[must_use]
     pub fn get(&self, quantity: Quantity) -> Option<&Signal> {
