@@ -1,9 +1,9 @@
 //! `gwatt identify`.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use gwatt::identify::flexible::{self, Flexible};
 use gwatt::identify::judgement;
 use gwatt::identify::merge::{self, AxisFigures, six_digits};
@@ -41,7 +41,9 @@ impl Found {
 pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
     let axis = axis_of(args.axis)?;
     let letter = axis.letter() as char;
-    let inputs: Vec<&Path> = std::iter::once(&args.recording)
+    let inputs: Vec<&Path> = args
+        .recordings
+        .iter()
         .chain(&args.validate)
         .map(AsRef::as_ref)
         .collect();
@@ -53,25 +55,40 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
     refuse_clashes(&inputs, &outputs)?;
     let model = ModelChoice::of(args)?;
     let reader = RecordingReader::new(args, letter)?;
-    let recording = reader.open(&args.recording)?;
+    let recordings = args
+        .recordings
+        .iter()
+        .map(|path| reader.open(path))
+        .collect::<Result<Vec<_>>>()?;
+    let [recording, others @ ..] = recordings.as_slice() else {
+        bail!("there is no recording");
+    };
+    ensure!(
+        others.is_empty() || matches!(model, ModelChoice::Rigid { .. }),
+        "several recordings are joined for a rigid axis alone: give one for a flexible axis"
+    );
+    ensure!(
+        others.iter().all(|other| kinds(other) == kinds(recording)),
+        "some of the recordings have force and motion, others torque or angles: join such of the same signals"
+    );
     let second = match &args.validate {
         Some(path) => Some((path, reader.open(path)?)),
         None => None,
     };
-    let name = || args.recording.display().to_string();
+    let name = || title(&args.recordings);
     let (found, validation) = match &model {
         ModelChoice::Rigid {
             friction,
             bandwidth_hz,
         } => {
-            let found = rigid::fit(&recording, *friction, *bandwidth_hz).with_context(name)?;
+            let found = rigid::fit_all(&recordings, *friction, *bandwidth_hz).with_context(name)?;
             let error = second.map(|(path, other)| {
                 rigid::predict_error(&found, &other).with_context(|| path.display().to_string())
             });
             (Found::Rigid(Box::new(found)), error.transpose()?)
         }
         ModelChoice::Flexible(choice) => {
-            let found = flexible::identify(&recording, choice).with_context(name)?;
+            let found = flexible::identify(recording, choice).with_context(name)?;
             let error = second.map(|(path, other)| {
                 flexible::predict_error(&found, &other, choice)
                     .with_context(|| path.display().to_string())
@@ -79,8 +96,22 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
             (Found::Flexible(Box::new(found)), error.transpose()?)
         }
     };
-    let heading = heading(args, letter, &recording, validation);
+    let heading = heading(args, letter, recording, validation);
     deliver(args, &heading, &found, terminal)
+}
+
+/// The recordings by name; many by their number.
+fn title(recordings: &[PathBuf]) -> String {
+    match recordings {
+        [one] => one.display().to_string(),
+        many => format!("{} recordings", many.len()),
+    }
+}
+
+/// Whether force and motion slide or turn.
+fn kinds(recording: &Recording) -> [Option<Kind>; 2] {
+    let force = recording.get(Quantity::Force);
+    [force.map(|signal| signal.kind), motion(recording)]
 }
 
 fn heading(
@@ -93,7 +124,7 @@ fn heading(
         .get(Quantity::Force)
         .or_else(|| recording.get(Quantity::Excitation));
     let is_torque = force.is_some_and(|force| force.kind == Kind::Rotary);
-    let slides = motion_slides(recording);
+    let slides = motion(recording) == Some(Kind::Linear);
     let mut notes = Vec::new();
     if !recording.ignored.is_empty() {
         notes.push(format!(
@@ -101,6 +132,7 @@ fn heading(
             recording.ignored.join(", ")
         ));
     }
+    notes.extend(recording.notes.iter().cloned());
     let lever_is_missing = is_torque && slides;
     if lever_is_missing {
         notes.push(
@@ -108,7 +140,7 @@ fn heading(
         );
     }
     Heading {
-        recording: args.recording.display().to_string(),
+        recording: title(&args.recordings),
         axis,
         rotary: is_torque,
         validation,
@@ -117,7 +149,8 @@ fn heading(
     }
 }
 
-fn motion_slides(recording: &Recording) -> bool {
+/// Whether the motion slides or turns; `None` without one.
+fn motion(recording: &Recording) -> Option<Kind> {
     [
         Quantity::Acceleration,
         Quantity::Velocity,
@@ -125,12 +158,12 @@ fn motion_slides(recording: &Recording) -> bool {
     ]
     .into_iter()
     .find_map(|quantity| recording.get(quantity))
-    .is_some_and(|signal| signal.kind == Kind::Linear)
+    .map(|signal| signal.kind)
 }
 
 fn figures(heading: &Heading, found: &Found) -> AxisFigures {
     let gravity = match found {
-        Found::Rigid(rigid) => Some(rigid.offset),
+        Found::Rigid(rigid) => rigid.offset,
         Found::Flexible(_) => None,
     };
     let (mass, viscous, coulomb) = match found {
@@ -208,6 +241,11 @@ fn deliver(
         merged.deliver(path, terminal)?;
         if figures.has_weight() {
             terminal.note("the offset went into the file as weight: take it out there if it is a bias of the sensor");
+        }
+        if let Found::Rigid(rigid) = found
+            && rigid.constant.is_some()
+        {
+            terminal.note("Coulomb friction and weight in the file are as they were: motion one way determines their sum alone");
         }
     }
     for note in &heading.notes {

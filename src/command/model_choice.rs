@@ -14,8 +14,8 @@ const ORDER_MAX: usize = 12;
 pub enum ModelChoice {
     /// Mass and friction.
     Rigid {
-        /// How friction is modelled.
-        friction: Friction,
+        /// How friction is modelled; as the data have it, where that is not given.
+        friction: Option<Friction>,
         /// Band of the filter, Hz.
         bandwidth_hz: Option<f64>,
     },
@@ -97,10 +97,10 @@ impl ModelChoice {
             );
         }
         Ok(Self::Rigid {
-            friction: match args.friction {
-                None | Some(FrictionArg::Symmetric) => Friction::Symmetric,
-                Some(FrictionArg::Directional) => Friction::Directional,
-            },
+            friction: args.friction.map(|friction| match friction {
+                FrictionArg::Symmetric => Friction::Symmetric,
+                FrictionArg::Directional => Friction::Directional,
+            }),
             bandwidth_hz: args.bandwidth_hz,
         })
     }

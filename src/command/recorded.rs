@@ -5,15 +5,15 @@ use std::io::{self, BufReader};
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use gwatt::identify::Recording;
 use gwatt::identify::merge::force_per_torque;
+use gwatt::identify::{MappedColumn, Outcome, ReadAs, Recording};
 
 use super::input::is_dash;
 use crate::cli::IdentifyArgs;
 
 /// How the recordings of a run are read.
 pub struct RecordingReader {
-    axis: char,
+    read_as: ReadAs,
     /// N per N·m, where what turns is referred to a slide.
     force_per_torque: Option<f64>,
     reverse: bool,
@@ -33,8 +33,16 @@ impl RecordingReader {
             ratio.is_none_or(|ratio| ratio.is_finite() && ratio > 0.0),
             "--lead-mm and --gear-ratio must be positive"
         );
+        if let Some(hz) = args.rate_hz {
+            ensure!(hz.is_finite() && hz > 0.0, "--rate-hz {hz} is not positive");
+        }
+        let map = args.map.iter().map(|text| text.parse());
         Ok(Self {
-            axis,
+            read_as: ReadAs {
+                axis: Some(axis),
+                map: map.collect::<Outcome<Vec<MappedColumn>>>()?,
+                rate_hz: args.rate_hz,
+            },
             force_per_torque: ratio,
             reverse: args.reverse,
         })
@@ -48,11 +56,11 @@ impl RecordingReader {
     pub fn open(&self, path: &Path) -> Result<Recording> {
         let name = path.display();
         let read = if is_dash(path) {
-            Recording::read(io::stdin().lock(), Some(self.axis))
+            Recording::read_as(io::stdin().lock(), &self.read_as)
         } else {
             let file =
                 File::open(path).with_context(|| format!("{name}: cannot read the recording"))?;
-            Recording::read(BufReader::new(file), Some(self.axis))
+            Recording::read_as(BufReader::new(file), &self.read_as)
         };
         let mut recording = read.with_context(|| name.to_string())?;
         if let Some(ratio) = self.force_per_torque {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::flexible::{Flexible, Root};
+use super::power_fit::PowerModel;
 use super::rigid::{Figure, Rigid};
 
 /// A plain word.
@@ -86,12 +87,22 @@ const FREQUENCY: f64 = 0.01;
 const DAMPING: f64 = 0.1;
 /// More than this many times the length nobody records.
 const TIMES_MAX: f64 = 30.0;
+/// Relative standard errors of a power model from which on it is no good, and how much it
+/// must explain of the power's square.
+const POWER_MASS: f64 = 0.05;
+const EFFICIENCY: f64 = 0.05;
+const POWER_EXPLAINED: f64 = 0.5;
+/// Peaks by which a factor for peaks is found, at least.
+const PEAKS: usize = 5;
 /// What a model leaves unexplained, at most.
 const REL_ERROR: f64 = 0.5;
 /// The same of a flexible axis, of which single samples are compared.
 const REL_ERROR_FLEXIBLE: f64 = 0.9;
 /// What may be left besides noise, as a share of the whole.
 const MISSED: f64 = 0.1;
+/// So many times as much as noise would leave is more than noise: noise of a sensor is
+/// as strong above the band as within, or stronger.
+const NOISY: f64 = 2.0;
 /// What may be left where what is left comes and goes.
 const UNSTEADY: f64 = 0.3;
 /// Standard errors from which on a sign is sure.
@@ -114,7 +125,8 @@ fn longer(times: f64) -> Judgement {
 
 /// Whether a figure is below zero for sure; one without an error, by more than nothing.
 fn is_negative(figure: Figure) -> bool {
-    figure.value < 0.0 && !(figure.value.abs() <= SURE * figure.std)
+    let is_sure = figure.std.is_nan() || figure.value.abs() > SURE * figure.std;
+    figure.value < 0.0 && is_sure
 }
 
 /// Judges a rigid axis. Friction counts against the larger of its parts.
@@ -131,6 +143,9 @@ pub fn rigid(axis: &Rigid) -> Judgement {
     }
     if axis.viscous.is_some_and(is_negative) {
         return Judgement::NegativeDamping;
+    }
+    if axis.rel_error > MISSED.max(NOISY * axis.noise_share) {
+        return Judgement::MoreThanNoise;
     }
     let mut times = excess(axis.mass, MASS);
     if let Some(coulomb) = axis.coulomb {
@@ -190,4 +205,26 @@ fn leaves_more_than_noise(axis: &Flexible) -> bool {
     let is_coloured = !axis.whiteness.is_white() && axis.rel_error > MISSED;
     let is_unsteady = !axis.steadiness.is_white() && axis.rel_error > UNSTEADY;
     missed > MISSED || is_coloured || is_unsteady
+}
+
+/// Judges a power model.
+#[must_use]
+pub fn power(model: &PowerModel) -> Judgement {
+    // A model that explains less than half of how the power changes is none.
+    let explains = model.r2_centered >= POWER_EXPLAINED && model.r2 >= POWER_EXPLAINED;
+    if !explains || model.mass.value <= 0.0 {
+        return Judgement::DoesNotFit;
+    }
+    if is_negative(model.viscous) || is_negative(model.coulomb) {
+        return Judgement::NegativeDamping;
+    }
+    let efficiency = if model.efficiency.std > 0.0 {
+        excess(model.efficiency, EFFICIENCY)
+    } else {
+        0.0
+    };
+    if model.peaks.peaks < PEAKS {
+        return longer(PEAKS as f64 / model.peaks.peaks.max(1) as f64);
+    }
+    longer(excess(model.mass, POWER_MASS).max(efficiency))
 }
