@@ -9,6 +9,7 @@ mod power_log;
 mod readers;
 mod refusals;
 mod rigid;
+mod rubbing;
 mod signals;
 mod verdicts;
 

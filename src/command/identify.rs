@@ -172,12 +172,18 @@ fn figures(heading: &Heading, found: &Found) -> AxisFigures {
             rigid.viscous.map(|f| f.value),
             rigid.coulomb.map(|f| f.value),
         ),
-        Found::Flexible(axis) => (axis.inertia.map_or(f64::NAN, |f| f.value), None, None),
+        Found::Flexible(axis) => (
+            axis.inertia.map_or(f64::NAN, |f| f.value),
+            axis.viscous.map(|f| f.value),
+            axis.coulomb.map(|f| f.value),
+        ),
     };
     let std_of = |figure: Option<Figure>| figure.map_or(0.0, |figure| figure.std);
     let std = match found {
         Found::Rigid(rigid) => Some([rigid.mass.std, std_of(rigid.viscous), std_of(rigid.coulomb)]),
-        Found::Flexible(axis) => axis.inertia.map(|figure| [figure.std, 0.0, 0.0]),
+        Found::Flexible(axis) => axis
+            .inertia
+            .map(|figure| [figure.std, std_of(axis.viscous), std_of(axis.coulomb)]),
     };
     AxisFigures {
         std,

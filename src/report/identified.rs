@@ -132,9 +132,11 @@ pub fn flexible_json(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut map = heading.start("flexible");
-    let [mass, ..] = heading.keys();
+    let [mass, viscous, coulomb, _] = heading.keys();
     map.insert("method".into(), json!(method));
     insert(&mut map, mass, axis.inertia);
+    insert(&mut map, viscous, axis.viscous);
+    insert(&mut map, coulomb, axis.coulomb);
     map.insert("gain".into(), number(Some(axis.transfer.gain)));
     map.insert("rel_error".into(), number(Some(axis.rel_error)));
     map.insert("zeros".into(), axis.zeros.iter().map(root).collect());
@@ -316,7 +318,7 @@ pub fn rigid_text(heading: &Heading, rigid: &Rigid) -> String {
 /// A flexible axis, for people.
 #[must_use]
 pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String {
-    let [mass, ..] = heading.units();
+    let [mass, viscous, force] = heading.units();
     let mut text = format!(
         "{}: axis {}, flexible ({method}), from {} to {}, {:.3} s\n",
         heading.recording, heading.axis, axis.signals.0, axis.signals.1, axis.seconds
@@ -324,6 +326,15 @@ pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String
     if let Some(inertia) = axis.inertia {
         let name = if heading.rotary { "inertia" } else { "mass" };
         let _ = writeln!(text, "  {name:<17} {} {mass}", shown(inertia));
+    }
+    let frictions = [
+        ("viscous friction", axis.viscous, viscous),
+        ("Coulomb friction", axis.coulomb, force),
+    ];
+    for (name, figure, unit) in frictions {
+        if let Some(figure) = figure {
+            let _ = writeln!(text, "  {name:<17} {} {unit}", shown(figure));
+        }
     }
     if axis.zeros.is_empty() {
         let _ = writeln!(text, "  anti-resonance    none");
@@ -374,7 +385,14 @@ pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String
         let _ = writeln!(text, "  this method gives no standard errors");
     }
     tail(&mut text, heading);
-    let _ = writeln!(text, "verdict: {}", judgement::flexible(axis));
+    let judgement = judgement::flexible(axis);
+    if axis.speed_is_summed && judgement != Judgement::Good {
+        let _ = writeln!(
+            text,
+            "  there is friction, and its speed is a sum of accelerations: record speed or position too"
+        );
+    }
+    let _ = writeln!(text, "verdict: {judgement}");
     text
 }
 
