@@ -11,6 +11,7 @@ mod marks;
 mod prices;
 mod sets;
 mod sizes;
+mod verdicts;
 mod ways;
 
 use std::fs::{self, File};

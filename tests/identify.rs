@@ -2,12 +2,16 @@
 
 mod accuracy;
 mod commanded;
+mod joined;
+mod layouts;
 mod positions;
 mod power_log;
 mod readers;
 mod refusals;
 mod rigid;
+mod rubbing;
 mod signals;
+mod verdicts;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -198,7 +202,6 @@ pub(crate) fn choice(method: Method) -> Choice {
     Choice {
         method,
         given: Given::default(),
-        decimation: Vec::new(),
         from_command: false,
     }
 }
@@ -411,6 +414,17 @@ fn in_a_closed_loop_the_excitation_is_the_instrument() {
     let error = inertia.value - 0.02;
     assert!(error.abs() < 4.0 * inertia.std, "{error} ± {}", inertia.std);
     assert!(inertia.std < 2e-4);
+}
+
+/// The published axis: force in N from the drive's voltage by the published constant.
+pub(crate) fn emps() -> Option<Recording> {
+    let path = shared("measured/emps/DATA_EMPS.csv")?;
+    let mut text = "time_s,force_n,position_m\n".to_owned();
+    for line in std::fs::read_to_string(path).unwrap().lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|x| x.trim().parse().unwrap()).collect();
+        writeln!(text, "{},{},{}", row[0], row[3] * 35.150_651_88, row[2]).unwrap();
+    }
+    Some(Recording::read(text.as_bytes(), None).unwrap())
 }
 
 /// Data of others next to the repository, if they are there.

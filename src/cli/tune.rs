@@ -17,7 +17,9 @@ Examples:
 
 Columns are named as for identify. With force or torque the axes' loops count as
 alike, but for --position-gain; from position_command_mm they are in the
-recording.";
+recording.
+
+Exit status 1: a verdict is not good, so that --into wrote nothing.";
 
 /// Arguments of `tune`.
 #[derive(Debug, Args)]
@@ -76,9 +78,13 @@ pub struct TuneArgs {
     /// Write a page that shows the responses, with sliders
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
-    /// Put zeros and filters into this machine file, and keep it as MACHINE.bak
+    /// Put zeros and filters into this machine file if the verdict on each recording is
+    /// good, and keep it as MACHINE.bak
     #[arg(long, value_name = "MACHINE")]
     pub into: Option<PathBuf>,
+    /// Put them there whatever the verdicts
+    #[arg(long, requires = "into")]
+    pub force: bool,
 }
 
 /// How a filter becomes digital.

@@ -1,24 +1,26 @@
 //! `gwatt identify`.
 
-use std::fs::File;
-use std::io::{self, BufReader, Write};
-use std::path::Path;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
-use gwatt::identify::flexible::{self, Choice, Flexible, Method};
-use gwatt::identify::merge::{self, AxisFigures, force_per_torque, six_digits};
+use anyhow::{Context, Result, bail, ensure};
+use gwatt::identify::flexible::{self, Flexible};
+use gwatt::identify::judgement;
+use gwatt::identify::merge::{self, AxisFigures, six_digits};
 use gwatt::identify::response_table::{self, ResponseFigures};
-use gwatt::identify::rigid::{self, Figure, Friction, Rigid};
+use gwatt::identify::rigid::{self, Figure, Rigid};
 use gwatt::identify::tune::Zero;
-use gwatt::identify::{Given, Kind, Quantity, Recording, TransferFunction};
+use gwatt::identify::{Judgement, Kind, Quantity, Recording, TransferFunction};
 use gwatt::report::{Heading, Verdict, flexible_json, flexible_text, rigid_json, rigid_text};
 
 use super::clash::refuse_clashes;
 use super::input::is_dash;
-use super::into::{Merged, axis_of};
+use super::into::{Merged, axis_of, written};
+use super::model_choice::ModelChoice;
 use super::output::{Spool, Target, print};
+use super::recorded::RecordingReader;
 use super::terminal::Terminal;
-use crate::cli::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
+use crate::cli::{IdentifyArgs, MethodArg};
 
 /// What was found.
 enum Found {
@@ -26,11 +28,22 @@ enum Found {
     Flexible(Box<Flexible>),
 }
 
+impl Found {
+    fn judged(&self) -> Judgement {
+        match self {
+            Self::Rigid(rigid) => judgement::rigid(rigid),
+            Self::Flexible(axis) => judgement::flexible(axis),
+        }
+    }
+}
+
 /// Identifies an axis.
 pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
     let axis = axis_of(args.axis)?;
     let letter = axis.letter() as char;
-    let inputs: Vec<&Path> = std::iter::once(&args.recording)
+    let inputs: Vec<&Path> = args
+        .recordings
+        .iter()
         .chain(&args.validate)
         .map(AsRef::as_ref)
         .collect();
@@ -40,116 +53,65 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
         .map(AsRef::as_ref)
         .collect();
     refuse_clashes(&inputs, &outputs)?;
-    let ratio = ratio(args)?;
-    let recording = open(&args.recording, letter, ratio)?;
-    let name = || args.recording.display().to_string();
-    let choice = choice(args)?;
-    let is_flexible =
-        args.model == Some(ModelArg::Flexible) || (args.model.is_none() && args.method.is_some());
-    let (found, validation) = if is_flexible {
-        let found = flexible::identify(&recording, &choice).with_context(name)?;
-        let validation = match &args.validate {
-            Some(path) => Some(
-                flexible::predict_error(&found, &open(path, letter, ratio)?, &choice)
-                    .with_context(|| path.display().to_string())?,
-            ),
-            None => None,
-        };
-        (Found::Flexible(Box::new(found)), validation)
-    } else {
-        let friction = match args.friction {
-            FrictionArg::Symmetric => Friction::Symmetric,
-            FrictionArg::Directional => Friction::Directional,
-        };
-        let found = rigid::fit(&recording, friction, args.bandwidth_hz).with_context(name)?;
-        let validation = match &args.validate {
-            Some(path) => Some(
-                rigid::predict_error(&found, &open(path, letter, ratio)?)
-                    .with_context(|| path.display().to_string())?,
-            ),
-            None => None,
-        };
-        (Found::Rigid(Box::new(found)), validation)
+    let model = ModelChoice::of(args)?;
+    let reader = RecordingReader::new(args, letter)?;
+    let recordings = args
+        .recordings
+        .iter()
+        .map(|path| reader.open(path))
+        .collect::<Result<Vec<_>>>()?;
+    let [recording, others @ ..] = recordings.as_slice() else {
+        bail!("there is no recording");
     };
-    let heading = heading(args, letter, &recording, validation);
+    ensure!(
+        others.is_empty() || matches!(model, ModelChoice::Rigid { .. }),
+        "several recordings are joined for a rigid axis alone: give one for a flexible axis"
+    );
+    ensure!(
+        others.iter().all(|other| kinds(other) == kinds(recording)),
+        "some of the recordings have force and motion, others torque or angles: join such of the same signals"
+    );
+    let second = match &args.validate {
+        Some(path) => Some((path, reader.open(path)?)),
+        None => None,
+    };
+    let name = || title(&args.recordings);
+    let (found, validation) = match &model {
+        ModelChoice::Rigid {
+            friction,
+            bandwidth_hz,
+        } => {
+            let found = rigid::fit_all(&recordings, *friction, *bandwidth_hz).with_context(name)?;
+            let error = second.map(|(path, other)| {
+                rigid::predict_error(&found, &other).with_context(|| path.display().to_string())
+            });
+            (Found::Rigid(Box::new(found)), error.transpose()?)
+        }
+        ModelChoice::Flexible(choice) => {
+            let found = flexible::identify(recording, choice).with_context(name)?;
+            let error = second.map(|(path, other)| {
+                flexible::predict_error(&found, &other, choice)
+                    .with_context(|| path.display().to_string())
+            });
+            (Found::Flexible(Box::new(found)), error.transpose()?)
+        }
+    };
+    let heading = heading(args, letter, recording, validation);
     deliver(args, &heading, &found, terminal)
 }
 
-/// Reads a recording; with `ratio` (N per N·m) what turns is referred to the slide.
-fn open(path: &Path, axis: char, ratio: Option<f64>) -> Result<Recording> {
-    let name = path.display();
-    let read = if is_dash(path) {
-        Recording::read(io::stdin().lock(), Some(axis))
-    } else {
-        let file =
-            File::open(path).with_context(|| format!("{name}: cannot read the recording"))?;
-        Recording::read(BufReader::new(file), Some(axis))
-    };
-    let mut recording = read.with_context(|| name.to_string())?;
-    if let Some(ratio) = ratio {
-        recording
-            .refer_to_slide(ratio)
-            .with_context(|| name.to_string())?;
-    }
-    Ok(recording)
-}
-
-/// N per N·m.
-fn ratio(args: &IdentifyArgs) -> Result<Option<f64>> {
-    let Some(lead_mm) = args.lead_mm else {
-        return Ok(None);
-    };
-    let ratio = force_per_torque(lead_mm, args.gear_ratio);
-    ensure!(
-        ratio.is_finite() && ratio > 0.0,
-        "--lead-mm and --gear-ratio must be positive"
-    );
-    Ok(Some(ratio))
-}
-
-/// How a flexible axis is estimated, where that is not given too.
-pub(super) fn method(asked: Option<MethodArg>) -> Method {
-    match asked {
-        None | Some(MethodArg::Iv) => Method::Iv,
-        Some(MethodArg::Arx) => Method::Arx,
-        Some(MethodArg::Frequency) => Method::Frequency,
-        Some(MethodArg::Subspace) => Method::Subspace,
+/// The recordings by name; many by their number.
+fn title(recordings: &[PathBuf]) -> String {
+    match recordings {
+        [one] => one.display().to_string(),
+        many => format!("{} recordings", many.len()),
     }
 }
 
-fn choice(args: &IdentifyArgs) -> Result<Choice> {
-    ensure!(
-        args.order.is_none_or(|order| order <= 12),
-        "--order is at most 12"
-    );
-    ensure!(
-        args.decimate
-            .iter()
-            .all(|factor| (1..=1000).contains(factor))
-            && args.decimate.len() <= 8,
-        "--decimate takes up to eight factors from 1 to 1000"
-    );
-    let delay_s = args.delay_ms.map(|ms| ms * 1e-3);
-    ensure!(
-        delay_s.is_none_or(|delay| (0.0..10.0).contains(&delay)),
-        "--delay-ms is not between 0 and 10000"
-    );
-    if let Some(hz) = args.bandwidth_hz {
-        ensure!(
-            hz.is_finite() && hz > 0.0,
-            "--bandwidth-hz {hz} is not positive"
-        );
-    }
-    Ok(Choice {
-        method: method(args.method),
-        given: Given {
-            order: args.order,
-            zeros: args.zeros,
-            delay_s,
-        },
-        decimation: args.decimate.clone(),
-        from_command: args.from_command,
-    })
+/// Whether force and motion slide or turn.
+fn kinds(recording: &Recording) -> [Option<Kind>; 2] {
+    let force = recording.get(Quantity::Force);
+    [force.map(|signal| signal.kind), motion(recording)]
 }
 
 fn heading(
@@ -162,7 +124,7 @@ fn heading(
         .get(Quantity::Force)
         .or_else(|| recording.get(Quantity::Excitation));
     let is_torque = force.is_some_and(|force| force.kind == Kind::Rotary);
-    let slides = motion_slides(recording);
+    let slides = motion(recording) == Some(Kind::Linear);
     let mut notes = Vec::new();
     if !recording.ignored.is_empty() {
         notes.push(format!(
@@ -170,6 +132,7 @@ fn heading(
             recording.ignored.join(", ")
         ));
     }
+    notes.extend(recording.notes.iter().cloned());
     let lever_is_missing = is_torque && slides;
     if lever_is_missing {
         notes.push(
@@ -177,7 +140,7 @@ fn heading(
         );
     }
     Heading {
-        recording: args.recording.display().to_string(),
+        recording: title(&args.recordings),
         axis,
         rotary: is_torque,
         validation,
@@ -186,7 +149,8 @@ fn heading(
     }
 }
 
-fn motion_slides(recording: &Recording) -> bool {
+/// Whether the motion slides or turns; `None` without one.
+fn motion(recording: &Recording) -> Option<Kind> {
     [
         Quantity::Acceleration,
         Quantity::Velocity,
@@ -194,12 +158,12 @@ fn motion_slides(recording: &Recording) -> bool {
     ]
     .into_iter()
     .find_map(|quantity| recording.get(quantity))
-    .is_some_and(|signal| signal.kind == Kind::Linear)
+    .map(|signal| signal.kind)
 }
 
 fn figures(heading: &Heading, found: &Found) -> AxisFigures {
     let gravity = match found {
-        Found::Rigid(rigid) => Some(rigid.offset),
+        Found::Rigid(rigid) => rigid.offset,
         Found::Flexible(_) => None,
     };
     let (mass, viscous, coulomb) = match found {
@@ -208,12 +172,18 @@ fn figures(heading: &Heading, found: &Found) -> AxisFigures {
             rigid.viscous.map(|f| f.value),
             rigid.coulomb.map(|f| f.value),
         ),
-        Found::Flexible(axis) => (axis.inertia.map_or(f64::NAN, |f| f.value), None, None),
+        Found::Flexible(axis) => (
+            axis.inertia.map_or(f64::NAN, |f| f.value),
+            axis.viscous.map(|f| f.value),
+            axis.coulomb.map(|f| f.value),
+        ),
     };
     let std_of = |figure: Option<Figure>| figure.map_or(0.0, |figure| figure.std);
     let std = match found {
         Found::Rigid(rigid) => Some([rigid.mass.std, std_of(rigid.viscous), std_of(rigid.coulomb)]),
-        Found::Flexible(axis) => axis.inertia.map(|figure| [figure.std, 0.0, 0.0]),
+        Found::Flexible(axis) => axis
+            .inertia
+            .map(|figure| [figure.std, std_of(axis.viscous), std_of(axis.coulomb)]),
     };
     AxisFigures {
         std,
@@ -232,12 +202,8 @@ fn deliver(
     found: &Found,
     terminal: Terminal,
 ) -> Result<Verdict> {
-    let method = match args.method {
-        None | Some(MethodArg::Iv) => "iv",
-        Some(MethodArg::Arx) => "arx",
-        Some(MethodArg::Frequency) => "frequency",
-        Some(MethodArg::Subspace) => "subspace",
-    };
+    let method = method_name(args.method);
+    let judged = found.judged();
     let figures = figures(heading, found);
     let usable = figures.mass.is_finite() && figures.mass > 0.0;
     // Everything is prepared before anything is put in place.
@@ -253,7 +219,7 @@ fn deliver(
             usable,
             "no mass was identified: there is nothing for --toml"
         );
-        spools.push(spooled(path, |out| toml(heading, &figures, out))?);
+        spools.push(spooled(path, |out| toml(heading, &figures, judged, out))?);
     }
     if let (Some(path), Found::Flexible(axis)) = (&args.response, found) {
         spools.push(spooled(path, |out| response(axis, out))?);
@@ -262,33 +228,13 @@ fn deliver(
         Found::Flexible(axis) => Some(response_figures(axis)),
         Found::Rigid(_) => None,
     };
+    let is_refused = args.into.is_some() && judged != Judgement::Good && !args.force;
     let merged = match &args.into {
-        Some(path) => {
-            ensure!(
-                usable || response.is_some(),
-                "no mass was identified: there is nothing for --into"
-            );
-            ensure!(
-                !heading.lever_is_missing,
-                "torque with a motion in metres: give --lead-mm, so that the machine file gets mass and force"
-            );
-            let axis = axis_of(heading.axis)?;
-            let merged = Merged::made(path, |name, text| {
-                let text = if usable {
-                    merge::into_machine(name, text, axis, &figures, None)?
-                } else {
-                    text.to_owned()
-                };
-                match response {
-                    Some(response) => {
-                        response_table::into_machine(name, &text, &[(axis, response)])
-                    }
-                    None => Ok(text),
-                }
-            })?;
+        Some(path) if !is_refused => {
+            let merged = merged(path, heading, &figures, usable, response)?;
             Some((path, merged))
         }
-        None => None,
+        _ => None,
     };
     let text = match found {
         Found::Rigid(rigid) => rigid_text(heading, rigid),
@@ -301,6 +247,11 @@ fn deliver(
         merged.deliver(path, terminal)?;
         if figures.has_weight() {
             terminal.note("the offset went into the file as weight: take it out there if it is a bias of the sensor");
+        }
+        if let Found::Rigid(rigid) = found
+            && rigid.constant.is_some()
+        {
+            terminal.note("Coulomb friction and weight in the file are as they were: motion one way determines their sum alone");
         }
     }
     for note in &heading.notes {
@@ -315,7 +266,46 @@ fn deliver(
     } else {
         print(|out| out.write_all(text.as_bytes()))?;
     }
-    Ok(Verdict::Fits)
+    Ok(written(args.into.as_deref(), is_refused, terminal))
+}
+
+fn method_name(method: Option<MethodArg>) -> &'static str {
+    match method {
+        None | Some(MethodArg::Iv) => "iv",
+        Some(MethodArg::Arx) => "arx",
+        Some(MethodArg::Frequency) => "frequency",
+        Some(MethodArg::Subspace) => "subspace",
+    }
+}
+
+/// The machine file with what was found.
+fn merged(
+    path: &Path,
+    heading: &Heading,
+    figures: &AxisFigures,
+    usable: bool,
+    response: Option<ResponseFigures>,
+) -> Result<Merged> {
+    ensure!(
+        usable || response.is_some(),
+        "no mass was identified: there is nothing for --into"
+    );
+    ensure!(
+        !heading.lever_is_missing,
+        "torque with a motion in metres: give --lead-mm, so that the machine file gets mass and force"
+    );
+    let axis = axis_of(heading.axis)?;
+    Merged::made(path, |name, text| {
+        let text = if usable {
+            merge::into_machine(name, text, axis, figures, None)?
+        } else {
+            text.to_owned()
+        };
+        match response {
+            Some(response) => response_table::into_machine(name, &text, &[(axis, response)]),
+            None => Ok(text),
+        }
+    })
 }
 
 /// What goes into the machine file of a flexible axis: from the command all, from
@@ -344,7 +334,15 @@ fn spooled(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
     Ok(spool)
 }
 
-fn toml(heading: &Heading, figures: &AxisFigures, out: &mut dyn Write) -> io::Result<()> {
+fn toml(
+    heading: &Heading,
+    figures: &AxisFigures,
+    judged: Judgement,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    if judged != Judgement::Good {
+        writeln!(out, "# not to be relied on: {judged}")?;
+    }
     let keys = if heading.rotary {
         ["inertia_kg_m2", "viscous_nm_s_rad", "friction_nm"]
     } else {

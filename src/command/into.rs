@@ -9,6 +9,7 @@ use gwatt::identify::Outcome;
 use gwatt::identify::merge::{AxisFigures, into_machine};
 use gwatt::identify::response_table::{self, ResponseFigures};
 use gwatt::machine::AxisId;
+use gwatt::report::Verdict;
 
 use super::output::{Spool, Target, back_up};
 use super::terminal::Terminal;
@@ -23,6 +24,19 @@ pub fn axis_of(letter: char) -> Result<AxisId> {
         .ok()
         .and_then(AxisId::from_letter)
         .with_context(|| format!("{letter} is no axis; there are X Y Z A B C U V W"))
+}
+
+/// The verdict of a run that was to write into a machine file. Where it did not, since
+/// what was found is not good, a note says so.
+pub fn written(path: Option<&Path>, is_refused: bool, terminal: Terminal) -> Verdict {
+    let Some(path) = path.filter(|_| is_refused) else {
+        return Verdict::Fits;
+    };
+    terminal.note(format_args!(
+        "{} is as it was, since the verdict is not good; --force writes all the same",
+        path.display()
+    ));
+    Verdict::DoesNotFit
 }
 
 /// A result on its way into a machine file.

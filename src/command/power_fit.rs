@@ -7,11 +7,12 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use gwatt::identify::merge::AxisFigures;
 use gwatt::identify::power_fit::{PowerLog, PowerModel, fit};
+use gwatt::identify::{Judgement, judgement};
 use gwatt::report::{Heading, Verdict, margin, power_model_json, power_model_text};
 
 use super::clash::refuse_clashes;
 use super::input::is_dash;
-use super::into::{Merged, axis_of};
+use super::into::{Merged, axis_of, written};
 use super::output::{Target, print};
 use super::terminal::Terminal;
 use crate::cli::PowerFitArgs;
@@ -57,12 +58,14 @@ pub fn run(args: &PowerFitArgs, terminal: Terminal) -> Result<Verdict> {
         }
         None => None,
     };
+    let judged = judgement::power(&model);
+    let is_refused = args.into.is_some() && judged != Judgement::Good && !args.force;
     let merged = match &args.into {
-        Some(path) => {
+        Some(path) if !is_refused => {
             let merged = Merged::new(path, axis, &figures(&log, &model), Some(margin(&model)))?;
             Some((path, merged))
         }
-        None => None,
+        _ => None,
     };
     if let Some(spool) = json {
         spool.deliver()?;
@@ -79,7 +82,7 @@ pub fn run(args: &PowerFitArgs, terminal: Terminal) -> Result<Verdict> {
     } else {
         print(|out| out.write_all(text.as_bytes()))?;
     }
-    Ok(Verdict::Fits)
+    Ok(written(args.into.as_deref(), is_refused, terminal))
 }
 
 fn figures(log: &PowerLog, model: &PowerModel) -> AxisFigures {
@@ -90,6 +93,6 @@ fn figures(log: &PowerLog, model: &PowerModel) -> AxisFigures {
         coulomb: Some(model.coulomb.value),
         gravity: None,
         std: Some([model.mass, model.viscous, model.coulomb].map(|figure| figure.std)),
-        efficiency: (model.efficiency < 1.0).then_some(model.efficiency),
+        efficiency: Some(model.efficiency.value),
     }
 }

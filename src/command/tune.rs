@@ -10,15 +10,15 @@ use gwatt::identify::response_table::ResponseFigures;
 use gwatt::identify::tune::{
     AxisResponse, Discretization, Parameters, Tuned, Wish, excited, of_recording,
 };
-use gwatt::identify::{Given, Recording};
+use gwatt::identify::{Given, Judgement, Recording};
 use gwatt::machine::AxisId;
 use gwatt::report::{Verdict, sections_csv, tune_page, tuned_json, tuned_text};
 use rayon::prelude::*;
 
 use super::clash::refuse_clashes;
-use super::identify::method;
 use super::input::is_dash;
-use super::into::{Merged, axis_of};
+use super::into::{Merged, axis_of, written};
+use super::model_choice::method;
 use super::output::{Spool, Target, print};
 use super::terminal::Terminal;
 use crate::cli::{DiscretizeArg, TuneArgs};
@@ -247,7 +247,6 @@ fn choice(args: &TuneArgs) -> Result<Choice> {
             order: args.order,
             ..Given::default()
         },
-        decimation: Vec::new(),
         from_command: args.from_command,
     })
 }
@@ -268,9 +267,11 @@ fn deliver(args: &TuneArgs, tuned: &Tuned, terminal: Terminal) -> Result<Verdict
     if let Some(path) = &args.html {
         spools.push(spooled(path, |out| tune_page(tuned, out))?);
     }
+    let is_good = |axis: &AxisResponse| axis.judgement.is_none_or(|it| it == Judgement::Good);
+    let is_refused = args.into.is_some() && !args.force && !tuned.axes.iter().all(is_good);
     let merged = match &args.into {
-        Some(path) => Some((path, Merged::responses(path, &figures(tuned)?)?)),
-        None => None,
+        Some(path) if !is_refused => Some((path, Merged::responses(path, &figures(tuned)?)?)),
+        _ => None,
     };
     let text = tuned_text(tuned);
     for spool in spools {
@@ -285,7 +286,7 @@ fn deliver(args: &TuneArgs, tuned: &Tuned, terminal: Terminal) -> Result<Verdict
     } else {
         print(|out| out.write_all(text.as_bytes()))?;
     }
-    Ok(Verdict::Fits)
+    Ok(written(args.into.as_deref(), is_refused, terminal))
 }
 
 fn spooled(

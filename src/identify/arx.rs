@@ -5,7 +5,6 @@
 //! excitation of a closed loop makes of the input.
 
 use super::discrete::Discrete;
-use super::filter::low_pass;
 use super::normal::Normal;
 
 /// Samples on which a model is fitted, at most.
@@ -100,19 +99,4 @@ pub fn undisturbed(excitation: &[f64], input: &[f64]) -> Option<Vec<f64>> {
         let is_sane = out.iter().all(|u| u.is_finite() && u.abs() < 20.0 * size);
         is_sane.then_some(out)
     })
-}
-
-/// Filters and thins a signal in stages, each by its factor.
-#[must_use]
-pub fn decimate(x: &[f64], stages: &[usize], period_s: f64) -> Vec<f64> {
-    let mut x = x.to_vec();
-    let mut period_s = period_s;
-    for factor in stages.iter().filter(|factor| **factor > 1) {
-        x = low_pass(&x, 0.4 / (period_s * *factor as f64), period_s)
-            .into_iter()
-            .step_by(*factor)
-            .collect();
-        period_s *= *factor as f64;
-    }
-    x
 }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::header_name::plain;
+
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
@@ -124,7 +126,7 @@ pub enum Reading {
 /// letter may stand in front.
 #[must_use]
 pub fn read(name: &str) -> Reading {
-    let name = name.trim().to_ascii_lowercase();
+    let name = plain(name);
     let bare = match name.split_once('_') {
         Some((letter, rest)) if letter.len() == 1 && letter != "t" => rest,
         _ => name.as_str(),
@@ -154,10 +156,27 @@ pub fn read(name: &str) -> Reading {
     Reading::Other
 }
 
+/// The quantity of a word such as `torque`, without a unit.
+#[must_use]
+pub fn quantity_of(word: &str) -> Option<Quantity> {
+    let word = word.to_ascii_lowercase();
+    let found = WORDS.iter().find(|(known, _, _)| *known == word);
+    found.map(|(_, quantity, _)| *quantity)
+}
+
+/// Kind and factor to SI of a unit, by its suffix.
+#[must_use]
+pub fn unit_of(quantity: Quantity, suffix: &str) -> Option<(Kind, f64)> {
+    let (_, _, units) = WORDS.iter().find(|(_, known, _)| *known == quantity)?;
+    let found = units.iter().find(|(known, _, _)| *known == suffix);
+    found.map(|(_, kind, to_si)| (*kind, *to_si))
+}
+
 /// The axis letter in front of a name, upper case.
 #[must_use]
 pub fn axis_of(name: &str) -> Option<char> {
-    let (letter, _) = name.trim().split_once('_')?;
+    let name = plain(name);
+    let (letter, _) = name.split_once('_')?;
     let mut chars = letter.chars();
     let first = chars.next()?.to_ascii_uppercase();
     (chars.next().is_none() && "XYZABCUVWE".contains(first)).then_some(first)

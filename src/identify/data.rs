@@ -10,6 +10,9 @@ const LEAD_IN: usize = 16;
 pub struct Data<'a> {
     /// Input, held between samples.
     pub input: &'a [f64],
+    /// What acts against the input besides, each by a factor that is estimated: speeds
+    /// of viscous friction, signs of Coulomb friction.
+    pub friction: &'a [Vec<f64>],
     /// Output; differences of it where a speed or position was measured.
     pub output: &'a [f64],
     /// What the excitation alone makes of the input, in a closed loop.
@@ -35,6 +38,7 @@ pub struct Data<'a> {
 /// model between them as it is.
 pub struct Signals {
     pub input: Vec<f64>,
+    pub friction: Vec<Vec<f64>>,
     pub output: Vec<f64>,
     pub undisturbed: Option<Vec<f64>>,
 }
@@ -45,6 +49,7 @@ impl Signals {
     pub fn behind(data: &Data<'_>, filter: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Self {
             input: filter(data.input),
+            friction: data.friction.iter().map(|x| filter(x)).collect(),
             output: filter(data.output),
             undisturbed: data.undisturbed.map(filter),
         }
@@ -55,6 +60,7 @@ impl Signals {
     pub fn data<'a>(&'a self, data: &Data<'a>) -> Data<'a> {
         Data {
             input: &self.input,
+            friction: &self.friction,
             output: &self.output,
             undisturbed: self.undisturbed.as_deref(),
             ..*data

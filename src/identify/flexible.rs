@@ -1,50 +1,24 @@
 //! Flexible axes: from a recording to resonances and anti-resonances.
 
 use super::arx;
-use super::column::Quantity;
-use super::command_input::CommandInput;
 use super::data::Data;
 use super::disturbance::as_it_is;
 use super::leaky::Leaky;
 use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
-use super::neighbours::{FAST, Given};
+use super::neighbours::FAST;
 use super::noise::Whiteness;
 use super::output_error::residuals;
 use super::parameters::parameters;
-use super::quality;
+use super::prepared::{Prepared, prepare};
 use super::recording::Recording;
 use super::rigid::Figure;
+use super::rubbing::{Rubbing, Term};
 use super::search::{LAGS, filtered};
-use super::spectrum::{FrequencyResponse, excited_rad_s};
-use super::state_space::Measured;
+use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
 use super::transfer::{Factor, TransferFunction};
 use super::trouble::{Outcome, Trouble};
 
-/// How the transfer function is estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// Instrumental variables.
-    Iv,
-    /// Plain least squares.
-    Arx,
-    /// Through the averaged frequency response.
-    Frequency,
-    /// Subspaces (MOESP).
-    Subspace,
-}
-
-/// What may be chosen.
-#[derive(Debug, Clone)]
-pub struct Choice {
-    /// The method.
-    pub method: Method,
-    /// What is given instead of searched for.
-    pub given: Given,
-    /// Factors by which the signals are decimated first, one a stage.
-    pub decimation: Vec<usize>,
-    /// The position command is the input, though a force is recorded.
-    pub from_command: bool,
-}
+pub use super::choice::{Choice, Method};
 
 /// A resonance or anti-resonance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +45,12 @@ pub struct Flexible {
     pub unclear_zeros: Vec<Root>,
     /// Resonances.
     pub poles: Vec<Root>,
+    /// Viscous friction; absent where the recording shows none.
+    pub viscous: Option<Figure>,
+    /// Coulomb friction; absent where the recording shows none.
+    pub coulomb: Option<Figure>,
+    /// Whether the speed that friction goes with is a sum of accelerations.
+    pub speed_is_summed: bool,
     /// Delay; from a command that is held, its half period of holding too.
     pub delay_s: Figure,
     /// The delay that was fitted, s: from a command it is longer by half a
@@ -83,6 +63,12 @@ pub struct Flexible {
     pub whiteness: Whiteness,
     /// Order of that filter; 0 for white noise.
     pub noise_order: usize,
+    /// Which share of what is left the input explains, as any linear system could: what
+    /// the model misses of the axis, where the rest is noise.
+    pub missed_share: f64,
+    /// Whiteness of the squares of what is left: noise of one strength has it, what comes
+    /// and goes with the motion has not.
+    pub steadiness: Whiteness,
     /// What leaky integrators lose from sample to sample, through which a position or
     /// speed and the force went to be compared; 0 without them.
     pub leak: f64,
@@ -108,166 +94,39 @@ const UNCLEAR: f64 = 0.1;
 /// Zeros farther beyond the band do not count as anti-resonances.
 const BEYOND: f64 = 1.05;
 
-/// Input and output as they are fitted.
-pub(super) struct Prepared {
-    input: Vec<f64>,
-    output: Vec<f64>,
-    pub(super) excitation: Option<Vec<f64>>,
-    measured: Measured,
-    period_s: f64,
-    is_force: bool,
-    positions: bool,
-    /// By how much the fitted delay is longer than that of the load, s: what the
-    /// input was taken early, less what made it late.
-    early_s: f64,
-    names: (String, String),
-}
-
-fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepared> {
-    let t = recording.period_s;
-    let help = "excite the axis: gwatt excite makes signals";
-    let force = recording
-        .get(Quantity::Force)
-        .or_else(|| recording.get(Quantity::Excitation))
-        .filter(|_| !choice.from_command);
-    let command = recording.get(Quantity::Command);
-    let (input_signal, is_force) = match (force, command) {
-        (Some(force), _) => (force, true),
-        (None, Some(command)) => (command, false),
-        (None, None) => {
-            return Err(Trouble::new(
-                "there is neither torque nor force nor a position command in the recording",
-                "add a column torque_nm, force_n, or position_command_mm",
-            ));
-        }
-    };
-    quality::moves(input_signal, help)?;
-    // A command that stands at the end of its stroke is meant to.
-    if is_force {
-        quality::not_saturated(input_signal)?;
-    }
-    let pick = |quantity| recording.get(quantity);
-    let (output_signal, measured) = pick(Quantity::Acceleration)
-        .map(|s| (s, Measured::Direct))
-        .or_else(|| pick(Quantity::Velocity).map(|s| (s, Measured::Velocity)))
-        .or_else(|| pick(Quantity::Position).map(|s| (s, Measured::Position)))
-        .ok_or_else(|| {
-            Trouble::new(
-                "there is no motion in the recording",
-                "add the load's acceleration, speed or position, such as accel_m_s2",
-            )
-        })?;
-    quality::moves(output_signal, help)?;
-    if measured == Measured::Direct {
-        quality::not_saturated(output_signal)?;
-    }
-    // From a command both sides are differenced as often as the noise of what was
-    // measured stays white: positions not at all. The plain methods know held
-    // inputs only.
-    let command = if choice.method == Method::Iv && choice.decimation.is_empty() {
-        CommandInput::spline
-    } else {
-        CommandInput::held
-    };
-    let (input, output, runs, late_s) = if is_force {
-        let input = input_signal.values.clone();
-        let output = differences(&output_signal.values, measured, t);
-        (input, output, measured, 0.0)
-    } else {
-        let command = command(&input_signal.values, measured, t);
-        let output = output_signal.values.clone();
-        (command.values, output, command.runs, command.late_s)
-    };
-    let excitation = pick(Quantity::Excitation)
-        .filter(|signal| is_force && signal.name != input_signal.name)
-        .map(|signal| signal.values.clone());
-    let positions = !is_force && measured == Measured::Position;
-    let mut prepared = Prepared {
-        input,
-        output,
-        excitation,
-        measured: runs,
-        period_s: t,
-        is_force,
-        positions,
-        early_s: 0.0,
-        names: (input_signal.name.clone(), output_signal.name.clone()),
-    };
-    decimate(&mut prepared, &choice.decimation);
-    if !is_force {
-        // A command that runs on between samples is half a period ahead of one that
-        // is held: taken early, it comes late in either case.
-        let late_s = late_s + 0.5 * (prepared.period_s - t);
-        let lead = libm::ceil(late_s / prepared.period_s + 0.5 - 1e-9);
-        take_early(&mut prepared.input, lead as usize);
-        prepared.early_s = lead * prepared.period_s - late_s;
-    }
-    if prepared.input.len() < 256 {
-        return Err(Trouble::new(
-            format!(
-                "the recording is too short: {} samples",
-                prepared.input.len()
-            ),
-            "record some seconds: 4 s at 1 kHz are usual",
-        ));
-    }
-    Ok(prepared)
-}
-
-fn decimate(prepared: &mut Prepared, stages: &[usize]) {
-    let factor: usize = stages.iter().product();
-    if factor <= 1 {
-        return;
-    }
-    let t = prepared.period_s;
-    prepared.input = arx::decimate(&prepared.input, stages, t);
-    prepared.output = arx::decimate(&prepared.output, stages, t);
-    prepared.excitation = prepared
-        .excitation
-        .as_ref()
-        .map(|r| arx::decimate(r, stages, t));
-    prepared.measured = Measured::Direct;
-    prepared.period_s *= factor as f64;
-}
-
-/// Moves a signal so many samples forward; its end goes on as it was.
-fn take_early(x: &mut [f64], samples: usize) {
-    let samples = samples.min(x.len());
-    x.copy_within(samples.., 0);
-    let known = x.len() - samples;
-    let (kept, end) = x.split_at_mut(known);
-    end.fill(kept.last().copied().unwrap_or_default());
-}
-
-/// Differences that stand for the acceleration; the first ones, for which there
-/// are no samples before, are 0.
-fn differences(x: &[f64], measured: Measured, period_s: f64) -> Vec<f64> {
-    match measured {
-        Measured::Direct => x.to_vec(),
-        Measured::Velocity => std::iter::once(0.0)
-            .chain(
-                x.iter()
-                    .zip(x.iter().skip(1))
-                    .map(|(a, b)| (b - a) / period_s),
-            )
-            .collect(),
-        Measured::Position => [0.0, 0.0]
-            .into_iter()
-            .chain(x.windows(3).map(|w| {
-                let sum: f64 = w.iter().zip([1.0, -2.0, 1.0]).map(|(x, k)| x * k).sum();
-                sum / (period_s * period_s)
-            }))
-            .collect(),
-    }
-}
-
-/// Identifies a flexible axis.
+/// Identifies a flexible axis. Where slow motion shows friction, that is a term of the
+/// model (instrumental variables alone).
 ///
 /// # Errors
 ///
 /// What keeps the recording from being used, or a model from being found.
 pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
-    let prepared = prepare(recording, choice)?;
+    let mut prepared = prepare(recording, choice)?;
+    let may_rub = choice.method == Method::Iv && prepared.is_force;
+    if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
+        let force = prepared.input.clone();
+        rubbing.take_off(&mut prepared.input);
+        let found = identified(&prepared, choice, &rubbing);
+        if let Ok(found) = found
+            && [found.viscous, found.coulomb]
+                .iter()
+                .flatten()
+                .any(is_clear)
+        {
+            return Ok(found);
+        }
+        prepared.input = force;
+    }
+    identified(&prepared, choice, &Rubbing::default())
+}
+
+/// Whether there is something for sure.
+fn is_clear(figure: &Figure) -> bool {
+    const CLEAR: f64 = 3.0;
+    figure.value > CLEAR * figure.std
+}
+
+fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
     let mut choice = choice.clone();
     let searches = matches!(choice.method, Method::Iv | Method::Frequency);
     let whole_s = libm::ceil(prepared.early_s / prepared.period_s) * prepared.period_s;
@@ -284,6 +143,7 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     };
     let data = Data {
         input: &prepared.input,
+        friction: &rubbing.inputs,
         output: &prepared.output,
         undisturbed: undisturbed.as_deref(),
         period_s: prepared.period_s,
@@ -295,10 +155,10 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         leak: 0.0,
     };
     let find = |choice: &Choice| match choice.method {
-        Method::Iv => by_search(&data, &prepared, choice),
-        Method::Frequency => by_response(&data, &prepared, choice),
-        Method::Arx => by_arx(&data, &prepared, choice),
-        Method::Subspace => by_subspace(&data, &prepared, choice),
+        Method::Iv => by_search(&data, prepared, choice),
+        Method::Frequency => by_response(&data, prepared, choice),
+        Method::Arx => by_arx(&data, prepared, choice),
+        Method::Subspace => by_subspace(&data, prepared, choice),
     };
     let found = find(&choice);
     let found = found.ok_or_else(|| {
@@ -307,7 +167,26 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
             "check units and signs of the columns, excite longer, or give --order",
         )
     })?;
-    describe(found, &data, &prepared)
+    let friction = found.estimate.friction.clone();
+    let mut described = describe(found, &data, prepared)?;
+    described.speed_is_summed = rubbing.terms.contains(&Term::Drift);
+    let figures = friction.iter().zip(&rubbing.about).zip(&rubbing.terms);
+    for ((found, about), term) in figures {
+        let figure = Some(Figure {
+            value: about + found.value,
+            std: found.std,
+        });
+        match term {
+            Term::Viscous => described.viscous = figure,
+            Term::Coulomb => described.coulomb = figure,
+            Term::Drift => {}
+        }
+    }
+    // A force is held while the friction changes: which speed of a sample it had is open.
+    if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
+        inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
+    }
+    Ok(described)
 }
 
 /// Norm of what is left by norm of the output, means taken off.
@@ -342,37 +221,17 @@ fn told(data: &Data<'_>, response: &FrequencyResponse) -> (f64, f64) {
     (shown, highest)
 }
 
-fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
-    let leaky = found.noise.held(data);
-    let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
-    let estimate = &found.estimate;
-    let mut transfer = estimate.transfer.clone();
-    let fitted_delay_s = transfer.delay_s;
-    let left = residuals(&compared, estimate).unwrap_or_default();
-    let mut rel_error = share(&compared, &left);
-    if leaky.is_some() {
-        let plain = as_it_is(data, &transfer).and_then(|plain| residuals(data, &plain));
-        rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
-    }
-    let std = |index: usize| {
-        if found.has_errors {
-            estimate.std(index).unwrap_or(f64::NAN)
-        } else {
-            f64::NAN
-        }
-    };
-    let gain = transfer.gain;
-    if gain == 0.0 || !gain.is_finite() {
-        return Err(Trouble::new(
-            "the axis does not answer the input",
-            "check that input and motion are of the same axis and the same time",
-        ));
-    }
+/// Zeros, zeros that are not clear, and poles that swing, in ascending order: up to these
+/// limits (rad/s) of zeros and of poles. `std` gives the standard error of a parameter.
+fn roots_of(
+    transfer: &TransferFunction,
+    (shown, highest): (f64, f64),
+    std: impl Fn(usize) -> f64,
+) -> [Vec<Root>; 3] {
     let mut at = 1;
     let mut zeros = Vec::new();
     let mut unclear_zeros = Vec::new();
     let mut poles = Vec::new();
-    let (shown, highest) = told(data, &found.response);
     for (index, factor) in transfer.zeros.iter().chain(&transfer.poles).enumerate() {
         if let Factor::Pair {
             omega_rad_s,
@@ -406,6 +265,45 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     for list in [&mut zeros, &mut unclear_zeros, &mut poles] {
         list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
     }
+    [zeros, unclear_zeros, poles]
+}
+
+fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
+    let leaky = found.noise.held(data);
+    let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
+    let estimate = &found.estimate;
+    let mut transfer = estimate.transfer.clone();
+    let fitted_delay_s = transfer.delay_s;
+    let left = residuals(&compared, estimate).unwrap_or_default();
+    let mut rel_error = share(&compared, &left);
+    if leaky.is_some() {
+        let plain = as_it_is(data, &transfer).and_then(|plain| residuals(data, &plain));
+        rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
+    }
+    let std = |index: usize| {
+        if found.has_errors {
+            estimate.std(index).unwrap_or(f64::NAN)
+        } else {
+            f64::NAN
+        }
+    };
+    let gain = transfer.gain;
+    if gain == 0.0 || !gain.is_finite() {
+        return Err(Trouble::new(
+            "the axis does not answer the input",
+            "check that input and motion are of the same axis and the same time",
+        ));
+    }
+    let bands = told(data, &found.response);
+    let [zeros, unclear_zeros, poles] = roots_of(&transfer, bands, std);
+    let known = data.undisturbed.unwrap_or(compared.input);
+    let missed_share = explained_share(
+        known.get(data.skip()..).unwrap_or_default(),
+        &left,
+        data.period_s,
+    );
+    let white = filtered(&left, &found.noise.taps);
+    let squares: Vec<f64> = white.iter().map(|x| x * x).collect();
     let delay_std = if found.delay_is_free {
         // Where other parameters can take its place, it is no longer straight.
         let alone = std(parameters(&transfer, true).len() - 1);
@@ -423,12 +321,17 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         zeros,
         unclear_zeros,
         poles,
+        viscous: None,
+        coulomb: None,
+        speed_is_summed: false,
         delay_s: Figure {
             value: transfer.delay_s,
             std: delay_std,
         },
         rel_error,
-        whiteness: Whiteness::of(&filtered(&left, &found.noise.taps), LAGS),
+        whiteness: Whiteness::of(&white, LAGS),
+        missed_share,
+        steadiness: Whiteness::of(&squares, LAGS),
         noise_order: found.noise.taps.len(),
         leak: found.noise.leak,
         response: found.response,
@@ -447,9 +350,18 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
 ///
 /// When that recording cannot be used.
 pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Outcome<f64> {
-    let prepared = prepare(other, choice)?;
+    let mut prepared = prepare(other, choice)?;
+    let value = |figure: Option<Figure>| figure.map(|figure| figure.value);
+    let figures = [
+        (Term::Viscous, value(model.viscous)),
+        (Term::Coulomb, value(model.coulomb)),
+    ];
+    if let Some(rubbing) = Rubbing::known(other, figures) {
+        rubbing.take_off(&mut prepared.input);
+    }
     let data = Data {
         input: &prepared.input,
+        friction: &[],
         output: &prepared.output,
         undisturbed: None,
         period_s: prepared.period_s,

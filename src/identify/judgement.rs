@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::flexible::{Flexible, Root};
+use super::power_fit::PowerModel;
 use super::rigid::{Figure, Rigid};
 
 /// A plain word.
@@ -19,6 +20,15 @@ pub enum Judgement {
     TooNoisyForDamping,
     /// The axis resonates: the rigid model holds for slow motion only.
     NotRigid,
+    /// The model explains the recording with a negative mass: force and motion are
+    /// counted in opposite directions.
+    Reversed,
+    /// A damping or a viscous friction comes out clearly negative.
+    NegativeDamping,
+    /// What is left is more than noise, and too much of the whole.
+    MoreThanNoise,
+    /// The method gives no standard errors.
+    NoErrors,
     /// The model does not explain the recording.
     DoesNotFit,
 }
@@ -32,6 +42,10 @@ impl Judgement {
             Self::ExciteLonger { .. } => "excite longer",
             Self::TooNoisyForDamping => "too noisy for damping",
             Self::NotRigid => "not rigid",
+            Self::Reversed => "reversed",
+            Self::NegativeDamping => "negative damping",
+            Self::MoreThanNoise => "more than noise is left",
+            Self::NoErrors => "no standard errors",
             Self::DoesNotFit => "the model does not fit",
         }
     }
@@ -47,7 +61,21 @@ impl fmt::Display for Judgement {
             Self::NotRigid => f.write_str(
                 "not rigid: it resonates within the band; take --model flexible, or a --bandwidth-hz well below",
             ),
-            other => f.write_str(other.word()),
+            Self::Reversed => f.write_str(
+                "reversed: force and motion are counted in opposite directions; give --reverse if all else is right",
+            ),
+            Self::NegativeDamping => f.write_str(
+                "negative damping: no axis has it; the model stands for something else, such as friction, backlash or another mode",
+            ),
+            Self::MoreThanNoise => f.write_str(
+                "more than noise is left: the model misses something, such as friction, cogging, backlash or another mode",
+            ),
+            Self::NoErrors => f.write_str(
+                "no standard errors: this method gives none; compare it with --method iv",
+            ),
+            other @ (Self::Good | Self::TooNoisyForDamping | Self::DoesNotFit) => {
+                f.write_str(other.word())
+            }
         }
     }
 }
@@ -59,8 +87,26 @@ const FREQUENCY: f64 = 0.01;
 const DAMPING: f64 = 0.1;
 /// More than this many times the length nobody records.
 const TIMES_MAX: f64 = 30.0;
+/// Relative standard errors of a power model from which on it is no good, and how much it
+/// must explain of the power's square.
+const POWER_MASS: f64 = 0.05;
+const EFFICIENCY: f64 = 0.05;
+const POWER_EXPLAINED: f64 = 0.5;
+/// Peaks by which a factor for peaks is found, at least.
+const PEAKS: usize = 5;
 /// What a model leaves unexplained, at most.
 const REL_ERROR: f64 = 0.5;
+/// The same of a flexible axis, of which single samples are compared.
+const REL_ERROR_FLEXIBLE: f64 = 0.9;
+/// What may be left besides noise, as a share of the whole.
+const MISSED: f64 = 0.1;
+/// So many times as much as noise would leave is more than noise: noise of a sensor is
+/// as strong above the band as within, or stronger.
+const NOISY: f64 = 2.0;
+/// What may be left where what is left comes and goes.
+const UNSTEADY: f64 = 0.3;
+/// Standard errors from which on a sign is sure.
+const SURE: f64 = 3.0;
 
 fn excess(figure: Figure, limit: f64) -> f64 {
     let share = figure.std / figure.value.abs().max(f64::MIN_POSITIVE) / limit;
@@ -77,14 +123,29 @@ fn longer(times: f64) -> Judgement {
     }
 }
 
+/// Whether a figure is below zero for sure; one without an error, by more than nothing.
+fn is_negative(figure: Figure) -> bool {
+    let is_sure = figure.std.is_nan() || figure.value.abs() > SURE * figure.std;
+    figure.value < 0.0 && is_sure
+}
+
 /// Judges a rigid axis. Friction counts against the larger of its parts.
 #[must_use]
 pub fn rigid(axis: &Rigid) -> Judgement {
     if axis.mass.value > 0.0 && axis.resonates {
         return Judgement::NotRigid;
     }
+    if is_negative(axis.mass) && axis.rel_error <= REL_ERROR {
+        return Judgement::Reversed;
+    }
     if axis.mass.value <= 0.0 || axis.rel_error > REL_ERROR {
         return Judgement::DoesNotFit;
+    }
+    if axis.viscous.is_some_and(is_negative) {
+        return Judgement::NegativeDamping;
+    }
+    if axis.rel_error > MISSED.max(NOISY * axis.noise_share) {
+        return Judgement::MoreThanNoise;
     }
     let mut times = excess(axis.mass, MASS);
     if let Some(coulomb) = axis.coulomb {
@@ -100,11 +161,28 @@ pub fn rigid(axis: &Rigid) -> Judgement {
 /// Judges a flexible axis.
 #[must_use]
 pub fn flexible(axis: &Flexible) -> Judgement {
-    if axis.rel_error > 0.9 || axis.inertia.is_some_and(|j| j.value <= 0.0) {
+    if axis.transfer.gain < 0.0 && axis.rel_error <= REL_ERROR {
+        let is_sure = axis.inertia.is_none_or(is_negative);
+        return if is_sure {
+            Judgement::Reversed
+        } else {
+            Judgement::DoesNotFit
+        };
+    }
+    if axis.transfer.gain <= 0.0 || axis.rel_error > REL_ERROR_FLEXIBLE {
         return Judgement::DoesNotFit;
     }
     let zeros = || axis.zeros.iter().chain(&axis.unclear_zeros);
     let roots = || zeros().chain(&axis.poles);
+    if roots().any(|root| is_negative(root.damping)) {
+        return Judgement::NegativeDamping;
+    }
+    if leaves_more_than_noise(axis) {
+        return Judgement::MoreThanNoise;
+    }
+    if !axis.has_errors {
+        return Judgement::NoErrors;
+    }
     let worst = |part: fn(&Root) -> Figure, limit: f64| {
         roots()
             .map(|root| excess(part(root), limit))
@@ -117,4 +195,36 @@ pub fn flexible(axis: &Flexible) -> Judgement {
         return Judgement::TooNoisyForDamping;
     }
     longer(damping.max(frequency))
+}
+
+/// Whether a model misses more than it may: what the input would explain of what is
+/// left, what is not white, or what comes and goes with the motion as friction and
+/// backlash do.
+fn leaves_more_than_noise(axis: &Flexible) -> bool {
+    let missed = axis.rel_error * axis.missed_share.sqrt();
+    let is_coloured = !axis.whiteness.is_white() && axis.rel_error > MISSED;
+    let is_unsteady = !axis.steadiness.is_white() && axis.rel_error > UNSTEADY;
+    missed > MISSED || is_coloured || is_unsteady
+}
+
+/// Judges a power model.
+#[must_use]
+pub fn power(model: &PowerModel) -> Judgement {
+    // A model that explains less than half of how the power changes is none.
+    let explains = model.r2_centered >= POWER_EXPLAINED && model.r2 >= POWER_EXPLAINED;
+    if !explains || model.mass.value <= 0.0 {
+        return Judgement::DoesNotFit;
+    }
+    if is_negative(model.viscous) || is_negative(model.coulomb) {
+        return Judgement::NegativeDamping;
+    }
+    let efficiency = if model.efficiency.std > 0.0 {
+        excess(model.efficiency, EFFICIENCY)
+    } else {
+        0.0
+    };
+    if model.peaks.peaks < PEAKS {
+        return longer(PEAKS as f64 / model.peaks.peaks.max(1) as f64);
+    }
+    longer(excess(model.mass, POWER_MASS).max(efficiency))
 }

@@ -198,6 +198,7 @@ mod tests {
             let data = Data {
                 input: &force[500..],
                 output: &late,
+                friction: &[],
                 undisturbed: None,
                 period_s: 1e-3,
                 measured,

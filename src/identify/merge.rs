@@ -24,7 +24,7 @@ pub struct AxisFigures {
     /// Force besides friction: weight. Written where the file has one already, or
     /// where it stands clear of its error.
     pub gravity: Option<Figure>,
-    /// Efficiency.
+    /// Efficiency; 1 where there are no losses, which replaces another one in the file.
     pub efficiency: Option<f64>,
     /// Standard errors of mass, viscous and Coulomb friction, where they are known; 0
     /// for a friction that is not.
@@ -174,7 +174,9 @@ fn write_axis(
             figures.coulomb.map(|f| f * line * coulomb.1),
         );
     }
-    if let Some(efficiency) = figures.efficiency {
+    if let Some(efficiency) = figures.efficiency
+        && (efficiency < 1.0 || table.contains_key("efficiency"))
+    {
         set(table, "efficiency", efficiency);
     }
     Ok(())
@@ -350,6 +352,22 @@ lead_mm = 10
         // A smaller margin than the one in force changes nothing.
         let kept = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.05)).unwrap();
         assert!(!kept.contains("margin"));
+    }
+
+    /// Figures found without losses hold for an efficiency of 1 alone.
+    #[test]
+    fn an_efficiency_that_is_found_replaces_another() {
+        let with = |text: &str, efficiency| {
+            let figures = AxisFigures {
+                efficiency: Some(efficiency),
+                ..figures()
+            };
+            into_machine("m.toml", text, AxisId::X, &figures, None).unwrap()
+        };
+        assert!(!with(MACHINE, 1.0).contains("efficiency"));
+        let lossy = with(MACHINE, 0.85);
+        assert!(lossy.contains("efficiency = 0.85\n"), "{lossy}");
+        assert!(with(&lossy, 1.0).contains("efficiency = 1.0\n"));
     }
 
     #[test]

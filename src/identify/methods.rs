@@ -1,11 +1,12 @@
 //! The methods that estimate a flexible axis.
 
 use super::arx;
+use super::choice::Choice;
 use super::data::Data;
 use super::disturbance::{Noise, as_it_is};
-use super::flexible::{Choice, Prepared};
 use super::neighbours::{LAG_MAX, ORDER_MAX};
 use super::output_error::Estimate;
+use super::prepared::Prepared;
 use super::response_fit::{self, ResponseFit};
 use super::search::{response_of, search};
 use super::spectrum::FrequencyResponse;

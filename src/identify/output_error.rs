@@ -15,11 +15,13 @@
 
 use nalgebra::DMatrix;
 
+use super::charge::charge;
 use super::data::{Data, Signals};
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
+use super::rigid::Figure;
 use super::sensitivity::{differences, gather};
-use super::transfer::{Factor, TransferFunction};
+use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
 /// An improvement of the sum of squares below this share of one row's ends the
@@ -66,8 +68,10 @@ pub struct Estimate {
     pub steps: usize,
     /// Offset of the output.
     pub offset: f64,
-    /// State at the first sample.
+    /// State at the first sample, what leaky integrators held, and terms of friction.
     pub state: Vec<f64>,
+    /// Terms of friction, with their errors.
+    pub friction: Vec<Figure>,
 }
 
 impl Estimate {
@@ -204,6 +208,7 @@ impl<'a> Fitting<'a> {
             gather: &|model: &TransferFunction| gather(&open, model, delay_is_free, left_out),
             delay_is_free,
             period_s: raw.period_s,
+            friction: raw.friction.len(),
             from_command: raw.from_command,
             power: self.power,
             damping: match effort.steps {
@@ -257,6 +262,8 @@ struct Task<'a> {
     gather: &'a dyn Fn(&TransferFunction) -> Option<Normal>,
     delay_is_free: bool,
     period_s: f64,
+    /// Terms of friction.
+    friction: usize,
     from_command: bool,
     /// Sum of squares of the output.
     power: f64,
@@ -362,7 +369,16 @@ impl Task<'_> {
         let unknowns = count + left.x.len();
         let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
         let (state, offset) = nuisance(&left);
+        let terms = state.len().saturating_sub(self.friction)..state.len();
+        let friction = terms.filter_map(|index| {
+            let at = count + index;
+            Some(Figure {
+                value: *state.get(index)?,
+                std: (solution.inverse[(at, at)] * noise).sqrt(),
+            })
+        });
         Some(Estimate {
+            friction: friction.collect(),
             charge: self.charge(&transfer),
             transfer,
             covariance: solution.inverse.view((0, 0), (count, count)) * noise,
@@ -376,55 +392,6 @@ impl Task<'_> {
             state,
         })
     }
-}
-
-/// What a model has to pay for besides its parameters. Which of many frequencies
-/// and delays it was had to be found too, and noise is tried as often: each first
-/// state explains the samples over which it swings, all of them where there is no
-/// damping. Zeros that structures seldom have, but noise often, count twice: those
-/// on the right, which stand for a delay, and leads that undo one.
-fn charge(transfer: &TransferFunction, samples: usize, period_s: f64, from_command: bool) -> f64 {
-    let n = samples as f64;
-    let lag = libm::floor(transfer.delay_s / period_s + 1e-9);
-    let lasting = |decay_rad_s: f64| libm::log(1.0 + (1.0 / (decay_rad_s * period_s)).min(n));
-    let states: f64 = transfer
-        .poles
-        .iter()
-        .map(|pole| match *pole {
-            Factor::Pair {
-                omega_rad_s: w,
-                damping,
-            } => {
-                let spread = (damping * damping - 1.0).max(0.0).sqrt();
-                lasting(w * (damping - spread)) + lasting(w * (damping + spread))
-            }
-            Factor::Real { time_constant_s } => lasting(1.0 / time_constant_s),
-        })
-        .sum();
-    let leads = leads(transfer, from_command);
-    let seldom = transfer.zeros_on_the_right() + leads;
-    states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
-}
-
-/// Damped zeros that are no dampers' next to the fastest mode: they lead by more than
-/// such a one, whose time is `2ζ/ω`. A loop leads as it likes where it is slow: below
-/// what swings slowest.
-fn leads(transfer: &TransferFunction, from_command: bool) -> usize {
-    const DAMPER: f64 = 0.5;
-    const SWINGS: f64 = 0.3;
-    let modes = || {
-        let modes = transfer.poles.iter().filter(|pole| pole.degree() == 2);
-        modes.map(|pole| pole.corner_rad_s())
-    };
-    let fastest = modes().fold(0.0, f64::max);
-    let slowest = modes().fold(f64::INFINITY, f64::min);
-    let leads = |zero: &&Factor| match **zero {
-        Factor::Real { time_constant_s } => time_constant_s * fastest > DAMPER,
-        Factor::Pair { damping, .. } => damping > SWINGS,
-    };
-    let is_fast = |zero: &&Factor| !from_command || zero.corner_rad_s() > slowest;
-    let zeros = transfer.zeros.iter().filter(leads).filter(is_fast);
-    zeros.map(|zero| zero.degree()).sum()
 }
 
 /// All unknowns; a swing that was over at once is left at nil.

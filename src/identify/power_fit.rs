@@ -5,38 +5,24 @@
 //! positive and multiplied where it is not, plus the standby power. Terms that
 //! the log does not show are left out.
 
-use std::io::Read;
-
-use super::column::{Kind, Quantity, Reading, axis_of, read};
 use super::normal::Normal;
+use super::peak_factor::{PeakFactor, factor_of, ratios};
 use super::rigid::Figure;
-use super::rows::{Rows, no_number};
+use super::sandwich::{sandwich, widening};
 use super::trouble::{Outcome, Trouble};
 
-/// Rows at most.
-const ROWS_MAX: usize = 50_000_000;
+pub use super::power_log::PowerLog;
 
-/// Speeds (m/s), accelerations (m/s²) and powers (W) of one axis.
-#[derive(Debug, Clone, Default)]
-pub struct PowerLog {
-    /// Speeds.
-    pub velocity: Vec<f64>,
-    /// Accelerations.
-    pub acceleration: Vec<f64>,
-    /// Powers.
-    pub power: Vec<f64>,
-    /// Doubts about columns.
-    pub notes: Vec<String>,
-    /// Sliding or turning.
-    pub rotary: bool,
-}
-
-/// A column that tells by itself whether its name is right.
-#[derive(Debug, Default, Clone)]
-struct Electrical {
-    name: String,
-    values: Vec<f64>,
-}
+/// Rows at least.
+const ROWS_MIN: usize = 50;
+/// Lowest efficiency that is looked for.
+const EFFICIENCY_MIN: f64 = 0.2;
+/// Steps of the search: first even ones, then such that divide the best by the golden
+/// ratio.
+const EVEN: u32 = 16;
+const GOLDEN: u32 = 32;
+/// A log by itself is divided into so many parts that are predicted by the others.
+const PARTS: usize = 8;
 
 /// The fitted power model; kg·m², N·m·s/rad and N·m where the axis turns.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,8 +33,8 @@ pub struct PowerModel {
     pub viscous: Figure,
     /// Coulomb friction.
     pub coulomb: Figure,
-    /// Efficiency; 1 where the log shows no other.
-    pub efficiency: f64,
+    /// Efficiency; 1 with an error of 0 where the log shows no other.
+    pub efficiency: Figure,
     /// Power at rest, W; 0 where the log shows none.
     pub standby_w: Figure,
     /// Share of the power's square that the model explains: about the mean where
@@ -62,186 +48,10 @@ pub struct PowerModel {
     pub peak_measured_w: f64,
     /// Largest power of the model, W.
     pub peak_model_w: f64,
-    /// By which factor measured peaks exceed the model's: the largest ratio where
-    /// the model is above half of its peak; at least 1.
-    pub peak_factor: f64,
+    /// By which factor peaks exceed the model.
+    pub peaks: PeakFactor,
     /// Rows.
     pub rows: usize,
-}
-
-/// Names whose units a maker fixes, after the axis letter and the number: those
-/// of the SMART lab of the University of Michigan; mm, s, kW.
-const KNOWN: [(&str, Quantity, f64); 3] = [
-    ("actualvelocity", Quantity::Velocity, 1e-3),
-    ("actualacceleration", Quantity::Acceleration, 1e-3),
-    ("outputpower", Quantity::Power, 1e3),
-];
-
-/// `X1_ActualVelocity` as axis and `actualvelocity`.
-fn numbered(name: &str) -> Option<(char, String)> {
-    let (front, rest) = name.trim().split_once('_')?;
-    let mut chars = front.chars();
-    let letter = chars.next()?.to_ascii_uppercase();
-    let digits = chars.as_str();
-    (letter.is_ascii_alphabetic()
-        && !digits.is_empty()
-        && digits.chars().all(|c| c.is_ascii_digit()))
-    .then(|| (letter, rest.to_ascii_lowercase()))
-}
-
-impl PowerLog {
-    /// Adds the rows of a CSV file, for one axis. Rows without a value are
-    /// passed over.
-    ///
-    /// # Errors
-    ///
-    /// When a column is missing or the file cannot be read.
-    pub fn add(&mut self, input: impl Read, axis: char) -> Outcome<()> {
-        let mut rows = Rows::open(input)?;
-        let mut wanted: [Option<(usize, f64)>; 3] = [None; 3];
-        let mut electrical: [Option<(usize, Electrical)>; 2] = [None, None];
-        for (index, name) in rows.names.iter().enumerate() {
-            let (slot, factor) = match self.meaning(name, axis)? {
-                Some((Quantity::Velocity, factor)) => (0, factor),
-                Some((Quantity::Acceleration, factor)) => (1, factor),
-                Some((Quantity::Power, factor)) => (2, factor),
-                _ => {
-                    let found = electrical_slot(name, axis);
-                    if let Some(place) = found.and_then(|slot| electrical.get_mut(slot)) {
-                        let column = Electrical {
-                            name: name.clone(),
-                            values: Vec::new(),
-                        };
-                        *place = Some((index, column));
-                    }
-                    continue;
-                }
-            };
-            if let Some(place) = wanted.get_mut(slot) {
-                *place = Some((index, factor));
-            }
-        }
-        let names = ["velocity_mm_s", "accel_mm_s2", "power_w"];
-        for (place, name) in wanted.iter().zip(names) {
-            if place.is_none() {
-                return Err(Trouble::new(
-                    format!("the log has no column {name} for axis {axis}"),
-                    format!(
-                        "name it {name} or {}_{name}; other units: see --help",
-                        axis.to_ascii_lowercase()
-                    ),
-                ));
-            }
-        }
-        while let Some(line) = rows.next_line()? {
-            let mut row = [f64::NAN; 3];
-            for ((slot, place), name) in row.iter_mut().zip(&wanted).zip(names) {
-                let Some((index, factor)) = *place else {
-                    continue;
-                };
-                let cell = rows.cell(index);
-                match cell.parse::<f64>() {
-                    Ok(value) => *slot = value * factor,
-                    Err(_) if cell.is_empty() => {}
-                    Err(_) => {
-                        let name = rows.names.get(index).map_or(name, String::as_str);
-                        return Err(no_number(line, name, cell));
-                    }
-                }
-            }
-            let [v, a, p] = row;
-            if v.is_finite() && a.is_finite() && p.is_finite() {
-                self.velocity.push(v);
-                self.acceleration.push(a);
-                self.power.push(p);
-            }
-            for (index, column) in electrical.iter_mut().flatten() {
-                let cell = rows.cell(*index);
-                column.values.push(cell.parse().unwrap_or(f64::NAN));
-            }
-            if self.power.len() > ROWS_MAX {
-                return Err(Trouble::new(
-                    format!("the log has more than {ROWS_MAX} rows"),
-                    "cut it",
-                ));
-            }
-        }
-        if let [Some((_, current)), Some((_, voltage))] = &electrical
-            && !self.notes.iter().any(|note| note.contains(&current.name))
-        {
-            self.notes.extend(swapped(current, voltage));
-        }
-        Ok(())
-    }
-
-    fn meaning(&mut self, name: &str, axis: char) -> Outcome<Option<(Quantity, f64)>> {
-        if let Some((letter, rest)) = numbered(name) {
-            let known = KNOWN.iter().find(|(word, _, _)| *word == rest);
-            return Ok(known
-                .filter(|_| letter == axis)
-                .map(|(_, quantity, factor)| (*quantity, *factor)));
-        }
-        if axis_of(name).is_some_and(|letter| letter != axis) {
-            return Ok(None);
-        }
-        match read(name) {
-            Reading::Known(meaning) => {
-                if meaning.quantity == Quantity::Velocity {
-                    self.rotary = meaning.kind == Kind::Rotary;
-                }
-                Ok(Some((meaning.quantity, meaning.to_si)))
-            }
-            Reading::UnitInDoubt(
-                quantity @ (Quantity::Velocity | Quantity::Acceleration | Quantity::Power),
-            ) => Err(Trouble::new(
-                format!("the unit of column {name} is in doubt"),
-                format!(
-                    "end its name with the unit, one of: {}",
-                    super::column::units_of(quantity)
-                ),
-            )),
-            _ => Ok(None),
-        }
-    }
-}
-
-/// Which of current and bus voltage a column says it is.
-fn electrical_slot(name: &str, axis: char) -> Option<usize> {
-    let rest = match numbered(name) {
-        Some((letter, rest)) if letter == axis => rest,
-        None if axis_of(name).is_none_or(|letter| letter == axis) => name.to_ascii_lowercase(),
-        _ => return None,
-    };
-    let plain = rest.replace('_', "");
-    if plain.contains("outputcurrent") || plain.contains("motorcurrent") {
-        Some(0)
-    } else if plain.contains("busvoltage") {
-        Some(1)
-    } else {
-        None
-    }
-}
-
-/// Notices a bus voltage that swings about zero next to a current that stands
-/// still at hundreds.
-fn swapped(current: &Electrical, voltage: &Electrical) -> Option<String> {
-    let spread = |x: &[f64]| -> Option<(f64, f64)> {
-        let sound: Vec<f64> = x.iter().copied().filter(|x| x.is_finite()).collect();
-        let n = sound.len() as f64;
-        let mean = sound.iter().sum::<f64>() / n;
-        let square = sound.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n;
-        (n > 10.0 && mean.abs() > 0.0).then(|| (mean, square.sqrt() / mean.abs()))
-    };
-    let (amps, amps_spread) = spread(&current.values)?;
-    let (volts, volts_spread) = spread(&voltage.values)?;
-    let is_swapped =
-        amps > 20.0 && amps_spread < 0.05 && volts_spread > 0.2 && volts.abs() < 0.2 * amps;
-    is_swapped.then(|| {
-        format!(
-            "{} stands at {amps:.0} and hardly changes, as a bus voltage does, while {} changes with the load about {volts:.2}, as a current does: their names look swapped",
-            current.name, voltage.name
-        )
-    })
 }
 
 /// One row: products whose factors are mass, viscous and Coulomb friction.
@@ -249,62 +59,32 @@ fn columns(v: f64, a: f64) -> [f64; 3] {
     [v * a, v * v, v.abs()]
 }
 
-/// Fits the power model.
-///
-/// # Errors
-///
-/// When the log does not determine it.
-pub fn fit(log: &PowerLog) -> Outcome<PowerModel> {
-    let n = log.power.len();
-    if n < 50 {
-        return Err(Trouble::new(
-            format!("the log is too short: {n} rows"),
-            "log at least some seconds of motion, with accelerations",
-        ));
-    }
-    let weak = || {
-        Trouble::new(
-            "the log does not tell mass and friction apart: there is too little motion",
-            "log rapids and feeds at several speeds, with starts and stops",
-        )
-    };
-    let plain = solve(log, 1.0, false).ok_or_else(weak)?;
-    let standby = solve(log, 1.0, true).ok_or_else(weak)?;
-    let has_standby = standby
-        .figures
-        .get(3)
-        .is_some_and(|s| s.value > 4.0 * s.std);
-    let start = if has_standby { standby } else { plain };
-    let best = (10..20)
-        .map(|k| f64::from(k) * 0.05)
-        .filter_map(|efficiency| solve(log, efficiency, has_standby))
-        .min_by(|a, b| a.rest.total_cmp(&b.rest))
-        .filter(|found| {
-            // One parameter more must pay, and clearly.
-            n as f64 * libm::log(start.rest / found.rest) > libm::log(n as f64) + 10.0
-        })
-        .unwrap_or(start);
-    finish(log, &best, has_standby)
+/// Which of efficiency and standby power are looked for.
+#[derive(Clone, Copy)]
+struct Wanted {
+    efficiency: bool,
+    standby: bool,
 }
 
+/// What was solved for.
+#[derive(Debug, Clone)]
 struct Solved {
-    figures: Vec<Figure>,
+    /// Mass, viscous and Coulomb friction, and the standby power.
+    values: [f64; 4],
     efficiency: f64,
     rest: f64,
 }
 
 impl Solved {
-    fn value(&self, index: usize) -> f64 {
-        self.figures.get(index).map_or(0.0, |figure| figure.value)
+    fn mechanical(&self, v: f64, a: f64) -> f64 {
+        let pairs = columns(v, a).into_iter().zip(self.values);
+        pairs.map(|(x, value)| x * value).sum()
     }
 
     fn power(&self, v: f64, a: f64) -> f64 {
-        let mechanical: f64 = columns(v, a)
-            .iter()
-            .enumerate()
-            .map(|(index, x)| x * self.value(index))
-            .sum();
-        self.value(3) + mechanical * share(mechanical, self.efficiency)
+        let [.., standby] = self.values;
+        let mechanical = self.mechanical(v, a);
+        standby + mechanical * share(mechanical, self.efficiency)
     }
 }
 
@@ -316,105 +96,276 @@ fn share(mechanical: f64, efficiency: f64) -> f64 {
     }
 }
 
+/// Rows of a log of which some are left out.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    log: &'a PowerLog,
+    /// From here to there.
+    without: (usize, usize),
+}
+
+impl<'a> Part<'a> {
+    fn whole(log: &'a PowerLog) -> Self {
+        Self {
+            log,
+            without: (0, 0),
+        }
+    }
+
+    fn rows(self) -> impl Iterator<Item = (f64, f64, f64)> + 'a {
+        let (from, to) = self.without;
+        let log = self.log;
+        let all = log.velocity.iter().zip(&log.acceleration).zip(&log.power);
+        all.enumerate()
+            .filter(move |(k, _)| !(from..to).contains(k))
+            .map(|(_, ((v, a), p))| (*v, *a, *p))
+    }
+}
+
+fn weak() -> Trouble {
+    Trouble::new(
+        "the log does not tell mass and friction apart: there is too little motion",
+        "log rapids and feeds at several speeds, with starts and stops",
+    )
+}
+
+/// Fits the power model.
+///
+/// # Errors
+///
+/// When the log does not determine it.
+pub fn fit(log: &PowerLog) -> Outcome<PowerModel> {
+    let n = log.power.len();
+    if n < ROWS_MIN {
+        return Err(Trouble::new(
+            format!("the log is too short: {n} rows"),
+            "log at least some seconds of motion, with accelerations",
+        ));
+    }
+    let whole = Part::whole(log);
+    let mut wanted = Wanted {
+        efficiency: false,
+        standby: true,
+    };
+    let with = solve_for(whole, wanted).ok_or_else(weak)?;
+    let standby = figures(whole, &with, wanted)
+        .and_then(|[_, _, _, standby, _]| standby)
+        .ok_or_else(weak)?;
+    wanted.standby = standby.value > 4.0 * standby.std;
+    let plain = solve_for(whole, wanted).ok_or_else(weak)?;
+    // One parameter more must pay, and clearly.
+    let looked_for = Wanted {
+        efficiency: true,
+        ..wanted
+    };
+    let pays =
+        |found: &Solved| n as f64 * libm::log(plain.rest / found.rest) > libm::log(n as f64) + 10.0;
+    let found = solve_for(whole, looked_for).filter(pays);
+    wanted.efficiency = found.is_some();
+    let best = found.unwrap_or(plain);
+    finish(log, &best, wanted)
+}
+
+/// The model that is wanted.
+fn solve_for(part: Part<'_>, wanted: Wanted) -> Option<Solved> {
+    if !wanted.efficiency {
+        return solve(part, 1.0, wanted.standby);
+    }
+    let at = |efficiency: f64| solve(part, efficiency, wanted.standby);
+    let step = (1.0 - EFFICIENCY_MIN) / f64::from(EVEN);
+    let mut best: Option<Solved> = None;
+    for k in 0..=EVEN {
+        let found = at(EFFICIENCY_MIN + step * f64::from(k));
+        if let Some(found) = found
+            && best.as_ref().is_none_or(|best| found.rest < best.rest)
+        {
+            best = Some(found);
+        }
+    }
+    let mut best = best?;
+    let (mut low, mut high) = (
+        (best.efficiency - step).max(EFFICIENCY_MIN),
+        (best.efficiency + step).min(1.0),
+    );
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for _ in 0..GOLDEN {
+        let (left, right) = (high - golden * (high - low), low + golden * (high - low));
+        let (Some(one), Some(two)) = (at(left), at(right)) else {
+            break;
+        };
+        let better = if one.rest < two.rest {
+            high = right;
+            one
+        } else {
+            low = left;
+            two
+        };
+        if better.rest < best.rest {
+            best = better;
+        }
+    }
+    Some(best)
+}
+
 /// Least squares at an efficiency; which rows drive and which brake follows from
 /// the round before.
-fn solve(log: &PowerLog, efficiency: f64, standby: bool) -> Option<Solved> {
+fn solve(part: Part<'_>, efficiency: f64, standby: bool) -> Option<Solved> {
     let mut solved: Option<Solved> = None;
     let rounds = if efficiency < 1.0 { 4 } else { 1 };
+    let width = 3 + usize::from(standby);
     for _ in 0..rounds {
-        let mut normal = Normal::new(3 + usize::from(standby));
-        for ((v, a), p) in log.velocity.iter().zip(&log.acceleration).zip(&log.power) {
-            let mechanical = solved.as_ref().map_or(*p, |solved| {
-                let terms = columns(*v, *a);
-                terms
-                    .iter()
-                    .enumerate()
-                    .map(|(i, x)| x * solved.value(i))
-                    .sum()
-            });
+        let mut normal = Normal::new(width);
+        for (v, a, p) in part.rows() {
+            let mechanical = solved.as_ref().map_or(p, |it| it.mechanical(v, a));
             let factor = share(mechanical, efficiency);
-            let [x, y, z] = columns(*v, *a).map(|x| x * factor);
-            let row = [x, y, z, 1.0];
-            normal.add(row.get(..3 + usize::from(standby))?, *p);
+            let [x, y, z] = columns(v, a).map(|x| x * factor);
+            normal.add([x, y, z, 1.0].get(..width)?, p);
         }
         let solution = normal.solve()?;
-        let noise = solution.rest / normal.rows.saturating_sub(4).max(1) as f64;
-        let figures = solution
-            .x
-            .iter()
-            .zip(solution.inverse.diagonal().iter())
-            .map(|(x, d)| Figure {
-                value: *x,
-                std: (d * noise).sqrt(),
-            })
-            .collect();
+        let mut values = [0.0; 4];
+        for (slot, x) in values.iter_mut().zip(solution.x.iter()) {
+            *slot = *x;
+        }
         solved = Some(Solved {
-            figures,
+            values,
             efficiency,
             rest: solution.rest,
         });
     }
     // The sign of the last round may differ from that of the one before.
     solved.map(|mut solved| {
-        let triples = log.velocity.iter().zip(&log.acceleration).zip(&log.power);
-        solved.rest = triples
-            .map(|((v, a), p)| {
-                let gap = p - solved.power(*v, *a);
-                gap * gap
-            })
-            .sum();
+        let gaps = part.rows().map(|(v, a, p)| p - solved.power(v, a));
+        solved.rest = gaps.map(|gap| gap * gap).sum();
         solved
     })
 }
 
-fn finish(log: &PowerLog, best: &Solved, has_standby: bool) -> Outcome<PowerModel> {
+/// Mass, frictions, standby power and efficiency with their errors, each with what the
+/// others leave open of it; `None` for what is not wanted.
+fn figures(part: Part<'_>, solved: &Solved, wanted: Wanted) -> Option<[Option<Figure>; 5]> {
+    let is_wanted = [true, true, true, wanted.standby, wanted.efficiency];
+    let row = |v: f64, a: f64| -> Vec<f64> {
+        let mechanical = solved.mechanical(v, a);
+        let factor = share(mechanical, solved.efficiency);
+        let [x, y, z] = columns(v, a).map(|x| x * factor);
+        // Of M/η and M·η.
+        let by_efficiency = if mechanical >= 0.0 {
+            -mechanical / (solved.efficiency * solved.efficiency)
+        } else {
+            mechanical
+        };
+        let all = [x, y, z, 1.0, by_efficiency].into_iter().zip(is_wanted);
+        all.filter(|(_, is_wanted)| *is_wanted)
+            .map(|(x, _)| x)
+            .collect()
+    };
+    let width = is_wanted.iter().filter(|is_wanted| **is_wanted).count();
+    let mut normal = Normal::new(width);
+    let mut scores: Vec<Vec<f64>> = Vec::new();
+    for (k, (v, a, p)) in part.rows().enumerate() {
+        if k == 0 || part.log.starts.contains(&k) {
+            scores.push(Vec::new());
+        }
+        let row = row(v, a);
+        let gap = p - solved.power(v, a);
+        normal.add(&row, gap);
+        if let Some(scores) = scores.last_mut() {
+            scores.extend(row.iter().map(|x| x * gap));
+        }
+    }
+    let covariance = sandwich(&scores, &normal.solve()?.inverse) * widening(normal.rows);
+    let mut stds = covariance
+        .diagonal()
+        .iter()
+        .map(|d| d.max(0.0).sqrt())
+        .collect::<Vec<_>>()
+        .into_iter();
+    let [m, b, c, s] = solved.values;
+    let values = [m, b, c, s, solved.efficiency].into_iter().zip(is_wanted);
+    let mut found = [None; 5];
+    for (slot, (value, is_wanted)) in found.iter_mut().zip(values) {
+        if is_wanted {
+            *slot = stds.next().map(|std| Figure { value, std });
+        }
+    }
+    Some(found)
+}
+
+/// Ratios of measured to predicted peaks, each log predicted by the others; parts of it
+/// where there is one alone.
+fn held_out(log: &PowerLog, best: &Solved, wanted: Wanted, peak_w: f64) -> Vec<f64> {
+    let n = log.power.len();
+    let starts = if log.starts.len() > 1 {
+        log.starts.clone()
+    } else {
+        (0..PARTS).map(|k| k * n / PARTS).collect()
+    };
+    let ends = starts.iter().skip(1).copied().chain([n]);
+    let mut found = Vec::new();
+    for (from, to) in starts.iter().copied().zip(ends) {
+        let part = Part {
+            log,
+            without: (from, to),
+        };
+        // What few rows do not determine is predicted by all.
+        let model = solve_for(part, wanted).unwrap_or_else(|| best.clone());
+        let predicted: Vec<f64> = (from..to)
+            .map(|k| {
+                let at = |x: &[f64]| x.get(k).copied().unwrap_or_default();
+                model.power(at(&log.velocity), at(&log.acceleration))
+            })
+            .collect();
+        let measured = log.power.get(from..to).unwrap_or_default();
+        found.extend(ratios(&predicted, measured, peak_w));
+    }
+    found
+}
+
+fn finish(log: &PowerLog, best: &Solved, wanted: Wanted) -> Outcome<PowerModel> {
     let n = log.power.len() as f64;
     let mean = log.power.iter().sum::<f64>() / n;
     let about =
         |centre: f64| -> f64 { log.power.iter().map(|p| (p - centre) * (p - centre)).sum() };
     let r2_centered = 1.0 - best.rest / about(mean);
-    let model: Vec<f64> = log
-        .velocity
-        .iter()
-        .zip(&log.acceleration)
-        .map(|(v, a)| best.power(*v, *a))
-        .collect();
-    let peak = |x: &[f64]| x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let peak_model_w = peak(&model);
-    let peak_factor = model
-        .iter()
-        .zip(&log.power)
-        .filter(|(model, _)| **model >= 0.5 * peak_model_w && peak_model_w > 0.0)
-        .map(|(model, measured)| measured / model)
-        .fold(1.0, f64::max);
-    let figure = |index: usize| {
-        best.figures.get(index).copied().unwrap_or(Figure {
+    let model = Part::whole(log).rows().map(|(v, a, _)| best.power(v, a));
+    let peak_model_w = model.fold(f64::NEG_INFINITY, f64::max);
+    let peak_measured_w = log.power.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let found = figures(Part::whole(log), best, wanted).ok_or_else(weak)?;
+    let [mass, viscous, coulomb, standby, efficiency] = found.map(|figure| {
+        figure.unwrap_or(Figure {
             value: 0.0,
             std: 0.0,
         })
-    };
-    if figure(0).value <= 0.0 {
+    });
+    if mass.value <= 0.0 {
         return Err(Trouble::new(
-            format!("the mass comes out as {:.3}, not positive", figure(0).value),
+            format!("the mass comes out as {:.3}, not positive", mass.value),
             "check units and signs of speed, acceleration and power, and that they are of the same time",
         ));
     }
     Ok(PowerModel {
-        mass: figure(0),
-        viscous: figure(1),
-        coulomb: figure(2),
-        efficiency: best.efficiency,
-        standby_w: figure(3),
-        r2: if has_standby {
+        mass,
+        viscous,
+        coulomb,
+        efficiency: if wanted.efficiency {
+            efficiency
+        } else {
+            Figure {
+                value: 1.0,
+                std: 0.0,
+            }
+        },
+        standby_w: standby,
+        r2: if wanted.standby {
             r2_centered
         } else {
             1.0 - best.rest / about(0.0)
         },
         r2_centered,
         rms_w: (best.rest / n).sqrt(),
-        peak_measured_w: peak(&log.power),
+        peak_measured_w,
         peak_model_w,
-        peak_factor,
+        peaks: factor_of(&held_out(log, best, wanted, peak_model_w)),
         rows: log.power.len(),
     })
 }

@@ -1,15 +1,15 @@
-//! Recordings: CSV with a header that names quantities and units.
+//! Recordings: tables whose names, or a map, say which quantities and units they hold.
 
 use std::io::Read;
 
-use super::column::{Kind, Quantity, Reading, axis_of, read, units_of};
+use super::column::{Kind, Meaning, Quantity, Reading, axis_of, read, units_of};
+use super::column_map::MappedColumn;
 use super::rows::{Lines, Rows, no_number};
+use super::sampling::even;
 use super::trouble::{Outcome, Trouble};
 
-/// Intervals may differ from the period by this share of it.
-const JITTER: f64 = 0.01;
 /// Fewer samples than this are never enough.
-const SAMPLES_MIN: usize = 100;
+const SAMPLES_MIN: usize = 32;
 /// More samples than this are refused: they would not fit into memory.
 const SAMPLES_MAX: usize = 50_000_000;
 
@@ -35,6 +35,19 @@ pub struct Recording {
     pub signals: Vec<Signal>,
     /// Columns that were passed over.
     pub ignored: Vec<String>,
+    /// Remarks on times and samples.
+    pub notes: Vec<String>,
+}
+
+/// How a recording is read.
+#[derive(Debug, Clone, Default)]
+pub struct ReadAs {
+    /// Of columns with an axis letter in front, those of this one.
+    pub axis: Option<char>,
+    /// Columns that are given by hand; they go before what names say.
+    pub map: Vec<MappedColumn>,
+    /// Samples a second, for a recording without times.
+    pub rate_hz: Option<f64>,
 }
 
 impl Recording {
@@ -44,17 +57,29 @@ impl Recording {
     ///
     /// Anything that keeps the data from being used, with what to do.
     pub fn read(input: impl Read, axis: Option<char>) -> Outcome<Self> {
+        let read_as = ReadAs {
+            axis,
+            ..ReadAs::default()
+        };
+        Self::read_as(input, &read_as)
+    }
+
+    /// Reads a table as told.
+    ///
+    /// # Errors
+    ///
+    /// Anything that keeps the data from being used, with what to do.
+    pub fn read_as(input: impl Read, how: &ReadAs) -> Outcome<Self> {
         let mut rows = Rows::open(input)?;
-        let (columns, ignored) = columns(&rows.names, axis)?;
+        let (columns, ignored) = columns(&rows.names, how)?;
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
         let mut lines = Lines::default();
         while let Some(line) = rows.next_line()? {
             lines.add(line);
             for ((index, name, _), list) in columns.iter().zip(&mut values) {
-                let cell = rows.cell(*index);
-                let value: f64 = cell.parse().unwrap_or(f64::NAN);
+                let value = rows.number(*index).unwrap_or(f64::NAN);
                 if !value.is_finite() {
-                    return Err(no_number(line, name, cell));
+                    return Err(no_number(line, name, &rows.cell(*index)));
                 }
                 list.push(value);
             }
@@ -65,33 +90,42 @@ impl Recording {
                 ));
             }
         }
-        let mut time = Vec::new();
-        let mut signals = Vec::new();
-        for ((_, name, meaning), mut values) in columns.into_iter().zip(values) {
-            for value in &mut values {
+        let samples = values.first().map_or(0, Vec::len);
+        if samples < SAMPLES_MIN {
+            return Err(Trouble::new(
+                format!("the recording is too short: {samples} samples"),
+                format!("record at least {SAMPLES_MIN} samples, better several seconds"),
+            ));
+        }
+        for ((_, _, meaning), values) in columns.iter().zip(&mut values) {
+            for value in values {
                 *value *= meaning.to_si;
             }
-            if meaning.quantity == Quantity::Time {
-                time = values;
-            } else {
-                signals.push(Signal {
+        }
+        let at = columns
+            .iter()
+            .position(|(_, _, meaning)| meaning.quantity == Quantity::Time);
+        let (period_s, notes) = match (at, how.rate_hz) {
+            (Some(at), _) => {
+                let time = values.get(at).cloned().unwrap_or_default();
+                even(&time, &mut values, &lines)?
+            }
+            (None, rate_hz) => (1.0 / rate_hz.unwrap_or(1.0), Vec::new()),
+        };
+        let signals = columns.into_iter().zip(values);
+        Ok(Self {
+            period_s,
+            signals: signals
+                .filter(|((_, _, meaning), _)| meaning.quantity != Quantity::Time)
+                .map(|((_, name, meaning), values)| Signal {
                     name,
                     quantity: meaning.quantity,
                     kind: meaning.kind,
                     values,
-                });
-            }
-        }
-        if time.len() < SAMPLES_MIN {
-            return Err(Trouble::new(
-                format!("the recording is too short: {} samples", time.len()),
-                format!("record at least {SAMPLES_MIN} samples, better several seconds"),
-            ));
-        }
-        Ok(Self {
-            period_s: period(&time, &lines)?,
-            signals,
+                })
+                .collect(),
             ignored,
+            notes,
         })
     }
 
@@ -130,6 +164,21 @@ impl Recording {
         Ok(())
     }
 
+    /// Turns force, torque, excitation and command about: they were counted the other
+    /// way than the motion.
+    pub fn reverse(&mut self) {
+        for signal in &mut self.signals {
+            if matches!(
+                signal.quantity,
+                Quantity::Force | Quantity::Excitation | Quantity::Command
+            ) {
+                for value in &mut signal.values {
+                    *value = -*value;
+                }
+            }
+        }
+    }
+
     /// The signal of a quantity.
     #[must_use]
     pub fn get(&self, quantity: Quantity) -> Option<&Signal> {
@@ -151,18 +200,40 @@ impl Recording {
     }
 }
 
-type Column = (usize, String, super::column::Meaning);
+type Column = (usize, String, Meaning);
 
-fn columns(header: &[String], axis: Option<char>) -> Outcome<(Vec<Column>, Vec<String>)> {
+fn columns(header: &[String], how: &ReadAs) -> Outcome<(Vec<Column>, Vec<String>)> {
     let mut columns: Vec<Column> = Vec::new();
+    for mapped in &how.map {
+        let index = mapped.index(header)?;
+        let name = header.get(index).cloned().unwrap_or_default();
+        if columns
+            .iter()
+            .any(|(_, _, known)| known.quantity == mapped.meaning.quantity)
+        {
+            return Err(Trouble::new(
+                format!("--map gives two columns for one quantity: {name} is the second"),
+                "give each quantity once",
+            ));
+        }
+        columns.push((index, name, mapped.meaning));
+    }
+    let by_hand = columns.clone();
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
-        let is_ours = match (axis_of(name), axis) {
+        if by_hand.iter().any(|(used, _, _)| *used == index) {
+            continue;
+        }
+        let is_given = |quantity| {
+            let mut given = by_hand.iter();
+            given.any(|(_, _, known)| known.quantity == quantity)
+        };
+        let is_ours = match (axis_of(name), how.axis) {
             (Some(found), Some(wanted)) => found == wanted,
             _ => true,
         };
         match read(name) {
-            Reading::Known(meaning) if is_ours => {
+            Reading::Known(meaning) if is_ours && !is_given(meaning.quantity) => {
                 if let Some((_, other, _)) = columns
                     .iter()
                     .find(|(_, _, known)| known.quantity == meaning.quantity)
@@ -174,73 +245,30 @@ fn columns(header: &[String], axis: Option<char>) -> Outcome<(Vec<Column>, Vec<S
                 }
                 columns.push((index, name.clone(), meaning));
             }
-            Reading::UnitInDoubt(quantity) if is_ours => {
+            Reading::UnitInDoubt(quantity) if is_ours && !is_given(quantity) => {
                 return Err(Trouble::new(
                     format!("the unit of column {name} is in doubt"),
-                    format!("end its name with the unit, one of: {}", units_of(quantity)),
+                    format!(
+                        "end its name with the unit, one of: {}; or give it by --map",
+                        units_of(quantity)
+                    ),
                 ));
             }
             _ => ignored.push(name.clone()),
         }
     }
-    if columns
+    let has_time = columns
         .iter()
-        .all(|(_, _, meaning)| meaning.quantity != Quantity::Time)
-    {
-        return Err(Trouble::new(
+        .any(|(_, _, meaning)| meaning.quantity == Quantity::Time);
+    match (has_time, how.rate_hz) {
+        (false, None) => Err(Trouble::new(
             "there is no column time_s",
-            "name the column of time time_s (or time_ms); the header must name quantities and units",
-        ));
+            "name the column of time time_s (or time_ms), or give --rate-hz; the header must name quantities and units",
+        )),
+        (true, Some(_)) => Err(Trouble::new(
+            "the recording has times: --rate-hz has no meaning",
+            "leave --rate-hz out",
+        )),
+        _ => Ok((columns, ignored)),
     }
-    Ok((columns, ignored))
-}
-
-/// The sampling period, if there is one.
-fn period(time: &[f64], lines: &Lines) -> Outcome<f64> {
-    let intervals: Vec<f64> = time
-        .iter()
-        .zip(time.iter().skip(1))
-        .map(|(before, after)| after - before)
-        .collect();
-    let mut sorted = intervals.clone();
-    sorted.sort_by(f64::total_cmp);
-    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-    if usual.is_nan() || usual <= 0.0 {
-        return Err(Trouble::new(
-            "the time does not go on",
-            "time_s must grow from line to line",
-        ));
-    }
-    for (index, interval) in intervals.iter().enumerate() {
-        let (before, line) = (lines.of(index), lines.of(index + 1));
-        let deviation = (interval - usual) / usual;
-        if deviation.abs() <= JITTER {
-            continue;
-        }
-        if *interval <= 0.0 {
-            return Err(Trouble::new(
-                format!("line {line}: the time goes back or stands still"),
-                "sort the samples by time, each once",
-            ));
-        }
-        let many = intervals
-            .iter()
-            .filter(|other| ((*other - usual) / usual).abs() > JITTER)
-            .count();
-        if deviation > 0.5 && many * 50 < intervals.len() {
-            return Err(Trouble::new(
-                format!("a gap after line {before}: {interval:.6} s instead of {usual:.6} s"),
-                "cut the recording there, or record again without losses",
-            ));
-        }
-        return Err(Trouble::new(
-            format!(
-                "sampling is uneven: line {line} comes after {interval:.6} s, others after {usual:.6} s ({many} intervals are off by more than {} %)",
-                100.0 * JITTER
-            ),
-            "record with a fixed period, and write the time with enough digits",
-        ));
-    }
-    let span = time.last().copied().unwrap_or_default() - time.first().copied().unwrap_or_default();
-    Ok(span / intervals.len() as f64)
 }

@@ -1,29 +1,45 @@
 //! Rows of a CSV file with their lines, and what is wrong with them in plain
 //! words: recordings come from many programs.
 
+use std::borrow::Cow;
 use std::io::{Chain, Cursor, Read};
 
+use super::layout::{Layout, number};
 use super::trouble::{Outcome, Trouble};
 
 /// Bytes at the beginning that tell what a file is.
-const BEGINNING: u64 = 4096;
+const BEGINNING: u64 = 1 << 16;
 /// Characters of a cell that are shown.
 const SHOWN: usize = 24;
 
-/// A CSV file that is read row by row.
+/// A table of numbers that is read row by row.
 pub struct Rows<R> {
     text: csv::Reader<Chain<Cursor<Vec<u8>>, R>>,
     /// The names in the header.
     pub names: Vec<String>,
-    record: csv::StringRecord,
+    record: csv::ByteRecord,
+    separator: u8,
+    /// Lines before those that the reader counts.
+    lines_before: u64,
+}
+
+/// Text of bytes: UTF-8, else Latin-1, as older programs write it.
+#[must_use]
+pub fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect()),
+    }
 }
 
 impl<R: Read> Rows<R> {
-    /// Opens a file and reads its header.
+    /// Opens a file and reads its names: the last line before the numbers, with units
+    /// where they have a line of their own. Columns are separated by commas, semicolons
+    /// or tabs.
     ///
     /// # Errors
     ///
-    /// When it is no CSV with commas, in UTF-8.
+    /// When it is no such table.
     pub fn open(mut input: R) -> Outcome<Self> {
         let mut beginning = Vec::new();
         input
@@ -45,20 +61,39 @@ impl<R: Read> Rows<R> {
         if beginning.starts_with("\u{feff}".as_bytes()) {
             beginning.drain(.."\u{feff}".len());
         }
+        // The line that the beginning ends in may be cut in two.
+        let whole = match beginning.iter().rposition(|byte| *byte == b'\n') {
+            Some(end) if beginning.len() as u64 + 3 >= BEGINNING => end + 1,
+            _ => beginning.len(),
+        };
+        let layout = beginning.get(..whole).and_then(Layout::of);
+        let separator = layout.as_ref().map_or(b',', |layout| layout.separator);
+        if let Some(layout) = &layout {
+            beginning.drain(..layout.start);
+        }
         let mut text = csv::ReaderBuilder::new()
+            .delimiter(separator)
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
             .flexible(true)
+            .has_headers(layout.is_none())
             .from_reader(Cursor::new(beginning).chain(input));
-        let header = text.headers().map_err(|error| broken(&error))?;
-        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let (names, lines_before) = if let Some(layout) = layout {
+            (layout.names, layout.lines)
+        } else {
+            let header = text.byte_headers().map_err(|error| broken(&error, 0))?;
+            let names = header.iter().map(|name| text_of(name).into_owned());
+            (names.collect(), 0)
+        };
         if names.len() < 2 {
             return Err(one_column(names.first().map_or("", String::as_str)));
         }
         Ok(Self {
             text,
             names,
-            record: csv::StringRecord::new(),
+            record: csv::ByteRecord::new(),
+            separator,
+            lines_before,
         })
     }
 
@@ -68,18 +103,21 @@ impl<R: Read> Rows<R> {
     ///
     /// When the row cannot be read, or has not as many values as there are names.
     pub fn next_line(&mut self) -> Outcome<Option<u64>> {
-        let read = self.text.read_record(&mut self.record);
-        if !read.map_err(|error| broken(&error))? {
+        let before = self.lines_before;
+        let read = self.text.read_byte_record(&mut self.record);
+        if !read.map_err(|error| broken(&error, before))? {
             return Ok(None);
         }
-        let line = self.record.position().map_or(0, csv::Position::line);
+        let line = before + self.record.position().map_or(0, csv::Position::line);
         let (found, named) = (self.record.len(), self.names.len());
-        if found == named {
+        // A separator at the end of the line makes an empty cell.
+        let ends_empty = found == named + 1 && self.record.get(named).is_some_and(<[u8]>::is_empty);
+        if found == named || ends_empty {
             return Ok(Some(line));
         }
         let (help, what) = if found > named {
             (
-                "numbers need decimal points: commas separate columns",
+                "numbers need decimal points where commas separate columns",
                 "more",
             )
         } else {
@@ -96,8 +134,15 @@ impl<R: Read> Rows<R> {
 
     /// A cell of the row; empty where there is none.
     #[must_use]
-    pub fn cell(&self, index: usize) -> &str {
-        self.record.get(index).unwrap_or_default()
+    pub fn cell(&self, index: usize) -> Cow<'_, str> {
+        text_of(self.record.get(index).unwrap_or_default())
+    }
+
+    /// The number of a cell, which may be none that is finite; `None` for a cell that is
+    /// no number.
+    #[must_use]
+    pub fn number(&self, index: usize) -> Option<f64> {
+        number(self.record.get(index).unwrap_or_default(), self.separator)
     }
 }
 
@@ -135,8 +180,8 @@ fn one_column(name: &str) -> Trouble {
     }
     if name.contains(';') || name.contains('\t') {
         return Trouble::new(
-            "the columns of the recording are not separated by commas",
-            "export it with commas between the columns, and with points in the numbers",
+            "there are names of columns, but no numbers below them",
+            "export it as a table: one line of names, below it lines of numbers; commas, semicolons or tabs between columns",
         );
     }
     Trouble::new(
@@ -152,24 +197,18 @@ fn unreadable(error: &std::io::Error) -> Trouble {
     )
 }
 
-/// Why the reader stopped, without its own words.
-fn broken(error: &csv::Error) -> Trouble {
+/// Why the reader stopped, without its own words; `before` are lines that it does not
+/// count.
+fn broken(error: &csv::Error, before: u64) -> Trouble {
     let line = error.position().map(csv::Position::line);
     match error.kind() {
         csv::ErrorKind::Io(error) => unreadable(error),
-        csv::ErrorKind::Utf8 { .. } => Trouble::new(
-            match line {
-                Some(line) => format!("line {line} is not in UTF-8"),
-                None => "the file is not in UTF-8".to_owned(),
-            },
-            "export it as CSV in UTF-8",
-        ),
         _ => Trouble::new(
             match line {
-                Some(line) => format!("line {line} cannot be read"),
+                Some(line) => format!("line {} cannot be read", before + line),
                 None => "the file cannot be read".to_owned(),
             },
-            "it must be CSV in UTF-8, every line with as many values as the header has names",
+            "it must be a table, every line with as many values as there are names",
         ),
     }
 }

@@ -103,8 +103,8 @@ impl Derivatives {
 }
 
 /// Normal equations of a step from a model: a column for each parameter, one for
-/// each state of the first row that counts and of leaky integrators, and one for an
-/// offset. The rows before `first` do not count.
+/// each state of the first row that counts and of leaky integrators, one for each term
+/// of friction, and one for an offset. The rows before `first` do not count.
 #[must_use]
 pub fn gather(
     data: &Data<'_>,
@@ -118,7 +118,8 @@ pub fn gather(
     let terms = derivatives.columns(&bank);
     let output = bank.output(base);
     let count = terms.len();
-    let width = count + base.order() + data.fading() + 1;
+    let states = base.order() + data.fading();
+    let width = count + states + data.friction.len() + 1;
     let mut normal = Normal::new(width);
     let mut columns = vec![[0.0; ROWS]; width];
     *columns.last_mut()? = [1.0; ROWS];
@@ -128,12 +129,14 @@ pub fn gather(
     let mut open = data.undisturbed.map(|_| Bank::new(base, data.every, &[]));
     let mut free = Free::new(base, data.every);
     let mut fading = Fading::new(data);
+    let mut rubbed = Rubbed::new(data, base, data.every);
     let first = first.div_ceil(data.every);
     for (from, rows) in stretches(first, data.rows()) {
         bank.run(driven, from, rows);
         if let Some(open) = &mut open {
             open.run(data.input, from, rows);
         }
+        rubbed.run(from, rows);
         if from < first {
             continue;
         }
@@ -161,6 +164,13 @@ pub fn gather(
                 _ => {}
             }
         });
+        for (slot, column) in columns
+            .iter_mut()
+            .skip(count + states)
+            .zip(rubbed.columns())
+        {
+            *slot = column;
+        }
         let mut gaps = [0.0; ROWS];
         let measured = data.output.get(from * data.every..)?;
         let measured = measured.iter().step_by(data.every).take(rows);
@@ -179,8 +189,42 @@ pub fn gather(
     normal.total.is_finite().then_some(normal)
 }
 
+/// What terms of friction make of the output, for a factor of 1.
+struct Rubbed<'a> {
+    inputs: &'a [Vec<f64>],
+    banks: Vec<Bank>,
+    terms: Terms,
+}
+
+impl<'a> Rubbed<'a> {
+    fn new(data: &Data<'a>, base: &Parallel, every: usize) -> Self {
+        let bank = || Bank::new(base, every, &[]);
+        Self {
+            inputs: data.friction,
+            banks: data.friction.iter().map(|_| bank()).collect(),
+            terms: bank().output(base),
+        }
+    }
+
+    /// Goes over the next rows.
+    fn run(&mut self, from: usize, rows: usize) {
+        for (bank, input) in self.banks.iter_mut().zip(self.inputs) {
+            bank.run(input, from, rows);
+        }
+    }
+
+    /// A column for each term.
+    fn columns(&self) -> impl Iterator<Item = Column> + '_ {
+        self.banks.iter().map(|bank| {
+            let mut column = [0.0; ROWS];
+            combine(&mut column, &self.terms, bank.signals());
+            column.map(|x| -x)
+        })
+    }
+}
+
 /// Differences between measured and simulated output, the swing of these first
-/// states and an offset taken off; 0 before the row `first`. All samples are rows.
+/// states, friction and an offset taken off; 0 before the row `first`. All samples are rows.
 #[must_use]
 pub fn differences(
     data: &Data<'_>,
@@ -194,9 +238,11 @@ pub fn differences(
     let terms = bank.output(&base);
     let mut free = Free::new(&base, 1);
     let mut fading = Fading::new(data);
+    let mut rubbed = Rubbed::new(data, &base, 1);
     let mut out = vec![0.0; data.len()];
     for (from, rows) in stretches(first, data.len()) {
         bank.run(data.input, from, rows);
+        rubbed.run(from, rows);
         if from < first {
             continue;
         }
@@ -219,6 +265,9 @@ pub fn differences(
                 add(base.order() + index, column);
             }
         });
+        for (index, column) in rubbed.columns().enumerate() {
+            add(base.order() + data.fading() + index, &column);
+        }
         let measured = data.output.get(from..from + rows)?.iter();
         let slots = out.get_mut(from..from + rows)?;
         for ((slot, y), simulated) in slots.iter_mut().zip(measured).zip(&simulated) {

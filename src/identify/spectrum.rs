@@ -20,6 +20,8 @@ pub struct FrequencyResponse {
     pub coherence: Vec<f64>,
     /// Variance of the response.
     pub variance: Vec<f64>,
+    /// Power of the output at each frequency, in any unit.
+    pub power: Vec<f64>,
     /// True when whole periods of the excitation were averaged: nothing leaks.
     pub periodic: bool,
 }
@@ -81,6 +83,28 @@ pub fn measure(
         length.min(n),
         period_s,
     ))
+}
+
+/// Which share of a signal's power another one explains, as any linear system could
+/// make the one of the other: the mean coherence by power, less the `1/K` that K
+/// stretches seem to cohere by chance.
+#[must_use]
+pub fn explained_share(by: &[f64], signal: &[f64], period_s: f64) -> f64 {
+    const STRETCHES: usize = 32;
+    let n = by.len().min(signal.len());
+    let length = (n / STRETCHES).clamp(16, 1 << 12);
+    let measured = over_stretches(by, signal, by, length, period_s);
+    let chance = 1.0 / (0.53 * (2 * n / length).max(1) as f64).max(1.0);
+    let (mut explained, mut all) = (0.0, 0.0);
+    for (coherence, power) in measured.coherence.iter().zip(&measured.power) {
+        explained += power * (coherence - chance) / (1.0 - chance);
+        all += power;
+    }
+    if all > 0.0 && chance < 1.0 {
+        (explained / all).max(0.0)
+    } else {
+        0.0
+    }
 }
 
 fn plan(length: usize) -> Arc<dyn RealToComplex<f64>> {
@@ -198,6 +222,7 @@ fn over_stretches(
             0.0
         });
         out.variance.push(variance);
+        out.power.push(sum.yy);
     }
     out
 }
@@ -273,6 +298,7 @@ fn over_periods(
         out.coherence.push((1.0 - rest / total).clamp(0.0, 1.0));
         out.variance
             .push(rest / (k - 1.0).max(1.0) * k / u.norm_sqr());
+        out.power.push(total);
     }
     Some(out)
 }
@@ -322,4 +348,32 @@ pub fn repetition(x: &[f64]) -> Option<usize> {
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A signal explains itself and what a system makes of it; noise it does not.
+    #[test]
+    fn what_follows_from_a_signal_is_explained() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        };
+        let by: Vec<f64> = (0..8192).map(|_| random()).collect();
+        let other: Vec<f64> = (0..8192).map(|_| random()).collect();
+        let late: Vec<f64> = by
+            .iter()
+            .zip(by.iter().skip(1))
+            .map(|(a, b)| a + 2.0 * b)
+            .collect();
+        assert!(explained_share(&by, &by, 1e-3) > 0.999);
+        assert!(explained_share(&by, &late, 1e-3) > 0.97);
+        assert!(explained_share(&by, &other, 1e-3) < 0.02);
+        assert_eq!(explained_share(&by, &vec![0.0; 8192], 1e-3), 0.0);
+    }
 }

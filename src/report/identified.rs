@@ -96,7 +96,12 @@ pub fn rigid_json(heading: &Heading, rigid: &Rigid, out: &mut dyn Write) -> io::
     insert(&mut map, mass, Some(rigid.mass));
     insert(&mut map, viscous, rigid.viscous);
     insert(&mut map, coulomb, rigid.coulomb);
-    insert(&mut map, offset, Some(rigid.offset));
+    insert(&mut map, offset, rigid.offset);
+    if rigid.constant.is_some() {
+        insert(&mut map, "coulomb_and_offset_n", rigid.constant);
+    }
+    map.insert("friction".into(), json!(rigid.friction()));
+    map.insert("recordings".into(), json!(rigid.recordings));
     if let Some(directions) = rigid.directions {
         for (name, (b, f)) in ["forward", "backward"].iter().zip(directions) {
             insert(&mut map, &format!("viscous_{name}_n_s_m"), Some(b));
@@ -104,6 +109,7 @@ pub fn rigid_json(heading: &Heading, rigid: &Rigid, out: &mut dyn Write) -> io::
         }
     }
     map.insert("rel_error".into(), number(Some(rigid.rel_error)));
+    map.insert("noise_share".into(), number(Some(rigid.noise_share)));
     map.insert("zeros".into(), json!([]));
     map.insert("poles".into(), json!([]));
     map.insert("samples".into(), json!(rigid.samples));
@@ -126,9 +132,11 @@ pub fn flexible_json(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut map = heading.start("flexible");
-    let [mass, ..] = heading.keys();
+    let [mass, viscous, coulomb, _] = heading.keys();
     map.insert("method".into(), json!(method));
     insert(&mut map, mass, axis.inertia);
+    insert(&mut map, viscous, axis.viscous);
+    insert(&mut map, coulomb, axis.coulomb);
     map.insert("gain".into(), number(Some(axis.transfer.gain)));
     map.insert("rel_error".into(), number(Some(axis.rel_error)));
     map.insert("zeros".into(), axis.zeros.iter().map(root).collect());
@@ -202,20 +210,23 @@ pub fn power_model_json(
     insert(&mut map, viscous, Some(model.viscous));
     insert(&mut map, coulomb, Some(model.coulomb));
     insert(&mut map, "standby_w", Some(model.standby_w));
+    insert(&mut map, "efficiency", Some(model.efficiency));
     let figures = [
-        ("efficiency", model.efficiency),
         ("r2", model.r2),
         ("r2_centered", model.r2_centered),
         ("rms_w", model.rms_w),
         ("peak_measured_w", model.peak_measured_w),
         ("peak_model_w", model.peak_model_w),
-        ("peak_factor", model.peak_factor),
+        ("peak_factor", model.peaks.factor),
+        ("peak_factor_seen", model.peaks.seen),
         ("margin", margin(model)),
     ];
     for (key, value) in figures {
         map.insert(key.into(), number(Some(value)));
     }
+    map.insert("peaks".into(), json!(model.peaks.peaks));
     map.insert("rows".into(), json!(model.rows));
+    judged(&mut map, judgement::power(model));
     finish(map, out)
 }
 
@@ -223,7 +234,7 @@ pub fn power_model_json(
 /// the model by.
 #[must_use]
 pub fn margin(model: &PowerModel) -> f64 {
-    1.0 - 1.0 / model.peak_factor.max(1.0)
+    1.0 - 1.0 / model.peaks.factor.max(1.0)
 }
 
 /// A figure with four digits, and its error with two.
@@ -267,17 +278,22 @@ pub fn rigid_text(heading: &Heading, rigid: &Rigid) -> String {
     );
     let name = if heading.rotary { "inertia" } else { "mass" };
     let _ = writeln!(text, "  {name:<17} {} {mass}", shown(rigid.mass));
-    match (rigid.viscous, rigid.coulomb) {
-        (Some(b), Some(f)) => {
-            let _ = writeln!(text, "  viscous friction  {} {viscous}", shown(b));
-            let _ = writeln!(text, "  Coulomb friction  {} {force}", shown(f));
-        }
-        _ => {
-            let _ = writeln!(
-                text,
-                "  friction          not known: no speed or position was recorded"
-            );
-        }
+    if let Some(b) = rigid.viscous {
+        let _ = writeln!(text, "  viscous friction  {} {viscous}", shown(b));
+    }
+    if let Some(f) = rigid.coulomb {
+        let _ = writeln!(text, "  Coulomb friction  {} {force}", shown(f));
+    }
+    if let Some(both) = rigid.constant {
+        let _ = writeln!(
+            text,
+            "  Coulomb + offset  {} {force}: known as a sum, as the axis moves one way only",
+            shown(both)
+        );
+    } else if rigid.coulomb.is_none() {
+        text.push_str("  friction          not known: no speed or position was recorded\n");
+    } else if rigid.viscous.is_none() {
+        text.push_str("  viscous friction  not known: the axis moves at one speed only\n");
     }
     for (name, (b, f)) in ["forward ", "backward"]
         .iter()
@@ -290,7 +306,9 @@ pub fn rigid_text(heading: &Heading, rigid: &Rigid) -> String {
             shown(f)
         );
     }
-    let _ = writeln!(text, "  offset            {} {force}", shown(rigid.offset));
+    if let Some(offset) = rigid.offset {
+        let _ = writeln!(text, "  offset            {} {force}", shown(offset));
+    }
     let _ = writeln!(text, "  relative error    {}", percent(rigid.rel_error));
     tail(&mut text, heading);
     let _ = writeln!(text, "verdict: {}", judgement::rigid(rigid));
@@ -300,7 +318,7 @@ pub fn rigid_text(heading: &Heading, rigid: &Rigid) -> String {
 /// A flexible axis, for people.
 #[must_use]
 pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String {
-    let [mass, ..] = heading.units();
+    let [mass, viscous, force] = heading.units();
     let mut text = format!(
         "{}: axis {}, flexible ({method}), from {} to {}, {:.3} s\n",
         heading.recording, heading.axis, axis.signals.0, axis.signals.1, axis.seconds
@@ -308,6 +326,15 @@ pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String
     if let Some(inertia) = axis.inertia {
         let name = if heading.rotary { "inertia" } else { "mass" };
         let _ = writeln!(text, "  {name:<17} {} {mass}", shown(inertia));
+    }
+    let frictions = [
+        ("viscous friction", axis.viscous, viscous),
+        ("Coulomb friction", axis.coulomb, force),
+    ];
+    for (name, figure, unit) in frictions {
+        if let Some(figure) = figure {
+            let _ = writeln!(text, "  {name:<17} {} {unit}", shown(figure));
+        }
     }
     if axis.zeros.is_empty() {
         let _ = writeln!(text, "  anti-resonance    none");
@@ -358,7 +385,14 @@ pub fn flexible_text(heading: &Heading, method: &str, axis: &Flexible) -> String
         let _ = writeln!(text, "  this method gives no standard errors");
     }
     tail(&mut text, heading);
-    let _ = writeln!(text, "verdict: {}", judgement::flexible(axis));
+    let judgement = judgement::flexible(axis);
+    if axis.speed_is_summed && judgement != Judgement::Good {
+        let _ = writeln!(
+            text,
+            "  there is friction, and its speed is a sum of accelerations: record speed or position too"
+        );
+    }
+    let _ = writeln!(text, "verdict: {judgement}");
     text
 }
 
@@ -384,8 +418,8 @@ pub fn power_model_text(heading: &Heading, model: &PowerModel) -> String {
         format!("{} W", shown(model.standby_w))
     };
     let _ = writeln!(text, "  standby           {standby}");
-    let efficiency = if model.efficiency < 1.0 {
-        format!("{:.2}", model.efficiency)
+    let efficiency = if model.efficiency.value < 1.0 {
+        shown(model.efficiency)
     } else {
         "1, none other seen in the log".to_owned()
     };
@@ -405,11 +439,18 @@ pub fn power_model_text(heading: &Heading, model: &PowerModel) -> String {
     let _ = writeln!(text, "  left over         {:.3} W rms", model.rms_w);
     let _ = writeln!(
         text,
-        "  peaks             {:.1} W measured, {:.1} W by the model; up to {:.2} times the model: margin {:.3}",
-        model.peak_measured_w,
-        model.peak_model_w,
-        model.peak_factor,
+        "  peaks             {:.1} W measured, {:.1} W by the model",
+        model.peak_measured_w, model.peak_model_w
+    );
+    let peaks = model.peaks;
+    let _ = writeln!(
+        text,
+        "  factor of peaks   {:.3}: 95 % of them stay below, with 95 % confidence, by {} that the other rows predict (largest {:.3}): margin {:.3}",
+        peaks.factor,
+        peaks.peaks,
+        peaks.seen,
         margin(model)
     );
+    let _ = writeln!(text, "verdict: {}", judgement::power(model));
     text
 }

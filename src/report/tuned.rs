@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::identified::{number, shown};
 use crate::identify::Figure;
+use crate::identify::Judgement;
 use crate::identify::tune::{
     Advice, AxisResponse, Correction, Gain, LowPass, Mismatch, Tuned, delays_agree,
 };
@@ -95,6 +96,9 @@ fn axis_text(text: &mut String, axis: &AxisResponse) {
     }
     for note in &axis.notes {
         let _ = writeln!(text, "  note: {note}");
+    }
+    if let Some(judgement) = axis.judgement.filter(|it| *it != Judgement::Good) {
+        let _ = writeln!(text, "  verdict: {judgement}");
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Shop;
 
 /// An axis of 50 kg that goes to and fro, as CSV.
-fn axis_recording() -> String {
+pub(super) fn axis_recording() -> String {
     use std::fmt::Write as _;
     let mut text = "time_s,force_n,position_m\n".to_owned();
     for k in 0..2000 {

@@ -66,7 +66,11 @@ fn lines_are_named_and_nothing_of_the_readers_words() {
             "line 9 comes after",
             "fixed period",
         ),
-        (latin, "line 152 is not in UTF-8", "UTF-8"),
+        (
+            latin,
+            "line 152: accel_rad_s2 is \"é\", not a number",
+            "cut",
+        ),
         (b"\xFF\xFEt\0i\0".to_vec(), "the file is UTF-16", "UTF-8"),
         (
             b"\x7FELF\x02\0\0\0".to_vec(),
@@ -95,7 +99,7 @@ fn logs_are_refused_in_the_same_words() {
     let header = "velocity_mm_s,accel_mm_s2,power_w\n";
     for (text, message) in [
         (String::new(), "the recording is empty"),
-        (header.replace(',', ";"), "not separated by commas"),
+        (header.replace(',', ";"), "no numbers below them"),
         (
             format!("{header}1,2,3\n1,\"2,5\",3\n"),
             "line 3: accel_mm_s2 is \"2,5\", not a number",

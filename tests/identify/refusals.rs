@@ -36,7 +36,7 @@ fn bad_recordings_are_refused_with_what_to_do() {
     };
     said("", "the recording is empty");
     said("time_s\n0\n", "fewer than two columns");
-    said(&good.replace(',', ";"), "not separated by commas");
+    said(&good.replace(',', " "), "fewer than two columns");
     said(&good.replace("time_s", "seconds"), "no column time_s");
     said(&good.replace("force_n", "force"), "unit of column force");
     said(
@@ -55,7 +55,7 @@ fn bad_recordings_are_refused_with_what_to_do() {
         .map(|(_, line)| line)
         .collect();
     said(&gap.join("\n"), "a gap");
-    let short: Vec<&str> = good.lines().take(40).collect();
+    let short: Vec<&str> = good.lines().take(20).collect();
     said(&short.join("\n"), "too short");
     said(
         &csv(&["force_n", "position_m"], &[&vec![1.0; n], &vec![0.5; n]]),

@@ -1,14 +1,12 @@
 //! Rigid axes: mass and friction.
 
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
-use std::fs;
 
 use gwatt::identify::merge::force_per_torque;
 use gwatt::identify::rigid::{self, Friction};
 use gwatt::identify::{Judgement, Recording, TransferFunction, judgement};
 
-use super::{Noise, PERIOD_S, branched, noisy_recording, random, shared, spring, table};
+use super::{Noise, PERIOD_S, branched, emps, noisy_recording, random, spring, table};
 
 /// To and fro with friction; position with noise of an encoder.
 fn rigid_table(noise: f64) -> Recording {
@@ -39,7 +37,7 @@ fn a_rigid_axis_is_found_with_its_friction() {
         (found.mass, 80.0),
         (found.viscous.unwrap(), 300.0),
         (found.coulomb.unwrap(), 25.0),
-        (found.offset, -6.0),
+        (found.offset.unwrap(), -6.0),
     ] {
         let error = figure.value - truth;
         assert!(
@@ -53,16 +51,9 @@ fn a_rigid_axis_is_found_with_its_friction() {
 
 #[test]
 fn the_published_axis_comes_out_as_published() {
-    let Some(path) = shared("measured/emps/DATA_EMPS.csv") else {
+    let Some(recording) = emps() else {
         return;
     };
-    // Force in N from the drive's voltage: the published constant.
-    let mut text = "time_s,force_n,position_m\n".to_owned();
-    for line in fs::read_to_string(path).unwrap().lines().skip(1) {
-        let row: Vec<f64> = line.split(',').map(|x| x.trim().parse().unwrap()).collect();
-        writeln!(text, "{},{},{}", row[0], row[3] * 35.150_651_88, row[2]).unwrap();
-    }
-    let recording = Recording::read(text.as_bytes(), None).unwrap();
     let found = rigid::fit(&recording, Friction::Symmetric, None).unwrap();
     assert!((found.mass.value - 95.109).abs() < 0.22, "{:?}", found.mass);
     assert!((found.viscous.unwrap().value - 203.50).abs() < 2.3);

@@ -6,6 +6,7 @@ use super::dip::{Dip, dips};
 use crate::identify::column::{Kind, Quantity};
 use crate::identify::filter::{derivative, low_pass, second_derivative};
 use crate::identify::flexible::{Choice, Flexible, Root, identify};
+use crate::identify::judgement::{self, Judgement};
 use crate::identify::recording::Recording;
 use crate::identify::rigid::Figure;
 use crate::identify::spectrum::FrequencyResponse;
@@ -97,6 +98,8 @@ pub struct AxisResponse {
     pub hold_s: f64,
     /// Dips of the measured response.
     pub dips: Vec<Dip>,
+    /// The verdict on its recording; none where figures come from a file.
+    pub judgement: Option<Judgement>,
     /// Remarks.
     pub notes: Vec<String>,
 }
@@ -198,6 +201,7 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
         letter,
         source: String::new(),
         excited: None,
+        judgement: Some(judgement::flexible(&found)),
         rotary,
         from_command,
         inertia: found.inertia.map(|inertia| inertia.value),

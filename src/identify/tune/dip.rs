@@ -125,6 +125,7 @@ mod tests {
                 .map(|hz| Complex::new(gain(*hz), 0.0))
                 .collect(),
             coherence: vec![1.0; frequency_hz.len()],
+            power: Vec::new(),
             variance: vec![noise * noise; frequency_hz.len()],
             frequency_hz,
             periodic: true,

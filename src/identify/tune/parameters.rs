@@ -270,6 +270,7 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
         measured: None,
         hold_s: 0.0,
         dips: Vec::new(),
+        judgement: None,
         notes: Vec::new(),
     };
     if !axis.transfer().is_stable() {

@@ -1,0 +1,239 @@
+//! Equations of motion of a rigid axis: the force of each sample, and what it is made of.
+//!
+//! Position is filtered without delay and differentiated; then force and all
+//! regressors pass the same low-pass, and are decimated to what it leaves (Gautier
+//! 1997, "Dynamic identification of robots with power model").
+
+use super::column::Quantity;
+use super::filter::{derivative, low_pass, second_derivative};
+use super::quality;
+use super::recording::Recording;
+use super::trouble::{Outcome, Trouble};
+
+/// Below this share of the largest speed an axis counts as standing.
+const STANDING: f64 = 0.005;
+/// What smooths position and speed first reaches so much farther than the band.
+const SMOOTH: f64 = 3.4;
+
+/// What friction is made of: speed and its sign, each where the axis moves forward and
+/// where it moves backward, and 0 elsewhere.
+#[derive(Debug, Clone)]
+pub(super) struct Speeds {
+    /// The speed where it is positive.
+    pub(super) forward: Vec<f64>,
+    /// The speed where it is negative.
+    pub(super) backward: Vec<f64>,
+    /// 1 where it is positive.
+    pub(super) forward_sign: Vec<f64>,
+    /// −1 where it is negative.
+    pub(super) backward_sign: Vec<f64>,
+}
+
+/// Force and regressors of one band.
+#[derive(Debug, Clone)]
+pub(super) struct Band {
+    /// Force, N or N·m.
+    pub(super) force: Vec<f64>,
+    /// Acceleration, m/s² or rad/s².
+    pub(super) acceleration: Vec<f64>,
+    /// Absent where no speed is known.
+    pub(super) speeds: Option<Speeds>,
+}
+
+/// Equations of one recording.
+#[derive(Debug, Clone)]
+pub(super) struct Equations {
+    /// Up to the band's end.
+    pub(super) inside: Band,
+    /// From the band's end to twice as far: where noise is as strong as within, and what
+    /// the model is to explain is not.
+    pub(super) above: Band,
+    /// Which equations count: those where the axis moves.
+    pub(super) counts: Vec<bool>,
+    /// Distance of samples, s.
+    pub(super) step_s: f64,
+}
+
+/// The signals before the common filter.
+struct Raw {
+    force: Vec<f64>,
+    acceleration: Vec<f64>,
+    velocity: Option<Vec<f64>>,
+}
+
+/// The force of a recording in N (N·m where the motion turns).
+///
+/// # Errors
+///
+/// Without a force.
+pub(super) fn force_of(recording: &Recording) -> Outcome<Vec<f64>> {
+    let Some(force) = recording.get(Quantity::Force) else {
+        return Err(Trouble::new(
+            "there is no force or torque in the recording",
+            "add a column force_n or torque_nm: from motor current, times the force constant",
+        ));
+    };
+    Ok(force.values.clone())
+}
+
+fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
+    let t = recording.period_s;
+    let force = force_of(recording)?;
+    for signal in &recording.signals {
+        if matches!(
+            signal.quantity,
+            Quantity::Position | Quantity::Velocity | Quantity::Acceleration
+        ) {
+            quality::moves(
+                signal,
+                "record a motion to and fro; gwatt excite makes signals",
+            )?;
+        }
+        if matches!(signal.quantity, Quantity::Force | Quantity::Acceleration) {
+            quality::not_saturated(signal)?;
+        }
+    }
+    let smooth_hz = (SMOOTH * bandwidth_hz).min(0.4 / t);
+    let smooth = |quantity| {
+        recording
+            .get(quantity)
+            .map(|signal| low_pass(&signal.values, smooth_hz, t))
+    };
+    let position = smooth(Quantity::Position);
+    let velocity = smooth(Quantity::Velocity)
+        .or_else(|| position.as_ref().map(|position| derivative(position, t)));
+    let measured = recording.get(Quantity::Acceleration);
+    let acceleration = match (measured, &position, &velocity) {
+        (Some(signal), _, _) => signal.values.clone(),
+        (None, Some(position), _) if recording.get(Quantity::Velocity).is_none() => {
+            second_derivative(position, t)
+        }
+        (None, _, Some(velocity)) => derivative(velocity, t),
+        _ => {
+            return Err(Trouble::new(
+                "there is no motion in the recording",
+                "add the load's position, speed or acceleration, such as position_mm",
+            ));
+        }
+    };
+    Ok(Raw {
+        force,
+        acceleration,
+        velocity,
+    })
+}
+
+fn sign(v: f64) -> f64 {
+    if v > 0.0 {
+        1.0
+    } else if v < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+impl Raw {
+    /// Every signal after a filter.
+    fn filtered(&self, filter: impl Fn(&[f64]) -> Vec<f64>) -> Band {
+        let speeds = self.velocity.as_ref().map(|velocity| {
+            let part = |keep: fn(f64) -> f64| {
+                let kept: Vec<f64> = velocity.iter().map(|v| keep(*v)).collect();
+                filter(&kept)
+            };
+            Speeds {
+                forward: part(|v| v.max(0.0)),
+                backward: part(|v| v.min(0.0)),
+                forward_sign: part(|v| sign(v).max(0.0)),
+                backward_sign: part(|v| sign(v).min(0.0)),
+            }
+        });
+        Band {
+            force: filter(&self.force),
+            acceleration: filter(&self.acceleration),
+            speeds,
+        }
+    }
+}
+
+impl Equations {
+    /// Those of a recording in a band from 0 Hz on.
+    ///
+    /// # Errors
+    ///
+    /// When a signal is missing, stands still or is cut off.
+    pub(super) fn of(recording: &Recording, bandwidth_hz: f64) -> Outcome<Self> {
+        let t = recording.period_s;
+        let raw = raw(recording, bandwidth_hz)?;
+        let samples = raw.force.len();
+        // The filter leaves nothing above its corner: 2.5 samples a period there.
+        let step = ((0.4 / (bandwidth_hz * t)) as usize).max(1);
+        let edge = ((1.0 / (bandwidth_hz * t)) as usize).min(samples / 10);
+        let thin = |x: Vec<f64>| -> Vec<f64> {
+            let inner = x.len().saturating_sub(2 * edge);
+            x.into_iter().skip(edge).take(inner).step_by(step).collect()
+        };
+        let inside = raw.filtered(|x| thin(low_pass(x, bandwidth_hz, t)));
+        let above = raw.filtered(|x| {
+            let (wide, narrow) = (
+                low_pass(x, 2.0 * bandwidth_hz, t),
+                low_pass(x, bandwidth_hz, t),
+            );
+            thin(wide.iter().zip(&narrow).map(|(w, n)| w - n).collect())
+        });
+        let fastest = raw
+            .velocity
+            .iter()
+            .flatten()
+            .fold(0.0, |fastest: f64, v| fastest.max(v.abs()));
+        // An axis that stands is held by friction of any size: no equation.
+        let counts = match &inside.speeds {
+            Some(speeds) => {
+                let pairs = speeds.forward.iter().zip(&speeds.backward);
+                pairs
+                    .map(|(f, b)| (f + b).abs() > STANDING * fastest)
+                    .collect()
+            }
+            None => vec![true; inside.force.len()],
+        };
+        Ok(Self {
+            inside,
+            above,
+            counts,
+            step_s: step as f64 * t,
+        })
+    }
+
+    /// How many equations count in which the axis moves forward, and backward.
+    pub(super) fn directions(&self) -> [usize; 2] {
+        let Some(speeds) = &self.inside.speeds else {
+            return [0; 2];
+        };
+        let mut found = [0; 2];
+        let all = speeds
+            .forward
+            .iter()
+            .zip(&speeds.backward)
+            .zip(&self.counts);
+        for ((forward, backward), _) in all.filter(|(_, counts)| **counts) {
+            let [ahead, back] = &mut found;
+            *(if forward + backward > 0.0 {
+                ahead
+            } else {
+                back
+            }) += 1;
+        }
+        found
+    }
+
+    /// Leaves out the equations in which the axis moves forward, or backward.
+    pub(super) fn leave_out(&mut self, is_forward: bool) {
+        let Some(speeds) = &self.inside.speeds else {
+            return;
+        };
+        let all = speeds.forward.iter().zip(&speeds.backward);
+        for ((forward, backward), counts) in all.zip(&mut self.counts) {
+            *counts = *counts && (forward + backward > 0.0) != is_forward;
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Friction of a flexible axis: what acts against its force with the speed, and with the
+//! sign of the speed.
+//!
+//! A model from force to acceleration has no place for it: without friction the gain at
+//! 0 Hz is 1/J, with it 0, and whatever stands for that takes the inertia along. So the
+//! speed, taken from the recording, and its sign are further inputs, each with a factor
+//! that is estimated next to the model. Whether there is any shows where motion is slow
+//! and the axis as good as rigid.
+
+use super::column::{Kind, Quantity};
+use super::equations::Equations;
+use super::filter::{derivative, low_pass};
+use super::friction::{Solved, Terms, solve};
+use super::recording::{Recording, Signal};
+
+/// Band in which friction is looked for, Hz.
+const SLOW_HZ: f64 = 5.0;
+/// Speeds are smoothed up to this share of the sampling rate.
+const SMOOTH: f64 = 0.1;
+/// Standard errors from which on there is friction, and from which on a term of it is
+/// kept.
+const FOUND: f64 = 4.0;
+const KEPT: f64 = 3.0;
+
+/// A term of friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Term {
+    /// It grows with the speed.
+    Viscous,
+    /// It has the sign of the speed.
+    Coulomb,
+    /// What a sensor of acceleration adds makes a ramp of its sum, the speed.
+    Drift,
+}
+
+/// Friction as further inputs of a model.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rubbing {
+    /// What there is.
+    pub(super) terms: Vec<Term>,
+    /// By term: speeds (m/s or rad/s) or their signs, as means from sample to sample.
+    pub(super) inputs: Vec<Vec<f64>>,
+    /// By term: about how much it is; that is taken off the force beforehand.
+    pub(super) about: Vec<f64>,
+}
+
+/// The speed at each sample. Of an acceleration there are two: as it is summed up from
+/// rest, and so that the axis ends as it began, which takes off what a sensor adds.
+fn speeds(recording: &Recording) -> Vec<Vec<f64>> {
+    let t = recording.period_s;
+    let values = |quantity| recording.get(quantity).map(|signal| &signal.values);
+    let smooth = |x: &[f64]| low_pass(x, SMOOTH / t, t);
+    if let Some(velocity) = values(Quantity::Velocity) {
+        return vec![smooth(velocity)];
+    }
+    if let Some(position) = values(Quantity::Position) {
+        return vec![derivative(&smooth(position), t)];
+    }
+    let Some(acceleration) = values(Quantity::Acceleration) else {
+        return Vec::new();
+    };
+    let mean = acceleration.iter().sum::<f64>() / acceleration.len().max(1) as f64;
+    [0.0, mean]
+        .into_iter()
+        .map(|bias| {
+            let mut sum = 0.0;
+            let steps = acceleration.windows(2).map(|pair| {
+                sum += t * (0.5 * pair.iter().sum::<f64>() - bias);
+                sum
+            });
+            std::iter::once(0.0).chain(steps).collect()
+        })
+        .collect()
+}
+
+/// Whether speeds are sums of accelerations.
+fn are_sums(recording: &Recording) -> bool {
+    let has = |quantity| recording.get(quantity).is_some();
+    !has(Quantity::Velocity) && !has(Quantity::Position)
+}
+
+/// Means from each sample to the next one: a force is held as long, and its friction
+/// changes meanwhile.
+fn between(x: &[f64], mean: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let last = x.last().copied();
+    let next = x.iter().skip(1).copied().chain(last);
+    x.iter().zip(next).map(|(a, b)| mean(*a, b)).collect()
+}
+
+/// The mean sign of a speed that runs straight from one value to another.
+fn mean_sign(a: f64, b: f64) -> f64 {
+    let size = a.abs() + b.abs();
+    if size > 0.0 { (a + b) / size } else { 0.0 }
+}
+
+/// How sure a figure is, in standard errors; below 0 where it is negative.
+fn sureness(value: f64, std: f64) -> f64 {
+    value / std.max(f64::MIN_POSITIVE)
+}
+
+impl Rubbing {
+    /// What a recording shows of friction. `None` where it shows none, or has no force
+    /// or motion.
+    pub(super) fn of(recording: &Recording) -> Option<Self> {
+        let tried = speeds(recording).into_iter().filter_map(|speed| {
+            let solved = slow(recording, &speed)?;
+            let left: f64 = solved.residuals.iter().flatten().map(|x| x * x).sum();
+            Some((left, solved, speed))
+        });
+        let (_, solved, speed) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let figure = |index: usize| {
+            let value = solved.theta.get(index).copied().unwrap_or_default();
+            let std = solved.covariance[(index, index)].sqrt();
+            (value, sureness(value, std))
+        };
+        let found = [(Term::Viscous, figure(1)), (Term::Coulomb, figure(2))];
+        if found.iter().all(|(_, (_, sure))| *sure < FOUND) {
+            return None;
+        }
+        let mut out = Self::default();
+        for (term, (value, sure)) in found {
+            if sure > KEPT {
+                out.add(term, &speed, value);
+            }
+        }
+        if are_sums(recording) {
+            out.add(Term::Drift, &speed, 0.0);
+        }
+        Some(out)
+    }
+
+    fn add(&mut self, term: Term, speed: &[f64], about: f64) {
+        self.terms.push(term);
+        self.inputs.push(term.input(speed));
+        self.about.push(about);
+    }
+
+    /// Takes what is known of friction off a force.
+    pub(super) fn take_off(&self, force: &mut [f64]) {
+        for (input, about) in self.inputs.iter().zip(&self.about) {
+            for (slot, x) in force.iter_mut().zip(input) {
+                *slot -= about * x;
+            }
+        }
+    }
+
+    /// This much friction in another recording.
+    pub(super) fn known(recording: &Recording, figures: [(Term, Option<f64>); 2]) -> Option<Self> {
+        let speed = speeds(recording).pop()?;
+        let mut out = Self::default();
+        for (term, value) in figures {
+            if let Some(value) = value {
+                out.add(term, &speed, value);
+            }
+        }
+        Some(out)
+    }
+}
+
+/// Mass and friction where motion is slow.
+fn slow(recording: &Recording, speed: &[f64]) -> Option<Solved> {
+    let mut slow = recording.clone();
+    if are_sums(recording) {
+        slow.signals.push(Signal {
+            name: "speed".to_owned(),
+            quantity: Quantity::Velocity,
+            kind: Kind::Neither,
+            values: speed.to_vec(),
+        });
+    }
+    let equations = Equations::of(&slow, SLOW_HZ.min(SMOOTH / recording.period_s)).ok()?;
+    solve(&[equations], Terms::Symmetric)
+}
+
+impl Term {
+    fn input(self, speed: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Viscous => between(speed, |a, b| 0.5 * (a + b)),
+            Self::Coulomb => between(speed, mean_sign),
+            Self::Drift => {
+                let n = speed.len().max(1) as f64;
+                (0..speed.len()).map(|k| k as f64 / n).collect()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sign_is_the_mean_over_a_sample() {
+        assert_eq!(mean_sign(2.0, 3.0), 1.0);
+        assert_eq!(mean_sign(-1.0, 3.0), 0.5);
+        assert_eq!(mean_sign(0.0, 0.0), 0.0);
+        assert_eq!(
+            between(&[1.0, 3.0, 5.0], |a, b| 0.5 * (a + b)),
+            [2.0, 4.0, 5.0]
+        );
+    }
+}
