@@ -78,7 +78,7 @@ fn analyze_way<R: Read + Seek + Send>(
 }
 
 /// The same, watched at `rungs` as well.
-fn judge<R: Read + Seek + Send>(
+pub(super) fn judge<R: Read + Seek + Send>(
     input: R,
     machine: &Machine,
     rungs: &Lower,

@@ -7,10 +7,11 @@ use std::io::{Cursor, Read, Seek, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
+use super::analyze::judge;
 use super::batch::Batch;
 use super::certify::{Certified, Certifier};
 use super::conclusion::{conclude, holds_one_way};
-use super::expand::{NOT_WRITTEN_OUT, Traced, Way, expand, in_fixed_blocks};
+use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, in_fixed_blocks};
 use super::front::read_whole;
 use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
 use super::pace::sooner;
@@ -159,6 +160,17 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     let Some(program) = read_whole(&mut input)? else {
         return Ok(first);
     };
+    let mut original = OriginalRows::default();
+    if let ([options, ..], Detail::Figures) = (paths, Detail::of(rows.as_deref())) {
+        let lower = Lower::default();
+        judge(
+            Cursor::new(&program),
+            machine,
+            &lower,
+            options,
+            Some(&mut original),
+        )?;
+    }
     let mut ways = BTreeMap::new();
     let mut last: Option<LimitSummary> = None;
     for way in [
@@ -198,7 +210,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         let text = Cursor::new(&expanded.text);
         let mut next = match rows {
             Some(rows) => {
-                let mut rows = Traced::new(&mut **rows, &expanded);
+                let mut rows = Traced::new(&mut **rows, &expanded, &original);
                 let mut rows: Option<&mut dyn RestartRows> = Some(&mut rows);
                 limit_text(text, machine, paths, how, &mut output, &mut rows)?
             }

@@ -95,19 +95,16 @@ fn a_spindle_that_cannot_follow_at_a_lower_override_lags_into_the_next_move() {
             "G18 G61.1 G8\nG0 X31\nG96 D500 S{surface} M3\nG4 P9\nG1 X16 F6000\nG1 Z500 F6000\n"
         )
     };
+    // The run takes 5.24 N·m up to 52.4 rad/s, 274 W, and Z 100 W.
+    let limited = with_limit(&lathe, [250.0, 1e5]);
     let z_w = |machine: &Machine, surface: u32| {
         let (rows, _) = run(machine, &program(surface), &Options::default());
         rows.last().expect("a move of Z").peak_w
     };
-    let lagging_w = z_w(&at(&lathe, [1.0; 3]), 50);
-    let at_speed_w = z_w(&at(&lathe, [1.0; 3]), 100);
-    assert!(lagging_w > at_speed_w + 150.0, "{lagging_w} {at_speed_w}");
-    let (_, summary) = run(
-        &with_limit(&lathe, [lagging_w - 1.0, 1e5]),
-        &program(100),
-        &Options::default(),
-    );
-    assert!(summary.unfit_count > 0);
+    let largest = at(&limited, [1.0; 3]);
+    assert!(z_w(&largest, 50) > 250.0);
+    near(z_w(&largest, 100), 100.0);
+    assert!(z_w(&limited, 100) > 250.0);
 }
 
 /// Z brakes from 1 m/s and gives back 1000 W next to a spindle that hardly changes at 20 mm, 3 N·m at 83.3 rad/s: 250 W are credited, and nothing of them where it is turned

@@ -16,7 +16,7 @@ use std::io::Cursor;
 
 use super::front::Front;
 use super::{Failure, LimitSummary, Options, Summary};
-pub(super) use trace::Traced;
+pub(super) use trace::{OriginalRows, Traced};
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Step;
@@ -46,6 +46,12 @@ impl Expanded {
         let index = line.checked_sub(1);
         let origin = index.and_then(|index| self.origins.get(index as usize));
         origin.copied().unwrap_or(line)
+    }
+
+    /// Whether a line of the original stands as it was.
+    fn stands(&self, line: u64) -> bool {
+        let first = self.origins.partition_point(|origin| *origin < line);
+        self.origins.get(first + 1) != Some(&line)
     }
 }
 

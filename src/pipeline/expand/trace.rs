@@ -1,5 +1,6 @@
 //! Lines of a program with cycles written out, as those of the original.
 
+use std::collections::BTreeMap;
 use std::io;
 
 use super::Expanded;
@@ -51,18 +52,61 @@ impl Expanded {
     }
 }
 
-/// Hands rows on with the lines of the original.
+/// The rows of the original, by line.
+#[derive(Default)]
+pub(in crate::pipeline) struct OriginalRows {
+    by_line: BTreeMap<u64, Vec<Row>>,
+}
+
+impl RowSink for OriginalRows {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        if row.file.is_empty() {
+            self.by_line.entry(row.line).or_default().push(row.clone());
+        }
+        Ok(())
+    }
+}
+
+/// Hands rows on with the lines of the original, and with its figures where a line stands as
+/// it was.
 pub(in crate::pipeline) struct Traced<'a> {
     rows: &'a mut dyn RestartRows,
     expanded: &'a Expanded,
+    original: &'a OriginalRows,
+    /// Rows of each line so far.
+    seen: BTreeMap<u64, usize>,
 }
 
 impl<'a> Traced<'a> {
     pub(in crate::pipeline) fn new(
         rows: &'a mut (dyn RestartRows + 'a),
         expanded: &'a Expanded,
+        original: &'a OriginalRows,
     ) -> Self {
-        Self { rows, expanded }
+        Self {
+            rows,
+            expanded,
+            original,
+            seen: BTreeMap::new(),
+        }
+    }
+
+    /// The figures before the change: other stops next to a line change what it draws.
+    fn take_original(&mut self, row: &mut Row) {
+        let seen = self.seen.entry(row.line).or_default();
+        let own = self.original.by_line.get(&row.line);
+        let before = own.and_then(|rows| rows.get(*seen));
+        *seen += 1;
+        let before = before.filter(|before| (before.kind, before.axes) == (row.kind, row.axes));
+        let Some(before) = before else { return };
+        row.duration_s = before.duration_s;
+        row.peak_w = before.peak_w;
+        row.regen_w = before.regen_w;
+        row.limit_w = before.limit_w;
+        row.regen_limit_w = before.regen_limit_w;
+        row.ratio = before.ratio;
+        row.energy_j = before.energy_j;
+        row.converter.clone_from(&before.converter);
     }
 }
 
@@ -73,6 +117,11 @@ impl RowSink for Traced<'_> {
         }
         let mut row = row.clone();
         self.expanded.trace_row(&mut row);
+        if self.expanded.stands(row.line) {
+            self.take_original(&mut row);
+        } else if row.action.is_empty() {
+            row.action = "written out";
+        }
         self.rows.row(&row)
     }
 
@@ -83,6 +132,7 @@ impl RowSink for Traced<'_> {
 
 impl Restart for Traced<'_> {
     fn restart(&mut self) -> io::Result<()> {
+        self.seen.clear();
         self.rows.restart()
     }
 }
