@@ -239,6 +239,8 @@ pub fn margin(model: &PowerModel) -> f64 {
 
 /// A figure with four digits, and its error with two.
 pub(super) fn shown(figure: Figure) -> String {
+    // What is printed of a number, at least.
+    let least = 1e-12;
     let digits = |value: f64, digits: i32| -> String {
         if value == 0.0 || !value.is_finite() {
             return format!("{value}");
@@ -247,7 +249,7 @@ pub(super) fn shown(figure: Figure) -> String {
         let places = usize::try_from(place.clamp(0, 12)).unwrap_or(0);
         format!("{value:.places$}")
     };
-    if figure.std.is_finite() && figure.std > 0.0 {
+    if figure.std.is_finite() && figure.std >= least {
         format!("{} ± {}", digits(figure.value, 5), digits(figure.std, 2))
     } else {
         digits(figure.value, 5)

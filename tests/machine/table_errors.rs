@@ -309,7 +309,7 @@ fn many_at_once() {
     line 7, error machine-unknown-key: unknown key `rapid_mm_mim` / did you mean `rapid_mm_min`?
       | rapid_mm_mim = 1000
       | ^^^^^^^^^^^^
-    line 8, error machine-type: `accel_mm_s2` must be a number, not text
+    line 8, error machine-type: `accel_mm_s2` must be a number, not text / write a number alone, without quotes: its unit is that at the end of the name
       | accel_mm_s2 = "a"
       |               ^^^
     line 10, error machine-range: `margin` must be less than 1, but is 2 / in percent? 2 % is 0.02

@@ -166,7 +166,7 @@ fn number_in_quotes() {
 #[test]
 fn text_for_number() {
     assert_snapshot!(findings(&edited("mass_kg = 900", "mass_kg = \"heavy\"")), @r#"
-    line 12, error machine-type: `mass_kg` must be a number, not text
+    line 12, error machine-type: `mass_kg` must be a number, not text / write a number alone, without quotes: its unit is that at the end of the name
       | mass_kg = "heavy"
       |           ^^^^^^^
     "#);

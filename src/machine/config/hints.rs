@@ -48,6 +48,10 @@ pub(crate) fn wrong_type(expected: &str, found: &DeValue<'_>) -> Option<String> 
         ("number" | "integer", DeValue::String(text)) if text.trim().parse::<f64>().is_ok() => {
             Some(format!("write it without quotes: {}", text.trim()))
         }
+        ("number" | "integer", DeValue::String(_)) => Some(
+            "write a number alone, without quotes: its unit is that at the end of the name"
+                .to_owned(),
+        ),
         ("array", DeValue::Table(_)) => Some("write its header in double brackets".to_owned()),
         ("array", DeValue::String(text)) => Some(format!("write it as a list: [\"{text}\"]")),
         ("string", DeValue::Integer(_) | DeValue::Float(_) | DeValue::Boolean(_)) => {
