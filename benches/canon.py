@@ -39,6 +39,12 @@ TOLERANCE = 0.00011
 MM_PER_INCH = 25.4
 # Said after the whole of a program; LinuxCNC runs it.
 NO_END = b"File ended with no percent sign or program end"
+# The work offsets of fit-rate.py's machines, G54 to G59; rs274 by itself counts in inches.
+KEPT_PARAMETERS = "".join(
+    f"{5221 + 20 * (n - 4) + axis}\t{value / 25.4!r}\n"
+    for n in range(4, 10)
+    for axis, value in enumerate((-100 * n, -250, -400))
+)
 
 
 def numbers(text):
@@ -50,7 +56,7 @@ def interpret(program, tools):
     rs274 does not read the program to its end."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        (folder / "kept.var").write_text("")
+        (folder / "kept.var").write_text(KEPT_PARAMETERS)
         (folder / "tools.tbl").write_text(tools)
         place = program.resolve().parent
         (folder / "rs274.ini").write_text(
@@ -66,7 +72,7 @@ def interpret(program, tools):
         if found.returncode != 0 and NO_END not in found.stderr:
             return None
     calls, feed, mode, unit, plane = [], 0.0, "", "", ""
-    at = None
+    at, lengths = None, [0.0] * 9
     for line in found.stdout.decode("latin1").splitlines():
         match = CALL.match(line)
         if not match:
@@ -94,6 +100,10 @@ def interpret(program, tools):
             at = end
         elif name == "ARC_FEED":
             at = arc_end(numbers(argument), plane)
+        elif name == "USE_TOOL_LENGTH_OFFSET":
+            # The axes stay, their coordinates do not.
+            lengths, before = numbers(argument), lengths
+            at = at and [place + old - new for place, old, new in zip(at, before, lengths)]
         elif name in MOVES or name in OFFSETS:
             at = None
         calls.append((name, argument, feed, mode, unit, plane, False))

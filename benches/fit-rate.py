@@ -27,7 +27,7 @@ LATHES = {"fanuc-lathe", "fanuc-lathe-b", "haas-lathe", "okuma-lathe"}
 # lengths make known.
 MILLS = {"fanuc", "haas", "mitsubishi", "mazak", "syntec", "iso"}
 # Those whose reference points are kept in the control, from places that offsets make known.
-KEPT = {"grbl", "linuxcnc", "nist"}
+KEPT = {"grbl", "linuxcnc"}
 OFFSETS = "".join(f"G5{n} = {{ X = -{100 * n}, Y = -250, Z = -400 }}\n" for n in range(4, 10))
 LATHE_OFFSETS = "".join(f"G5{n} = {{ X = -150, Z = {-100 * n} }}\n" for n in range(4, 10))
 TOOLS = "".join(f"T{n} P{n} Z{50 + n}\n" for n in range(1, 1000))

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::advice::{FEED_OPTION, FITS, NEIGHBOURS_HELP};
+use super::expand::WRITTEN_OUT;
 use super::limiting::limit;
 use super::pause;
 use super::summary::AT_LENGTH_MAX;
@@ -17,6 +18,10 @@ use crate::machine::Machine;
 
 /// What helps where a cycle has to be written out.
 const EXPAND: &str = "`limit --allow expand` writes the canned cycle out and lowers its moves";
+
+/// What is said of lines that get no words of their own.
+const PLACED: &str = "fits with its moves on lines of their own, as `limit` writes them";
+const NEXT_TO: &str = "fits by what `limit` writes next to it";
 
 /// What is said before the advice for a move whose neighbours were not looked at.
 const BY_ITSELF: &str = "by itself it ";
@@ -62,7 +67,7 @@ pub fn take_hints<R: Read + Seek + Send>(
     let unfit = summary.unfit.iter().chain(&summary.worst);
     let lines = unfit.filter(|unfit| unfit.file.is_empty());
     let mut written = Written {
-        lines: lines.map(|unfit| (unfit.line, None)).collect(),
+        lines: lines.map(|unfit| (unfit.line, Line::default())).collect(),
     };
     // Of longer programs the advice is that for each move by itself, and says so.
     let looks = summary.moves <= AT_LENGTH_MAX;
@@ -76,13 +81,15 @@ pub fn take_hints<R: Read + Seek + Send>(
     }
     let as_it_stands = reasons(false, rows)?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
-        let words = written.lines.get(&unfit.line).and_then(Option::as_ref);
+        let refused = as_it_stands.contains_key(&unfit.line);
+        let line = written.lines.get(&unfit.line).filter(|_| !refused);
+        let help = line.and_then(Line::help);
         // What was advised for a move by itself gives way to what is written next to others.
-        if let Some((_, words)) = words
+        if let Some(help) = help
             && unfit.file.is_empty()
             && (unfit.help.starts_with(FITS) || unfit.help == NEIGHBOURS_HELP)
         {
-            unfit.help.clone_from(words);
+            help.clone_into(&mut unfit.help);
         }
     }
     if as_it_stands.is_empty() {
@@ -104,18 +111,55 @@ pub fn take_hints<R: Read + Seek + Send>(
     Ok(())
 }
 
-/// The words that each line gets, with the lowest value of the first of them.
+/// What becomes of each line.
 struct Written {
-    lines: BTreeMap<u64, Option<(Option<f64>, String)>>,
+    lines: BTreeMap<u64, Line>,
+}
+
+/// What becomes of a line.
+#[derive(Default)]
+struct Line {
+    /// The words that it gets, with the lowest value of the first of them.
+    words: Option<(Option<f64>, String)>,
+    /// Whether all its moves fit then; `None`: it has none.
+    fits: Option<bool>,
+    /// It is a cycle in another form.
+    placed: bool,
+}
+
+impl Line {
+    fn help(&self) -> Option<&str> {
+        match &self.words {
+            Some((_, words)) => Some(words),
+            None if self.fits != Some(true) => None,
+            None if self.placed => Some(PLACED),
+            None => Some(NEXT_TO),
+        }
+    }
+}
+
+/// What rounding may make of a limit.
+const ROUNDED: f64 = 1.0 + 1e-6;
+
+/// Whether a move fits as it is written.
+fn fits_after(row: &Row) -> bool {
+    let within = |found: Option<f64>, limit: f64| found.is_some_and(|it| it <= limit * ROUNDED);
+    let regen = row.regen_limit_w;
+    within(row.peak_after_w, row.limit_w)
+        && regen.is_none_or(|limit| within(row.regen_after_w, limit))
 }
 
 impl RowSink for Written {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let Some(known) = self.lines.get_mut(&row.line) else {
+        let line = self.lines.get_mut(&row.line);
+        let Some(line) = line.filter(|_| row.file.is_empty()) else {
             return Ok(());
         };
+        line.fits = Some(line.fits != Some(false) && fits_after(row));
+        line.placed |= row.action == WRITTEN_OUT;
+        let known = &mut line.words;
         let value = row.value_after;
-        if !row.file.is_empty() || value.is_none() && row.words.is_empty() {
+        if value.is_none() && row.words.is_empty() {
             return Ok(());
         }
         // A level has no value.
@@ -136,7 +180,9 @@ impl RowSink for Written {
 
 impl Restart for Written {
     fn restart(&mut self) -> io::Result<()> {
-        self.lines.values_mut().for_each(|words| *words = None);
+        self.lines
+            .values_mut()
+            .for_each(|line| *line = Line::default());
         Ok(())
     }
 }

@@ -100,6 +100,42 @@ fn blended_moves_are_advised_what_is_written() {
     }
 }
 
+/// Lines that get no words of their own: a cycle whose moves stand on lines of their own, and a
+/// rapid that stops before it.
+#[test]
+fn lines_next_to_a_cycle_are_not_advised_what_is_not_written() {
+    let shop = Shop::mill(
+        "linuxcnc",
+        "peak_power_w = 450",
+        "[path]\nrapid = \"linear\"",
+        "",
+    );
+    shop.put(
+        "a.nc",
+        "G21 G90\nG0 X10 Y10 Z50\nG99 G81 X200 Y200 Z-5 R2 F300\nX300 Y10\nG80\nM2\n",
+    );
+    let (code, text, errors) = shop.run("check a.nc");
+    assert_eq!(code, 1, "{errors}");
+    let line = |start: &str| {
+        let found = text
+            .lines()
+            .find(|line| line.trim_start().starts_with(start));
+        found.unwrap_or_else(|| panic!("{start}: {text}"))
+    };
+    assert!(
+        line("line 2").ends_with("fits by what `limit` writes next to it"),
+        "{text}"
+    );
+    assert!(
+        line("line 4")
+            .ends_with("fits with its moves on lines of their own, as `limit` writes them"),
+        "{text}"
+    );
+    let (code, written, errors) = shop.run("limit a.nc");
+    assert_eq!(code, 0, "{errors}");
+    assert!(written.contains("\nG0 X10 Y10 Z50\n"), "{written}");
+}
+
 /// A cycle that cannot be written out, rapids of independent axes below the clearance, and
 /// a feed that no value brings down.
 #[test]

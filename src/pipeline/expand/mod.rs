@@ -16,7 +16,7 @@ use std::io::Cursor;
 
 use super::front::Front;
 use super::{Failure, LimitSummary, Options, Summary};
-pub(super) use trace::{OriginalRows, Traced};
+pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Step;

@@ -52,6 +52,9 @@ impl Expanded {
     }
 }
 
+/// The action of moves of a cycle that is written in another way.
+pub(in crate::pipeline) const WRITTEN_OUT: &str = "written out";
+
 /// The rows of the original, by line.
 #[derive(Default)]
 pub(in crate::pipeline) struct OriginalRows {
@@ -120,7 +123,7 @@ impl RowSink for Traced<'_> {
         if self.expanded.stands(row.line) {
             self.take_original(&mut row);
         } else if row.action.is_empty() {
-            row.action = "written out";
+            row.action = WRITTEN_OUT;
         }
         self.rows.row(&row)
     }
