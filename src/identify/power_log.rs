@@ -26,7 +26,7 @@ pub struct PowerLog {
     pub starts: Vec<usize>,
 }
 
-/// A column that tells by itself whether its name is right.
+/// A column whose values show whether its name is right.
 #[derive(Debug, Default, Clone)]
 struct Electrical {
     name: String,

@@ -64,7 +64,7 @@ impl Recording {
         Self::read_as(input, &read_as)
     }
 
-    /// Reads a table as told.
+    /// Reads a table in the way that is given.
     ///
     /// # Errors
     ///
