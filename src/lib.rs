@@ -1,5 +1,7 @@
-//! gwatt fits CNC part programs to the converter that all drives of a machine
-//! share.
+//! gwatt rewrites CNC part programs so that all axes together never draw more than the
+//! converter that they share delivers.
+//!
+//! [`check`], [`report`], [`limit`] and [`Moves`] are where to begin: see [`program`].
 //!
 //! The modules stand in the order of the data flow; each imports only from
 //! those above it, and a test enforces it:
@@ -24,3 +26,8 @@ pub mod pipeline;
 pub mod dialect;
 pub mod identify;
 pub mod report;
+pub mod program;
+
+pub use machine::Machine;
+pub use pipeline::Moves;
+pub use program::{Error, Limit, Limited, Report, check, check_as, limit, report, report_as};
