@@ -49,6 +49,13 @@ pub struct LimitArgs {
     /// Write the same, with a summary, as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write a page with the power over time before and after, the path and the worst
+    /// blocks here
+    #[arg(long, value_name = "PAGE", conflicts_with = "with_subprograms")]
+    pub html: Option<PathBuf>,
+    /// Draw the power over time before and after here
+    #[arg(long, value_name = "FILE", conflicts_with = "with_subprograms")]
+    pub svg: Option<PathBuf>,
     /// What to lower
     #[arg(long, value_enum, default_value_t = Strategy::Optimal)]
     pub strategy: Strategy,

@@ -28,6 +28,8 @@ impl Verdict<'_, '_> {
                     let after = met.and_then(|place| self.spindle.remove(place));
                     // Without one the program does not wait any more.
                     row.duration_after_s = Some(after.map_or(0.0, |it| it.duration_s));
+                    let before_s = after.map_or(0.0, |it| it.duration_s);
+                    row.start_after_s = Some(self.tally.duration_s() - before_s);
                     row.peak_after_w = after.map(|it| it.demand.peak_w);
                     row.regen_after_w = after.map(|it| it.demand.regen_w);
                     self.tally.write(row);
