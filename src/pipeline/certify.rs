@@ -73,7 +73,8 @@ pub(super) struct Verdict<'m, 'r> {
     stops: Stops,
     /// Rows of the spindle in the written program that no row of the original
     /// has met yet.
-    spindle: VecDeque<Assessment>,
+    /// Each with its start, s.
+    spindle: VecDeque<(f64, Assessment)>,
 }
 
 /// What the certifier found.

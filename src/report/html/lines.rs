@@ -39,7 +39,7 @@ impl LineTexts {
         let peaks = peaks.into_iter().flat_map(|peaks| &peaks.list);
         peaks.for_each(|block| want(&block.row));
         let over_time = summaries.iter().flat_map(|summary| &summary.over_time);
-        let over_time = over_time.filter(|it| it.file.is_empty());
+        let over_time = over_time.filter(|it| it.file.is_empty() && it.rating.line > 0);
         texts.extend(over_time.map(|found| (found.rating.line, String::new())));
         let mut lines = LineReader::new(program);
         let mut wanted = texts.iter_mut().peekable();

@@ -115,8 +115,10 @@ impl PageSeries {
             *place = power_w;
             left_w -= power_w.max(0.0);
         }
-        // Where what is fed back counts, less is drawn than all draw.
-        values_w[AXES + 4] = left_w.max(0.0);
+        // Where what is fed back counts, less is drawn than all draw; rounding is none.
+        if left_w > ROUNDING * bus_w {
+            values_w[AXES + 4] = left_w;
+        }
         [values_w[0], values_w[1]] = [bus_w, regen_w];
         Sample { time_s, values_w }
     }

@@ -29,13 +29,13 @@ function chart(which, box) {
   const labels = (_, values) => values.map((value) => (value === null ? "" : clock(value)));
   const options = {
     width: box.clientWidth,
-    height: height(),
+    height: box.clientHeight,
     legend: { show: false },
     scales: { x: { time: false, range: (_, from, to) => [from, to] }, y: { range: () => [least, most] } },
     series: [{}, { show: true, paths: () => null, points: { show: false } }],
     axes: [
       { ...axis(), values: labels },
-      { ...axis(), size: 64, values: (_, values) => values.map((value) => (value === 0 ? "0" : power(value))) },
+      { ...axis(), size: 76, values: (_, values) => values.map((value) => (value === 0 ? "0" : power(value))) },
     ],
     cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
     hooks: { draw: [(plot) => draw(plot, which)], setSelect: [(plot) => zoomed(plot, which)], setCursor: [(plot) => hover(plot, which)] },
@@ -45,8 +45,6 @@ function chart(which, box) {
   click(plot, which);
   return { plot, which, box, end };
 }
-
-const height = () => (window.innerWidth < 700 ? 230 : LIMITED ? 250 : 320);
 
 function clock(seconds) {
   const value = Number(seconds.toFixed(6));
@@ -81,7 +79,10 @@ function mark(ctx, which, x, top, high) {
   const [from, to] = own.map(x);
   const wide = Math.max(3 * devicePixelRatio, to - from);
   ctx.fillStyle = css("--mark");
-  ctx.fillRect((from + to - wide) / 2, top, wide, high);
+  const left = (from + to - wide) / 2;
+  ctx.fillRect(left, top, wide, high);
+  ctx.fillStyle = css("--picked");
+  for (const edge of [left, left + wide - devicePixelRatio]) ctx.fillRect(edge, top, devicePixelRatio, high);
 }
 
 function line(ctx, [from, to], y, colour, dash) {
@@ -97,11 +98,11 @@ function line(ctx, [from, to], y, colour, dash) {
 
 /** The limits with the margin taken off, and the powers that are permitted for a time. */
 function limits(ctx, ends, y) {
-  const label = (text, at, below) => {
+  const label = (text, at) => {
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.fillStyle = css("--limit");
     ctx.textAlign = "right";
-    ctx.fillText(text, ends[1] - 6 * devicePixelRatio, at + (below ? 13 : -5) * devicePixelRatio);
+    ctx.fillText(text, ends[1] - 6 * devicePixelRatio, at - 5 * devicePixelRatio);
   };
   for (const limit of HEAD.limits) {
     const name = limit.name ? ` ${limit.name}` : "";
@@ -112,7 +113,7 @@ function limits(ctx, ends, y) {
     }
     if (limit.regen_limit_w !== null) {
       line(ctx, ends, y(-limit.regen_limit_w), css("--limit"), [7, 4]);
-      label(`fed back${name} ${power(limit.regen_limit_w)}`, y(-limit.regen_limit_w), true);
+      label(`fed back${name} ${power(limit.regen_limit_w)}`, y(-limit.regen_limit_w));
     }
   }
   for (const found of HEAD.over_time) {
@@ -160,13 +161,13 @@ function areas(ctx, shares, visible, x, y) {
 function outline(ctx, which, visible, x, y) {
   const first = Math.max(0, above(which.to, visible.min) - 2);
   const last = Math.min(BARS.count, above(which.from, visible.max) + 2);
-  const top = y.call(null, range()[1]);
+  const top = y(range()[1]);
   for (const [list, sign] of [[which.peak, 1], [which.back, -1]]) {
     let bound = null;
     for (let place = first; place < last; place += 1) {
       const value = list[place];
       const height = value === null ? top : y(sign * value);
-      const dashed = Boolean(at(BARS.bound, place));
+      const dashed = Boolean(at(BARS.bound, which.bar[place]));
       if (dashed !== bound) {
         if (bound !== null) ctx.stroke();
         ctx.beginPath();
@@ -193,7 +194,7 @@ function nearest(plot, which, left) {
   let best = null;
   for (let place = first; place < BARS.count && which.from[place] <= seconds + reach; place += 1) {
     if (which.to[place] < seconds - reach) continue;
-    const load = at(which.name === "after" ? BLOCKS.load_after : BLOCKS.load, BARS.lead[place]) ?? Infinity;
+    const load = at(which.name === "after" ? BLOCKS.load_after : BLOCKS.load, BARS.lead[which.bar[place]]) ?? Infinity;
     const inside = which.from[place] <= seconds && seconds <= which.to[place] && which.to[place] - which.from[place] > 2 * reach;
     if (inside) return place;
     if (best === null || load > best.load) best = { place, load };
@@ -207,8 +208,9 @@ function hover(plot, which) {
   const place = left >= 0 ? nearest(plot, which, left) : null;
   tip.hidden = place === null;
   if (place === null) return;
-  const own = block(BARS.lead[place]);
-  const more = at(BARS.rows, place) > 1 ? ` and ${at(BARS.rows, place) - 1} more` : "";
+  const own = block(BARS.lead[which.bar[place]]);
+  const rows = at(BARS.rows, which.bar[place]);
+  const more = rows > 1 ? ` and ${rows - 1} more` : "";
   tip.replaceChildren(
     make("strong", {}, `${power(which.peak[place])}`), ` at ${moment(plot.posToVal(left, "x"))}`,
     make("br"), `${own.where}${more}`, make("br"), make("code", {}, own.text),
@@ -225,7 +227,7 @@ function click(plot, which) {
   plot.over.addEventListener("pointerup", (event) => {
     if (from === null || Math.abs(event.clientX - from) > 4) return;
     const place = nearest(plot, which, event.clientX - plot.over.getBoundingClientRect().left);
-    if (place !== null) pick(BARS.lead[place], "chart");
+    if (place !== null) pick(BARS.lead[which.bar[place]], "chart");
   });
 }
 
@@ -235,7 +237,8 @@ function moved(seconds, from, to) {
   const place = Math.min(BARS.count - 1, Math.max(0, above(from.from, seconds) - 1));
   const lasts = from.to[place] - from.from[place];
   const share = lasts > 0 ? Math.min(1, Math.max(0, (seconds - from.from[place]) / lasts)) : 0;
-  return to.from[place] + share * (to.to[place] - to.from[place]);
+  const there = to.bar.indexOf(from.bar[place]);
+  return to.from[there] + share * (to.to[there] - to.from[there]);
 }
 
 function zoomed(plot, which) {
@@ -248,7 +251,7 @@ function zoomed(plot, which) {
 /** Shows a span of time in all charts, or the whole program. */
 function zoom(ends, which) {
   for (const own of CHARTS) {
-    const [min, max] = ends ? ends.map((seconds) => moved(seconds, which, own.which)) : [0, own.end];
+    const [min, max] = ends ? ends.map((seconds) => moved(seconds, which, own.which)).sort((a, b) => a - b) : [0, own.end];
     own.plot.setScale("x", { min, max: Math.max(max, min + 1e-4) });
   }
 }
@@ -279,7 +282,7 @@ function drawCharts() {
   legend.append(make("li", { class: "key" }, make("i", { class: "peak" }), "block peak"), make("li", { class: "key" }, make("i", { class: "limit" }), "limit"));
   element("whole").addEventListener("click", () => zoom(null));
   new ResizeObserver(() => {
-    for (const own of CHARTS) own.plot.setSize({ width: own.box.clientWidth, height: height() });
+    for (const own of CHARTS) own.plot.setSize({ width: own.box.clientWidth, height: own.box.clientHeight });
   }).observe(charts);
 }
 

@@ -27,7 +27,8 @@ function make(name, attributes = {}, ...children) {
 /** Three digits, as in the report. */
 function digits(value) {
   const size = Math.abs(value);
-  return value.toFixed(size === 0 || size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+  const text = value.toFixed(size === 0 || size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+  return text.replace("-", "\u2212");
 }
 
 function scaled(value, unit) {
@@ -94,14 +95,22 @@ const barOf = (row) => Math.max(0, above(BARS.first, row) - 1);
 function side(name) {
   const after = name === "after";
   const column = (before, behind) => all(BARS[after ? behind : before], BARS.count);
+  const start = column("from_s", "from_after_s");
+  // A move may wait for the spindle in one program and not in the other.
+  const bar = [...start.keys()].sort((a, b) => start[a] - start[b] || a - b);
+  const sorted = (before, behind) => {
+    const list = column(before, behind);
+    return bar.map((place) => list[place]);
+  };
   const own = {
     name,
     title: LIMITED ? (after ? "After" : "Before") : "",
     figures: after ? HEAD.after : HEAD.before,
-    from: column("from_s", "from_after_s"),
-    to: column("to_s", "to_after_s"),
-    peak: column("peak_w", "peak_after_w"),
-    back: column("regen_w", "regen_after_w"),
+    bar,
+    from: sorted("from_s", "from_after_s"),
+    to: sorted("to_s", "to_after_s"),
+    peak: sorted("peak_w", "peak_after_w"),
+    back: sorted("regen_w", "regen_after_w"),
     shares: null,
   };
   const shares = DATA.shares[name];

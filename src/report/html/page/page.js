@@ -7,7 +7,7 @@ function pick(place, from) {
   const own = block(place);
   details(own);
   light(own);
-  if (from !== "chart") reveal(own);
+  if (from !== "chart" && from !== "start") reveal(own);
   redraw();
   for (const node of document.querySelectorAll("[data-block]")) {
     const same = Number(node.dataset.block) === place;
@@ -34,11 +34,11 @@ function step(by) {
   pick(BARS.lead[next], "step");
 }
 
-function largest() {
+function largest(from) {
   const side = LIMITED && HEAD.before.unfit_count === 0 ? "after" : "before";
   const [first] = DATA.moments[side];
-  if (first) pick(first.block, "step");
-  else if (DATA.worst.length > 0) pick(DATA.worst[0], "step");
+  if (first) pick(first.block, from);
+  else if (DATA.worst.length > 0) pick(DATA.worst[0], from);
 }
 
 function notes() {
@@ -50,7 +50,7 @@ function notes() {
   if (HEAD.limits.length > 1) power.push("With several converters the line is the peak of the one that is loaded most; the areas are all of them together.");
   if (HEAD.limits.some((it) => it.credit_regen)) power.push("What is fed back feeds the other axes: the line is the difference of both areas.");
   element("power-note").textContent = power.join(" ");
-  const path = [`Machine coordinates, drawn to within ${PATH.error_mm < 0.01 ? "0.01" : digits(PATH.error_mm)} mm.`];
+  const path = [`Machine coordinates${SPACE ? `, ${SPACE.size.map((it) => digits(it)).join(" × ")} mm` : ""}, drawn to within ${PATH.error_mm < 0.01 ? "0.01" : digits(PATH.error_mm)} mm.`];
   if (PATH.independent) path.push("Rapids of axes that move each for itself are drawn as lines from start to end.");
   if (PATH.unknown > 0) path.push(`${PATH.unknown} moves are not drawn, since their start is not known.`);
   path.push("Turn by dragging, zoom by the wheel after a click.");
@@ -66,8 +66,9 @@ function conditions() {
 
 function start() {
   document.title = `${HEAD.program}: ${HEAD.word} (gwatt)`;
-  element("program").textContent = HEAD.program;
-  element("machine").textContent = `on ${HEAD.machine}, read as ${HEAD.controller}`;
+  const name = HEAD.program.split(/[\\/]/).pop() || HEAD.program;
+  element("program").textContent = name;
+  element("machine").textContent = `${name === HEAD.program ? "" : `${HEAD.program} `}on ${HEAD.machine}, read as ${HEAD.controller}`;
   element("verdict").textContent = HEAD.word;
   element("verdict").className = HEAD.fits ? "fits" : "misses";
   element("made").textContent = `Made by gwatt ${HEAD.gwatt}. Charts: uPlot (MIT). Path: three.js (MIT).`;
@@ -80,7 +81,7 @@ function start() {
   notes();
   conditions();
   details(null);
-  element("largest").addEventListener("click", largest);
+  element("largest").addEventListener("click", () => largest("step"));
   element("previous").addEventListener("click", () => step(-1));
   element("next").addEventListener("click", () => step(1));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
@@ -88,7 +89,7 @@ function start() {
     if (SPACE) paint(SPACE.paint);
     show();
   });
-  largest();
+  largest("start");
 }
 
 start();

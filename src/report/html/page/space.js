@@ -54,7 +54,7 @@ function drawSpace() {
   const material = new THREE.LineMaterial({ linewidth: 1.8, vertexColors: true });
   world.add(new THREE.LineSegments2(geometry, material));
   const picked = new THREE.LineSegmentsGeometry();
-  const bright = new THREE.LineSegments2(picked, new THREE.LineMaterial({ linewidth: 6, depthTest: false, transparent: true, opacity: 0.9 }));
+  const bright = new THREE.LineSegments2(picked, new THREE.LineMaterial({ linewidth: 5, depthTest: false, transparent: true, opacity: 0.9 }));
   bright.visible = false;
   bright.renderOrder = 1;
   world.add(bright);
@@ -68,7 +68,8 @@ function drawSpace() {
   controls.enableZoom = false;
   canvas.addEventListener("pointerdown", () => { controls.enableZoom = true; });
   canvas.addEventListener("pointerleave", () => { controls.enableZoom = false; });
-  SPACE = { renderer, camera, world, geometry, bright, picked, controls, place, radius, canvas };
+  SPACE = { renderer, camera, world, geometry, bright, picked, controls, place, size, radius, canvas, half: [radius, radius] };
+  scene.append(make("div", { class: "triad", "aria-hidden": "true" }));
   controls.addEventListener("change", show);
   paint(0);
   view("oblique");
@@ -106,12 +107,13 @@ function paint(index) {
 }
 
 function fit() {
-  const { renderer, camera, radius, canvas } = SPACE;
+  const { renderer, camera, half, canvas } = SPACE;
   const [width, high] = [canvas.parentElement.clientWidth, canvas.parentElement.clientHeight];
   renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
   renderer.setSize(width, high, false);
-  const half = 1.02 * radius;
-  const [x, y] = width > high ? [(half * width) / high, half] : [half, (half * high) / width];
+  const shape = width / Math.max(1, high);
+  const y = 1.12 * Math.max(half[1], half[0] / shape);
+  const x = y * shape;
   [camera.left, camera.right, camera.top, camera.bottom] = [-x, x, y, -y];
   camera.updateProjectionMatrix();
   show();
@@ -125,7 +127,35 @@ function view(name) {
   camera.zoom = 1;
   camera.updateProjectionMatrix();
   controls.update();
+  camera.updateMatrixWorld();
+  SPACE.half = extent();
   fit();
+}
+
+/** Half the width and the height of the path as the camera sees it, mm. */
+function extent() {
+  const { camera, size, radius } = SPACE;
+  const point = new THREE.Vector3();
+  const half = [1e-3 * radius, 1e-3 * radius];
+  for (let corner = 0; corner < 8; corner += 1) {
+    point.set(...size.map((long, axis) => ((corner >> axis) & 1 ? 0.5 : -0.5) * long));
+    point.applyMatrix4(camera.matrixWorldInverse);
+    half[0] = Math.max(half[0], Math.abs(point.x));
+    half[1] = Math.max(half[1], Math.abs(point.y));
+  }
+  return half;
+}
+
+/** Which way the axes point. */
+function triad() {
+  const point = new THREE.Vector3();
+  const arms = ["X", "Y", "Z"].map((name, axis) => {
+    point.set(0, 0, 0).setComponent(axis, 1).transformDirection(SPACE.camera.matrixWorldInverse);
+    const [x, y] = [26 * point.x, -26 * point.y];
+    const arm = make("i", { style: `width:${Math.hypot(x, y)}px;transform:rotate(${Math.atan2(y, x)}rad);background:${COLOURS[name]}` });
+    return [arm, make("b", { style: `left:${34 + 1.3 * x}px;top:${34 + 1.3 * y}px` }, name)];
+  });
+  document.querySelector(".triad").replaceChildren(...arms.flat());
 }
 
 let waiting = false;
@@ -135,6 +165,7 @@ function show() {
   requestAnimationFrame(() => {
     waiting = false;
     SPACE.renderer.render(SPACE.world, SPACE.camera);
+    triad();
   });
 }
 

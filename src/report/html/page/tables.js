@@ -5,6 +5,10 @@ const THEAD = (names) => make("thead", {}, make("tr", {}, ...names.map((name) =>
 function table(caption, names, rows) {
   const body = make("tbody", {}, ...rows);
   const own = make("table", {}, make("caption", {}, caption), THEAD(names), body);
+  // A column of numbers has its name above them.
+  [...own.querySelectorAll("thead th")].forEach((name, place) => {
+    if (rows[0]?.children[place]?.classList.contains("number")) name.className = "number";
+  });
   return make("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": caption }, own);
 }
 
@@ -22,7 +26,7 @@ function tiles() {
   const tile = (name, value, ...more) => make("div", {}, make("dt", {}, name), make("dd", {}, make("strong", {}, value), ...more));
   const [limit] = HEAD.limits;
   const one = HEAD.limits.length === 1 && limit.limit_w !== null;
-  const of = one ? make("small", {}, ` of ${power(limit.limit_w)} (${percent(last.peak_w / limit.limit_w)})`) : "";
+  const of = one ? make("small", {}, ` of ${power(limit.limit_w)} (${rough(last.peak_w / limit.limit_w)})`) : "";
   const lost = after ? after.duration_s - before.duration_s : 0;
   const share = before.duration_s > 0 ? ` (${((100 * lost) / before.duration_s).toFixed(2)} %)` : "";
   const back = [after ? DATA.shares.after : null, DATA.shares.before].find(Boolean);
@@ -44,13 +48,13 @@ function peakTables() {
   const box = element("peak-tables");
   for (const which of SIDES) {
     const list = DATA.moments[which.name];
-    const used = CHANNELS.map((_, channel) => channel).filter((channel) => list.some((it) => it.values_w && Math.abs(it.values_w[channel]) > 0));
+    const used = CHANNELS.map((_, channel) => channel).filter((channel) => list.some((it) => it.values_w && Math.abs(it.values_w[channel]) >= 0.005));
     const rows = list.map((it) => {
       const own = block(it.block);
       const sum = it.values_w ? it.values_w.reduce((a, b) => a + Math.max(0, b), 0) : 0;
       const cells = used.map((channel) => {
         const value = it.values_w ? it.values_w[channel] : null;
-        if (value === null || value === 0) return make("td", { class: "number none" }, "–");
+        if (value === null || Math.abs(value) < 0.005) return make("td", { class: "number none" }, "–");
         const part = value > 0 && sum > 0 ? percent(value / sum) : "fed back";
         return make("td", { class: "number" }, power(value), make("small", {}, ` ${part}`));
       });
@@ -66,22 +70,31 @@ function peakTables() {
 
 /** The blocks that take most of their limits. */
 function worstTable() {
-  const names = ["Block", "Text", "Move", "Peak", "Fed back", "Load", "Time"];
-  names.push(...(LIMITED ? ["Peak after", "Load after", "Time after", "What was done"] : ["What helps"]));
+  const names = LIMITED
+    ? ["Block", "Text", "Move", "Peak", "after", "Load", "after", "Time", "after", "What was done"]
+    : ["Block", "Text", "Move", "Peak", "Fed back", "Load", "Time", "Energy", "What helps"];
+  const load = (value) => {
+    const over = value === null || value > 1.000001;
+    const level = make("span", { class: "level", "aria-hidden": "true" }, make("i", { style: `width:${50 * Math.min(value ?? 2, 2)}%` }));
+    return make("td", { class: `number${over ? " over" : ""}` }, level, make("span", { class: "share" }, value === null ? "over" : rough(value)));
+  };
+  const number = (text) => make("td", { class: "number" }, text);
+  const unknown = (value, print) => number(value === null ? "–" : print(value));
   const rows = DATA.worst.map((place) => {
     const own = block(place);
-    const load = (value) => make("td", { class: `number${value > 1.000001 ? " over" : ""}` }, make("meter", { min: 0, max: 2, value: Math.min(value ?? 2, 2), "aria-hidden": "true" }), value === null ? "over" : percent(value));
-    const number = (text) => make("td", { class: "number" }, text);
     const cells = LIMITED
-      ? [number(own.peak_after_w === null ? "–" : power(own.peak_after_w)), load(own.load_after), number(own.duration_after_s === null ? "–" : duration(own.duration_after_s)), make("td", {}, done(own))]
-      : [make("td", {}, own.help)];
-    const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", {}, `${own.kind} ${own.axes}`), number(power(own.peak_w)), number(power(own.regen_w)), load(own.load), number(duration(own.duration_s)), ...cells);
+      ? [number(power(own.peak_w)), unknown(own.peak_after_w, power), load(own.load), load(own.load_after), number(duration(own.duration_s)), unknown(own.duration_after_s, duration)]
+      : [number(power(own.peak_w)), number(power(own.regen_w)), load(own.load), number(duration(own.duration_s)), number(energy(own.energy_j))];
+    const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", {}, `${own.kind} ${own.axes}`), ...cells, make("td", { class: "words" }, LIMITED ? done(own) : own.help));
     row.dataset.block = own.place;
     return row;
   });
   const caption = HEAD.rows > rows.length ? `The ${rows.length} lines nearest to the limit, of ${HEAD.rows} moves` : "All lines, the one nearest to the limit first";
   element("worst-table").append(table(caption, names, rows));
 }
+
+/** Percent without the digits that tell it from 100. */
+const rough = (share) => (Math.abs(share - 1) < 0.01 && share <= 1.000001 ? "100 %" : percent(share));
 
 /** What was done to a block. */
 const done = (own) => [own.action, own.words].filter(Boolean).join(": ");
@@ -106,7 +119,7 @@ function details(own) {
   const about = [`${own.kind} ${own.axes}`.trim(), own.run > 1 ? `run ${own.run}` : "", own.bound ? "bound: corners are not modelled" : "", own.converter, shared].filter(Boolean).join(" · ");
   const facts = [
     fact("Peak", power(own.peak_w), make("small", {}, own.limit_w === null ? "" : ` of ${power(own.limit_w)}`)),
-    fact("Load", percent(own.load ?? 2)),
+    fact("Load", own.load === null ? "not known" : rough(own.load)),
     fact("Fed back", power(own.regen_w)),
     fact("Time", duration(own.duration_s), make("small", {}, ` from ${moment(own.start_s)}`)),
     fact("Energy", energy(own.energy_j)),
@@ -127,7 +140,7 @@ function strip(own, which) {
   const when = span(own, which);
   const set = when && together(which, when);
   if (!set || set.sum <= 0) return null;
-  const parts = CHANNELS.map((name, channel) => [name, set.values[channel]]).filter(([, value]) => value > 0);
+  const parts = CHANNELS.map((name, channel) => [name, set.values[channel]]).filter(([, value]) => value >= 0.005);
   const text = parts.map(([name, value]) => `${name} ${power(value)} (${percent(value / set.sum)})`).join(", ");
   const pieces = parts.map(([name, value]) => make("i", { style: `flex-grow:${value / set.sum};background:${COLOURS[name]}` }));
   const title = which.title ? `${which.title}: ` : "";
