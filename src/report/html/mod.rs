@@ -10,6 +10,7 @@ mod columns;
 mod data;
 mod door;
 mod figures;
+mod joined;
 mod lines;
 mod page;
 mod path;

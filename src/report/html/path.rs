@@ -1,18 +1,23 @@
 //! The way of the tool in space, in bounded memory.
 //!
 //! Points lie in cells of a grid, and lines between the same two cells are one, with the
-//! larger power. Where there are too many lines the cells double, so that what is drawn is
-//! nowhere farther from the way than half a cell's diagonal, for any length of program.
+//! larger power. Where there are too many, lines that follow each other become one as long as
+//! that stays within a cell's side of the way ([`joined`]); where that is not enough the cells
+//! double. So what is drawn is nowhere farther from the way than that and half a cell's
+//! diagonal, for any length of program.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use super::block::{Block, load};
+use super::joined::joined;
 use crate::interpret::Arc;
 use crate::pipeline::{Route, Row};
 
 /// Lines that are kept.
 pub(super) const LINES_MAX: usize = 10_000;
+/// Lines that are left when room was made.
+const ROOM: usize = 6_000;
 /// The first cells, mm.
 const CELL_MM: f64 = 1e-3;
 /// Chords of one arc.
@@ -29,6 +34,8 @@ pub(super) type Cell = [i64; 3];
 #[derive(Debug, Clone)]
 pub(super) struct Line {
     pub ends: [Cell; 2],
+    /// How far it may be from the middles of the cells that it passed, mm.
+    pub apart_mm: f64,
     /// The row that takes most of its limits, of all that run here.
     pub lead: Block,
 }
@@ -66,7 +73,8 @@ impl Path {
 
     /// How far what is drawn may be from the way, mm.
     pub fn error_mm(&self) -> f64 {
-        HALF_DIAGONAL * self.cell_mm() + self.sagitta_mm
+        let apart_mm = self.list.iter().map(|line| line.apart_mm);
+        HALF_DIAGONAL * self.cell_mm() + apart_mm.fold(0.0, f64::max) + self.sagitta_mm
     }
 
     /// Takes the next row.
@@ -121,21 +129,42 @@ impl Path {
                 place.insert(self.list.len());
                 let row = row.clone();
                 let lead = Block { index, row };
-                self.list.push(Line { ends, lead });
-                while self.list.len() > LINES_MAX {
-                    self.double();
+                let apart_mm = 0.0;
+                self.list.push(Line {
+                    ends,
+                    apart_mm,
+                    lead,
+                });
+                if self.list.len() > LINES_MAX {
+                    self.shrink();
                 }
             }
         }
     }
 
-    /// The cells double.
-    fn double(&mut self) {
-        self.doubled += 1;
+    /// Makes room: fewer lines, and larger cells where that is not enough.
+    fn shrink(&mut self) {
+        loop {
+            let lines = std::mem::take(&mut self.list);
+            let joined = joined(lines, self.cell_mm());
+            self.fill(joined);
+            if self.list.len() <= ROOM {
+                return;
+            }
+            self.doubled += 1;
+            let mut lines = std::mem::take(&mut self.list);
+            for line in &mut lines {
+                line.ends = line.ends.map(|cell| cell.map(|at| at >> 1));
+            }
+            self.fill(lines);
+        }
+    }
+
+    /// Takes these lines, of which some may be the same, or none.
+    fn fill(&mut self, lines: Vec<Line>) {
         self.places.clear();
-        let mut kept: Vec<Line> = Vec::with_capacity(LINES_MAX);
-        for mut line in std::mem::take(&mut self.list) {
-            line.ends = line.ends.map(|cell| cell.map(|at| at >> 1));
+        let mut kept: Vec<Line> = Vec::with_capacity(LINES_MAX + 1);
+        for line in lines {
             let same = if line.ends[0] == line.ends[1] {
                 kept.last_mut()
             } else {
@@ -149,6 +178,7 @@ impl Path {
                 }
             };
             if let Some(same) = same {
+                same.apart_mm = same.apart_mm.max(line.apart_mm);
                 same.raise(line.lead);
             }
         }
@@ -164,7 +194,8 @@ impl Line {
         }
     }
 
-    fn raise(&mut self, other: Block) {
+    /// Takes what another row asks for.
+    pub fn raise(&mut self, other: Block) {
         if other.load() > self.lead.load() {
             self.lead = other;
         }

@@ -41,7 +41,10 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
                 it.most_after_w[1],
             ],
         };
-        bars.iter().map(bar).collect()
+        let mut peaks: Peaks = bars.iter().map(bar).collect();
+        // A move may wait for the spindle in one program and not in the other.
+        peaks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        peaks
     };
     let mut panels = vec![("Bus power", of(0), page.before)];
     if page.is_limited() {
@@ -117,6 +120,7 @@ fn legend(page: &Page<'_>) -> String {
     let mut text = String::new();
     let mut x = LEFT;
     let own = channels(page).into_iter().enumerate();
+    let own = own.filter(|(index, _)| draws(page, *index));
     let own = own.map(|(index, name)| (colour(page, index), name));
     let line = [
         ("#222222", "peak of the block (report)"),
@@ -133,9 +137,17 @@ fn legend(page: &Page<'_>) -> String {
             x + 17.0,
             escaped(&name)
         );
-        x += 40.0 + 7.0 * name.chars().count() as f64;
+        x += 34.0 + 6.2 * name.chars().count() as f64;
     }
     text
+}
+
+/// Whether a channel ever draws or feeds back.
+fn draws(page: &Page<'_>, index: usize) -> bool {
+    let place = channel_places(page).get(index).copied().unwrap_or(0);
+    let series = [page.before, page.after].into_iter().flatten();
+    let mut spans = series.flat_map(|series| &series.spans);
+    spans.any(|it| it.drawn.values_w[place] > 0.0 || it.back.values_w[place] < 0.0)
 }
 
 fn colour(page: &Page<'_>, index: usize) -> &'static str {
