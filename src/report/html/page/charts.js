@@ -66,8 +66,8 @@ function draw(plot, which) {
   mark(ctx, which, x, top, high);
   if (which.shares) areas(ctx, which.shares, plot.scales.x, x, y);
   line(ctx, [left, left + width], y(0), css("--quiet"), []);
-  limits(ctx, [left, left + width], y);
   outline(ctx, which, plot.scales.x, x, y);
+  limits(ctx, [left, left + width], y);
   ctx.restore();
 }
 
@@ -100,9 +100,13 @@ function line(ctx, [from, to], y, colour, dash) {
 function limits(ctx, ends, y) {
   const label = (text, at) => {
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-    ctx.fillStyle = css("--limit");
     ctx.textAlign = "right";
-    ctx.fillText(text, ends[1] - 6 * devicePixelRatio, at - 5 * devicePixelRatio);
+    const place = [text, ends[1] - 6 * devicePixelRatio, at - 5 * devicePixelRatio];
+    ctx.strokeStyle = css("--card");
+    ctx.lineWidth = 4 * devicePixelRatio;
+    ctx.strokeText(...place);
+    ctx.fillStyle = css("--limit");
+    ctx.fillText(...place);
   };
   for (const limit of HEAD.limits) {
     const name = limit.name ? ` ${limit.name}` : "";
@@ -256,6 +260,15 @@ function zoom(ends, which) {
   }
 }
 
+/** Shows the block that is picked with what is next to it. */
+function near() {
+  const [first] = CHARTS;
+  const when = PICKED === null ? null : span(block(PICKED), first.which);
+  if (!when) return;
+  const room = Math.max(0.75 * (when[1] - when[0]), 1e-3 * first.end, 0.05);
+  zoom([Math.max(0, when[0] - room), when[1] + room], first.which);
+}
+
 function drawCharts() {
   const charts = element("charts");
   for (const which of SIDES) {
@@ -281,6 +294,7 @@ function drawCharts() {
   });
   legend.append(make("li", { class: "key" }, make("i", { class: "peak" }), "block peak"), make("li", { class: "key" }, make("i", { class: "limit" }), "limit"));
   element("whole").addEventListener("click", () => zoom(null));
+  element("near").addEventListener("click", near);
   new ResizeObserver(() => {
     for (const own of CHARTS) own.plot.setSize({ width: own.box.clientWidth, height: own.box.clientHeight });
   }).observe(charts);

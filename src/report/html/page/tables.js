@@ -73,9 +73,9 @@ function worstTable() {
   const names = LIMITED
     ? ["Block", "Text", "Move", "Peak", "after", "Load", "after", "Time", "after", "What was done"]
     : ["Block", "Text", "Move", "Peak", "Fed back", "Load", "Time", "Energy", "What helps"];
-  const load = (value) => {
+  const load = (value, plain) => {
     const over = value === null || value > 1.000001;
-    const level = make("span", { class: "level", "aria-hidden": "true" }, make("i", { style: `width:${50 * Math.min(value ?? 2, 2)}%` }));
+    const level = plain ? "" : make("span", { class: "level", "aria-hidden": "true" }, make("i", { style: `width:${50 * Math.min(value ?? 2, 2)}%` }));
     return make("td", { class: `number${over ? " over" : ""}` }, level, make("span", { class: "share" }, value === null ? "over" : rough(value)));
   };
   const number = (text) => make("td", { class: "number" }, text);
@@ -83,7 +83,7 @@ function worstTable() {
   const rows = DATA.worst.map((place) => {
     const own = block(place);
     const cells = LIMITED
-      ? [number(power(own.peak_w)), unknown(own.peak_after_w, power), load(own.load), load(own.load_after), number(duration(own.duration_s)), unknown(own.duration_after_s, duration)]
+      ? [number(power(own.peak_w)), unknown(own.peak_after_w, power), load(own.load), load(own.load_after, true), number(duration(own.duration_s)), unknown(own.duration_after_s, duration)]
       : [number(power(own.peak_w)), number(power(own.regen_w)), load(own.load), number(duration(own.duration_s)), number(energy(own.energy_j))];
     const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", {}, `${own.kind} ${own.axes}`), ...cells, make("td", { class: "words" }, LIMITED ? done(own) : own.help));
     row.dataset.block = own.place;
