@@ -47,6 +47,8 @@ pub(super) struct Moment {
     pub to_s: f64,
     /// The converter that the peak is about; `None`: all.
     converter: Option<usize>,
+    /// Its end has been met.
+    over: bool,
     /// The sample with the largest power of that converter, and this power.
     pub sample: Option<(Sample, f64)>,
 }
@@ -168,9 +170,7 @@ impl PageSeries {
                 Some(which) => instant.bus_w.get(which).copied().unwrap_or(0.0),
                 None => sample.values_w[0],
             };
-            if moment.sample.is_none_or(|(_, most_w)| power_w > most_w) {
-                moment.sample = Some((*sample, power_w));
-            }
+            moment.meet(sample, power_w, apart_s);
         }
     }
 }
@@ -188,6 +188,22 @@ impl SeriesSink for PageSeries {
             self.keep(kept);
         }
         Ok(())
+    }
+}
+
+impl Moment {
+    /// Takes a sample with this power of its converter. Where it begins and ends the power may
+    /// jump: then the last sample of the one instant and the first of the other are its own.
+    fn meet(&mut self, sample: &Sample, power_w: f64, apart_s: f64) {
+        let is_at = |time_s: f64| (sample.time_s - time_s).abs() <= apart_s;
+        let lasts = self.to_s - self.from_s > 2.0 * apart_s;
+        let begins = lasts && is_at(self.from_s);
+        if lasts && is_at(self.to_s) && std::mem::replace(&mut self.over, true) {
+            return;
+        }
+        if begins || self.sample.is_none_or(|(_, most_w)| power_w > most_w) {
+            self.sample = Some((*sample, power_w));
+        }
     }
 }
 
@@ -225,6 +241,7 @@ fn moments(machine: &Machine, rows: &PageRows, side: Side) -> Vec<Moment> {
             from_s,
             to_s: from_s + lasts_s,
             converter: converter.filter(|_| several),
+            over: false,
             sample: None,
         })
     };

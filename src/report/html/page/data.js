@@ -135,9 +135,14 @@ function together(which, [from, to]) {
   const { shares } = which;
   if (!shares) return null;
   const near = 1e-6 + 1e-9 * to;
+  // Where the power jumps two samples have one time: the last at the beginning, the first at
+  // the end are the block's own.
+  let first = Math.max(0, above(shares.from, from + near) - 1);
+  let last = above(shares.from, to - near);
+  if (shares.from[last] > to + near) last -= 1;
+  if (shares.to[first] < from - near && first < last) first += 1;
   let best = null;
-  for (let place = Math.max(0, above(shares.from, from - near) - 1); place < shares.from.length && shares.from[place] <= to + near; place += 1) {
-    if (shares.to[place] < from - near) continue;
+  for (let place = first; place <= Math.min(Math.max(first, last), shares.from.length - 1); place += 1) {
     const values = shares.up.map((list) => list[place]);
     const sum = values.reduce((a, b) => a + b, 0);
     if (best === null || sum > best.sum) best = { sum, values };

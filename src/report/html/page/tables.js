@@ -113,7 +113,7 @@ function overTime() {
 function details(own) {
   const box = element("details");
   if (!own) return box.replaceChildren(make("p", { class: "hint" }, "Click a peak, a piece of the path or a line of a table."));
-  const fact = (name, ...value) => make("div", {}, make("dt", {}, name), make("dd", {}, ...value));
+  const fact = (name, ...value) => make("div", { class: name === "Helps" || name === "Done" ? "wide-fact" : null }, make("dt", {}, name), make("dd", {}, ...value));
   const bar = barOf(own.row);
   const shared = at(BARS.rows, bar) > 1 ? `one of ${at(BARS.rows, bar)} moves in this bar` : "";
   const about = [`${own.kind} ${own.axes}`.trim(), own.run > 1 ? `run ${own.run}` : "", own.bound ? "bound: corners are not modelled" : "", own.converter, shared].filter(Boolean).join(" · ");
