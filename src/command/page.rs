@@ -87,8 +87,8 @@ impl Frames {
 
     /// Puts them where they are to go.
     pub fn deliver(self) -> Result<()> {
-        let both = self.html.into_iter().chain(self.svg);
-        both.map(Spool::deliver).collect()
+        let mut both = self.html.into_iter().chain(self.svg);
+        both.try_for_each(Spool::deliver)
     }
 }
 

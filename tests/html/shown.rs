@@ -205,7 +205,7 @@ fn long() -> String {
         for step in 0..200 {
             let x = if row % 2 == 0 { step } else { 200 - step };
             let z = (step * row) % 7;
-            writeln!(text, "G1 X{x} Y{} Z{}.{z}", row, z).unwrap();
+            writeln!(text, "G1 X{x} Y{row} Z{z}.{z}").unwrap();
         }
         if row == 77 {
             text.push_str("G0 X0 Y0 Z100\n");

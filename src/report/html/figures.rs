@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::columns::{figure, known};
 use super::page::{Found, Page};
-use crate::pipeline::{LimitSummary, OverTime, Summary, Unfit};
+use crate::pipeline::{Certificate, LimitSummary, OverTime, Summary, Unfit};
 use crate::power::{Measure, PowerModel};
 use crate::report::over_time;
 
@@ -80,7 +80,7 @@ fn summary(summary: &Summary) -> Value {
         "energy_j": known(summary.energy_j, figure),
         "moves": summary.moves,
         "unfit_count": summary.unfit_count,
-        "certificate": summary.certificate.map(|it| it.name()),
+        "certificate": summary.certificate.map(Certificate::name),
     })
 }
 

@@ -105,26 +105,6 @@ impl PageSeries {
         self.size == 1
     }
 
-    fn sample(&self, time_s: f64, instant: &Instant) -> Sample {
-        let mut values_w = [0.0; VALUES];
-        let bus_w: f64 = instant.bus_w.iter().sum();
-        let regen_w: f64 = instant.regen_w.iter().sum();
-        let spindle = &instant.spindle;
-        let mut left_w = bus_w;
-        let own = [spindle.power_w, spindle.cutting_w];
-        let powers = instant.axes.iter().map(|axis| axis.power_w).chain(own);
-        for (place, power_w) in values_w.iter_mut().skip(2).zip(powers) {
-            *place = power_w;
-            left_w -= power_w.max(0.0);
-        }
-        // Where what is fed back counts, less is drawn than all draw; rounding is none.
-        if left_w > ROUNDING * bus_w {
-            values_w[AXES + 4] = left_w;
-        }
-        [values_w[0], values_w[1]] = [bus_w, regen_w];
-        Sample { time_s, values_w }
-    }
-
     fn keep(&mut self, sample: Sample) {
         let alone = Span {
             from_s: sample.time_s,
@@ -177,7 +157,7 @@ impl PageSeries {
 
 impl SeriesSink for PageSeries {
     fn row(&mut self, time_s: f64, _line: u64, instant: &Instant) -> io::Result<()> {
-        let sample = self.sample(time_s, instant);
+        let sample = sample(time_s, instant);
         if let Some(last) = &self.last {
             let mean_w = f64::midpoint(last.values_w[1], sample.values_w[1]);
             self.fed_back_j += mean_w * (time_s - last.time_s);
@@ -248,4 +228,25 @@ fn moments(machine: &Machine, rows: &PageRows, side: Side) -> Vec<Moment> {
     let mut list: Vec<Moment> = peaks.list.iter().filter_map(moment).collect();
     list.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
     list
+}
+
+/// Who draws what at an instant.
+fn sample(time_s: f64, instant: &Instant) -> Sample {
+    let mut values_w = [0.0; VALUES];
+    let bus_w: f64 = instant.bus_w.iter().sum();
+    let regen_w: f64 = instant.regen_w.iter().sum();
+    let spindle = &instant.spindle;
+    let mut left_w = bus_w;
+    let own = [spindle.power_w, spindle.cutting_w];
+    let powers = instant.axes.iter().map(|axis| axis.power_w).chain(own);
+    for (place, power_w) in values_w.iter_mut().skip(2).zip(powers) {
+        *place = power_w;
+        left_w -= power_w.max(0.0);
+    }
+    // Where what is fed back counts, less is drawn than all draw; rounding is none.
+    if left_w > ROUNDING * bus_w {
+        values_w[AXES + 4] = left_w;
+    }
+    [values_w[0], values_w[1]] = [bus_w, regen_w];
+    Sample { time_s, values_w }
 }
