@@ -18,6 +18,12 @@ const STYLE: &str = include_str!("page/page.css");
 const CHART_STYLE: &str = include_str!("vendor/uPlot.min.css");
 const CHART: &str = include_str!("vendor/uPlot.iife.min.js");
 const SPACE: &str = include_str!("vendor/three.min.js");
+const LICENCES: [&str; 4] = [
+    "uPlot\n\n",
+    include_str!("vendor/uPlot.LICENSE"),
+    "\nthree.js\n\n",
+    include_str!("vendor/three.LICENSE"),
+];
 const SCRIPTS: [&str; 5] = [
     include_str!("page/data.js"),
     include_str!("page/charts.js"),
@@ -66,9 +72,10 @@ impl Page<'_> {
     /// Those of `out`.
     pub fn write_html(&self, out: &mut dyn Write) -> io::Result<()> {
         let data = harmless(&data(self).to_string());
-        let scripts = SCRIPTS.concat();
+        let (licences, scripts) = (LICENCES.concat(), SCRIPTS.concat());
         let mut rest = PAGE;
         for (mark, text) in [
+            ("/*LICENCES*/", licences.as_str()),
             ("/*CHART_STYLE*/", CHART_STYLE),
             ("/*STYLE*/", STYLE),
             ("/*DATA*/", data.as_str()),
