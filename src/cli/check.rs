@@ -10,6 +10,7 @@ const EXAMPLES: &str = "\
 Examples:
   gwatt check part.ngc -m vmc
   gwatt check programs/*.ngc -m mill.toml
+  gwatt check part.ngc -m vmc --html part.html
   gwatt check programs/*.ngc -m mill.toml --format sarif > gwatt.sarif";
 
 /// Arguments of `check`.

@@ -13,6 +13,7 @@ Examples:
   gwatt limit part.ngc -m vmc --allow feed --report moves.csv -o fit.ngc
   gwatt limit part.ngc -m vmc --dry-run      show the edit as a diff
   gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
+  gwatt limit part.ngc -m vmc -o fit.ngc --html part.html
   gwatt limit - -m vmc < part.ngc > fit.ngc
   gwatt limit a.nc b.nc -m vmc --with-subprograms -o fit    with O-numbers and macros
 
