@@ -1,6 +1,8 @@
 //! Numbers and lists as the page's data has them: short, and the same on every platform.
 
-use serde_json::{Number, Value};
+use std::collections::BTreeMap;
+
+use serde_json::{Number, Value, json};
 
 use crate::report::figure::round_to_digits;
 
@@ -8,6 +10,8 @@ use crate::report::figure::round_to_digits;
 const FIGURE_DIGITS: i32 = 10;
 /// Digits of what is only drawn.
 const DRAWN_DIGITS: i32 = 6;
+/// Digits of a share of a limit.
+const SHARE_DIGITS: i32 = 4;
 /// Whole numbers up to here are printed without a point.
 const WHOLE_MAX: f64 = 1e15;
 
@@ -46,6 +50,30 @@ pub(super) fn column(values: impl Iterator<Item = Value>) -> Value {
         }
         _ => Value::Array(list),
     }
+}
+
+/// A list of words, of which few differ: each word once, and which it is.
+pub(super) fn words<'a>(values: impl Iterator<Item = &'a str>) -> Value {
+    let mut places: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut names: Vec<&str> = Vec::new();
+    let of: Vec<usize> = values
+        .map(|word| {
+            *places.entry(word).or_insert_with(|| {
+                names.push(word);
+                names.len() - 1
+            })
+        })
+        .collect();
+    match names.as_slice() {
+        [one] => Value::from(*one),
+        _ => json!({"names": names, "of": of}),
+    }
+}
+
+/// A share with few digits, but near 1 with those that tell it from 1.
+pub(super) fn share(value: f64) -> Value {
+    let near = (value - 1.0).abs() < 0.01;
+    digits(value, if near { FIGURE_DIGITS } else { SHARE_DIGITS })
 }
 
 /// A figure that may not be known.

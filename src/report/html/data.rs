@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::block::Block;
-use super::columns::{column, drawn, figure, known, time};
+use super::columns::{column, drawn, figure, known, share, time, words};
 use super::figures;
 use super::page::Page;
 use super::path::Cell;
@@ -94,31 +94,36 @@ fn moment(page: &Page<'_>, blocks: &Blocks<'_>, moment: &Moment) -> Value {
 /// The rows, one list a figure.
 fn columns(blocks: &Blocks<'_>) -> Value {
     let each = |value: fn(&Block) -> Value| column(blocks.list.iter().map(|it| value(it)));
+    let axes: Vec<String> = blocks
+        .list
+        .iter()
+        .map(|it| it.row.axes.to_string())
+        .collect();
     json!({
         "count": blocks.list.len(),
         "row": Value::from(blocks.list.iter().map(|it| it.index).collect::<Vec<_>>()),
         "line": each(|it| it.row.line.into()),
         "run": each(|it| it.row.run.into()),
-        "file": each(|it| it.row.file.as_str().into()),
-        "kind": each(|it| it.row.kind.name().into()),
-        "axes": each(|it| it.row.axes.to_string().into()),
+        "file": words(blocks.list.iter().map(|it| it.row.file.as_str())),
+        "kind": words(blocks.list.iter().map(|it| it.row.kind.name())),
+        "axes": words(axes.iter().map(String::as_str)),
         "start_s": each(|it| time(it.row.start_s)),
         "duration_s": each(|it| drawn(it.row.duration_s)),
         "peak_w": each(|it| drawn(it.row.peak_w)),
         "regen_w": each(|it| drawn(it.row.regen_w)),
         "limit_w": each(|it| drawn(it.row.limit_w)),
         "regen_limit_w": each(|it| known(it.row.regen_limit_w, drawn)),
-        "load": each(|it| drawn(it.load())),
+        "load": each(|it| share(it.load())),
         "energy_j": each(|it| drawn(it.row.energy_j)),
         "bound": each(|it| (it.row.certificate == Certificate::Robust).into()),
-        "converter": each(|it| it.row.converter.as_str().into()),
-        "action": each(|it| it.row.action.into()),
-        "words": each(|it| it.row.words.as_str().into()),
+        "converter": words(blocks.list.iter().map(|it| it.row.converter.as_str())),
+        "action": words(blocks.list.iter().map(|it| it.row.action)),
+        "words": words(blocks.list.iter().map(|it| it.row.words.as_str())),
         "start_after_s": each(|it| known(it.row.start_after_s, time)),
         "duration_after_s": each(|it| known(it.row.duration_after_s, drawn)),
         "peak_after_w": each(|it| known(it.row.peak_after_w, drawn)),
         "regen_after_w": each(|it| known(it.row.regen_after_w, drawn)),
-        "load_after": each(|it| drawn(it.load_after())),
+        "load_after": each(|it| share(it.load_after())),
     })
 }
 

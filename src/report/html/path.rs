@@ -17,13 +17,15 @@ use crate::pipeline::{Route, Row};
 /// Lines that are kept.
 pub(super) const LINES_MAX: usize = 10_000;
 /// Lines that are left when room was made.
-const ROOM: usize = 6_000;
+const ROOM: usize = 8_000;
 /// The first cells, mm.
 const CELL_MM: f64 = 1e-3;
 /// Chords of one arc.
 const CHORDS_MAX: f64 = 256.0;
 /// How far a chord may be from its arc at first, mm.
 const SAGITTA_MM: f64 = 5e-3;
+/// How far later, by a cell's side.
+const SAGITTA: f64 = 0.25;
 /// Half the diagonal of a cell, by its side.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_6;
 
@@ -99,7 +101,7 @@ impl Path {
     /// How many chords an arc gets.
     fn chords(&mut self, arc: &Arc) -> f64 {
         let (radius_mm, sweep) = (arc.radius_mm.abs(), arc.sweep_rad.abs());
-        let allowed_mm = SAGITTA_MM.max(self.cell_mm());
+        let allowed_mm = SAGITTA_MM.max(SAGITTA * self.cell_mm());
         let step = 2.0 * libm::acos((1.0 - allowed_mm / radius_mm).clamp(-1.0, 1.0));
         let chords = libm::ceil(sweep / step).clamp(1.0, CHORDS_MAX);
         let chords = if chords.is_nan() { 1.0 } else { chords };

@@ -8,8 +8,8 @@ const COLOURS = {
   V: "#6b8e23", W: "#b8860b", E: "#2f7f6f", spindle: "#8f6bb8", cutting: "#d65f4d", "base load": "#9a9a9a",
 };
 
-/** A column of which all values may be the same. */
-const at = (column, index) => (Array.isArray(column) ? column[index] : column);
+/** A column of which all values may be the same, or one of a few names. */
+const at = (column, index) => (Array.isArray(column) ? column[index] : column?.names ? column.names[column.of[index]] : column);
 const all = (column, count) => (Array.isArray(column) ? column : new Array(count).fill(column));
 const element = (id) => document.getElementById(id);
 
