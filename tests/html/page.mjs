@@ -45,7 +45,7 @@ async function look(width, height, colorScheme) {
   tab.on("console", (message) => message.type() === "error" && problems.push(`${name}: ${message.text()}`));
   tab.on("request", (request) => expect(/^(file|data|blob):/.test(request.url()), `${name}: loads ${request.url()}`));
   await tab.goto(`file://${resolve(page)}`);
-  await tab.waitForSelector("#details .source");
+  await tab.waitForSelector("html[data-ready]");
   await tab.waitForTimeout(300);
   const opened = await tab.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd);
   const wide = await tab.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);

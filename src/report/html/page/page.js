@@ -74,11 +74,9 @@ function start() {
   element("made").textContent = `Made by gwatt ${HEAD.gwatt}. Charts: uPlot (MIT). Path: three.js (MIT).`;
   tiles();
   drawCharts();
-  drawSpace();
   peakTables();
   worstTable();
   overTime();
-  notes();
   conditions();
   details(null);
   element("largest").addEventListener("click", () => largest("step"));
@@ -90,6 +88,15 @@ function start() {
     show();
   });
   largest("start");
+  // What takes longest comes once all else is seen.
+  requestAnimationFrame(() => setTimeout(later));
+}
+
+function later() {
+  drawSpace();
+  notes();
+  if (PICKED !== null) light(block(PICKED));
+  document.documentElement.dataset.ready = "";
 }
 
 start();
