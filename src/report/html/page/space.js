@@ -223,7 +223,7 @@ function piece(own) {
   const row = (line) => at(BLOCKS.row, PATH.lead[line]);
   const lines = [...PATH.lead.keys()];
   const exact = lines.filter((line) => PATH.lead[line] === own.place);
-  if (exact.length > 0 || lines.length === 0 || own.axes === "") return exact;
+  if (exact.length > 0 || lines.length === 0 || !/[XYZ]/.test(own.axes)) return exact;
   const bar = barOf(own.row);
   const end = at(BARS.first, bar) + at(BARS.rows, bar);
   const near = lines.filter((line) => row(line) >= BARS.first[bar] && row(line) < end);
