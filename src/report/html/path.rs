@@ -88,7 +88,12 @@ impl Path {
         let xyz = |values: &[f64]| std::array::from_fn(|axis| values[axis]);
         let mut from: [f64; 3] = xyz(&route.start);
         let Some(arc) = &route.arc else {
-            return self.line(index, row, [from, xyz(&route.end)]);
+            let to = xyz(&route.end);
+            // What turns alone moves nothing in space.
+            if from != to {
+                self.line(index, row, [from, to]);
+            }
+            return;
         };
         let chords = self.chords(arc);
         for chord in 1..=chords as u32 {
