@@ -10,6 +10,7 @@ const EXAMPLES: &str = "\
 Examples:
   gwatt check part.ngc -m vmc
   gwatt check programs/*.ngc -m mill.toml
+  gwatt check part.ngc -m vmc --html part.html
   gwatt check programs/*.ngc -m mill.toml --format sarif > gwatt.sarif";
 
 /// Arguments of `check`.
@@ -25,6 +26,10 @@ pub struct CheckArgs {
     /// How to print the results
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Write a page with the power over time, the path and the worst blocks of one program
+    /// here
+    #[arg(long, value_name = "PAGE", conflicts_with = "overrides")]
+    pub html: Option<PathBuf>,
     /// Judge at these overrides alone: such as 70%, or feed=70%,rapid=50%; a plain
     /// value is that of feeds and, up to 100 %, of rapids
     /// [default: all from 0 to the machine's largest]

@@ -13,6 +13,7 @@ Examples:
   gwatt limit part.ngc -m vmc --allow feed --report moves.csv -o fit.ngc
   gwatt limit part.ngc -m vmc --dry-run      show the edit as a diff
   gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
+  gwatt limit part.ngc -m vmc -o fit.ngc --html part.html
   gwatt limit - -m vmc < part.ngc > fit.ngc
   gwatt limit a.nc b.nc -m vmc --with-subprograms -o fit    with O-numbers and macros
 
@@ -49,6 +50,13 @@ pub struct LimitArgs {
     /// Write the same, with a summary, as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write a page with the power over time before and after, the path and the worst
+    /// blocks here
+    #[arg(long, value_name = "PAGE", conflicts_with = "with_subprograms")]
+    pub html: Option<PathBuf>,
+    /// Draw the power over time before and after here
+    #[arg(long, value_name = "FILE", conflicts_with = "with_subprograms")]
+    pub svg: Option<PathBuf>,
     /// What to lower
     #[arg(long, value_enum, default_value_t = Strategy::Optimal)]
     pub strategy: Strategy,

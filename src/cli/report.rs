@@ -11,6 +11,7 @@ Examples:
   gwatt report part.ngc -m vmc > moves.csv
   gwatt report part.ngc -m vmc --csv moves.csv --json moves.json --fail
   gwatt report part.ngc -m vmc --series series.csv --step-ms 2
+  gwatt report part.ngc -m vmc --html part.html
 
 A series has a row every --step-ms and at every instant at which an acceleration
 changes; where something jumps, two rows with the same time. First the program
@@ -37,6 +38,12 @@ pub struct ReportArgs {
     /// Write JSON here
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write a page with the power over time, the path and the worst blocks here
+    #[arg(long, value_name = "PAGE", conflicts_with = "overrides")]
+    pub html: Option<PathBuf>,
+    /// Draw the power over time here
+    #[arg(long, value_name = "FILE", conflicts_with = "overrides")]
+    pub svg: Option<PathBuf>,
     /// Write speed, acceleration, force and power of axes and spindle over time
     /// here, as CSV
     #[arg(long, value_name = "CSV")]

@@ -2,26 +2,30 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc;
 use std::thread;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use gwatt::machine::Machine;
-use gwatt::pipeline;
-use gwatt::report::{self, Checked, Verdict};
+use gwatt::pipeline::{self, RowSink};
+use gwatt::report::{self, Checked, PageRows, Verdict};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 
+use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::Program;
 use super::output::print;
-use super::setup::{Setup, share_threads};
+use super::page::{self, Pictures};
+use super::setup::{Setup, machine_file, share_threads};
 use super::terminal::Terminal;
 use crate::cli::{CheckArgs, Format};
 
 /// Says whether programs fit.
 pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     let mut programs = Program::list(&args.programs)?;
+    let pictures = pictures(args, &programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     if let Some(overrides) = args.overrides {
         overrides.apply(&mut setup.machine.limits);
@@ -34,11 +38,24 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
             return Ok(Verdict::Refused);
         }
     }
-    let check = |program: &Program| check_program(program, &setup);
+    pictures.check(&setup)?;
+    let mut frames = pictures.open()?;
+    let check = |program: &Program| check_program(program, &setup, pictures.is_any());
 
     let mut worst = Verdict::Fits;
     let mut kept = Vec::new();
-    in_order(&programs, at_once, check, |(checked, note)| {
+    in_order(&programs, at_once, check, |result| {
+        let Found {
+            checked,
+            note,
+            drawn,
+        } = result;
+        if let (Some((rows, machine)), Ok(summary)) = (drawn, &checked.outcome)
+            && let [program] = programs.as_slice()
+        {
+            let drawn = page::draw_report(&mut frames, program, &setup, &machine, summary, &rows);
+            drawn.map_err(page::Refused::into_error)?;
+        }
         worst = worst.max(checked.verdict());
         if let Some(note) = note {
             terminal.note(format_args!("{}: {note}", checked.program));
@@ -52,36 +69,84 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
         Ok(())
     })?;
     print(|out| write_all(&kept, args.format, &setup, out))?;
+    if worst != Verdict::Refused {
+        frames.deliver()?;
+    }
     Ok(worst)
 }
 
-/// What came of a program, and what is to be said before it: as which dialect it was
-/// read, or which would read it.
-fn check_program(program: &Program, setup: &Setup) -> (Checked, Option<String>) {
-    let checked = |outcome| Checked {
-        program: program.name.clone(),
-        outcome,
+/// The page that is asked for: it shows one program.
+fn pictures<'a>(args: &'a CheckArgs, programs: &[Program]) -> Result<Pictures<'a>> {
+    let pictures = Pictures {
+        html: args.html.as_deref(),
+        svg: None,
     };
-    let analyze = |machine: &Machine| {
+    if !pictures.is_any() {
+        return Ok(pictures);
+    }
+    ensure!(
+        programs.len() == 1,
+        "--html shows one program: give one, or a page to each"
+    );
+    let machine = machine_file(args.machine.machine.as_deref());
+    let inputs: Vec<&Path> = programs
+        .iter()
+        .filter_map(Program::path)
+        .chain(machine)
+        .collect();
+    // The verdict goes to standard output.
+    let outputs: Vec<&Path> = pictures.paths().chain([Path::new("-")]).collect();
+    refuse_clashes(&inputs, &outputs)?;
+    Ok(pictures)
+}
+
+/// What came of a program.
+struct Found {
+    checked: Checked,
+    /// What is to be said before it: as which dialect it was read, or which would read it.
+    note: Option<String>,
+    /// What a page shows of it, and the machine with the dialect that it was read as.
+    drawn: Option<(PageRows, Machine)>,
+}
+
+/// Checks a program; `draws` is whether a page is asked for.
+fn check_program(program: &Program, setup: &Setup, draws: bool) -> Found {
+    let found = |outcome, note, drawn| Found {
+        checked: Checked {
+            program: program.name.clone(),
+            outcome,
+        },
+        note,
+        drawn,
+    };
+    let mut rows = draws.then(PageRows::default);
+    let mut analyze = |machine: &Machine| {
         let options = setup.options_for(program);
         let mut input = program.open()?;
-        let mut summary = pipeline::analyze(&mut input, machine, &options, None)?;
+        let sink = rows.as_mut().map(|rows| rows as &mut dyn RowSink);
+        let mut summary = pipeline::analyze(&mut input, machine, &options, sink)?;
         pipeline::take_hints(input, machine, &options, &mut summary)?;
         Ok(summary)
     };
     if setup.auto {
         let (language, note) = match dialect::choose(setup, program) {
             Ok(chosen) => chosen,
-            Err(failure) => return (checked(Err(failure)), None),
+            Err(failure) => return found(Err(failure), None, None),
         };
         let mut machine = setup.machine.clone();
         machine.controller.language = language;
-        return (checked(analyze(&machine)), Some(note));
+        let outcome = analyze(&machine);
+        let drawn = rows.map(|rows| (rows, machine));
+        return found(outcome, Some(note), drawn);
     }
     let outcome = analyze(&setup.machine);
     let hint = outcome.as_ref().err();
     let hint = hint.and_then(|failure| dialect::hint(setup, program, failure));
-    (checked(outcome), hint)
+    found(
+        outcome,
+        hint,
+        rows.map(|rows| (rows, setup.machine.clone())),
+    )
 }
 
 /// Warnings and refusals, with the lines under them.

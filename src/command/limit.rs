@@ -7,13 +7,14 @@ use std::slice;
 
 use anyhow::{Context, Result, bail, ensure};
 use gwatt::pipeline::{self, LimitOptions, LimitSummary};
-use gwatt::report::{Verdict, limit_json, limit_text, partial_text, unified_diff};
+use gwatt::report::{Found, Verdict, limit_json, limit_text, partial_text, unified_diff};
 
 use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::Program;
 use super::limit_set;
 use super::output::{Spool, Target, back_up, print};
+use super::page::{self, Pictures};
 use super::rows::Rows;
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
@@ -50,7 +51,10 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     setup.options.certificate = args.certificate.map(Into::into);
     setup.options.rapid_mark.clone_from(&args.mark_rapids);
     let report = args.report.as_deref().map(Target::new).transpose()?;
-    let mut rows = Rows::new(report, args.json.as_deref())?;
+    let pictures = pictures(args);
+    pictures.check(&setup)?;
+    let mut rows = Rows::new(report, args.json.as_deref())?.with_page(pictures.is_any());
+    let mut frames = pictures.open()?;
     let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args, path)?.spool()?);
 
     let done = (|| {
@@ -77,12 +81,28 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
             return Ok(Verdict::Refused);
         }
     };
-    let spool = spool.into_inner().map_err(io::IntoInnerError::into_error)?;
+    let mut spool = spool.into_inner().map_err(io::IntoInnerError::into_error)?;
     let partly = args.partial && !summary.certified && summary.slower;
+    if let Some(drawn) = rows.page.take() {
+        let found = Found::Limit {
+            summary: &summary,
+            partly,
+        };
+        let written = spool.read()?;
+        match page::draw_limit(&mut frames, &program, &setup, found, &drawn, written) {
+            Ok(()) => {}
+            Err(page::Refused::Error(error)) => return Err(error),
+            Err(page::Refused::Program(failure)) => {
+                dialect::failure(&setup, &program, &failure, terminal);
+                return Ok(Verdict::Refused);
+            }
+        }
+    }
     tell(&program.name, &summary, partly, &setup, terminal);
     rows.deliver(|blocks, out| {
         limit_json(&program.name, &setup.machine.name, &summary, blocks, out)
     })?;
+    frames.deliver()?;
     if summary.certified || partly {
         deliver(args, &program, &summary, spool, terminal)?;
     }
@@ -111,8 +131,16 @@ fn refuse_all_clashes(args: &LimitArgs, program: &Program) -> Result<()> {
         .into_iter()
         .chain(args.report.as_deref())
         .chain(args.json.as_deref())
+        .chain(pictures(args).paths())
         .collect();
     refuse_clashes(&inputs, &outputs)
+}
+
+fn pictures(args: &LimitArgs) -> Pictures<'_> {
+    Pictures {
+        html: args.html.as_deref(),
+        svg: args.svg.as_deref(),
+    }
 }
 
 /// Where the program goes. A diff needs only a spool.

@@ -23,6 +23,7 @@ mod into;
 mod limit_set;
 mod model_choice;
 mod output;
+mod page;
 mod recorded;
 mod rows;
 mod series;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use gwatt::pipeline::{Restart, RestartRows, Row, RowSink};
-use gwatt::report::{CsvRows, JsonRows};
+use gwatt::report::{CsvRows, JsonRows, PageRows};
 
 use super::output::{Spool, Target};
 
@@ -15,6 +15,8 @@ use super::output::{Spool, Target};
 pub struct Rows {
     csv: Option<CsvRows<Spool>>,
     json: Option<(JsonRows<BufWriter<File>>, Spool)>,
+    /// What a picture shows of them.
+    pub page: Option<PageRows>,
     targets: (Option<Target>, Option<PathBuf>),
 }
 
@@ -34,12 +36,24 @@ impl Rows {
             }
             None => None,
         };
-        Ok(Self { csv, json, targets })
+        Ok(Self {
+            csv,
+            json,
+            page: None,
+            targets,
+        })
+    }
+
+    /// The same with what a picture shows of them, if one is asked for.
+    pub fn with_page(mut self, wanted: bool) -> Self {
+        self.page = wanted.then(PageRows::default);
+        self
     }
 
     /// Where rows go; `None` where nobody wants them, which saves their making.
     pub fn sink(&mut self) -> Option<&mut dyn RestartRows> {
-        (self.csv.is_some() || self.json.is_some()).then_some(self as &mut dyn RestartRows)
+        let wanted = self.csv.is_some() || self.json.is_some() || self.page.is_some();
+        wanted.then_some(self as &mut dyn RestartRows)
     }
 
     /// Delivers the reports; `write_json` puts the rows into their object.
@@ -73,6 +87,9 @@ impl RowSink for Rows {
         if let Some((json, _)) = &mut self.json {
             json.row(row)?;
         }
+        if let Some(page) = &mut self.page {
+            page.row(row)?;
+        }
         Ok(())
     }
 }
@@ -80,7 +97,9 @@ impl RowSink for Rows {
 impl Restart for Rows {
     fn restart(&mut self) -> io::Result<()> {
         let (csv, json) = self.targets.clone();
-        *self = Self::new(csv, json.as_deref()).map_err(io::Error::other)?;
+        let page = self.page.is_some();
+        let again = Self::new(csv, json.as_deref()).map_err(io::Error::other)?;
+        *self = again.with_page(page);
         Ok(())
     }
 }

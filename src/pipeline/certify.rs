@@ -73,7 +73,8 @@ pub(super) struct Verdict<'m, 'r> {
     stops: Stops,
     /// Rows of the spindle in the written program that no row of the original
     /// has met yet.
-    spindle: VecDeque<Assessment>,
+    /// Each with its start, s.
+    spindle: VecDeque<(f64, Assessment)>,
 }
 
 /// What the certifier found.
@@ -298,7 +299,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
                 reasons.in_file(found.file.as_ref());
             }
         }
-        let mut summary = self.tally.finish(false);
+        let energy = self.tally.want().energy;
+        let mut summary = self.tally.finish(energy);
         summary.lines = lines;
         Ok(Certified {
             summary,
@@ -423,6 +425,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         {
             row.peak_after_w = Some(after.demand.peak_w);
             row.regen_after_w = Some(after.demand.regen_w);
+            row.start_after_s = Some(self.tally.duration_s());
             row.duration_after_s = Some(after.duration_s);
             self.tally.write(row);
         }

@@ -1,7 +1,7 @@
 //! Judged moves as rows, with what was done about them.
 
-use super::Row;
 use super::tally::axes;
+use super::{Route, Row};
 use crate::interpret::{Move, MoveKind};
 use crate::limit::{Change, Split};
 use crate::machine::{AxisSet, AxisValues, KnobArgument, KnobTarget, KnobUnit, Machine};
@@ -39,6 +39,7 @@ pub(super) fn row(
         value_before: None,
         value_after: None,
         peak_after_w: None,
+        start_after_s: None,
         duration_after_s: None,
         regen_after_w: None,
         certificate: assessment.certificate,
@@ -47,6 +48,7 @@ pub(super) fn row(
             .converters
             .get(demand.converter)
             .map_or_else(String::new, |it| it.name.clone()),
+        route: Route::of(mv),
     }
 }
 

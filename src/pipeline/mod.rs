@@ -66,7 +66,7 @@ pub use over_time::OverTime;
 pub use pause::Pause;
 pub use price::{Price, price};
 pub use restart::{Restart, RestartRows};
-pub use row::{Certificate, Row, RowSink};
+pub use row::{Certificate, Route, Row, RowSink};
 pub use schedule::{Command, Schedule};
 pub use series::{SeriesSink, series};
 pub use set::{SetFailure, SetFile, SetProgram, SetSummary, limit_set};

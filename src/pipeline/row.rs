@@ -2,8 +2,8 @@
 
 use std::io;
 
-use crate::interpret::MoveKind;
-use crate::machine::AxisSet;
+use crate::interpret::{Arc, Move, MoveKind};
+use crate::machine::{AxisSet, AxisValues};
 pub use crate::power::Certificate;
 use crate::power::Want;
 
@@ -52,6 +52,8 @@ pub struct Row {
     pub value_after: Option<f64>,
     /// Peak in the written program; `None` in a report without limiting.
     pub peak_after_w: Option<f64>,
+    /// Start in the written program in s from its beginning.
+    pub start_after_s: Option<f64>,
     /// Duration in the written program.
     pub duration_after_s: Option<f64>,
     /// Regenerative peak in the written program.
@@ -62,6 +64,31 @@ pub struct Row {
     pub regen_limit_w: Option<f64>,
     /// Name of the converter that is loaded most; empty where there is one only.
     pub converter: String,
+    /// Where the axes go; `None` where they stand, or where their start is not known.
+    pub route: Option<Route>,
+}
+
+/// The way of a move, in machine coordinates: mm, or degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Route {
+    /// Where each axis starts.
+    pub start: AxisValues,
+    /// Where it ends.
+    pub end: AxisValues,
+    /// Geometry of an arc.
+    pub arc: Option<Arc>,
+}
+
+impl Route {
+    /// The way of a move, if its axes move and their start is known.
+    pub(super) fn of(mv: &Move) -> Option<Self> {
+        let known = mv.moves_axes() && mv.unknown_start.is_empty();
+        known.then_some(Self {
+            start: mv.start,
+            end: mv.end,
+            arc: mv.arc,
+        })
+    }
 }
 
 /// Takes the rows of a report one by one.

@@ -146,6 +146,11 @@ impl<'m, 'r> Tally<'m, 'r> {
         }
     }
 
+    /// How long the moves last that were added so far, s.
+    pub(super) fn duration_s(&self) -> f64 {
+        self.summary.duration_s
+    }
+
     /// Adds a dwell that was put in: its time, and what the machine draws meanwhile.
     pub(super) fn wait(&mut self, assessment: &Assessment) {
         self.summary.duration_s += assessment.duration_s;

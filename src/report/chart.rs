@@ -177,7 +177,7 @@ impl Bucket {
 }
 
 /// Values to places of the picture.
-struct Scale {
+pub(super) struct Scale {
     least: f64,
     most: f64,
     from: f64,
@@ -185,7 +185,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn new(least: f64, most: f64, from: f64, to: f64) -> Self {
+    pub(super) fn new(least: f64, most: f64, from: f64, to: f64) -> Self {
         Self {
             least,
             most,
@@ -194,12 +194,12 @@ impl Scale {
         }
     }
 
-    fn at(&self, value: f64) -> f64 {
+    pub(super) fn at(&self, value: f64) -> f64 {
         self.from + (value - self.least) / (self.most - self.least) * (self.to - self.from)
     }
 
     /// Round values for the lines of a grid.
-    fn marks(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn marks(&self) -> impl Iterator<Item = f64> {
         let rough = (self.most - self.least) / LINES;
         let power = libm::pow(10.0, libm::floor(libm::log10(rough)));
         let step = [1.0, 2.0, 5.0, 10.0]

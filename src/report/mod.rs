@@ -9,6 +9,7 @@ mod csv;
 mod figure;
 mod finding;
 mod github;
+mod html;
 mod identified;
 mod json;
 mod junit;
@@ -35,6 +36,7 @@ pub use contoured::{
 };
 pub use csv::CsvRows;
 pub use github::github;
+pub use html::{Found, LineTexts, Page, PageRows, PageSeries, Side};
 pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
     rigid_text,

@@ -133,10 +133,12 @@ pub(super) fn example() -> Row {
         value_before: None,
         value_after: Some(12345.678),
         peak_after_w: Some(3149.999),
+        start_after_s: Some(360.25),
         duration_after_s: Some(1.75),
         regen_after_w: None,
         regen_limit_w: None,
         certificate: Certificate::Planned,
         converter: "left, \"A\"".into(),
+        route: None,
     }
 }

@@ -23,11 +23,13 @@ impl Verdict<'_, '_> {
             match self.originals.get(self.judged) {
                 Some(Expected::Action(_)) => {}
                 Some(Expected::Spindle(row, command)) => {
-                    let same = |after: &Assessment| after.spindle.command == *command;
-                    let met = self.spindle.iter().position(same);
-                    let after = met.and_then(|place| self.spindle.remove(place));
+                    let mut judged = self.spindle.iter();
+                    let met = judged.position(|(_, after)| after.spindle.command == *command);
+                    let met = met.and_then(|place| self.spindle.remove(place));
+                    let (start_s, after) = met.unzip();
                     // Without one the program does not wait any more.
                     row.duration_after_s = Some(after.map_or(0.0, |it| it.duration_s));
+                    row.start_after_s = start_s.or(Some(self.tally.duration_s()));
                     row.peak_after_w = after.map(|it| it.demand.peak_w);
                     row.regen_after_w = after.map(|it| it.demand.regen_w);
                     self.tally.write(row);
@@ -53,7 +55,7 @@ impl Verdict<'_, '_> {
         if self.spindle.len() >= ROWS {
             self.spindle.pop_front();
         }
-        self.spindle.push_back(*after);
+        self.spindle.push_back((self.tally.duration_s(), *after));
         self.tally.add(mv, after, text);
     }
 }

@@ -138,6 +138,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             value_before: None,
             value_after: Some(mv.dwell_s),
             peak_after_w: None,
+            start_after_s: None,
             duration_after_s: None,
             regen_after_w: None,
             certificate: Certificate::Planned,
@@ -145,6 +146,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             converter: converter
                 .filter(|_| several)
                 .map_or_else(String::new, |it| it.name.clone()),
+            route: None,
         }
     }
 }

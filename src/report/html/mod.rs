@@ -1,0 +1,25 @@
+//! The picture of a program: one page, or a still picture.
+//!
+//! Input: the rows of a report, the planned power over time, the text of lines. Output: a
+//! page that needs no network, and SVG. What is kept of a program does not grow with it:
+//! where there is too much, neighbours become one, and the larger value stays.
+
+mod bars;
+mod block;
+mod columns;
+mod data;
+mod door;
+mod figures;
+mod joined;
+mod lines;
+mod page;
+mod path;
+mod peaks;
+mod picture;
+mod rows;
+mod shares;
+
+pub use lines::LineTexts;
+pub use page::{Found, Page};
+pub use rows::PageRows;
+pub use shares::{PageSeries, Side};

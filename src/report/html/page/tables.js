@@ -1,0 +1,148 @@
+// Figures, tables and the block that is picked.
+const THEAD = (names) => make("thead", {}, make("tr", {}, ...names.map((name) => make("th", { scope: "col" }, name))));
+
+/** A table that scrolls by itself where the page is narrow. */
+function table(caption, names, rows) {
+  const body = make("tbody", {}, ...rows);
+  const own = make("table", {}, make("caption", {}, caption), THEAD(names), body);
+  // A column of numbers has its name above them.
+  [...own.querySelectorAll("thead th")].forEach((name, place) => {
+    if (rows[0]?.children[place]?.classList.contains("number")) name.className = "number";
+  });
+  return make("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": caption }, own);
+}
+
+/** A button that picks a block. */
+function picker(own) {
+  const button = make("button", { type: "button", class: "link", onclick: () => pick(own.place, "table") }, own.where);
+  button.dataset.block = own.place;
+  return button;
+}
+
+function tiles() {
+  const { before, after } = HEAD;
+  const last = after ?? before;
+  const was = (text) => (after ? make("small", {}, ` before: ${text}`) : "");
+  const tile = (name, value, ...more) => make("div", {}, make("dt", {}, name), make("dd", {}, make("strong", {}, value), ...more));
+  const [limit] = HEAD.limits;
+  const one = HEAD.limits.length === 1 && limit.limit_w !== null;
+  const of = one ? make("small", {}, ` of ${power(limit.limit_w)} (${rough(last.peak_w / limit.limit_w)})`) : "";
+  const lost = after ? after.duration_s - before.duration_s : 0;
+  const share = before.duration_s > 0 ? ` (${((100 * lost) / before.duration_s).toFixed(2)} %)` : "";
+  const back = [after ? DATA.shares.after : null, DATA.shares.before].find(Boolean);
+  const credited = HEAD.limits.every((it) => it.credit_regen);
+  const fate = credited ? "feeds the other axes" : "counted as burnt";
+  const list = [
+    tile("Peak", power(last.peak_w), of, was(power(before.peak_w))),
+    tile("Time", duration(last.duration_s), after ? make("small", {}, ` ${lost >= 0 ? "" : "−"}${duration(Math.abs(lost))} ${lost >= 0 ? "lost" : "gained"}${share}`) : ""),
+    tile("Energy drawn", energy(last.energy_j), after && before.energy_j !== null ? was(energy(before.energy_j)) : ""),
+    tile("Fed back", back ? energy(back.fed_back_j) : "not known", make("small", {}, ` ${fate}; peak ${power(last.regen_w)}`)),
+    tile(after ? "Over the limit" : "Over the limit", `${last.unfit_count}`, make("small", {}, ` of ${last.moves} moves`), was(`${before.unfit_count}`)),
+  ];
+  if (HEAD.limited) list.push(tile("Changed", `${HEAD.limited.edited_lines}`, make("small", {}, " lines of the program")));
+  element("tiles").append(...list);
+}
+
+/** The simultaneous set of each of the largest peaks. */
+function peakTables() {
+  const box = element("peak-tables");
+  for (const which of SIDES) {
+    const list = DATA.moments[which.name];
+    const used = CHANNELS.map((_, channel) => channel).filter((channel) => list.some((it) => it.values_w && Math.abs(it.values_w[channel]) >= 0.005));
+    const rows = list.map((it) => {
+      const own = block(it.block);
+      const sum = it.values_w ? it.values_w.reduce((a, b) => a + Math.max(0, b), 0) : 0;
+      const cells = used.map((channel) => {
+        const value = it.values_w ? it.values_w[channel] : null;
+        if (value === null || Math.abs(value) < 0.005) return make("td", { class: "number none" }, "–");
+        const part = value > 0 && sum > 0 ? percent(value / sum) : "fed back";
+        return make("td", { class: "number" }, power(value), make("small", {}, ` ${part}`));
+      });
+      const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", { class: "number" }, moment(it.time_s)), make("td", { class: "number" }, power(it.peak_w)), make("td", { class: "number" }, it.planned_w === null ? "not known" : power(it.planned_w)), ...cells);
+      row.dataset.block = own.place;
+      return row;
+    });
+    const names = ["Block", "Text", "Moment", "Peak (report)", "Planned", ...used.map((channel) => CHANNELS[channel])];
+    box.append(table(which.title ? `${which.title}: the largest peaks` : "The largest peaks", names, rows));
+  }
+  box.append(make("p", { class: "hint" }, "“Planned” is the power at that moment at 100 % override; the peak of the report also covers higher overrides, servo factors, and bounds where corners are not modelled. Shares are of what is drawn."));
+}
+
+/** The blocks that take most of their limits. */
+function worstTable() {
+  const names = LIMITED
+    ? ["Block", "Text", "Move", "Peak", "after", "Load", "after", "Time", "after", "What was done"]
+    : ["Block", "Text", "Move", "Peak", "Fed back", "Load", "Time", "Energy", "What helps"];
+  const load = (value, plain) => {
+    const over = value === null || value > 1.000001;
+    const level = plain ? "" : make("span", { class: "level", "aria-hidden": "true" }, make("i", { style: `width:${50 * Math.min(value ?? 2, 2)}%` }));
+    return make("td", { class: `number${over ? " over" : ""}` }, level, make("span", { class: "share" }, value === null ? "over" : rough(value)));
+  };
+  const number = (text) => make("td", { class: "number" }, text);
+  const unknown = (value, print) => number(value === null ? "–" : print(value));
+  const rows = DATA.worst.map((place) => {
+    const own = block(place);
+    const cells = LIMITED
+      ? [number(power(own.peak_w)), unknown(own.peak_after_w, power), load(own.load), load(own.load_after, true), number(duration(own.duration_s)), unknown(own.duration_after_s, duration)]
+      : [number(power(own.peak_w)), number(power(own.regen_w)), load(own.load), number(duration(own.duration_s)), number(energy(own.energy_j))];
+    const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", {}, `${own.kind} ${own.axes}`), ...cells, make("td", { class: "words" }, LIMITED ? done(own) : own.help));
+    row.dataset.block = own.place;
+    return row;
+  });
+  const caption = HEAD.rows > rows.length ? `The ${rows.length} lines nearest to the limit, of ${HEAD.rows} moves` : "All lines, the one nearest to the limit first";
+  element("worst-table").append(table(caption, names, rows));
+}
+
+/** Percent without the digits that tell it from 100. */
+const rough = (share) => (Math.abs(share - 1) < 0.01 && share <= 1.000001 ? "100 %" : percent(share));
+
+/** What was done to a block. */
+const done = (own) => [own.action, own.words].filter(Boolean).join(": ");
+
+function overTime() {
+  if (HEAD.over_time.length === 0) return;
+  element("over-time").hidden = false;
+  const rows = HEAD.over_time.map((it) => make("tr", {},
+    make("th", { scope: "row" }, it.title), make("td", { class: "number" }, it.figures),
+    make("td", { class: it.fits ? "" : "over" }, it.fits ? "kept" : "missed"),
+    make("td", {}, it.line > 0 ? `line ${it.line} at ${moment(it.time_s)}` : ""), make("td", {}, make("code", {}, TEXTS.get(it.line) ?? "")), make("td", {}, it.help)));
+  element("over-time-table").append(table("Limits over time", ["Limit", "Value", "", "Where", "Text", "What helps"], rows));
+}
+
+/** The block that is picked, in words. */
+function details(own) {
+  const box = element("details");
+  if (!own) return box.replaceChildren(make("p", { class: "hint" }, "Click a peak, a piece of the path or a line of a table."));
+  const fact = (name, ...value) => make("div", { class: name === "Helps" || name === "Done" ? "wide-fact" : null }, make("dt", {}, name), make("dd", {}, ...value));
+  const bar = barOf(own.row);
+  const shared = at(BARS.rows, bar) > 1 ? `one of ${at(BARS.rows, bar)} moves in this bar` : "";
+  const about = [`${own.kind} ${own.axes}`.trim(), own.run > 1 ? `run ${own.run}` : "", own.bound ? "bound: corners are not modelled" : "", own.converter, shared].filter(Boolean).join(" · ");
+  const facts = [
+    fact("Peak", power(own.peak_w), make("small", {}, own.limit_w === null ? "" : ` of ${power(own.limit_w)}`)),
+    fact("Load", own.load === null ? "not known" : rough(own.load)),
+    fact("Fed back", power(own.regen_w)),
+    fact("Time", duration(own.duration_s), make("small", {}, ` from ${moment(own.start_s)}`)),
+    fact("Energy", energy(own.energy_j)),
+  ];
+  if (LIMITED && own.peak_after_w !== null) {
+    facts.push(fact("Peak after", power(own.peak_after_w)), fact("Time after", duration(own.duration_after_s)));
+  }
+  const what = LIMITED ? done(own) : own.help;
+  if (what) facts.push(fact(LIMITED ? "Done" : "Helps", what));
+  box.replaceChildren(
+    make("p", { class: "source" }, make("span", {}, own.where), make("code", {}, own.text || "no text at hand")),
+    make("p", { class: "hint" }, about), make("dl", { class: "facts" }, ...facts), ...SIDES.map((which) => strip(own, which)).filter(Boolean),
+  );
+}
+
+/** Who draws at the largest planned power of a block, as a strip. */
+function strip(own, which) {
+  const when = span(own, which);
+  const set = when && together(which, when);
+  if (!set || set.sum <= 0) return null;
+  const parts = CHANNELS.map((name, channel) => [name, set.values[channel]]).filter(([, value]) => value >= 0.005);
+  const text = parts.map(([name, value]) => `${name} ${power(value)} (${percent(value / set.sum)})`).join(", ");
+  const pieces = parts.map(([name, value]) => make("i", { style: `flex-grow:${value / set.sum};background:${COLOURS[name]}` }));
+  const title = which.title ? `${which.title}: ` : "";
+  return make("div", { class: "strip" }, make("div", { "aria-hidden": "true" }, ...pieces), make("p", {}, `${title}planned ${power(set.sum)}: ${text}`));
+}

@@ -1,0 +1,38 @@
+//! The page in a browser, where there is one.
+
+use std::path::Path;
+use std::process::Command;
+
+use super::{Desk, example};
+
+/// `page.mjs` says by itself that it skipped where Chromium or a package is not there.
+#[test]
+fn a_page_works_in_chromium() {
+    let desk = Desk::new();
+    let program = example("simultaneous-start.ngc");
+    desk.exits(
+        0,
+        &[
+            "limit",
+            &program,
+            "-m",
+            "three-axis",
+            "-o",
+            "fit.ngc",
+            "--html",
+            "page.html",
+        ],
+    );
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/html/page.mjs");
+    let Ok(output) = Command::new("node")
+        .arg(script)
+        .arg(desk.at("page.html"))
+        .output()
+    else {
+        eprintln!("skipped: there is no node");
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    eprintln!("{}", String::from_utf8_lossy(&output.stdout));
+}

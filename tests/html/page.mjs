@@ -1,0 +1,118 @@
+// Opens a page that gwatt has written in Chromium, wide and narrow, light and dark:
+//
+//     node tests/html/page.mjs PAGE.html [FOLDER for pictures]
+//
+// Picks a peak, a row of a table and a piece of the path, and looks that all light up with
+// the same line; nothing may be loaded, stick out or be thrown. With axe-core there are no
+// serious findings. Needs Chromium, playwright-core and, for the last, axe-core, by
+// NODE_PATH or next to this file; says that it skipped where they are not there.
+import { existsSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { resolve } from "node:path";
+
+const [page, pictures] = process.argv.slice(2);
+const require = createRequire(import.meta.url);
+const skip = (why) => {
+  console.log(`skipped: ${why}`);
+  process.exit(0);
+};
+const found = (name) => {
+  try {
+    return require.resolve(name);
+  } catch {
+    return null;
+  }
+};
+const browser = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
+if (!browser) skip("there is no Chromium");
+if (!found("playwright-core")) skip("there is no playwright-core");
+const { chromium } = require("playwright-core");
+const axe = found("axe-core");
+
+const problems = [];
+const expect = (holds, what) => {
+  if (!holds) problems.push(what);
+};
+const ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+  "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+const running = await chromium.launch({ executablePath: browser, args: ARGUMENTS, headless: true });
+
+async function look(width, height, colorScheme) {
+  const name = `${width} ${colorScheme}`;
+  const context = await running.newContext({ viewport: { width, height }, colorScheme });
+  const tab = await context.newPage();
+  tab.on("pageerror", (error) => problems.push(`${name}: ${error.stack}`));
+  tab.on("console", (message) => message.type() === "error" && problems.push(`${name}: ${message.text()}`));
+  tab.on("request", (request) => expect(/^(file|data|blob):/.test(request.url()), `${name}: loads ${request.url()}`));
+  await tab.goto(`file://${resolve(page)}`);
+  await tab.waitForSelector("html[data-ready]");
+  await tab.waitForTimeout(300);
+  const opened = await tab.evaluate(() => performance.getEntriesByType("navigation")[0].loadEventEnd);
+  const wide = await tab.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  expect(wide <= 0, `${name}: the page is ${wide} px too wide`);
+  if (pictures) await tab.screenshot({ path: `${pictures}/${width}-${colorScheme}.png`, fullPage: true });
+  await links(tab, name);
+  if (axe) await accessible(tab, name);
+  await context.close();
+  return `${name}: opened in ${Math.round(opened)} ms`;
+}
+
+/** What is picked in one place lights up in the others. */
+async function links(tab, name) {
+  const line = () => tab.textContent("#details .source span");
+  const lit = () => tab.evaluate(() => [PICKED, SPACE ? SPACE.bright.visible : null, document.querySelectorAll("tr.picked").length]);
+  const button = tab.locator("#worst-table button").first();
+  await button.click();
+  expect((await line()) === (await button.textContent()), `${name}: a row of the table picks another line`);
+  const [place, bright, rows] = await lit();
+  const moves = await tab.evaluate(() => /[XYZ]/.test(block(PICKED).axes) && PATH.ends.length > 0);
+  expect(rows >= 1, `${name}: its row is not marked`);
+  expect(bright === null || bright === moves, `${name}: its path is not lit`);
+  // The highest point of the first chart.
+  const peak = await tab.evaluate(() => {
+    const { plot, which } = CHARTS[0];
+    const bar = which.peak.reduce((best, value, at) => (value > which.peak[best] ? at : best), 0);
+    const box = plot.over.getBoundingClientRect();
+    plot.over.scrollIntoView({ block: "center" });
+    const middle = (which.from[bar] + which.to[bar]) / 2;
+    return { left: plot.valToPos(middle, "x"), high: box.height / 2, lead: BARS.lead[bar] };
+  });
+  await tab.locator(".u-over").first().click({ position: { x: peak.left, y: peak.high } });
+  const picked = await tab.evaluate((lead) => [block(PICKED).load >= block(lead).load - 1e-9, block(PICKED).where, block(PICKED).text], peak.lead);
+  expect(picked[0], `${name}: a click on the largest peak picks a smaller one`);
+  expect((await line()) === picked[1], `${name}: a click on a peak shows another line`);
+  expect((await tab.textContent("#details .source code")) === (picked[2] || "no text at hand"), `${name}: its text is not shown`);
+  if (moves && bright !== null) await onPath(tab, name, place);
+}
+
+/** A click on a piece of the path picks its block. */
+async function onPath(tab, name, place) {
+  const [x, y] = await tab.evaluate((wanted) => {
+    pick(wanted, "test");
+    const at = PATH.lead.indexOf(wanted);
+    const line = at < 0 ? 0 : at;
+    SPACE.canvas.scrollIntoView({ block: "center" });
+    const point = new THREE.Vector3().fromArray(SPACE.place, 6 * line).lerp(new THREE.Vector3().fromArray(SPACE.place, 6 * line + 3), 0.5).project(SPACE.camera);
+    const box = SPACE.canvas.getBoundingClientRect();
+    return [((point.x + 1) / 2) * box.width, ((1 - point.y) / 2) * box.height];
+  }, place);
+  await tab.evaluate(() => { PICKED = null; });
+  await tab.locator("#scene canvas").click({ position: { x, y } });
+  expect((await tab.evaluate(() => PICKED)) !== null, `${name}: a click on the path picks nothing`);
+}
+
+async function accessible(tab, name) {
+  await tab.evaluate(readFileSync(axe, "utf8"));
+  const { violations } = await tab.evaluate(() => axe.run());
+  for (const own of violations.filter((it) => ["serious", "critical"].includes(it.impact))) {
+    problems.push(`${name}: ${own.id}: ${own.help}: ${own.nodes.map((node) => node.target).join("; ")}`);
+  }
+}
+
+for (const [width, height] of [[1280, 900], [390, 844]]) {
+  for (const scheme of ["light", "dark"]) console.log(await look(width, height, scheme));
+}
+await running.close();
+if (!axe) console.log("not looked at: there is no axe-core");
+for (const problem of problems) console.error(problem);
+process.exit(problems.length > 0 ? 1 : 0);
