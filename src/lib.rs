@@ -1,19 +1,19 @@
 //! gwatt fits CNC part programs to the converter that all drives of a machine
 //! share.
 //!
-//! The modules stand in the order of the data flow; each imports only from
-//! those above it, and a test enforces it:
+//! This is the whole of it in one place: what stands in crates of its own is
+//! re-exported here. Crates and modules stand in the order of the data flow; each
+//! imports only from those above it, and a test enforces it:
 //!
 //! ```text
 //! bytes ─syntax→ blocks ─interpret→ moves ─plan→ profiles ─power→ demand ─limit→ adjustments ─rewrite→ bytes
 //! TOML  ─machine→ Machine ─────────────────┴──────┴────────────────┘            └→ analysed again: certificate
 //! CSV   ─identify→ masses, friction, transfer functions → TOML
 //! ```
+pub use gwatt_syntax as syntax;
+pub use gwatt_syntax::{diagnostic, edit, source};
+
 pub mod units;
-pub mod source;
-pub mod edit;
-pub mod diagnostic;
-pub mod syntax;
 pub mod machine;
 pub mod interpret;
 pub mod plan;

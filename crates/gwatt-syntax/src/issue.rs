@@ -129,7 +129,7 @@ fn describe_unknown(text: &[u8], shown: &str) -> (&'static str, String, &'static
 mod tests {
     use insta::assert_snapshot;
 
-    use crate::syntax::{Block, parse_line};
+    use crate::{Block, parse_line};
 
     /// The first issue of `line` as it is shown.
     fn shown(line: &[u8]) -> String {

@@ -1,11 +1,18 @@
-//! Program text to blocks, lossless: joining the pieces gives the bytes back.
+#![doc = include_str!("../README.md")]
 //!
-//! Input is one line with its line end ([`crate::source::LineReader`]); output
+//! # From bytes to blocks
+//!
+//! Input is one line with its line end ([`source::LineReader`]); output
 //! is a [`Block`] and, where asked for, the [`Piece`]s of the line. No text
 //! fails: what is not understood becomes an [`Issue`] of the block.
 //!
 //! [`parse_line`] is the grammar. [`scan_line`] gives the same block many times
 //! faster for lines of plain words and hands every other line to the grammar.
+//! Joining the pieces gives the bytes back.
+
+pub mod source;
+pub mod edit;
+pub mod diagnostic;
 
 mod block;
 mod expression;
