@@ -10,11 +10,11 @@
 //! TOML  ─machine→ Machine ─────────────────┴──────┴────────────────┘            └→ analysed again: certificate
 //! CSV   ─identify→ masses, friction, transfer functions → TOML
 //! ```
+pub use gwatt_machine as machine;
+pub use gwatt_machine::units;
 pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
-pub mod units;
-pub mod machine;
 pub mod interpret;
 pub mod plan;
 pub mod power;

@@ -8,7 +8,11 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 2] = [("gwatt-syntax", &[]), ("gwatt", &["gwatt-syntax"])];
+const CRATES: [(&str, &[&str]); 3] = [
+    ("gwatt-syntax", &[]),
+    ("gwatt-machine", &["gwatt-syntax"]),
+    ("gwatt", &["gwatt-machine", "gwatt-syntax"]),
+];
 
 /// The folder of a crate.
 fn folder_of(name: &str) -> PathBuf {

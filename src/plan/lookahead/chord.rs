@@ -9,48 +9,45 @@ use crate::machine::{AxisValues, ChordRule};
 /// Chords of one arc that are followed.
 const CHORDS_MAX: f64 = 16_384.0;
 
-impl ChordRule {
-    /// How many chords an arc of this length (mm) and radius gets at a feed.
-    #[must_use]
-    pub fn count(&self, curve: &Curve, feed_mm_s: f64) -> u32 {
-        self.number(curve, feed_mm_s).clamp(1.0, CHORDS_MAX) as u32
-    }
+/// How many chords `rule` makes of an arc of this length (mm) and radius at a feed.
+#[must_use]
+pub fn chord_count(rule: &ChordRule, curve: &Curve, feed_mm_s: f64) -> u32 {
+    number(rule, curve, feed_mm_s).clamp(1.0, CHORDS_MAX) as u32
+}
 
-    /// Whether an arc gets no more chords than are followed: that of hundreds of
-    /// metres, or of a turned digit, would have millions.
-    pub(super) fn is_followed<T>(&self, arc: &Element<T>) -> bool {
-        arc.curve
-            .as_ref()
-            .is_none_or(|curve| self.number(curve, asked_mm_s(arc)) <= CHORDS_MAX)
-    }
+/// Whether an arc gets no more chords than are followed: that of hundreds of
+/// metres, or of a turned digit, would have millions.
+pub(super) fn is_followed<T>(rule: &ChordRule, arc: &Element<T>) -> bool {
+    arc.curve
+        .as_ref()
+        .is_none_or(|curve| number(rule, curve, asked_mm_s(arc)) <= CHORDS_MAX)
+}
 
-    /// The largest speed, squared, at which a lower feed makes more than so many chords.
-    fn finer_speed2(&self, curve: &Curve, count: u32) -> Option<f64> {
-        let flat_mm = curve.radius_mm * curve.sweep_rad.abs();
-        let chord_mm = flat_mm / f64::from(count);
-        let speed = self.per_second * chord_mm;
-        (self.per_second > 0.0 && chord_mm > self.min_mm).then_some(speed * speed)
-    }
+/// The largest speed, squared, at which a lower feed makes more than so many chords.
+fn finer_speed2(rule: &ChordRule, curve: &Curve, count: u32) -> Option<f64> {
+    let flat_mm = curve.radius_mm * curve.sweep_rad.abs();
+    let chord_mm = flat_mm / f64::from(count);
+    let speed = rule.per_second * chord_mm;
+    (rule.per_second > 0.0 && chord_mm > rule.min_mm).then_some(speed * speed)
+}
 
-    /// The number of chords, without bounds.
-    fn number(&self, curve: &Curve, feed_mm_s: f64) -> f64 {
-        let r = curve.radius_mm;
-        let flat_mm = r * curve.sweep_rad.abs();
-        let mut chord_mm = self.max_mm;
-        if self.deviation_mm < 2.0 * r {
-            chord_mm =
-                chord_mm.min(2.0 * (self.deviation_mm * (2.0 * r - self.deviation_mm)).sqrt());
-        }
-        if self.per_second > 0.0 {
-            chord_mm = chord_mm.min(feed_mm_s / self.per_second);
-        }
-        let least = self.per_circle * curve.sweep_rad.abs() / std::f64::consts::TAU;
-        let count = (flat_mm / chord_mm.max(self.min_mm)).max(least);
-        if self.round_up {
-            count.ceil()
-        } else {
-            count.floor()
-        }
+/// The number of chords, without bounds.
+fn number(rule: &ChordRule, curve: &Curve, feed_mm_s: f64) -> f64 {
+    let r = curve.radius_mm;
+    let flat_mm = r * curve.sweep_rad.abs();
+    let mut chord_mm = rule.max_mm;
+    if rule.deviation_mm < 2.0 * r {
+        chord_mm = chord_mm.min(2.0 * (rule.deviation_mm * (2.0 * r - rule.deviation_mm)).sqrt());
+    }
+    if rule.per_second > 0.0 {
+        chord_mm = chord_mm.min(feed_mm_s / rule.per_second);
+    }
+    let least = rule.per_circle * curve.sweep_rad.abs() / std::f64::consts::TAU;
+    let count = (flat_mm / chord_mm.max(rule.min_mm)).max(least);
+    if rule.round_up {
+        count.ceil()
+    } else {
+        count.floor()
     }
 }
 
@@ -98,7 +95,7 @@ impl<T: Copy> Chords<T> {
         let along = curve
             .plane
             .map(|axis| arc.start.get(axis).copied().unwrap_or(0.0));
-        let count = rule.count(&curve, asked_mm_s(arc));
+        let count = chord_count(rule, &curve, asked_mm_s(arc));
         let step_rad = curve.sweep_rad * (1.0 / f64::from(count));
         // A chord is shorter than its piece of the arc.
         let half = 0.5 * step_rad.abs();
@@ -129,7 +126,7 @@ impl<T: Copy> Chords<T> {
             step_rad,
             shorter,
             stretch,
-            finer_speed2: rule.finer_speed2(&curve, count),
+            finer_speed2: finer_speed2(rule, &curve, count),
             tangents: [arc.start, arc.end],
         })
     }

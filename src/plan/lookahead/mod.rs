@@ -19,6 +19,7 @@ mod runs;
 mod vector;
 mod window;
 
+pub use chord::chord_count;
 pub(crate) use element::common_accel;
 pub use element::{Curve, Element, Joint};
 pub(crate) use glide::{Gliding, Line};

@@ -7,7 +7,7 @@
 //! Where an axis of the machine limits its jerk, `runs` is the window.
 
 use super::blend::Axes;
-use super::chord::{Chords, Finer};
+use super::chord::{Chords, Finer, is_followed};
 use super::corner::{After, Before};
 use super::element::Element;
 use super::linuxcnc::{LinuxCnc, RENEWED};
@@ -291,7 +291,7 @@ impl<T: Copy> PathPlanner<T> {
     #[inline]
     pub fn follows(&self, element: &Element<T>) -> bool {
         element.curve.is_none()
-            || (self.look_ahead.chords.as_ref()).is_none_or(|rule| rule.is_followed(element))
+            || (self.look_ahead.chords.as_ref()).is_none_or(|rule| is_followed(rule, element))
     }
 
     /// Adds an element. Of one that is run as chords it gives Σ 2·a·L over them,

@@ -9,10 +9,10 @@ use super::{
     axis, converter, drive_curve, levels, offsets, outputs, own_language, plausible, preset,
     response, servo, spindle, tool, word,
 };
-use crate::machine::axis::{AXES, Axis, AxisSet};
-use crate::machine::controller::{Controller, PathMode, RapidPath};
-use crate::machine::model::{Converter, Limits, Load, Machine, Path};
-use crate::machine::response::Responses;
+use crate::axis::{AXES, Axis, AxisSet};
+use crate::controller::{Controller, PathMode, RapidPath};
+use crate::model::{Converter, Limits, Load, Machine, Path};
+use crate::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Share of the peak power that is kept free if the file does not say.

@@ -3,7 +3,7 @@
 
 use super::findings::Findings;
 use super::value::At;
-use crate::machine::knob::{KnobArgument, KnobTarget, KnobUnit};
+use crate::knob::{KnobArgument, KnobTarget, KnobUnit};
 
 /// Whether a knob is one of them.
 pub(super) fn is_named(text: &At<String>, argument: &KnobArgument) -> bool {

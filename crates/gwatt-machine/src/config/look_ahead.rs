@@ -7,8 +7,8 @@ use serde::Deserialize;
 
 use super::findings::Findings;
 use super::value::{At, AtLeastOne, NotNegative, Part, PerAxis, Positive};
-use crate::machine::axis::{AXES, AxisValues};
-use crate::machine::look_ahead::{ChordRule, CornerAngle, CornerRule, LookAhead};
+use crate::axis::{AXES, AxisValues};
+use crate::look_ahead::{ChordRule, CornerAngle, CornerRule, LookAhead};
 
 /// How corners are run through where the path mode looks ahead. Exactly one of
 /// the tables `linuxcnc`, `junction_deviation`, `classic_jerk`, `square_corner`

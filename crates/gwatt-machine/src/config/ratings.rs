@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use super::machine_file::ConverterTable;
 use super::value::{At, Num};
-use crate::machine::model::{Brake, Capacitor, Continuous, Overload, Ratings};
+use crate::model::{Brake, Capacitor, Continuous, Overload, Ratings};
 
 /// Window of the continuous power if the file does not say: three minutes.
 const DEFAULT_WINDOW_S: f64 = 180.0;

@@ -4,10 +4,10 @@
 use super::findings::Findings;
 use super::value::OneOrMany;
 use super::word;
-use crate::machine::axis::AxisId;
-use crate::machine::controller::{Controller, Family, Language};
-use crate::machine::levels::LevelWord;
-use crate::machine::model::Load;
+use crate::axis::AxisId;
+use crate::controller::{Controller, Family, Language};
+use crate::levels::LevelWord;
+use crate::model::Load;
 
 /// M words that every control of these families reads itself.
 const KNOWN_M: [u16; 10] = [17, 19, 29, 30, 60, 96, 97, 98, 99, 109];

@@ -5,8 +5,8 @@ use serde::Deserialize;
 
 use super::findings::Findings;
 use super::value::{At, NotNegative};
-use crate::machine::controller::Controller;
-use crate::machine::knob::{KnobArgument, KnobTarget};
+use crate::controller::Controller;
+use crate::knob::{KnobArgument, KnobTarget};
 
 /// How long the axes stand for a change, s: measured with LinuxCNC's task at a cycle of
 /// 10 ms, which most configurations have.

@@ -3,8 +3,8 @@
 use super::findings::Findings;
 use super::machine_file::{AxisTable, CorrectionTable, ResponseTable, RootTable};
 use super::value::At;
-use crate::machine::axis::AxisId;
-use crate::machine::response::{CommandFilter, Response, ResponseRoot, Responses};
+use crate::axis::AxisId;
+use crate::response::{CommandFilter, Response, ResponseRoot, Responses};
 
 /// Roots, and sections, that an axis may have.
 const ROOTS_MAX: usize = 32;

@@ -23,7 +23,7 @@ macro_rules! builtins {
     ($folder:literal: $($name:literal),* $(,)?) => {
         &[$({
             const TEXT: &str = include_str!(concat!(
-                env!("CARGO_MANIFEST_DIR"), "/machine-configs/", $folder, $name, ".toml"
+                env!("MACHINE_CONFIGS"), "/", $folder, $name, ".toml"
             ));
             Builtin { name: $name, text: TEXT, description: first_comment(TEXT) }
         }),*]

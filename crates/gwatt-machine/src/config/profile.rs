@@ -11,13 +11,13 @@ use super::look_ahead::look_ahead;
 use super::named_knob;
 use super::value::At;
 use super::word;
-use crate::machine::axis::AxisId;
-use crate::machine::controller::{
+use crate::axis::AxisId;
+use crate::controller::{
     ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
     Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait,
 };
-use crate::machine::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
-use crate::machine::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
+use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
+use crate::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Makes a controller; all mistakes go to the findings, and with any of them

@@ -3,8 +3,8 @@
 use super::findings::Findings;
 use super::machine_file::{MachineFile, PresetTable};
 use super::value::{At, PerAxis, Positive};
-use crate::machine::axis::{AXES, Axis, AxisSet, AxisValues};
-use crate::machine::model::Preset;
+use crate::axis::{AXES, Axis, AxisSet, AxisValues};
+use crate::model::Preset;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Makes the presets of their tables.

@@ -6,8 +6,8 @@ use std::ops::Range;
 use super::findings::Findings;
 use super::machine_file::{AxisTable, ForcePointTable, TorquePointTable};
 use super::value::At;
-use crate::machine::axis::{Axis, AxisId, AxisKind};
-use crate::machine::model::ForcePoint;
+use crate::axis::{Axis, AxisId, AxisKind};
+use crate::model::ForcePoint;
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
 
 /// Points that a curve may have.

@@ -8,8 +8,8 @@ use super::findings::Findings;
 use super::profile::one_letter;
 use super::value::{At, Letter, NotNegative, Number, Positive};
 use super::word;
-use crate::machine::axis::AxisSet;
-use crate::machine::printer::{Command, ExtruderMode, Printer, Retract};
+use crate::axis::AxisSet;
+use crate::printer::{Command, ExtruderMode, Printer, Retract};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// What 3D printers differ in; the defaults are Marlin's.

@@ -6,7 +6,7 @@ use super::findings::Findings;
 use super::machine_file::OwnLanguageTable;
 use super::value::At;
 use super::{printer, profile};
-use crate::machine::controller::{Family, Language};
+use crate::controller::{Family, Language};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Takes what the table gives into the language of the profile.

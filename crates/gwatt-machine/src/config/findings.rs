@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::source::Span;
+use gwatt_syntax::diagnostic::{Diagnostic, Severity};
+use gwatt_syntax::source::Span;
 
 /// Longer lines are cut in diagnostics.
 const MAX_LINE: usize = 400;

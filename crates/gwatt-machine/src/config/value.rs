@@ -10,7 +10,7 @@ use std::ops::Range;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer};
 
-use crate::machine::axis::AxisId;
+use crate::axis::AxisId;
 
 /// A value and the bytes of the file that it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -213,6 +213,6 @@ pub(crate) enum Letter {
 impl Letter {
     /// The axis of this letter.
     pub(crate) fn axis(self) -> AxisId {
-        crate::machine::axis::ALL_AXES[self as usize]
+        crate::axis::ALL_AXES[self as usize]
     }
 }

@@ -10,10 +10,10 @@ use super::findings::{self, Findings};
 use super::machine_file::MachineFile;
 use super::value::At;
 use super::{assemble, hints, profile, schema};
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::machine::builtin::{self, Builtin};
-use crate::machine::controller::Controller;
-use crate::machine::model::Machine;
+use crate::builtin::{self, Builtin};
+use crate::controller::Controller;
+use crate::model::Machine;
+use gwatt_syntax::diagnostic::{Diagnostic, Severity};
 
 /// A description is a few kilobytes; a larger file is a mistake.
 const MAX_BYTES: u64 = 1 << 20;

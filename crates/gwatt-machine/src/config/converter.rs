@@ -4,8 +4,8 @@ use super::findings::Findings;
 use super::machine_file::ConverterTable;
 use super::value::{At, OneOrMany};
 use super::{plausible, ratings};
-use crate::machine::axis::{ALL_AXES, AxisSet};
-use crate::machine::model::Converter;
+use crate::axis::{ALL_AXES, AxisSet};
+use crate::model::Converter;
 
 /// Makes the converters of their tables; the margin is needed to tell
 /// whether anything is left for motion.

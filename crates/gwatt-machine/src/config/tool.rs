@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use super::machine_file::{MachineFile, ToolTable};
 use super::value::At;
-use crate::machine::model::{Cutting, CuttingTool};
+use crate::model::{Cutting, CuttingTool};
 
 /// Makes the tools of their tables.
 pub(crate) fn tools(findings: &mut Findings<'_>, file: &MachineFile) -> Vec<CuttingTool> {

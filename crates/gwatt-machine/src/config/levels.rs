@@ -9,11 +9,11 @@ use serde::Deserialize;
 use super::findings::Findings;
 use super::level_words::{Taken, words};
 use super::value::{At, NotNegative, OneOrMany, PerAxis, Positive, RapidPercent};
-use crate::machine::axis::{AXES, Axis};
-use crate::machine::controller::Controller;
-use crate::machine::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
-use crate::machine::levels::{LEVEL_GROUPS, Level, Levels};
-use crate::machine::model::Load;
+use crate::axis::{AXES, Axis};
+use crate::controller::Controller;
+use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
+use crate::levels::{LEVEL_GROUPS, Level, Levels};
+use crate::model::Load;
 
 /// Words of which one is in force at a time, each with what it makes of the axes.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -215,7 +215,7 @@ fn level(
     table: &At<LevelTable>,
     axes: &[Option<Axis>; AXES],
     acts_on: &At<ActsOnName>,
-    words: Vec<crate::machine::levels::LevelWord>,
+    words: Vec<crate::levels::LevelWord>,
 ) -> Level {
     let LevelTable {
         accel_percent,

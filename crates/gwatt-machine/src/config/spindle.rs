@@ -7,8 +7,8 @@ use super::drive_curve::{points, torque_points};
 use super::findings::Findings;
 use super::machine_file::SpindleTable;
 use super::value::{At, Num};
-use crate::machine::controller::{Controller, SpindleWait};
-use crate::machine::model::{Converter, Spindle, TorquePoint};
+use crate::controller::{Controller, SpindleWait};
+use crate::model::{Converter, Spindle, TorquePoint};
 use crate::units::RAD_S_PER_RPM;
 
 /// Makes the spindle of its table; `None` if something is missing.

@@ -5,9 +5,9 @@ use std::ops::Range;
 use super::findings::Findings;
 use super::machine_file::{AxisTable, MachineFile};
 use super::value::Num;
-use crate::machine::axis::{AXES, Axis, AxisId, AxisSet};
-use crate::machine::model::Converter;
-use crate::machine::servo::{Servo, servo_factor, servo_response_s};
+use crate::axis::{AXES, Axis, AxisId, AxisSet};
+use crate::model::Converter;
+use crate::servo::{Servo, servo_factor, servo_response_s};
 
 const RULE: &str = "machine-servo";
 /// The shortest and the longest time that a machine file may give, s.

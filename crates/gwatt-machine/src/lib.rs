@@ -1,4 +1,11 @@
-//! The machine description: TOML in, validated model out.
+#![doc = include_str!("../README.md")]
+//!
+//! # Units
+//!
+//! Motion is in mm (or degrees) and seconds, power in SI; names carry their unit
+//! as a suffix. [`units`] has the few factors between them.
+
+pub mod units;
 
 mod axis;
 pub mod builtin;

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::findings::Findings;
 use super::value::{Number, PerAxis};
-use crate::machine::axis::{AXES, AxisSet, AxisValues};
+use crate::axis::{AXES, AxisSet, AxisValues};
 
 /// Work offsets: the machine coordinates of each system's zero, in mm or degrees; 0 for
 /// axes that are not named.

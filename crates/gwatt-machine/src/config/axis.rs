@@ -15,7 +15,7 @@ use super::plausible;
 use super::quantity::{Quantities, form};
 use super::servo;
 use super::value::{At, Num, Part};
-use crate::machine::axis::{Axis, AxisId, AxisKind};
+use crate::axis::{Axis, AxisId, AxisKind};
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
 
 /// Errors of all axes that give none of their own.
