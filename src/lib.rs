@@ -10,6 +10,7 @@
 //! TOML  ─machine→ Machine ─────────────────┴──────┴────────────────┘            └→ analysed again: certificate
 //! CSV   ─identify→ masses, friction, transfer functions → TOML
 //! ```
+pub use gwatt_identify as identify;
 pub use gwatt_machine as machine;
 pub use gwatt_machine::units;
 pub use gwatt_syntax as syntax;
@@ -22,5 +23,5 @@ pub mod limit;
 pub mod rewrite;
 pub mod pipeline;
 pub mod dialect;
-pub mod identify;
+pub mod contour;
 pub mod report;

@@ -8,10 +8,14 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 3] = [
+const CRATES: [(&str, &[&str]); 4] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
-    ("gwatt", &["gwatt-machine", "gwatt-syntax"]),
+    ("gwatt-identify", &["gwatt-machine"]),
+    (
+        "gwatt",
+        &["gwatt-identify", "gwatt-machine", "gwatt-syntax"],
+    ),
 ];
 
 /// The folder of a crate.

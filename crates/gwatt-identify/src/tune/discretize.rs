@@ -16,7 +16,7 @@
 use super::biquad::Biquad;
 use super::correction::LowPass;
 use super::held::held;
-use crate::identify::transfer::Factor;
+use crate::transfer::Factor;
 
 /// How a filter becomes digital.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,8 +12,8 @@ use nalgebra::Complex;
 
 use super::biquad::{Biquad, response};
 use super::discretize::{Discretization, discretize};
-use crate::identify::transfer::{Factor, TransferFunction};
-use crate::identify::trouble::{Outcome, Trouble};
+use crate::transfer::{Factor, TransferFunction};
+use crate::trouble::{Outcome, Trouble};
 
 /// Share of the sampling rate that zeros and the low-pass stay below: nearer to
 /// half of it nothing is represented well.

@@ -7,8 +7,8 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::rigid::Figure;
 use super::trouble::{Outcome, Trouble};
-use crate::machine::{Axis, AxisId, AxisKind, Machine};
-use crate::units::M_PER_MM;
+use gwatt_machine::units::M_PER_MM;
+use gwatt_machine::{Axis, AxisId, AxisKind, Machine};
 
 /// What is written of an axis; N·m and kg·m² for N and kg where `rotary`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 //! Dips of a measured frequency response: where an axis has an anti-resonance.
 
-use crate::identify::spectrum::FrequencyResponse;
+use crate::spectrum::FrequencyResponse;
 
 /// A minimum of the smoothed gain.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@
 //! Δτ alone makes an ellipse, `v·Δτ` out of round.
 
 use super::axis::AxisResponse;
-use crate::identify::transfer::Factor;
+use crate::transfer::Factor;
 
 /// Delays that differ by less are the same: at 3 m/min they make 1 µm.
 pub const DELAY_TOLERANCE_S: f64 = 2e-5;

@@ -9,7 +9,7 @@ use super::merge::{axis_item, finished, no_axis, set, six_digits, sound};
 use super::transfer::Factor;
 use super::trouble::{Outcome, Trouble};
 use super::tune::Biquad;
-use crate::machine::AxisId;
+use gwatt_machine::AxisId;
 
 /// What is written of an axis' response; what is `None` stays as it is.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -114,7 +114,7 @@ impl MappedColumn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::column::{Kind, Quantity};
+    use crate::column::{Kind, Quantity};
 
     fn read(text: &str) -> (String, Quantity, Kind, f64) {
         let MappedColumn { column, meaning } = text.parse().unwrap();

@@ -1,12 +1,14 @@
-//! From recordings to machine parameters: rigid axes, flexible axes, the power
-//! model; and signals that excite an axis.
+#![doc = include_str!("../README.md")]
+//!
+//! # From recordings to parameters
 //!
 //! A [`Recording`] is read, checked and turned to SI. [`rigid`] fits mass and
 //! friction. [`flexible`] finds the [`TransferFunction`] from force to
-//! acceleration, whose zeros are the axis' anti-resonances. [`tune`] makes the
-//! filters that let several axes answer alike.
+//! acceleration, whose zeros are the axis' anti-resonances. [`power_fit`] fits the
+//! electrical power of an axis. [`tune`] makes the filters that let several axes
+//! answer alike. [`excitation`] makes signals that excite an axis. [`merge`] and
+//! [`response_table`] write what was found into machine files.
 
-pub mod contour;
 pub mod excitation;
 pub mod flexible;
 pub mod judgement;
@@ -25,6 +27,7 @@ mod column_map;
 mod command_input;
 mod data;
 mod delay_profile;
+mod described;
 mod discrete;
 mod disturbance;
 mod equations;

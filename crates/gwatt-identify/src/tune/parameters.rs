@@ -10,8 +10,8 @@ use serde::Deserialize;
 use super::axis::{AxisResponse, Zero};
 use super::correction::{Correction, LowPass, Wish};
 use super::discretize::Discretization;
-use crate::identify::transfer::Factor;
-use crate::identify::trouble::{Outcome, Trouble};
+use crate::transfer::Factor;
+use crate::trouble::{Outcome, Trouble};
 
 /// Letters in the order of reports.
 const LETTERS: &str = "XYZABCUVWE";

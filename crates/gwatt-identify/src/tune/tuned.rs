@@ -4,7 +4,7 @@ use super::axis::AxisResponse;
 use super::correction::{Correction, Wish, design};
 use super::delay::{Advice, advice};
 use super::mismatch::{Pair, mismatch};
-use crate::identify::trouble::{Outcome, Trouble};
+use crate::trouble::{Outcome, Trouble};
 
 /// Axes, their filters, and what these do.
 #[derive(Debug, Clone)]

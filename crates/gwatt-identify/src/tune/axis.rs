@@ -3,16 +3,16 @@
 use std::f64::consts::TAU;
 
 use super::dip::{Dip, dips};
-use crate::identify::column::{Kind, Quantity};
-use crate::identify::filter::{derivative, low_pass, second_derivative};
-use crate::identify::flexible::{Choice, Flexible, Root, identify};
-use crate::identify::judgement::{self, Judgement};
-use crate::identify::recording::Recording;
-use crate::identify::rigid::Figure;
-use crate::identify::spectrum::FrequencyResponse;
-use crate::identify::transfer::{Factor, TransferFunction};
-use crate::identify::trouble::{Outcome, Trouble};
-use crate::units::{M_PER_MM, RAD_PER_DEG};
+use crate::column::{Kind, Quantity};
+use crate::filter::{derivative, low_pass, second_derivative};
+use crate::flexible::{Choice, Flexible, Root, identify};
+use crate::judgement::{self, Judgement};
+use crate::recording::Recording;
+use crate::rigid::Figure;
+use crate::spectrum::FrequencyResponse;
+use crate::transfer::{Factor, TransferFunction};
+use crate::trouble::{Outcome, Trouble};
+use gwatt_machine::units::{M_PER_MM, RAD_PER_DEG};
 
 /// A dip and a zero of the model are the same within this share of the
 /// frequency, and a few steps of its resolution.

@@ -4,8 +4,8 @@ use nalgebra::Complex;
 
 use super::biquad::Biquad;
 use super::correction::LowPass;
-use crate::identify::discrete::Discrete;
-use crate::identify::transfer::{Factor, TransferFunction};
+use crate::discrete::Discrete;
+use crate::transfer::{Factor, TransferFunction};
 
 type C = Complex<f64>;
 

@@ -4,12 +4,8 @@
 //! line from sample to sample, one period late. The load follows by the axis'
 //! transfer function, exactly: a ramp is the integral of a held slope.
 
-use nalgebra::Complex;
-
-use crate::identify::polynomial::roots;
-use crate::identify::state_space::{Measured, Sampled, Simulation};
-use crate::identify::transfer::{Factor, TransferFunction, factors};
 use crate::identify::tune::{Biquad, Cascade};
+use crate::identify::{Factor, Measured, Sampled, Simulation, TransferFunction, roots};
 use crate::machine::{Axis, CommandFilter, Response, ResponseRoot};
 
 /// Longer delays are a mistake, s.
@@ -108,7 +104,7 @@ impl Follow {
         period_s: f64,
         start: f64,
     ) -> Result<Self, NoFollow> {
-        let transfer = transfer(response);
+        let transfer = TransferFunction::from(response);
         if transfer.zero_count() > transfer.order() {
             return Err(NoFollow::NotProper);
         }
@@ -118,7 +114,7 @@ impl Follow {
         let sections = sections(filter);
         // Acceleration by force is Π zeros/Π force poles by the mass: to the
         // force, the zeros of the response fall out.
-        let force_poles: Vec<Factor> = response.force_poles.iter().map(factor).collect();
+        let force_poles: Vec<Factor> = response.force_poles.iter().map(Factor::from).collect();
         let mut to_force = TransferFunction {
             zeros: force_poles,
             ..transfer.clone()
@@ -170,7 +166,12 @@ impl Follow {
 /// Whether the loop is slow enough for the resonances of the drive to be taken
 /// into the force: else it would be without bounds.
 pub(super) fn has_force_poles(response: &Response) -> bool {
-    let degree = |roots: &[ResponseRoot]| roots.iter().map(|r| factor(r).degree()).sum::<usize>();
+    let degree = |roots: &[ResponseRoot]| {
+        roots
+            .iter()
+            .map(|r| Factor::from(r).degree())
+            .sum::<usize>()
+    };
     degree(&response.force_poles) <= degree(&response.poles)
 }
 
@@ -179,51 +180,11 @@ fn sections(filter: Option<&CommandFilter>) -> Vec<Biquad> {
     sections.map(|section| Biquad::of(*section)).collect()
 }
 
-fn factor(root: &ResponseRoot) -> Factor {
-    match *root {
-        ResponseRoot::Pair {
-            frequency_hz,
-            damping,
-        } => Factor::Pair {
-            omega_rad_s: std::f64::consts::TAU * frequency_hz,
-            damping,
-        },
-        ResponseRoot::Single { time_constant_s } => Factor::Real { time_constant_s },
-    }
-}
-
-/// The response as a transfer function; single poles are put together in pairs,
-/// so that a pair of zeros finds its place among them.
-fn transfer(response: &Response) -> TransferFunction {
-    let single: Vec<Complex<f64>> = response
-        .poles
-        .iter()
-        .filter_map(|root| match root {
-            ResponseRoot::Single { time_constant_s } => {
-                Some(Complex::new(-1.0 / time_constant_s, 0.0))
-            }
-            ResponseRoot::Pair { .. } => None,
-        })
-        .collect();
-    let pairs = response
-        .poles
-        .iter()
-        .filter(|root| matches!(root, ResponseRoot::Pair { .. }));
-    let mut poles: Vec<Factor> = pairs.map(factor).collect();
-    poles.extend(factors(&single, true));
-    TransferFunction {
-        gain: 1.0,
-        zeros: response.zeros.iter().map(factor).collect(),
-        poles,
-        delay_s: response.delay_s,
-    }
-}
-
 /// By how much a response and its filter are late, and how long they take to
 /// settle to a ten-thousandth, s.
 pub(super) fn times(response: &Response, filter: Option<&CommandFilter>) -> [f64; 2] {
     const SETTLED: f64 = 9.2;
-    let transfer = transfer(response);
+    let transfer = TransferFunction::from(response);
     let mut late = transfer.delay_s;
     let mut slowest = f64::INFINITY;
     for pole in &transfer.poles {
