@@ -8,13 +8,19 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 4] = [
+const CRATES: [(&str, &[&str]); 5] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
+    ("gwatt-motion", &["gwatt-machine"]),
     ("gwatt-identify", &["gwatt-machine"]),
     (
         "gwatt",
-        &["gwatt-identify", "gwatt-machine", "gwatt-syntax"],
+        &[
+            "gwatt-identify",
+            "gwatt-machine",
+            "gwatt-motion",
+            "gwatt-syntax",
+        ],
     ),
 ];
 

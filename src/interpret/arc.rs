@@ -7,8 +7,8 @@
 
 use std::f64::consts::TAU;
 
-use super::moves::Arc;
 use crate::machine::Language;
+use gwatt_motion::Arc;
 
 /// Largest difference of the radii, mm, where the profile says nothing (grbl).
 const RADIUS_DIFFERENCE_MAX_MM: f64 = 0.5;

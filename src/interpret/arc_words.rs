@@ -4,11 +4,11 @@ use super::arc::{self, ArcFault, Ends, Slack};
 use super::code::Motion;
 use super::execute::{Control, Run};
 use super::motion::STANDSTILL_MM;
-use super::moves::{Arc, MoveKind};
 use super::turned_arc::Tilted;
 use crate::machine::{ALL_AXES, AxisKind, Family};
 use crate::source::Span;
 use crate::units::MM_PER_INCH;
+use gwatt_motion::{Arc, MoveKind};
 
 impl Control<'_> {
     pub(super) fn arc(&mut self, run: &mut Run<'_, '_>) {

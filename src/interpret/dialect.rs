@@ -8,13 +8,13 @@
 use super::code::{GCode, Motion};
 use super::compensation::Insert;
 use super::execute::{Control, Run};
-use super::moves::FeedMode;
 use super::turning::{BOX, FACE, THREAD, THREAD_BOX};
 use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{Dialect, Lathe, Point};
 use crate::source::Span;
 use crate::syntax::Word;
 use crate::units::MM_PER_INCH;
+use gwatt_motion::FeedMode;
 
 /// One least increment of IS-B, in program units.
 const LEAST_MM: f64 = 1e-3;

@@ -8,11 +8,11 @@ use super::code::Motion;
 use super::execute::Control;
 use super::facts::Facts;
 use super::modal::{Feed, NumberText};
-use super::motion::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM, path_length};
-use super::moves::{FeedMode, Move, MoveKind, Step, Stray};
+use super::motion::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM};
 use super::words::axis_of;
 use crate::machine::{AxisKind, AxisSet, AxisValues, Family, Machine};
 use crate::syntax::{Block, Word};
+use gwatt_motion::{FeedMode, Move, MoveKind, Step, Stray, path_length};
 
 /// Whether a controller's plain words always mean the same.
 pub(super) fn is_direct(machine: &Machine) -> bool {

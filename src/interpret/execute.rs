@@ -10,7 +10,6 @@ use super::facts::Facts;
 use super::isg::Isg;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::moves::{Action, ActionKind, Step};
 use super::nci::Nci;
 use super::osp::Osp;
 use super::parameters::Parameters;
@@ -32,6 +31,7 @@ use super::words::Words;
 use crate::machine::{Family, Machine};
 use crate::source::Span;
 use crate::syntax::Block;
+use gwatt_motion::{Action, ActionKind, Step};
 
 /// Executes the blocks of a program.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! grbl's lines that begin with `$` ("Commands", "Configuration v1.1").
 
 use super::execute::{Control, Run};
-use super::moves::{ActionKind, MoveKind};
 use crate::machine::Family;
+use gwatt_motion::{ActionKind, MoveKind};
 
 /// Commands that show something or unlock, and move nothing.
 const IDLE: [&str; 6] = ["$X", "$$", "$#", "$G", "$I", "$N"];

@@ -1,9 +1,7 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
-use super::moves::MoveKind;
-use crate::machine::{
-    AXES, AxisValues, CornerRule, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine,
-};
+use crate::machine::{AXES, AxisValues, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine};
+use gwatt_motion::{MoveKind, Square, own_path_accel, own_path_speed, raise_to_path};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,30 +40,6 @@ pub struct KnobState {
     /// The share of the rapid speed that the levels in force give, of which percentages are
     /// taken.
     pub(super) base_rapid_factor: f64,
-}
-
-/// What Klipper's `SET_VELOCITY_LIMIT` sets for its look-ahead.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Square {
-    /// Speed at a corner of 90 degrees, mm/s.
-    pub corner_mm_s: f64,
-    /// Share of each hill of speed that is cruised at least.
-    pub cruise_ratio: f64,
-}
-
-impl Square {
-    /// What the profile says; `None` where it has another rule for corners.
-    #[must_use]
-    pub fn of(machine: &Machine) -> Option<Self> {
-        let rules = machine.controller.planner.look_ahead?;
-        let CornerRule::SquareCorner { velocity_mm_s, .. } = rules.corner else {
-            return None;
-        };
-        Some(Self {
-            corner_mm_s: velocity_mm_s,
-            cruise_ratio: rules.min_cruise_ratio,
-        })
-    }
 }
 
 impl KnobState {
@@ -276,52 +250,9 @@ impl KnobState {
     }
 }
 
-/// X and Y, which Klipper's limits along the path are those of.
-const XY: [usize; 2] = [0, 1];
-/// X, Y and Z: no faster than the path, whatever its direction.
-const XYZ: [usize; 3] = [0, 1, 2];
 /// What a limit that is read back may differ from the machine's own by, as a share.
 const ROUNDING: f64 = 1e-9;
 
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a
-}
-
-/// The one value that X and Y share, where the firmware has no other for them.
-fn shared(machine: &Machine, value: impl Fn(&crate::machine::Axis) -> f64) -> Option<f64> {
-    if !machine.controller.language.printer.velocity_limit {
-        return None;
-    }
-    let [x, y] = XY.map(|axis| machine.axes[axis].as_ref().map(&value));
-    x.filter(|_| x == y)
-}
-
-/// The acceleration along the path that holds without a word, mm/s²: Klipper's
-/// `max_accel`, which the machine file gives for X and Y; infinite where they differ.
-fn own_path_accel(machine: &Machine) -> f64 {
-    shared(machine, |axis| axis.accel_mm_s2).unwrap_or(f64::INFINITY)
-}
-
-/// The same of the speed, mm/s.
-pub(crate) fn own_path_speed(machine: &Machine) -> Option<f64> {
-    shared(machine, |axis| axis.rapid_mm_s)
-}
-
-/// Limits of X and Y under a limit along the path: they have no other, so that one above
-/// the machine file's is theirs.
-pub(crate) fn raise_to_path(machine: &Machine, limits: &mut AxisValues, path_mm_s2: f64) {
-    for axis in XY {
-        if let Some(data) = &machine.axes[axis] {
-            limits[axis] = data.accel_mm_s2.max(path_mm_s2);
-        }
-    }
-}
-
-/// Limits of axes whose direction is not known: none accelerates harder than the path.
-pub(crate) fn hold_to_path(machine: &Machine, limits: &mut AxisValues, path_mm_s2: f64) {
-    if machine.controller.language.printer.velocity_limit {
-        for axis in XYZ {
-            limits[axis] = limits[axis].min(path_mm_s2);
-        }
-    }
 }

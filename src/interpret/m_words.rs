@@ -1,10 +1,10 @@
 //! M words, S and T: actions, and the loads that they switch.
 
 use super::execute::{Control, Run};
-use super::moves::ActionKind;
 use crate::machine::Family;
 use crate::source::Span;
 use crate::syntax::Word;
+use gwatt_motion::ActionKind;
 
 impl Control<'_> {
     pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {

@@ -1,9 +1,9 @@
 //! Modal state: what a controller keeps from block to block.
 
 use super::code::Motion;
-use super::moves::{Corner, FeedMode};
 use crate::machine::{Machine, PathMode};
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
+use gwatt_motion::{Corner, FeedMode};
 
 /// The feed in force: value, unit and text of the F word that set it.
 #[derive(Debug, Clone, Copy, PartialEq)]

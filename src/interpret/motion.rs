@@ -2,8 +2,6 @@
 
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
-use super::knob::hold_to_path;
-use super::moves::{Arc, FeedMode, Move, MoveKind, Step, Stray};
 use super::printer::Course;
 use super::report::Report;
 use super::stray;
@@ -11,6 +9,7 @@ use super::words::{AXIS_LETTERS, bit};
 use crate::machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
 use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 
 /// Differences of position below this are rounding, not motion (mm, degrees).
 pub(super) const STANDSTILL_MM: f64 = 1e-9;
@@ -401,35 +400,4 @@ fn no_such_axis(letter: u8, span: Span, report: &mut Report<'_, '_>) {
         "choose a machine with it, or describe it in the machine file: [axes.{}]",
         letter as char
     ));
-}
-
-/// Length of the path that F speaks for, and whether that is a length of
-/// linear axes: XYZ if any of them moves, else UVW, else the rotary axes, else
-/// the extruder (RS274/NGC, "Feed Rate").
-pub(crate) fn path_length(
-    start: &AxisValues,
-    end: &AxisValues,
-    moving: AxisSet,
-    arc: Option<&Arc>,
-) -> (f64, bool) {
-    let distance = |axis: usize| {
-        if moving.contains(axis) {
-            end[axis] - start[axis]
-        } else {
-            0.0
-        }
-    };
-    if let Some(arc) = arc {
-        let in_plane = arc.radius_mm * arc.sweep_rad.abs();
-        let rise = distance(3 - arc.plane[0] - arc.plane[1]);
-        return ((in_plane * in_plane + rise * rise).sqrt(), true);
-    }
-    for (axes, linear) in [([0, 1, 2], true), ([6, 7, 8], true), ([3, 4, 5], false)] {
-        let [x, y, z] = axes.map(distance);
-        let length = (x * x + y * y + z * z).sqrt();
-        if length > 0.0 {
-            return (length, linear);
-        }
-    }
-    (distance(EXTRUDER).abs(), true)
 }

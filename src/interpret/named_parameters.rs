@@ -4,8 +4,8 @@
 use super::code::Motion;
 use super::execute::Control;
 use super::modal::Feed;
-use super::moves::FeedMode;
 use crate::machine::Family;
+use gwatt_motion::FeedMode;
 
 /// The version that gwatt follows: 2.9.
 const VERSION: [f64; 2] = [2.9, 0.0];

@@ -2,9 +2,9 @@
 //! says that they are wired: M68 sets one, and M66 waits until it acts.
 
 use super::execute::{Control, Run};
-use super::moves::Step;
 use crate::machine::KnobTarget;
 use crate::source::Span;
+use gwatt_motion::Step;
 
 /// What is said where moves are held back meanwhile, and what helps.
 const COMPENSATED: (&str, &str) = (

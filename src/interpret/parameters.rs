@@ -13,9 +13,9 @@ use std::collections::HashMap;
 
 use super::execute::Control;
 use super::expression::{Held, KEPT, Name, PROBED, Read, TOOL, Value, Variables};
-use super::moves::FeedMode;
 use super::parameter_file::ParameterFile;
 use crate::machine::{Family, Lathe};
+use gwatt_motion::FeedMode;
 
 /// Numbers that belong to the subroutine that runs, and 0.
 pub(super) const LOCALS: usize = 34;

@@ -11,10 +11,10 @@
 use std::f64::consts::{PI, TAU};
 
 use super::execute::{Control, Run};
-use super::moves::{Arc, MoveKind};
 use crate::interpret::code::Motion;
 use crate::machine::{AxisKind, AxisSet, AxisValues};
 use crate::source::Span;
+use gwatt_motion::{Arc, MoveKind};
 
 const X: usize = 0;
 const Y: usize = 1;

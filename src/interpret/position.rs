@@ -15,16 +15,7 @@ use super::parameter_file::ParameterFile;
 use super::shelf::Shelf;
 use super::tool_table::ToolTable;
 use crate::machine::{AXES, AxisSet, AxisValues, Machine};
-
-/// Where the axes stand at the beginning of a program.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Start {
-    /// At these machine coordinates (mm or degrees); 0 by default.
-    At(AxisValues),
-    /// Nowhere known: each axis' first move is priced at its full speed and
-    /// acceleration.
-    Unknown,
-}
+use gwatt_motion::Start;
 
 /// Switches of block delete: `/` and `/1` go by the first, `/2` to `/9` by those
 /// of their numbers (B-63944EN, "Optional Block Skip").

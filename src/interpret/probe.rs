@@ -8,10 +8,10 @@
 use std::cell::Cell;
 
 use super::execute::{Control, Interpreter, Run};
-use super::moves::{MoveKind, Step};
 use super::position::ProbeResult;
 use crate::machine::AxisSet;
 use crate::units::MM_PER_INCH;
+use gwatt_motion::{MoveKind, Step};
 
 /// Shortest way to the target that is taken for a probing move, inches.
 const SHORTEST_INCH: f64 = 0.01;

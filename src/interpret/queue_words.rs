@@ -4,11 +4,11 @@
 use super::code::GCode;
 use super::execute::{Control, Run};
 use super::motion::EXTRUDER;
-use super::moves::{Action, ActionKind, Corner, Step};
 use super::report::Report;
 use crate::machine::{CornerRule, Family, MESSAGES};
 use crate::source::Span;
 use crate::syntax::Block;
+use gwatt_motion::{Action, ActionKind, Corner, Step};
 
 impl Control<'_> {
     /// `(abort, …)` ends a program with an error (`LinuxCNC`, "Comments").

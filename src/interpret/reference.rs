@@ -2,12 +2,12 @@
 
 use super::execute::{Control, Run};
 use super::motion::POSITION_MAX_MM;
-use super::moves::MoveKind;
 use super::offsets::REFERENCE;
 use super::words::bit;
 use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, RapidPath};
 use crate::source::Span;
 use arrayvec::ArrayVec;
+use gwatt_motion::MoveKind;
 
 impl Control<'_> {
     /// G28 and G30: to the intermediate point, then to the reference point.

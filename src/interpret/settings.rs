@@ -4,9 +4,9 @@
 use super::code::{GCode, Motion, path_mode};
 use super::execute::{Control, Run};
 use super::modal::{Feed, NumberText};
-use super::moves::{ActionKind, Corner, FeedMode};
 use crate::machine::{Family, PathMode};
 use crate::source::Span;
+use gwatt_motion::{ActionKind, Corner, FeedMode};
 
 impl Control<'_> {
     pub(super) fn feed_mode(&mut self, run: &mut Run<'_, '_>) {

@@ -4,13 +4,13 @@
 use super::code::{GCode, Motion};
 use super::cycle::Held;
 use super::execute::{Control, Run};
-use super::moves::{ActionKind, MoveKind};
 use super::position::Reading;
 use super::spline::Spline;
 use super::turning::{BOX, FACE, THREAD, THREAD_BOX};
 use super::words::bit;
 use crate::machine::{AxisSet, AxisValues, Family, Language, Machine};
 use crate::source::Span;
+use gwatt_motion::{ActionKind, MoveKind};
 
 /// Moves that one block may make: they are held in memory together.
 const MOVES_OF_A_BLOCK: usize = 100_000;

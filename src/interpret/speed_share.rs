@@ -6,9 +6,9 @@
 
 use super::execute::{Control, Run};
 use super::knob::KnobState;
-use super::moves::{Move, MoveKind, Step};
 use crate::machine::{Knob, KnobTarget, Machine};
 use crate::source::Span;
+use gwatt_motion::{Move, MoveKind, Step};
 
 impl KnobState {
     /// The share of the speed in force.

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 
 use super::code::GCode;
 use super::execute::{Control, Run};
-use super::moves::Arc;
 use crate::machine::{AxisValues, Family};
 use crate::units::MM_PER_INCH;
+use gwatt_motion::Arc;
 
 /// Surface speeds are in metres or feet per minute.
 const MM_PER_M: f64 = 1000.0;

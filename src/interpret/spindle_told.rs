@@ -2,9 +2,9 @@
 //! have one on their converter.
 
 use super::execute::{Control, Run};
-use super::moves::ActionKind;
 use crate::machine::Family;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::ActionKind;
 
 /// What was told last.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

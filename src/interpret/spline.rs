@@ -7,8 +7,8 @@
 //! moves holds for both.
 
 use super::execute::{Control, Run};
-use super::moves::{FeedMode, MoveKind};
 use crate::machine::{AxisValues, PathMode};
+use gwatt_motion::{FeedMode, MoveKind};
 
 /// Lines for each control point.
 const LINES_FOR_A_POINT: usize = 15;

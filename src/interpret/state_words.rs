@@ -4,11 +4,11 @@
 
 use super::execute::{Control, Run};
 use super::modal::{Feed, Modal, NumberText};
-use super::moves::ActionKind;
 use super::spindle_speed::SpindleMode;
 use super::tool_table::Tool;
 use crate::machine::Family;
 use crate::source::Span;
+use gwatt_motion::ActionKind;
 
 /// What M words have switched.
 #[derive(Debug, Clone, Copy, PartialEq)]

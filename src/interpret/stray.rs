@@ -17,8 +17,8 @@
 //! the plane's axes within theirs over the length `√((r₁·φ)² + (r₂ − r₁)²)` (`ARC_FEED`),
 //! where the path is up to `r₂/r₁` times as long. The product bounds both together.
 
-use super::moves::{Arc, Stray};
 use crate::machine::AxisValues;
+use gwatt_motion::{Arc, Stray};
 
 /// Below this slope `k/r₁` the end is off its circle by rounding: the powers of an axis
 /// are off by no more than this share of what the path speed would draw along it.

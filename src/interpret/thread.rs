@@ -4,9 +4,9 @@
 //! K is the way in one revolution, along the path.
 
 use super::execute::{Control, Run};
-use super::moves::MoveKind;
 use super::special::Turning;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::MoveKind;
 
 /// Why no word of such a block is changed.
 pub(super) const FIXED: &str = "it moves in step with the spindle";

@@ -8,9 +8,9 @@
 //! flank is cut; with L and E its ends run out over the length E.
 
 use super::execute::{Control, Run};
-use super::moves::MoveKind;
 use super::thread::FIXED;
 use crate::machine::AxisValues;
+use gwatt_motion::MoveKind;
 
 const X: usize = 0;
 const Z: usize = 2;

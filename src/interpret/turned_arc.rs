@@ -9,10 +9,10 @@
 use std::f64::consts::TAU;
 
 use super::execute::{Control, Run};
-use super::moves::{Arc, FeedMode, MoveKind, Step, Stray};
 use super::{frame, stray};
 use crate::machine::{AxisSet, AxisValues, Family};
 use crate::source::Span;
+use gwatt_motion::{Arc, FeedMode, MoveKind, Step, Stray};
 
 /// Largest angle of a chord.
 const CHORD_RAD: f64 = TAU / 48.0;

@@ -3,9 +3,9 @@
 use super::corner::{Bend, Circle, SMOOTH_RAD, Track, bend, meet};
 use super::hold::Guard;
 use super::{Compensation, Fault, State};
-use crate::interpret::moves::{Arc, FeedMode, Move, MoveKind, Step};
 use crate::interpret::vector::{Vector, add, along, distance, dot, left, scale, sub, unit};
 use crate::machine::{CompensationCorner, CompensationLead};
+use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step};
 
 /// Bends below it, where an arc meets its neighbour, come from rounded numbers:
 /// the path is off by less than a ten thousandth of the radius.

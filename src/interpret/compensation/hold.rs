@@ -3,11 +3,11 @@
 use super::Fault;
 use super::corner::Track;
 use crate::interpret::arc::{self, Ends, Slack};
-use crate::interpret::motion::{STANDSTILL_MM, path_length};
-use crate::interpret::moves::{Arc, Move, MoveKind, Step, Stray};
+use crate::interpret::motion::STANDSTILL_MM;
 use crate::interpret::stray;
 use crate::interpret::vector::{Vector, add, distance, dot, sub};
 use crate::machine::AxisSet;
+use gwatt_motion::{Arc, Move, MoveKind, Step, Stray, path_length};
 
 /// Steps that may wait: a program that stays longer in one place of the plane
 /// is refused.

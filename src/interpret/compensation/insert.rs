@@ -12,8 +12,8 @@ use super::hold::place;
 use crate::interpret::arc::{self, Ends, Slack};
 use crate::interpret::code::GCode;
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{Arc, FeedMode, Move, MoveKind, Step};
 use crate::interpret::vector::{Vector, along, cross, dot, left, scale, sub, unit};
+use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step};
 
 /// Why such blocks stay as they are.
 const FIXED: &str = "a corner is cut or rounded there";

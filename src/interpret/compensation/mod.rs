@@ -29,9 +29,9 @@ use self::hold::{Hold, place};
 pub(super) use self::insert::{Corners, Insert};
 pub(super) use self::radius::{Choice, ContourFeed};
 use super::execute::{Control, Interpreter, Run};
-use super::moves::{Move, MoveKind, Step};
 use super::vector::Vector;
 use crate::machine::{CompensationLead, CutterCompensation};
+use gwatt_motion::{Move, MoveKind, Step};
 
 /// Why blocks under compensation stay as they are.
 const FIXED: &str = "it is under cutter compensation";
@@ -314,7 +314,7 @@ impl Control<'_> {
         if mv.arc.is_some() {
             return Err(Fault::ArcAfterExit);
         }
-        let timed = mv.feed_mode == super::moves::FeedMode::InverseTime;
+        let timed = mv.feed_mode == gwatt_motion::FeedMode::InverseTime;
         let beside = compensation.style.lead == CompensationLead::Beside;
         if timed && mv.kind != MoveKind::Rapid && !beside {
             return Err(Fault::InverseTime);

@@ -10,8 +10,8 @@ use super::Compensation;
 use super::Fault;
 use super::corner::{Bend, Track};
 use super::follow::Element;
-use crate::interpret::moves::{Move, Step};
 use crate::interpret::vector::{Vector, add, dot, left, scale, sub, unit};
+use gwatt_motion::{Move, Step};
 
 impl Compensation {
     /// Takes the tool round `corner`, in front of `mv`.

@@ -6,11 +6,11 @@
 //! initial level (G98) or to R (G99). What was written once holds until G80 or
 //! a word of G0 to G3.
 
-use super::FIXED;
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{ActionKind, FeedMode, MoveKind};
 use crate::interpret::special::Turning;
 use crate::machine::{ALL_AXES, AxisSet, AxisValues};
+use gwatt_motion::CYCLE as FIXED;
+use gwatt_motion::{ActionKind, FeedMode, MoveKind};
 
 /// Dwells without a decimal point are in milliseconds.
 const MILLISECOND_S: f64 = 1e-3;

@@ -29,6 +29,3 @@ pub(super) struct Initial {
     pub(super) offset_mm: f64,
     pub(super) mm_per_unit: f64,
 }
-
-/// Why no word of such a block is changed.
-pub(crate) const FIXED: &str = "it is part of a canned cycle";

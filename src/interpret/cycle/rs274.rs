@@ -2,12 +2,12 @@
 //! sections of its G-code reference; the order of moves, and what happens where
 //! the text is silent, as its interpreter 2.9 shows).
 
-use super::FIXED;
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{ActionKind, Corner, FeedMode, MoveKind};
 use crate::interpret::special::Turning;
 use crate::interpret::words::{AXIS_LETTERS, POLAR, bit};
 use crate::machine::{ALL_AXES, AXES, AxisValues, PathMode};
+use gwatt_motion::CYCLE as FIXED;
+use gwatt_motion::{ActionKind, Corner, FeedMode, MoveKind};
 
 /// Distance that a peck keeps off the last depth: 0.010 inch.
 const PECK_CLEARANCE_INCH: f64 = 0.010;

@@ -4,10 +4,10 @@ use super::{Flow, Trouble};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::execute::Interpreter;
 use crate::interpret::facts::Facts;
-use crate::interpret::moves::Step;
 use crate::interpret::report::Diagnostics;
 use crate::interpret::turning::{Contour, ContourCycle};
 use crate::syntax::{Block, scan_line};
+use gwatt_motion::Step;
 
 /// Lines that a contour may have.
 const LINES_MAX: usize = 10_000;

@@ -4,11 +4,11 @@ use super::{Flow, Trouble};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::execute::Interpreter;
 use crate::interpret::lathe_cycle::{LatheCycle, Reader};
-use crate::interpret::moves::Step;
 use crate::interpret::parameters::LOCALS;
 use crate::interpret::report::Diagnostics;
 use crate::interpret::transfer::{Transfer, Verb};
 use crate::syntax::Block;
+use gwatt_motion::Step;
 
 impl Flow {
     /// Reads the contour for a cycle of the line that is being executed, and

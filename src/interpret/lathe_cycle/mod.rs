@@ -19,7 +19,6 @@ use super::code::{GCode, Motion};
 use super::execute::{Control, Interpreter, Run};
 use super::facts::Facts;
 use super::motion::POSITION_MAX_MM;
-use super::moves::{MoveKind, Step};
 use super::report::{Diagnostics, Report};
 use super::transfer::{Label, Transfer};
 use super::vector::Vector;
@@ -27,6 +26,7 @@ use crate::machine::{ALL_AXES, AxisKind, AxisSet, Family};
 use crate::source::Span;
 use crate::syntax::Block;
 use crate::units::MM_PER_INCH;
+use gwatt_motion::{MoveKind, Step};
 
 const X: usize = 0;
 const Z: usize = 2;

@@ -2,8 +2,8 @@
 
 use crate::interpret::arc::{self, Ends};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::MoveKind;
 use crate::machine::{AxisSet, AxisValues};
+use gwatt_motion::MoveKind;
 
 /// Angles below it count as none.
 const NO_ANGLE_RAD: f64 = 1e-9;

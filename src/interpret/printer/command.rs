@@ -4,12 +4,12 @@ use super::line::{Head, Parameters, Text, has, value};
 use super::verify_checksum;
 use crate::interpret::code::{GCode, Motion, g_code};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{ActionKind, Step};
 use crate::interpret::report::Report;
 use crate::interpret::tools::ToolLength;
 use crate::machine::{Command, ExtruderMode, Family};
 use crate::source::Span;
 use crate::syntax::{Block, Word};
+use gwatt_motion::{ActionKind, Step};
 
 /// Most commands that a line may hold.
 const COMMANDS: usize = 32;

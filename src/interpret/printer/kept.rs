@@ -4,10 +4,10 @@ use super::line::{Parameters, has, value};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::modal::Feed;
 use crate::interpret::motion::EXTRUDER;
-use crate::interpret::moves::{ActionKind, MoveKind};
 use crate::machine::{ALL_AXES, AxisSet, AxisValues};
 use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::{ActionKind, MoveKind};
 
 /// Most positions and states that a program may keep.
 const KEPT: usize = 64;

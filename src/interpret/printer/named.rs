@@ -10,10 +10,10 @@ use super::line::{Parameters, Text};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::flow::library;
 use crate::interpret::motion::EXTRUDER;
-use crate::interpret::moves::ActionKind;
 use crate::interpret::transfer::Transfer;
 use crate::machine::Command;
 use crate::source::Span;
+use gwatt_motion::ActionKind;
 
 /// Words of `RepRapFirmware`'s conditional language.
 const META: [&str; 11] = [

@@ -4,9 +4,9 @@ use super::command::note_levelling;
 use super::line::Parameters;
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::motion::EXTRUDER;
-use crate::interpret::moves::{ActionKind, MoveKind};
 use crate::machine::{AxisId, AxisSet};
 use crate::source::Span;
+use gwatt_motion::{ActionKind, MoveKind};
 
 impl Control<'_> {
     /// Moves that only the firmware knows: every axis at its full speed and

@@ -3,9 +3,9 @@
 use super::line::{Parameters, has, value};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::motion::EXTRUDER;
-use crate::interpret::moves::{ActionKind, MoveKind};
 use crate::machine::{AxisId, AxisSet};
 use crate::source::Span;
+use gwatt_motion::{ActionKind, MoveKind};
 
 impl Control<'_> {
     /// G10 and G11: retract and recover; with other values G10 sets a tool or

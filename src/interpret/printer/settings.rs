@@ -2,11 +2,11 @@
 
 use super::line::{Parameters, value};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::knob::{KnobState, Square};
-use crate::interpret::moves::{ActionKind, Corner};
+use crate::interpret::knob::KnobState;
 use crate::machine::{AxisId, KnobArgument};
 use crate::source::Span;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::{ActionKind, Corner, Square};
 
 /// Largest percentage that is taken for one.
 const PERCENT_MAX: f64 = 10_000.0;

@@ -7,9 +7,9 @@ use crate::interpret::arc::{self, ArcFault, Ends, Slack};
 use crate::interpret::arc_words::report_fault;
 use crate::interpret::code::Motion;
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{Arc, MoveKind};
 use crate::interpret::turned_arc::Tilted;
 use crate::machine::{ALL_AXES, AxisKind, AxisValues};
+use gwatt_motion::{Arc, MoveKind};
 
 /// How far a point of an arc may lie off its plane, mm.
 const FLAT_MM: f64 = 1e-3;

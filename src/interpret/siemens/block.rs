@@ -6,12 +6,12 @@ use super::{Called, Siemens};
 use crate::interpret::beyond_words::not_finite;
 use crate::interpret::code::{GCode, Motion};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{ActionKind, FeedMode, Step};
 use crate::interpret::report::Report;
 use crate::interpret::transfer::{Siemens as Go, Transfer};
 use crate::machine::{AxisKind, Family, PathMode};
 use crate::syntax::Block;
 use crate::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
+use gwatt_motion::{ActionKind, FeedMode, Step};
 
 use super::reading::Reading;
 use crate::interpret::formula::{Cursor, Lexis};

@@ -4,8 +4,8 @@ use super::Siemens;
 use super::cycle::{Call, Kind, Levels};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::modal::{Feed, NumberText};
-use crate::interpret::moves::MoveKind;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::MoveKind;
 
 /// Strokes of a deep hole that one call may make.
 const STROKES_MAX: usize = 10_000;

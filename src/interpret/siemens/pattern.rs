@@ -5,8 +5,8 @@ use super::cycle::{Call, Kind};
 use super::frame_words::at_angle;
 use super::{Called, PatternAt, Siemens};
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::MoveKind;
 use crate::interpret::transfer::{Siemens as Go, Transfer};
+use gwatt_motion::MoveKind;
 
 /// Holes of one pattern.
 const HOLES_MAX: f64 = 10_000.0;

@@ -6,9 +6,9 @@ use super::{Measure, Siemens};
 use crate::interpret::code::{GCode, Motion};
 use crate::interpret::execute::{Control, Run};
 use crate::interpret::motion::POSITION_MAX_MM;
-use crate::interpret::moves::{Arc, MoveKind, Step};
 use crate::interpret::words::AXIS_LETTERS;
 use crate::machine::{ALL_AXES, AXES, AxisKind, AxisSet, AxisValues};
+use gwatt_motion::{Arc, MoveKind, Step};
 
 /// The end of a move.
 #[derive(Debug, Clone)]

@@ -5,9 +5,9 @@
 use super::Siemens;
 use super::target::Target;
 use crate::interpret::execute::{Control, Run};
-use crate::interpret::moves::{MoveKind, Step};
 use crate::interpret::thread::FIXED;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::{MoveKind, Step};
 
 /// Axes that have leads: X, Y and Z with I, J and K.
 const LEADS: usize = 3;

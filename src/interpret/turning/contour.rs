@@ -10,7 +10,6 @@ use super::{Control, Run, X, Z, note_parameter, turning_needs};
 use crate::interpret::execute::Interpreter;
 use crate::interpret::facts::Facts;
 use crate::interpret::modal::Modal;
-use crate::interpret::moves::{Move, MoveKind, Step};
 use crate::interpret::position::Position;
 use crate::interpret::report::{Diagnostics, Report};
 use crate::interpret::spindle_speed::SpindleMode;
@@ -18,6 +17,7 @@ use crate::interpret::state_words::Switches;
 use crate::interpret::transfer::Transfer;
 use crate::source::Span;
 use crate::syntax::Block;
+use gwatt_motion::{Move, MoveKind, Step};
 
 /// Divisions of G73, and lines of a contour.
 const DIVISIONS_MAX: f64 = 10_000.0;

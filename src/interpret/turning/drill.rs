@@ -3,9 +3,9 @@
 //! tool comes back to there.
 
 use super::{Control, Run, X, Z, turning_needs};
-use crate::interpret::moves::MoveKind::{Feed, Rapid, Tap};
 use crate::interpret::special::Turning as Spin;
 use crate::machine::{ALL_AXES, AxisValues};
+use gwatt_motion::MoveKind::{Feed, Rapid, Tap};
 
 /// Why it is not known how far its pecks return.
 const BY_RETURN: &str = "how far its pecks return is a parameter of the control: say \

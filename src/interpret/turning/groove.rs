@@ -2,7 +2,7 @@
 //! Cycle (G74)", "Outer Diameter/Internal Diameter Drilling Cycle (G75)").
 
 use super::{Control, Run, X, Z, note_parameter, turning_needs};
-use crate::interpret::moves::MoveKind::{Feed, Rapid};
+use gwatt_motion::MoveKind::{Feed, Rapid};
 
 impl Control<'_> {
     pub(super) fn groove(&mut self, number: u16, run: &mut Run<'_, '_>) {

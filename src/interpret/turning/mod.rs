@@ -18,6 +18,7 @@ use super::execute::{Control, Run};
 use super::words::bit;
 use crate::machine::{ALL_AXES, AxisKind, AxisValues, Lathe};
 use crate::source::Span;
+use gwatt_motion::TURNING_CYCLE as FIXED;
 
 /// Numbers of the special motion words of lathes: G32; G90, G92 and G94 of
 /// system A, by which G77, G78 and G79 they are in system B.
@@ -29,8 +30,6 @@ pub(super) const FACE: u16 = 790;
 const X: usize = 0;
 const Z: usize = 2;
 
-/// Why no word of such a block is changed.
-pub(crate) const FIXED: &str = "it is part of a turning cycle";
 /// Why it is not known how a cycle goes in detail.
 const BY_PARAMETER: &str = "its return, escape or chamfer is a parameter of the control: give it \
                             in the program (R)";

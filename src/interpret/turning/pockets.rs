@@ -9,8 +9,8 @@
 
 use super::rough::{Piece, TOLERANCE_MM, contour_wrong};
 use super::{Control, Run, X, Z};
-use crate::interpret::moves::MoveKind;
 use crate::machine::AxisValues;
+use gwatt_motion::MoveKind;
 
 /// Levels of a cycle.
 const LEVELS_MAX: f64 = 1e5;

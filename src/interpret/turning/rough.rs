@@ -11,8 +11,8 @@ use std::f64::consts::FRAC_PI_2;
 use super::contour::{Contour, ContourCycle, contour_value};
 use super::pockets::Stock;
 use super::{Control, Run, X, Z};
-use crate::interpret::moves::{Arc, Move, MoveKind};
 use crate::machine::{AxisSet, AxisValues};
+use gwatt_motion::{Arc, Move, MoveKind};
 
 /// A contour may go back by this much, mm: rounding.
 pub(super) const TOLERANCE_MM: f64 = 1e-6;

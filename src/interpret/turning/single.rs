@@ -3,7 +3,7 @@
 //! Cutting Cycle (G92)", "End Face Turning Cycle (G94)").
 
 use super::{BOX, Control, FACE, Held, Run, THREAD_BOX, X, Z, note_parameter, turning_needs, xz};
-use crate::interpret::moves::MoveKind::{Feed, Rapid};
+use gwatt_motion::MoveKind::{Feed, Rapid};
 
 impl Control<'_> {
     pub(super) fn single_cycle(&mut self, number: u16, run: &mut Run<'_, '_>) {

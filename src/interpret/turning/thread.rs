@@ -3,9 +3,9 @@
 //! is that of Haas).
 
 use super::{Control, Run, X, Z, note_parameter, turning_needs, xz};
-use crate::interpret::moves::MoveKind::{Rapid, Thread};
 use crate::machine::AxisValues;
 use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::MoveKind::{Rapid, Thread};
 
 /// Repeats of the last pass, as two digits give them.
 const REPEATS_MAX: f64 = 99.0;

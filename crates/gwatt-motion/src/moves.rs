@@ -1,7 +1,7 @@
 //! What a program does: moves and actions, in machine coordinates.
 
-use super::knob::Square;
-use crate::machine::{AxisSet, AxisValues, PathMode};
+use super::path_limits::Square;
+use gwatt_machine::{AxisSet, AxisValues, PathMode};
 
 /// What a program block does, in the order in which it does it.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ impl Step {
     /// Whether it only reports a word of the feed, which need not stand in a limited
     /// program as it does in the original.
     #[must_use]
-    pub(crate) fn is_feed_note(&self) -> bool {
+    pub fn is_feed_note(&self) -> bool {
         matches!(self, Self::Action(action) if action.kind == ActionKind::Feed)
     }
 }
@@ -298,7 +298,7 @@ pub enum ActionKind {
     SpindleCenter,
     /// The tool in the spindle.
     ToolLoaded,
-    /// A comment that acts: its place in [`crate::machine::MESSAGES`]; under the
+    /// A comment that acts: its place in [`gwatt_machine::MESSAGES`]; under the
     /// same condition.
     Message,
 }
