@@ -14,11 +14,11 @@ pub use gwatt_identify as identify;
 pub use gwatt_machine as machine;
 pub use gwatt_machine::units;
 pub use gwatt_motion as motion;
+pub use gwatt_plan as plan;
 pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
 pub mod interpret;
-pub mod plan;
 pub mod power;
 pub mod limit;
 pub mod rewrite;

@@ -8,10 +8,11 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 5] = [
+const CRATES: [(&str, &[&str]); 6] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
     ("gwatt-motion", &["gwatt-machine"]),
+    ("gwatt-plan", &["gwatt-machine", "gwatt-motion"]),
     ("gwatt-identify", &["gwatt-machine"]),
     (
         "gwatt",
@@ -19,6 +20,7 @@ const CRATES: [(&str, &[&str]); 5] = [
             "gwatt-identify",
             "gwatt-machine",
             "gwatt-motion",
+            "gwatt-plan",
             "gwatt-syntax",
         ],
     ),

@@ -42,6 +42,8 @@ mod piece;
 mod polynomial;
 mod quadrants;
 mod quadrature;
+#[cfg(test)]
+mod random;
 mod robust;
 #[cfg(test)]
 mod sample;

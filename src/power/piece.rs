@@ -223,7 +223,7 @@ mod tests {
     use crate::machine::{AxisSet, Machine};
     use crate::plan::Blend;
     use crate::plan::lookahead::{Piece, Planned, Slack, Speeds2};
-    use crate::plan::random::Random;
+    use crate::power::random::Random;
     use crate::power::sample::any_move;
     use crate::power::{PowerModel, Want};
     use std::fmt::Write as _;

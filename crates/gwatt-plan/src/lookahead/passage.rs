@@ -6,7 +6,7 @@ use std::f64::consts::SQRT_2;
 use super::super::limits::lower;
 use super::corner::{EXTRUDER, ROUNDING, UNIT};
 use super::glide::Line;
-use crate::machine::{CornerAngle, CornerRule};
+use gwatt_machine::{CornerAngle, CornerRule};
 
 /// What rounding may make of a cosine.
 const COSINE: f64 = 1e-15;

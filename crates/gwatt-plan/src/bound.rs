@@ -9,8 +9,8 @@ use super::arc::{axis_speed, excess, plane_share, tangent_ranges};
 use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
 use super::lookahead::Blend;
 use super::trajectory::{Caps, Overrides};
-use crate::interpret::{Arc, FeedMode, Move, MoveKind};
-use crate::machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
+use gwatt_motion::{Arc, FeedMode, Move, MoveKind};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Largest speed of each axis, mm/s or degrees/s, not negative.

@@ -20,9 +20,8 @@ mod vector;
 mod window;
 
 pub use chord::chord_count;
-pub(crate) use element::common_accel;
-pub use element::{Curve, Element, Joint};
-pub(crate) use glide::{Gliding, Line};
-pub(crate) use linuxcnc::LATE_CYCLES;
+pub use element::{Curve, Element, Joint, common_accel};
+pub use glide::{Gliding, Line};
+pub use linuxcnc::LATE_CYCLES;
 pub use planner::{Blend, PathPlanner, Piece, Planned};
 pub use ramp::{Slack, Speeds2};

@@ -14,7 +14,7 @@ const BLOCKS_MAX: usize = 64;
 
 /// A motion at full speed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Gliding<T> {
+pub struct Gliding<T> {
     /// The first element that is open.
     pub first: T,
     /// Elements that are.
@@ -26,11 +26,12 @@ pub(crate) struct Gliding<T> {
 /// A straight feed in X, Y and Z, and next to them of an extruder, whose start is
 /// known.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Line {
+pub struct Line {
     /// A unit.
     pub direction: [f64; 3],
     /// Of the extruder per unit of path.
     pub extrusion: f64,
+    /// Of the path, mm.
     pub length_mm: f64,
     /// Not above the acceleration along the path, here and through the joint
     /// before it, mm/s².
@@ -41,7 +42,8 @@ pub(crate) struct Line {
 
 impl<T: Copy> PathPlanner<T> {
     /// How many elements may be followed that are not final; 0: none.
-    pub(crate) fn glide_blocks(&self) -> usize {
+    #[must_use]
+    pub fn glide_blocks(&self) -> usize {
         if !self.window.may_glide() {
             return 0;
         }
@@ -53,7 +55,8 @@ impl<T: Copy> PathPlanner<T> {
     }
 
     /// Where the motion glides, over all elements that are open.
-    pub(crate) fn gliding(&self) -> Option<Gliding<T>> {
+    #[must_use]
+    pub fn gliding(&self) -> Option<Gliding<T>> {
         let (speed2, open) = self.window.gliding()?;
         let straight = match &self.rule {
             Rule::Corner(before) => before.as_ref().is_some_and(Before::is_straight),
@@ -71,19 +74,21 @@ impl<T: Copy> PathPlanner<T> {
 
     /// Whether the joint of two lines is passed at the speed (mm/s) that both ask for
     /// and their axes permit; false where it is not, or not plainly.
+    #[must_use]
     #[inline]
-    pub(crate) fn passes(&self, before: &Line, next: &Line, speed_mm_s: f64) -> bool {
+    pub fn passes(&self, before: &Line, next: &Line, speed_mm_s: f64) -> bool {
         passage::permits(&self.look_ahead.corner, before, next, speed_mm_s)
     }
 
-    /// What hills are smoothed with.
-    pub(crate) fn accel_share(&self) -> f64 {
+    /// The share of the acceleration that hills of speed are smoothed with, up to 1.
+    #[must_use]
+    pub fn accel_share(&self) -> f64 {
         1.0 - self.look_ahead.min_cruise_ratio
     }
 
     /// Forgets the elements that are open: the motion has glided to the start of
-    /// this one, with that speed, squared.
-    pub(crate) fn glide_to(&mut self, element: &Element<T>, speed2: f64) {
+    /// this one, with that speed, squared (mm²/s²).
+    pub fn glide_to(&mut self, element: &Element<T>, speed2: f64) {
         let limited = self.limited(element);
         let element = limited.as_ref().unwrap_or(element);
         self.window.glide_to(speed2);

@@ -10,7 +10,7 @@ use arrayvec::ArrayVec;
 use super::blend::Axes;
 use super::element::{Element, Joint};
 use super::vector::{Vector, add, dot, length, scale, sub, unit};
-use crate::machine::{AXES, AxisValues};
+use gwatt_machine::{AXES, AxisValues};
 use std::f64::consts::PI;
 
 /// Points that are put together, at most: one more ends the line.

@@ -26,8 +26,8 @@ use super::drive;
 use super::limits::{self, PathLimits};
 use super::s_curve::cbrt_of_square;
 use super::trajectory::Caps;
-use crate::interpret::{Arc, Move};
-use crate::machine::{ArcRule, AxisKind, Machine};
+use gwatt_machine::{ArcRule, AxisKind, Machine};
+use gwatt_motion::{Arc, Move};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Share of the acceleration limit that `LinuxCNC` 2.9 gives to turning: √3/2.

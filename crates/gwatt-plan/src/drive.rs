@@ -19,9 +19,9 @@ use super::curve::{AccelCurve, fastest};
 use super::driven_ramp::{self, Kink, Kinks};
 use super::limits::{self, PathLimits};
 use super::profile::Profile;
-use crate::interpret::{Arc, Move};
-use crate::machine::{ALL_AXES, ArcRule, Axis, AxisKind, ForcePoint, Machine};
 use arrayvec::ArrayVec;
+use gwatt_machine::{ALL_AXES, ArcRule, Axis, AxisKind, ForcePoint, Machine};
+use gwatt_motion::{Arc, Move};
 use smallvec::SmallVec;
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -51,7 +51,7 @@ struct Part {
 }
 
 /// The axes of a path.
-type Parts = ArrayVec<Part, { 2 * crate::machine::AXES }>;
+type Parts = ArrayVec<Part, { 2 * gwatt_machine::AXES }>;
 
 /// The points of an axis' curve; `None` without one.
 fn points(machine: &Machine, axis: usize) -> Option<&[ForcePoint]> {
@@ -306,7 +306,7 @@ fn curve(machine: &Machine, parts: &[Part], side: usize, limits: &PathLimits) ->
         }
         // Straight lines between two speeds: what each axis leaves, and the
         // limit.
-        let mut lines = ArrayVec::<[f64; 2], { 2 * crate::machine::AXES + 1 }>::new();
+        let mut lines = ArrayVec::<[f64; 2], { 2 * gwatt_machine::AXES + 1 }>::new();
         lines.push([limits.accel_mm_s2; 2]);
         for part in parts {
             let (Some(points), Some(Some(own))) =

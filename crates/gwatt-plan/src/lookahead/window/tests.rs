@@ -1,7 +1,7 @@
 //! The window against the whole program at once, and against plain arithmetic.
 
 use super::{Node, Span, Window};
-use crate::plan::random::Random;
+use crate::random::Random;
 
 /// Elements from 1 µm to 30 mm; `stops`: the share of joints at rest.
 fn nodes(seed: u64, count: usize, stops: f64) -> Vec<Node<usize>> {

@@ -9,8 +9,8 @@ use super::drive;
 use super::limits::{self, PathLimits};
 use super::profile::{Outline, Phase, PhaseKind, Profile};
 use super::s_curve::{SCurve, Steepness};
-use crate::interpret::{Move, MoveKind, path_length};
-use crate::machine::{AxisSet, AxisValues, Machine, OverrideAt, RapidPath};
+use gwatt_machine::{AxisSet, AxisValues, Machine, OverrideAt, RapidPath};
+use gwatt_motion::{Move, MoveKind, path_length};
 
 /// Override switches as factors; 1 is 100 %.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,8 +6,8 @@
 
 use super::arc;
 use super::trajectory::{Caps, Overrides};
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{Axis, Machine};
+use gwatt_machine::{Axis, Machine};
+use gwatt_motion::{Move, MoveKind};
 
 /// Speed in mm/s, acceleration in mm/s² and jerk in mm/s³ that a path permits.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,8 +7,8 @@ use super::super::arc;
 use super::super::drive::{self, Heading};
 use super::super::limits::{self, PathLimits, lower};
 use super::super::trajectory::{Caps, Overrides};
-use crate::interpret::{Arc, Corner, Move, MoveKind, Square};
-use crate::machine::{AXES, AxisValues, Machine};
+use gwatt_machine::{AXES, AxisValues, Machine};
+use gwatt_motion::{Arc, Corner, Move, MoveKind, Square};
 
 /// What happens at the end of an element, if the controller's rules permit it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -107,8 +107,9 @@ impl<T> Element<T> {
             .then_some(element)
     }
 
-    /// An element of nothing yet.
-    pub(crate) fn blank(tag: T) -> Self {
+    /// An element of nothing yet, for [`Self::describe`] to fill.
+    #[must_use]
+    pub fn blank(tag: T) -> Self {
         Self {
             tag,
             rapid: false,
@@ -133,7 +134,8 @@ impl<T> Element<T> {
     /// Makes it the element of another move, in place: it is large. False where
     /// [`Self::of`] gives none; it is then not to be used.
     #[inline]
-    pub(crate) fn describe(
+    #[must_use]
+    pub fn describe(
         &mut self,
         machine: &Machine,
         mv: &Move,
@@ -278,9 +280,11 @@ impl<T> Element<T> {
     }
 }
 
-/// See [`Element::common_accel_mm_s2`].
+/// See [`Element::common_accel_mm_s2`]: of the limit along the path and those of the
+/// axes, mm/s².
+#[must_use]
 #[inline]
-pub(crate) fn common_accel(path_mm_s2: f64, axes_mm_s2: &AxisValues) -> f64 {
+pub fn common_accel(path_mm_s2: f64, axes_mm_s2: &AxisValues) -> f64 {
     let [x, y, ..] = *axes_mm_s2;
     let largest = if y > x { y } else { x };
     if largest > 0.0 {

@@ -13,8 +13,8 @@ use super::element::Element;
 use super::linuxcnc::{LinuxCnc, RENEWED};
 use super::ramp::{Slack, Speeds2};
 use super::window::{Node, Span, Window};
-use crate::machine::{AxisValues, CornerRule, LookAhead, Machine};
-use crate::plan::{Profile, Section};
+use crate::{Profile, Section};
+use gwatt_machine::{AxisValues, CornerRule, LookAhead, Machine};
 
 /// A piece of path that a controller lays round a corner: a circle in space,
 /// begun by a straight rest of the element before where that was too short to

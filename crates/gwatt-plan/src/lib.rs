@@ -1,7 +1,12 @@
-//! Moves to profiles: how speed runs along each move.
+#![doc = include_str!("../README.md")]
 //!
-//! Every block ends at rest (exact stop): a trapezoid or a triangle under the
-//! limits that feed, axes and arcs set, or an S-curve where axes limit their jerk.
+//! # From moves to profiles
+//!
+//! By itself a move is planned from rest to rest ([`plan()`]): a trapezoid or a
+//! triangle under the limits that feed, axes and arcs set, or an S-curve where axes
+//! limit their jerk. [`lookahead`] plans several moves together, [`period`] steps a
+//! speed planner in interpolation periods, and [`jerk`] finds the shortest motion
+//! between two states.
 
 mod arc;
 mod bound;
@@ -15,7 +20,7 @@ pub mod period;
 mod power_law;
 mod profile;
 #[cfg(test)]
-pub(crate) mod random;
+mod random;
 mod s_curve;
 mod section;
 mod slope;

@@ -10,8 +10,8 @@
 //! mechanical power, so it leaves `(P/(η·v) + C)/M`.
 
 use super::period::{Curve, Jerk, LimitError, Limits, Motion, Ramp};
-use crate::machine::Spindle;
-use crate::units::RAD_S_PER_RPM;
+use gwatt_machine::Spindle;
+use gwatt_machine::units::RAD_S_PER_RPM;
 
 /// Halvings and doublings of the search for the acceleration.
 const STEPS: u32 = 200;

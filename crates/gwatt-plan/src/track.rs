@@ -6,8 +6,8 @@
 
 use super::lookahead::Blend;
 use super::profile::{Profile, State};
-use crate::interpret::Move;
-use crate::machine::{AXES, AxisValues};
+use gwatt_machine::{AXES, AxisValues};
+use gwatt_motion::Move;
 
 /// The motion of all axes at one instant; mm (or degrees) and s.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -16,7 +16,7 @@ mod corner;
 
 use super::super::limits::{self, lower};
 use super::vector::{Vector, angle, scale};
-use crate::machine::{AxisValues, Machine};
+use gwatt_machine::{AxisValues, Machine};
 
 pub(super) use corner::Corner;
 

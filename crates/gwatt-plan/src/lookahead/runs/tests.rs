@@ -2,8 +2,8 @@
 
 use super::super::super::s_curve::Steepness;
 use super::{Node, Runs, Span};
-use crate::plan::Phase;
-use crate::plan::random::Random;
+use crate::Phase;
+use crate::random::Random;
 
 impl Random {
     fn chance(&mut self, share: f64) -> bool {
@@ -223,7 +223,7 @@ fn the_farthest_speed_grows_and_can_be_reached() {
 #[test]
 fn an_instant_is_found_by_its_position() {
     let phase = Phase {
-        kind: crate::plan::PhaseKind::ConstantJerk { jerk_mm_s3: -40e3 },
+        kind: crate::PhaseKind::ConstantJerk { jerk_mm_s3: -40e3 },
         duration_s: 0.05,
         position_mm: 7.0,
         velocity_mm_s: 200.0,

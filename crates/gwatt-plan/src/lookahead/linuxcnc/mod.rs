@@ -31,7 +31,7 @@ pub(super) const RENEWED: usize = optimiser::HITS;
 const CYCLES_MIN: f64 = 1.02;
 /// Cycles after which a change of pace acts: HAL hands it on within one, and the planner takes
 /// it in the next.
-pub(crate) const LATE_CYCLES: f64 = 2.0;
+pub const LATE_CYCLES: f64 = 2.0;
 /// A reversal within two degrees is a stop.
 const REVERSAL2: f64 = 0.034_906_585_039_886_59 * 0.034_906_585_039_886_59;
 

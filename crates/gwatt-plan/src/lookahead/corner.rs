@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use super::element::{Element, Joint};
 use super::passage::Passage;
-use crate::machine::{AXES, AxisId, AxisValues, CornerAngle, CornerRule};
+use gwatt_machine::{AXES, AxisId, AxisValues, CornerAngle, CornerRule};
 
 /// Cosines beyond this are no corner, or a reversal.
 const STRAIGHT: f64 = 0.999_999;
@@ -422,8 +422,8 @@ fn step<T>(
 #[cfg(test)]
 mod tests {
     use super::{After, Corner, Element, Joint, LINEAR};
-    use crate::machine::{CornerAngle, CornerRule};
-    use crate::plan::random::Random;
+    use crate::random::Random;
+    use gwatt_machine::{CornerAngle, CornerRule};
 
     impl Random {
         /// Between 1 and 10 to the power of so much.

@@ -4,7 +4,7 @@
 //! straight elements under the same tag.
 
 use super::element::{Curve, Element};
-use crate::machine::{AxisValues, ChordRule};
+use gwatt_machine::{AxisValues, ChordRule};
 
 /// Chords of one arc that are followed.
 const CHORDS_MAX: f64 = 16_384.0;

@@ -4,7 +4,7 @@ use super::super::super::planner::{Load, Piece};
 use super::super::super::ramp::Slack;
 use super::super::super::window::Node;
 use super::Optimiser;
-use crate::plan::random::Random;
+use crate::random::Random;
 
 /// An element: 2·a·L, the limit of the joint before it, and the speed (all squared) with
 /// which it is entered while it may still be cut.

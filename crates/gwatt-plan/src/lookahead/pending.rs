@@ -10,7 +10,7 @@ use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
 use super::planner::Piece;
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
-use crate::machine::AXES;
+use gwatt_machine::AXES;
 
 /// The last element: a blend may still take a piece of it.
 #[derive(Debug, Clone)]
