@@ -11,6 +11,7 @@
 //! CSV   ─identify→ masses, friction, transfer functions → TOML
 //! ```
 pub use gwatt_identify as identify;
+pub use gwatt_interpret as interpret;
 pub use gwatt_machine as machine;
 pub use gwatt_machine::units;
 pub use gwatt_motion as motion;
@@ -18,7 +19,6 @@ pub use gwatt_plan as plan;
 pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
-pub mod interpret;
 pub mod power;
 pub mod limit;
 pub mod rewrite;

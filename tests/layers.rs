@@ -8,16 +8,21 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 6] = [
+const CRATES: [(&str, &[&str]); 7] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
     ("gwatt-motion", &["gwatt-machine"]),
+    (
+        "gwatt-interpret",
+        &["gwatt-machine", "gwatt-motion", "gwatt-syntax"],
+    ),
     ("gwatt-plan", &["gwatt-machine", "gwatt-motion"]),
     ("gwatt-identify", &["gwatt-machine"]),
     (
         "gwatt",
         &[
             "gwatt-identify",
+            "gwatt-interpret",
             "gwatt-machine",
             "gwatt-motion",
             "gwatt-plan",
