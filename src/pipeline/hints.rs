@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
-use super::advice::{FEED_OPTION, FITS, NEIGHBOURS_HELP};
+use super::advice::{FEED_OPTION, FITS, SPINDLE_HELP};
 use super::expand::WRITTEN_OUT;
 use super::limiting::limit;
 use super::pause;
@@ -84,10 +84,11 @@ pub fn take_hints<R: Read + Seek + Send>(
         let refused = as_it_stands.contains_key(&unfit.line);
         let line = written.lines.get(&unfit.line).filter(|_| !refused);
         let help = line.and_then(Line::help);
-        // What was advised for a move by itself gives way to what is written next to others.
+        // What was advised for a move by itself gives way to what is written, save where no
+        // word helps.
         if let Some(help) = help
             && unfit.file.is_empty()
-            && (unfit.help.starts_with(FITS) || unfit.help == NEIGHBOURS_HELP)
+            && unfit.help != SPINDLE_HELP
         {
             help.clone_into(&mut unfit.help);
         }

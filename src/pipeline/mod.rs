@@ -17,6 +17,7 @@ mod hints;
 mod ideal;
 mod judge;
 mod limiting;
+mod left_feed;
 mod lower;
 mod motion;
 mod options;

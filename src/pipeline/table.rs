@@ -4,10 +4,11 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::entry::Entry;
+use super::left_feed::LeftFeeds;
 use crate::interpret::{Corner, Facts, FeedMode, KnobState, MoveKind};
 use crate::limit::{Change, FirstFeed};
 use crate::machine::Machine;
-use crate::rewrite::Mark;
+use crate::rewrite::{FeedAround, FeedValue, Mark};
 use crate::syntax::Block;
 
 /// Why a line of a subprogram's file is not changed.
@@ -34,13 +35,20 @@ pub(super) struct Table {
     without_feed: bool,
     /// The F that all of these get: the lowest that one of them needs.
     first_feed: Option<FirstFeed>,
+    left_feeds: LeftFeeds,
+    /// Lines that nothing is decided about but the F that they count on.
+    restored: HashMap<LineKey, Decision>,
 }
 
 #[derive(Debug)]
 struct Entered {
     sight: Sight,
-    /// All runs so far were alike.
+    /// All runs so far were alike, the F in force aside.
     unanimous: bool,
+    /// After all runs so far the same F was in force.
+    one_feed: bool,
+    /// The F that it leaves may be another than the original's.
+    leaves_feed: bool,
     /// Corners were taken in one way.
     one_corner: bool,
     /// One of its runs counts on no F.
@@ -56,7 +64,9 @@ struct Entered {
 /// What an edit of a line depends on.
 #[derive(Debug, Clone, PartialEq)]
 struct Sight {
+    /// Without corner and feed.
     after: Mark,
+    feed: Option<FeedValue>,
     corner: Option<Corner>,
     knobs: Option<KnobState>,
     feed_mode: FeedMode,
@@ -72,7 +82,9 @@ pub(super) struct Decision {
     pub(super) change: Change,
     pub(super) block: Block,
     pub(super) facts: Facts,
+    pub(super) before: Mark,
     pub(super) after: Mark,
+    pub(super) around: FeedAround,
     pub(super) knobs: Option<KnobState>,
     pub(super) rapids: bool,
     pub(super) feeds: bool,
@@ -92,6 +104,8 @@ impl Table {
             without_word: false,
             without_feed: false,
             first_feed: None,
+            left_feeds: LeftFeeds::default(),
+            restored: HashMap::new(),
         }
     }
 
@@ -105,21 +119,25 @@ impl Table {
         }
     }
 
-    /// Takes note of a run of a line.
-    pub(super) fn see(&mut self, line: LineKey, entry: &Entry) {
+    /// Takes note of a run of a line; `before` is the state before it.
+    pub(super) fn see(&mut self, line: LineKey, entry: &Entry, before: &Mark) {
         // A line whose moves are held back counts too: they obey its words; and so does one
         // that stands where it would move to.
         let facts = &entry.facts;
         let moves = entry.moves > 0 || facts.uses_motion || facts.motion_word.is_some();
-        if !moves && !facts.compensated {
+        let may_change = moves || facts.compensated;
+        self.left_feeds.run(line, entry, before, may_change);
+        if !may_change {
             return;
         }
         let corner = entry.mark.corner;
         let sight = Sight {
             after: Mark {
                 corner: None,
+                feed: None,
                 ..entry.mark
             },
+            feed: entry.mark.feed_value(),
             corner,
             knobs: entry.knobs.clone(),
             feed_mode: entry.feed_mode,
@@ -131,8 +149,10 @@ impl Table {
         if let Some(entered) = self.lines.get_mut(&line) {
             entered.one_corner &= entered.sight.corner == sight.corner;
             entered.lacks_feed |= entry.lacks_feed();
+            entered.one_feed &= entered.sight.feed == sight.feed;
             entered.unanimous &= Sight {
                 corner,
+                feed: sight.feed,
                 ..entered.sight.clone()
             } == sight;
             return;
@@ -140,6 +160,8 @@ impl Table {
         let entered = Entered {
             sight,
             unanimous: true,
+            one_feed: true,
+            leaves_feed: false,
             one_corner: true,
             lacks_feed: entry.lacks_feed(),
             decision: None,
@@ -153,11 +175,25 @@ impl Table {
         self.without_feed |= entry.lacks_feed() && keeps;
     }
 
+    /// A path through a program has been seen to its end.
+    pub(super) fn end(&mut self) {
+        self.left_feeds.end();
+    }
+
     /// All runs are seen.
     pub(super) fn settle(&mut self) {
+        let with_files = self.with_files;
+        for (key, entered) in &mut self.lines {
+            if !entered.one_feed {
+                let writable = |line: LineKey| line.0 == 0 || with_files;
+                entered.leaves_feed = self.left_feeds.may_differ(*key, writable);
+            }
+        }
         for (key, entered) in &self.lines {
-            let fixed =
-                key.0 >= self.programs || !entered.unanimous || entered.sight.fixed.is_some();
+            let fixed = key.0 >= self.programs
+                || !entered.unanimous
+                || !entered.one_feed
+                || entered.sight.fixed.is_some();
             self.without_word |= entered.sight.no_motion_word && fixed;
             self.without_feed |= entered.lacks_feed && fixed;
         }
@@ -179,11 +215,11 @@ impl Table {
         if line.0 > 0 && !self.with_files {
             return Some(IN_A_FILE);
         }
-        let unanimous = self
-            .lines
-            .get(&line)
-            .is_none_or(|entered| entered.unanimous);
-        (!unanimous).then_some(if self.skips {
+        let entered = self.lines.get(&line);
+        let alike = entered.is_none_or(|entered| {
+            entered.unanimous && (entered.one_feed || entered.leaves_feed)
+        });
+        (!alike).then_some(if self.skips {
             "with and without blocks that may be skipped, it runs under feeds or modes that differ"
         } else {
             "it runs several times, under feeds or modes that differ"
@@ -286,6 +322,38 @@ impl Table {
         }
     }
 
+    /// Where lines leave another F than the original's, all that count on it get theirs.
+    pub(super) fn spread_left_feeds(&mut self) {
+        let mut found = Vec::new();
+        for (line, entered) in &mut self.lines {
+            let decision = entered.decision.as_mut();
+            let Some(decision) = decision.filter(|_| entered.leaves_feed) else {
+                continue;
+            };
+            decision.around = FeedAround::LeftAfter;
+            if decision.change.feed.is_some() {
+                found.extend(self.left_feeds.users(*line));
+            }
+        }
+        for (line, restored) in found {
+            let entered = self.lines.get_mut(&line);
+            match entered.and_then(|entered| entered.decision.as_deref_mut()) {
+                Some(decision) => {
+                    decision.before = restored.before;
+                    decision.around = FeedAround::NotKnownBefore;
+                }
+                None => {
+                    self.restored.entry(line).or_insert_with(|| restored.clone());
+                }
+            }
+        }
+    }
+
+    /// What is written for a line of the program, if anything.
+    pub(super) fn written(&self, line: LineKey) -> Option<&Decision> {
+        self.decision(line).or_else(|| self.restored.get(&line))
+    }
+
     /// What a line of the program gets.
     pub(super) fn decision(&self, line: LineKey) -> Option<&Decision> {
         self.lines.get(&line)?.decision.as_deref()
@@ -308,15 +376,22 @@ impl Decision {
             decision.stops |= stops;
             return;
         }
-        *known = Some(Box::new(Self {
+        *known = Some(Box::new(Self::of(entry, change, stops)));
+    }
+
+    /// A change for a line; what was in force before its block is so after it.
+    pub(super) fn of(entry: &Entry, change: Change, stops: bool) -> Self {
+        Self {
             change,
             block: entry.block.clone(),
             facts: entry.facts,
+            before: entry.mark,
             after: entry.mark,
+            around: FeedAround::PutBack,
             knobs: entry.knobs.clone(),
             rapids: entry.moves_by(|kind| kind == MoveKind::Rapid),
             feeds: entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
             stops,
-        }));
+        }
     }
 }

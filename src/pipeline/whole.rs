@@ -23,7 +23,7 @@ use crate::interpret::{Move, Step};
 use crate::limit::{Depths, Limiter};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Lower, PowerModel};
-use crate::rewrite::{BlockView, Comment, Rewriter};
+use crate::rewrite::{BlockView, Comment, Mark, Rewriter};
 use crate::source::lines;
 
 /// What programs that are held whole are limited by.
@@ -122,6 +122,7 @@ impl Whole<'_> {
         }
         table.spread_word(machine);
         table.spread_feed();
+        table.spread_left_feeds();
         Ok((all, table))
     }
 
@@ -196,19 +197,20 @@ fn survey(
     let mut front = Front::new(Cursor::new(program), machine, options);
     // The axes stand before the first move.
     let mut mode = PathMode::ExactStop;
-    let mut mm_per_unit = front.interpreter().modal().mm_per_unit;
+    let mut before = Mark::of(front.interpreter().modal());
     let mut entry: Option<Entry> = None;
     while let Some(mut line) = front.next_line()? {
         let entry = entry.get_or_insert_with(|| Entry::new(&line));
-        entry.fill(&mut line, machine, mode, mm_per_unit);
-        mm_per_unit = entry.mark.mm_per_unit;
+        entry.fill(&mut line, machine, mode, before.mm_per_unit);
         for step in &entry.steps {
             if let Step::Move(mv) = step {
                 mode = mv.path_mode;
             }
         }
-        table.see(entry.key, entry);
+        table.see(entry.key, entry, &before);
+        before = entry.mark;
     }
+    table.end();
     front.finish()?;
     Ok(())
 }
@@ -225,7 +227,7 @@ pub(super) fn write(
     let mut rewriter = Rewriter::new(machine).marking(comment);
     let mut out = Vec::with_capacity(program.len() + program.len() / 8);
     for (number, text) in lines(program).enumerate() {
-        let Some(decision) = table.decision((number_of_text, number as u64 + 1)) else {
+        let Some(decision) = table.written((number_of_text, number as u64 + 1)) else {
             out.extend_from_slice(text);
             continue;
         };
@@ -233,7 +235,7 @@ pub(super) fn write(
             text,
             block: &decision.block,
             facts: &decision.facts,
-            before: &decision.after,
+            before: &decision.before,
             after: &decision.after,
             knobs: decision.knobs.as_ref(),
             rapids: decision.rapids,
@@ -245,7 +247,7 @@ pub(super) fn write(
         };
         // Contradicting edits leave the line as it was, which the certificate
         // then finds.
-        if !rewriter.write_alone(&view, &mut out) {
+        if !rewriter.write_alone(&view, decision.around, &mut out) {
             out.extend_from_slice(text);
         }
     }

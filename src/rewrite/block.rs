@@ -52,6 +52,18 @@ pub struct BlockView<'a> {
     pub rests: bool,
 }
 
+/// The F around a block that is written by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FeedAround {
+    /// Before it the original's is in force, and after it again.
+    #[default]
+    PutBack,
+    /// What it leaves in force is put right where a later block counts on an F.
+    LeftAfter,
+    /// What is in force before it may be another block's: the original's is written.
+    NotKnownBefore,
+}
+
 /// Writes the blocks of one program.
 #[derive(Debug)]
 pub struct Rewriter<'m> {
@@ -293,10 +305,16 @@ impl<'m> Rewriter<'m> {
     /// that it does not matter where the program comes from or goes on, nor whether the
     /// block is skipped. False when its edits contradict each other.
     #[must_use]
-    pub fn write_alone(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
+    pub fn write_alone(
+        &mut self,
+        view: &BlockView<'_>,
+        around: FeedAround,
+        out: &mut Vec<u8>,
+    ) -> bool {
+        let known = around != FeedAround::NotKnownBefore;
         self.written = Written {
-            motion: view.after.motion,
-            feed: view.after.feed_value(),
+            motion: view.before.motion,
+            feed: view.before.feed_value().filter(|_| known),
         };
         // Whatever the line above ends with, another may come before this one.
         self.stopped = false;
@@ -306,7 +324,16 @@ impl<'m> Rewriter<'m> {
             level => self.skip = format!("/{level}"),
         }
         let written = self.write(view, out);
-        self.finish(view.after, view.knobs, out);
+        // Where only F was not known before, all is as after the original's block.
+        if known || !view.change.is_none() {
+            let left = around == FeedAround::LeftAfter;
+            let feed = view.after.feed.filter(|_| !left);
+            let after = Mark {
+                feed,
+                ..*view.after
+            };
+            self.finish(&after, view.knobs, out);
+        }
         self.skip.clear();
         written
     }

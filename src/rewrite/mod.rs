@@ -23,10 +23,10 @@ mod state;
 mod turned;
 
 pub use beforehand::Return;
-pub use block::{BlockView, PieceWords, Rewriter};
+pub use block::{BlockView, FeedAround, PieceWords, Rewriter};
 pub use contour::contour_as_comment;
 pub(crate) use knob_line::lines as knob_lines;
 pub use rapid_mark::{Comment, RapidMark, RapidMarkError};
 pub use single::{CycleBlock, Singles};
-pub use state::Mark;
+pub use state::{FeedValue, Mark};
 pub(crate) use turned::SWITCH_ON;

@@ -66,7 +66,8 @@ impl Mark {
     }
 
     /// The feed as value and unit.
-    pub(super) fn feed_value(&self) -> Option<FeedValue> {
+    #[must_use]
+    pub fn feed_value(&self) -> Option<FeedValue> {
         self.feed.as_ref().map(|feed| FeedValue {
             value: feed.value,
             mm_per_unit: feed.mm_per_unit,
@@ -76,9 +77,11 @@ impl Mark {
 
 /// An F by value, to tell whether two are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FeedValue {
-    pub(super) value: f64,
-    pub(super) mm_per_unit: f64,
+pub struct FeedValue {
+    /// The number in the program.
+    pub value: f64,
+    /// Millimetres in the unit that it was read in.
+    pub mm_per_unit: f64,
 }
 
 /// What the written program has in force.
