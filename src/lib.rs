@@ -16,10 +16,10 @@ pub use gwatt_machine as machine;
 pub use gwatt_machine::units;
 pub use gwatt_motion as motion;
 pub use gwatt_plan as plan;
+pub use gwatt_power as power;
 pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
-pub mod power;
 pub mod limit;
 pub mod rewrite;
 pub mod pipeline;

@@ -8,7 +8,7 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 7] = [
+const CRATES: [(&str, &[&str]); 8] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
     ("gwatt-motion", &["gwatt-machine"]),
@@ -17,6 +17,10 @@ const CRATES: [(&str, &[&str]); 7] = [
         &["gwatt-machine", "gwatt-motion", "gwatt-syntax"],
     ),
     ("gwatt-plan", &["gwatt-machine", "gwatt-motion"]),
+    (
+        "gwatt-power",
+        &["gwatt-machine", "gwatt-motion", "gwatt-plan"],
+    ),
     ("gwatt-identify", &["gwatt-machine"]),
     (
         "gwatt",
@@ -26,6 +30,7 @@ const CRATES: [(&str, &[&str]); 7] = [
             "gwatt-machine",
             "gwatt-motion",
             "gwatt-plan",
+            "gwatt-power",
             "gwatt-syntax",
         ],
     ),

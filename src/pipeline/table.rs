@@ -216,9 +216,8 @@ impl Table {
             return Some(IN_A_FILE);
         }
         let entered = self.lines.get(&line);
-        let alike = entered.is_none_or(|entered| {
-            entered.unanimous && (entered.one_feed || entered.leaves_feed)
-        });
+        let alike = entered
+            .is_none_or(|entered| entered.unanimous && (entered.one_feed || entered.leaves_feed));
         (!alike).then_some(if self.skips {
             "with and without blocks that may be skipped, it runs under feeds or modes that differ"
         } else {
@@ -343,7 +342,9 @@ impl Table {
                     decision.around = FeedAround::NotKnownBefore;
                 }
                 None => {
-                    self.restored.entry(line).or_insert_with(|| restored.clone());
+                    self.restored
+                        .entry(line)
+                        .or_insert_with(|| restored.clone());
                 }
             }
         }
