@@ -12,6 +12,7 @@
 //! ```
 pub use gwatt_identify as identify;
 pub use gwatt_interpret as interpret;
+pub use gwatt_limit as limit;
 pub use gwatt_machine as machine;
 pub use gwatt_machine::units;
 pub use gwatt_motion as motion;
@@ -20,7 +21,6 @@ pub use gwatt_power as power;
 pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
-pub mod limit;
 pub mod rewrite;
 pub mod pipeline;
 pub mod dialect;

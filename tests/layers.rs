@@ -8,7 +8,7 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 8] = [
+const CRATES: [(&str, &[&str]); 9] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
     ("gwatt-motion", &["gwatt-machine"]),
@@ -21,12 +21,17 @@ const CRATES: [(&str, &[&str]); 8] = [
         "gwatt-power",
         &["gwatt-machine", "gwatt-motion", "gwatt-plan"],
     ),
+    (
+        "gwatt-limit",
+        &["gwatt-machine", "gwatt-motion", "gwatt-plan", "gwatt-power"],
+    ),
     ("gwatt-identify", &["gwatt-machine"]),
     (
         "gwatt",
         &[
             "gwatt-identify",
             "gwatt-interpret",
+            "gwatt-limit",
             "gwatt-machine",
             "gwatt-motion",
             "gwatt-plan",

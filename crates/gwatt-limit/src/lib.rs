@@ -1,8 +1,11 @@
-//! Demand to adjustments: which moves are too much, and what is done about it.
+#![doc = include_str!("../README.md")]
 //!
-//! Input: moves with their assessments, and what may be changed about each.
-//! Output: for each move, in order, the [`Change`] that makes it fit, or why
-//! there is none. The limiter never sees text.
+//! # From demand to adjustments
+//!
+//! Input: moves with their assessments, and what may be changed about each
+//! ([`Permit`]). Output: for each move, in order, the [`Change`] that makes it fit, or
+//! why there is none ([`Obstacle`]). [`Limiter`] takes the moves of a program,
+//! [`Solver`] one by itself.
 
 mod accels;
 mod along;

@@ -8,10 +8,10 @@
 use std::collections::{HashMap, HashSet};
 
 use super::depth::Place;
-use crate::interpret::{Move, MoveKind};
-use crate::machine::AXES;
-use crate::plan::SpeedBound;
-use crate::power::{Assessment, PowerModel};
+use gwatt_machine::AXES;
+use gwatt_motion::{Move, MoveKind};
+use gwatt_plan::SpeedBound;
+use gwatt_power::{Assessment, PowerModel};
 
 /// What the power of steps of speed grows with at most: a power of the speed.
 const STEPS_POWER: f64 = 3.0;

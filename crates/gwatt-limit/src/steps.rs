@@ -8,9 +8,9 @@
 use super::case::{Case, Ends};
 use super::options::Strategy;
 use super::solver::Solver;
-use crate::interpret::Move;
-use crate::machine::AXES;
-use crate::plan::{blended_bound, blended_speed};
+use gwatt_machine::AXES;
+use gwatt_motion::Move;
+use gwatt_plan::{blended_bound, blended_speed};
 
 /// Powers of the speed by which the power of steps is expected to fall, by round;
 /// what exceeds then is lowered as if it accelerated.

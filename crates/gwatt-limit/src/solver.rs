@@ -12,11 +12,11 @@ use super::options::{Law, LimitOptions, Strategy};
 use super::refusal::too_much;
 use super::root::largest;
 use super::steps;
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisValues, KnobArgument, Machine};
-use crate::plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
-use crate::power::{Assessment, PowerModel, SpindleShare, Want};
-use crate::units::SECONDS_PER_MINUTE;
+use gwatt_machine::units::SECONDS_PER_MINUTE;
+use gwatt_machine::{AXES, AxisValues, KnobArgument, Machine};
+use gwatt_motion::{Move, MoveKind};
+use gwatt_plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
+use gwatt_power::{Assessment, PowerModel, SpindleShare, Want};
 
 /// How often a rounded value is lowered by one more step before giving up.
 pub(super) const RETRIES: u32 = 3;
@@ -435,10 +435,10 @@ impl<'m> Solver<'m> {
         // So slow a start that the ramps need next to nothing.
         slow.accel_mm_s2 = slow.accel_mm_s2.map(|accel| accel * 1e-9);
         let planned = plan(self.machine, mv, self.largest);
-        let crate::plan::Trajectory::Path(_) = planned.trajectory else {
+        let gwatt_plan::Trajectory::Path(_) = planned.trajectory else {
             return None;
         };
-        let cruise = crate::plan::Plan::cruise(planned.speed_limit_mm_s, mv.length_mm);
+        let cruise = gwatt_plan::Plan::cruise(planned.speed_limit_mm_s, mv.length_mm);
         let demand = self.model.demand(&slow, &cruise, Want::PEAKS);
         let share = &case.assessment.spindle;
         let speed_mm_s = planned.speed_limit_mm_s;

@@ -5,9 +5,9 @@ use super::change::{Change, feed_word, round_to_step};
 use super::lever::{Levers, NO_KNOB, Obstacle, SpeedLever};
 use super::options::{PresetElse, Strategy};
 use super::solver::Solver;
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{AXES, AxisSet, AxisValues, Knob, Machine, Preset};
-use crate::plan::{Caps, SpeedBound, speed_bound};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Knob, Machine, Preset};
+use gwatt_motion::{Move, MoveKind};
+use gwatt_plan::{Caps, SpeedBound, speed_bound};
 
 /// The preset for exactly the axes that start together.
 pub(super) fn preset_for<'m>(machine: &'m Machine, mv: &Move) -> Option<&'m Preset> {

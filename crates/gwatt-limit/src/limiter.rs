@@ -15,10 +15,10 @@ use super::pace::{Paces, fitting_mm_s};
 use super::solver::Solver;
 use super::split::{SPLIT_TRIES, Split};
 use super::window;
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{Machine, RapidJoint};
-use crate::plan::plan;
-use crate::power::{Assessment, Certificate};
+use gwatt_machine::{Machine, RapidJoint};
+use gwatt_motion::{Move, MoveKind};
+use gwatt_plan::plan;
+use gwatt_power::{Assessment, Certificate};
 
 /// What was decided for one move.
 ///

@@ -5,8 +5,8 @@ use super::change::Change;
 use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
 use super::options::{Allowed, LimitOptions};
 use super::solver::Solver;
-use crate::interpret::{CYCLE, MoveKind, TURNING_CYCLE};
-use crate::machine::{RapidKnob, RapidPath};
+use gwatt_machine::{RapidKnob, RapidPath};
+use gwatt_motion::{CYCLE, MoveKind, TURNING_CYCLE};
 
 /// What can always be done about a block that may not be changed.
 const BY_HAND: &str = "change it by hand";

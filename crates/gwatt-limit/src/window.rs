@@ -20,9 +20,9 @@ use super::options::{Law, Strategy};
 use super::refusal::no_value_for_all;
 use super::root::largest;
 use super::solver::Solver;
-use crate::interpret::Move;
-use crate::machine::AxisValues;
-use crate::plan::{SpeedBound, blended_bound, blended_speed, plan};
+use gwatt_machine::AxisValues;
+use gwatt_motion::Move;
+use gwatt_plan::{SpeedBound, blended_bound, blended_speed, plan};
 
 /// A move of a window.
 #[derive(Debug, Clone, Copy)]

@@ -10,7 +10,7 @@ use super::case::Case;
 use super::change::Change;
 use super::lever::SpeedLever;
 use super::solver::Solver;
-use crate::plan::plan;
+use gwatt_plan::plan;
 
 /// Steps of the search; each narrows the bracket to 0.618.
 const STEPS: u32 = 24;

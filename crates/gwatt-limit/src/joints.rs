@@ -4,8 +4,8 @@
 //! the control runs short blocks at a lower F.
 
 use super::road::{MOST, Road, SHORTEST_MM, Stretch, Way};
-use crate::plan::Profile;
-use crate::plan::lookahead::Speeds2;
+use gwatt_plan::Profile;
+use gwatt_plan::lookahead::Speeds2;
 
 /// What rounding may take of the square of a speed.
 const ROUNDING: f64 = 1e-9;

@@ -7,9 +7,9 @@
 use super::case::Case;
 use super::change::Change;
 use super::solver::Solver;
-use crate::interpret::Move;
-use crate::machine::{AXES, AxisValues};
-use crate::plan::{Trajectory, is_independent, plan};
+use gwatt_machine::{AXES, AxisValues};
+use gwatt_motion::Move;
+use gwatt_plan::{Trajectory, is_independent, plan};
 
 /// Halvings of a share of acceleration, and of the time of arrival.
 const HALVINGS: u32 = 16;

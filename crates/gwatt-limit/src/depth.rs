@@ -10,7 +10,7 @@
 use std::collections::HashMap;
 
 use super::pace::{Paced, Paces};
-use crate::interpret::Move;
+use gwatt_motion::Move;
 
 /// Where a line stands: which text, and its number there from 1.
 pub type Place = (u16, u64);

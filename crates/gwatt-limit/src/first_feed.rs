@@ -1,7 +1,7 @@
 //! The F that stands where none was in force: one for all blocks that count on none.
 
 use super::change::round_feed_down;
-use crate::units::SECONDS_PER_MINUTE;
+use gwatt_machine::units::SECONDS_PER_MINUTE;
 
 /// An F in the units of one block.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,8 +3,8 @@
 use super::change::Permit;
 use super::level::{Groups, groups};
 use super::options::LimitOptions;
-use crate::interpret::{Move, MoveKind, own_path_speed};
-use crate::machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
+use gwatt_machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
+use gwatt_motion::{Move, MoveKind, own_path_speed};
 
 /// The rule of a refusal for a block that may not be changed.
 pub const UNTOUCHABLE: &str = "untouchable";

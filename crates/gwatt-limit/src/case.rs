@@ -1,8 +1,8 @@
 //! A move that is to be solved by itself.
 
 use super::change::Permit;
-use crate::interpret::Move;
-use crate::power::Assessment;
+use gwatt_motion::Move;
+use gwatt_power::Assessment;
 
 /// A move to be solved, with all that is known of it.
 #[derive(Debug, Clone, Copy)]

@@ -4,7 +4,7 @@ use super::case::Case;
 use super::change::{Change, feed_word, round_to_step};
 use super::lever::{Levers, Obstacle, SpeedLever};
 use super::solver::Solver;
-use crate::plan::blended_speed;
+use gwatt_plan::blended_speed;
 
 impl Solver<'_> {
     /// A change that holds a move to a speed, mm/s at the largest override, besides what

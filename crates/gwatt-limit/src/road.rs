@@ -11,11 +11,11 @@ use super::change::Change;
 use super::solver::Solver;
 use super::split::SPLIT_TRIES;
 use super::stages::{Stages, Terms, stages};
-use crate::interpret::Move;
-use crate::machine::AxisValues;
-use crate::plan::lookahead::Speeds2;
-use crate::plan::{Plan, Profile, Trajectory, plan};
-use crate::power::Want;
+use gwatt_machine::AxisValues;
+use gwatt_motion::Move;
+use gwatt_plan::lookahead::Speeds2;
+use gwatt_plan::{Plan, Profile, Trajectory, plan};
+use gwatt_power::Want;
 
 /// The load that stretches are designed for, and the one that they must keep as they will
 /// be written: places are rounded.

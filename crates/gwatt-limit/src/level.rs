@@ -14,11 +14,11 @@ use super::limiter::Slot;
 use super::options::Strategy;
 use super::solver::Solver;
 use super::window::{self, Window};
-use crate::interpret::{Move, MoveKind};
-use crate::machine::{
+use gwatt_machine::{
     AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, LEVEL_GROUPS, Level, Machine,
 };
-use crate::plan::plan;
+use gwatt_motion::{Move, MoveKind};
+use gwatt_plan::plan;
 
 /// Groups of levels, by the indices of their knobs.
 pub(super) type Groups = ArrayVec<usize, LEVEL_GROUPS>;
@@ -242,5 +242,5 @@ pub(super) fn step_down(
 /// The values of a knob for a level.
 fn values(index: usize) -> AxisValues {
     let index = u32::try_from(index).unwrap_or(u32::MAX);
-    [f64::from(index); crate::machine::AXES]
+    [f64::from(index); gwatt_machine::AXES]
 }

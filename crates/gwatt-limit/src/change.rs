@@ -1,11 +1,11 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
 use super::level::level_of;
-use crate::interpret::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
-use crate::machine::{
+use gwatt_machine::units::SECONDS_PER_MINUTE;
+use gwatt_machine::{
     AXES, AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
 };
-use crate::units::SECONDS_PER_MINUTE;
+use gwatt_motion::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
 
 /// What may be changed about the block of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]

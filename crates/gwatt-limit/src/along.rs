@@ -3,8 +3,8 @@
 use super::case::Case;
 use super::change::{Change, round_to_step};
 use super::solver::{RETRIES, Solver};
-use crate::interpret::Move;
-use crate::machine::{AXES, AxisSet, AxisValues, KnobArgument};
+use gwatt_machine::{AXES, AxisSet, AxisValues, KnobArgument};
+use gwatt_motion::Move;
 
 impl Solver<'_> {
     /// The values of a knob for the largest speed, rounded down, for a path speed at the

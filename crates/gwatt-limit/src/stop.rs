@@ -4,9 +4,9 @@ use super::case::Case;
 use super::change::Change;
 use super::lever::Obstacle;
 use super::solver::Solver;
-use crate::interpret::{Corner, Move, MoveKind};
-use crate::machine::{CornerRule, Knob, PathMode, RapidJoint};
-use crate::plan::plan;
+use gwatt_machine::{CornerRule, Knob, PathMode, RapidJoint};
+use gwatt_motion::{Corner, Move, MoveKind};
+use gwatt_plan::plan;
 
 /// The share of its time between dwells in which a feed must run in exact stop to be
 /// written so.

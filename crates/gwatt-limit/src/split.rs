@@ -13,10 +13,10 @@ use super::lever::{Levers, levers};
 use super::road::{Lengths, MOST, NO_FIT, Road, SHORT};
 use super::solver::Solver;
 use super::steps;
-use crate::interpret::{Corner, Move, MoveKind};
-use crate::machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
-use crate::plan::{is_independent, plan};
-use crate::power::{Assessment, Certificate, plans_lines};
+use gwatt_machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
+use gwatt_motion::{Corner, Move, MoveKind};
+use gwatt_plan::{is_independent, plan};
+use gwatt_power::{Assessment, Certificate, plans_lines};
 
 /// How often pieces are tried next to the block's neighbours, each time coarser ones.
 pub(super) const SPLIT_TRIES: u8 = 4;

@@ -100,9 +100,9 @@ impl Allowed {
         unverified: false,
     };
 
-    /// What may help where no value of the permitted words is enough.
+    /// What may help where no value of the permitted words is enough, for a person.
     #[must_use]
-    pub(crate) fn else_helps(self) -> &'static str {
+    pub fn else_helps(self) -> &'static str {
         if self.feed {
             "another strategy may help"
         } else {

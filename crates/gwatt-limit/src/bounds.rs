@@ -1,7 +1,7 @@
 //! Largest speeds and accelerations of moves that run into each other.
 
-use crate::machine::{AXES, AxisValues};
-use crate::plan::SpeedBound;
+use gwatt_machine::{AXES, AxisValues};
+use gwatt_plan::SpeedBound;
 
 /// Largest speeds and accelerations over a window.
 pub(super) fn envelope<'a>(

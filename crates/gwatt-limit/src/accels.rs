@@ -1,7 +1,7 @@
 //! The largest accelerations with which ramps of a way fit, by the speed at their top.
 
 use super::road::{HALVINGS, Road};
-use crate::plan::{Phase, PhaseKind, Profile};
+use gwatt_plan::{Phase, PhaseKind, Profile};
 
 /// Speeds at which they are looked up.
 pub(super) const GRID: usize = 96;

@@ -12,7 +12,7 @@ use super::change::Change;
 use super::limiter::{Outcome, Slot};
 use super::solver::Solver;
 use super::window::{Member, Window, change, lower, put};
-use crate::plan::{Plan, Trajectory, plan};
+use gwatt_plan::{Plan, Trajectory, plan};
 
 /// The share of the time without stops that the time with them must stay under.
 const SOONER: f64 = 0.999;
