@@ -255,9 +255,7 @@ impl<T> Element<T> {
         });
     }
 
-    /// The acceleration that the program or the controller sets for all paths, mm/s²:
-    /// that along the path, or of X and Y where that has no limit (Klipper's
-    /// `max_accel`); infinite where neither has one.
+    /// See [`common_accel`].
     #[inline]
     pub(super) fn common_accel_mm_s2(&self) -> f64 {
         common_accel(self.path_accel_mm_s2, &self.axis_accel_mm_s2)
@@ -280,8 +278,9 @@ impl<T> Element<T> {
     }
 }
 
-/// See [`Element::common_accel_mm_s2`]: of the limit along the path and those of the
-/// axes, mm/s².
+/// The acceleration that the program or the controller sets for all paths, mm/s²:
+/// that along the path, or of X and Y where that has no limit (Klipper's
+/// `max_accel`); infinite where neither has one.
 #[must_use]
 #[inline]
 pub fn common_accel(path_mm_s2: f64, axes_mm_s2: &AxisValues) -> f64 {
