@@ -83,7 +83,9 @@ pub use execute::Interpreter;
 pub use facts::Facts;
 pub use flow::{Flow, Limits, Place};
 pub use given::GivenVariable;
-pub use gwatt_motion::*;
+pub use gwatt_motion::{
+    Action, ActionKind, Arc, Corner, FeedMode, Move, MoveKind, Square, Start, Step, Stray,
+};
 pub use knob::KnobState;
 pub use modal::{Feed, Modal, NumberText};
 pub use parameter_file::ParameterFile;
