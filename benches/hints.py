@@ -6,7 +6,8 @@
 Programs and machines are those of fit-rate.py. At a share of the program's own largest peak
 every hint "fits with ..." of `check` is held against a run of `limit --allow feed,expand`:
 the line must be lowered there, not refused, and an F that the hint names must be the one
-that is written (the lowest, where the line makes several moves).
+that is written (the lowest, where the line makes several moves). A line of which `check`
+says that no word helps must not be lowered.
 """
 
 import argparse
@@ -27,6 +28,8 @@ SPEC.loader.exec_module(fit_rate)
 HINT = re.compile(r"fits with (?:G1 )?F([0-9.]+)")
 # F is written with five digits.
 ROUNDING = 1e-3
+# Advice that promises what `limit` writes, and the spindle's, which no word lowers.
+PROMISES = ("fits ", "by itself it fits ", "`limit --allow expand`", "a lower S")
 
 
 def judge(gwatt, profile, program, share, seconds):
@@ -42,7 +45,9 @@ def judge(gwatt, profile, program, share, seconds):
         if not out:
             return None
         found = json.loads(out)
-        hints = [it for it in found[0].get("unfit", []) if it["help"].startswith("fits with") and not it["file"]]
+        unfit = [it for it in found[0].get("unfit", []) if not it["file"]]
+        hints = [it for it in unfit if it["help"].startswith("fits with")]
+        others = [it for it in unfit if not it["help"].startswith(PROMISES)]
         rows = folder / "rows.csv"
         options = ["--allow", "feed,expand", "--report", str(rows), "-o", str(folder / "written")]
         code, _, errors = fit_rate.run([gwatt, "limit", str(program), *common, *options], seconds)
@@ -65,6 +70,10 @@ def judge(gwatt, profile, program, share, seconds):
                 bad.append((hint["line"], hint["help"], f"F {values}"[:60]))
                 continue
             good.append(hint["line"])
+        for other in others:
+            its = done[other["line"]]
+            if its and all(row["action"] not in ("", "none possible") for row in its):
+                bad.append((other["line"], other["help"], its[0]["action"]))
         return good, bad
 
 

@@ -12,6 +12,7 @@ mod ideal;
 mod knobs;
 mod klipper;
 mod lathe;
+mod left_feed;
 mod levels;
 mod lines;
 mod languages;

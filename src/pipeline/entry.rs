@@ -8,7 +8,7 @@ use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 use crate::power::Assessment;
-use crate::rewrite::{Comment, Mark};
+use crate::rewrite::{Comment, Mark, has_at_most};
 use crate::syntax::Block;
 
 /// Why a rapid is not written as a feed, where the program can help.
@@ -208,7 +208,10 @@ impl Entry {
             (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
             (no_feed.is_some(), no_feed.unwrap_or_default()),
-            (facts.computed_feed, "its feed is worked out by the program"),
+            (
+                facts.computed_feed && mv.kind != MoveKind::Rapid && !self.caps_feed(machine),
+                "its feed is worked out by the program",
+            ),
             (
                 self.feed_mode == FeedMode::InverseTime,
                 "its feed is an inverse time (G93)",
@@ -346,7 +349,8 @@ impl Entry {
     /// Whether its rapid may be written as a feed between two dwells of no time,
     /// where the feed alone would be blended.
     pub(super) fn between_stops(&self, machine: &Machine) -> bool {
-        machine.controller.planner.dwell_stops && self.moves == 1
+        let mut moving = self.its_moves().filter(|mv| mv.kind != MoveKind::Dwell);
+        machine.controller.planner.dwell_stops && moving.next().is_some() && moving.next().is_none()
     }
 
     /// Whether it may run in exact stop, with a word in it or with words before and after it.
@@ -375,6 +379,17 @@ impl Entry {
         machine.controller.planner.rapid_joint != RapidJoint::All
             && change.is_some_and(|change| change.as_feed)
             && (self.mode_before == PathMode::LookAhead || self.steps.iter().any(blends))
+    }
+
+    /// Whether the F that the program works out for it may be held below a value.
+    fn caps_feed(&self, machine: &Machine) -> bool {
+        let word = self.facts.feed_word;
+        word.is_some_and(|word| {
+            has_at_most(
+                machine.controller.language.family,
+                word.number.of(&self.text),
+            )
+        })
     }
 
     /// Whether one of its words may say what F means.

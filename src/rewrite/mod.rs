@@ -26,6 +26,7 @@ pub use beforehand::Return;
 pub use block::{BlockView, FeedAround, PieceWords, Rewriter};
 pub use contour::contour_as_comment;
 pub(crate) use knob_line::lines as knob_lines;
+pub(crate) use number::has_at_most;
 pub use rapid_mark::{Comment, RapidMark, RapidMarkError};
 pub use single::{CycleBlock, Singles};
 pub use state::{FeedValue, Mark};

@@ -1,11 +1,18 @@
 //! Numbers and words in the style of the block around them.
 
 use crate::interpret::Feed;
+use crate::machine::Family;
 use crate::source::Span;
 use crate::syntax::Block;
 
 /// Decimals of a coordinate: finer than any control takes.
 const DECIMALS: f64 = 1e6;
+const FINE_DECIMALS: f64 = 1e10;
+
+/// How deep a Fanuc control lets brackets be nested (B-64484EN, custom macro), and by how
+/// much [`at_most`] nests them deeper.
+const ISO_DEPTH_MAX: usize = 5;
+const DEPTH: usize = 3;
 
 /// How a block is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +63,42 @@ pub(super) fn decimal(value: f64, point: bool) -> String {
     text
 }
 
+/// An expression of the program with a value that it does not exceed, where the language can
+/// say that.
+pub(super) fn at_most(family: Family, expression: &[u8], most: f64) -> Option<String> {
+    let expression = std::str::from_utf8(expression).ok()?.trim();
+    let most = decimal(most, true);
+    match family {
+        Family::Iso if depth(expression) + DEPTH > ISO_DEPTH_MAX => None,
+        // The lower of a and b is (a + b - |a - b|) / 2.
+        Family::Rs274 | Family::Iso => Some(format!(
+            "[[{expression}+{most}-ABS[{expression}-{most}]]/2]"
+        )),
+        Family::Siemens => Some(format!("MINVAL({expression},{most})")),
+        _ => None,
+    }
+}
+
+/// Whether a language can say that an expression does not exceed a value.
+pub(crate) fn has_at_most(family: Family, expression: &[u8]) -> bool {
+    at_most(family, expression, 0.0).is_some()
+}
+
+/// How deep brackets are nested.
+fn depth(expression: &str) -> usize {
+    let mut open = 0_usize;
+    let mut deepest = 0;
+    for byte in expression.bytes() {
+        match byte {
+            b'[' => open += 1,
+            b']' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(open);
+    }
+    deepest
+}
+
 /// True for a number that was written with a decimal point.
 pub(super) fn has_point(text: &[u8]) -> bool {
     text.contains(&b'.')
@@ -100,7 +143,16 @@ pub(super) fn with_digit(number: &[u8], digit: u8) -> Vec<u8> {
 
 /// A coordinate as it is written, finer than any control takes.
 pub(super) fn rounded(value: f64) -> f64 {
-    let rounded = (value * DECIMALS).round() / DECIMALS;
+    rounded_to(DECIMALS, value)
+}
+
+/// The same where later blocks work out their places from it.
+pub(super) fn rounded_finely(value: f64) -> f64 {
+    rounded_to(FINE_DECIMALS, value)
+}
+
+fn rounded_to(decimals: f64, value: f64) -> f64 {
+    let rounded = (value * decimals).round() / decimals;
     // No -0.
     if rounded == 0.0 { 0.0 } else { rounded }
 }

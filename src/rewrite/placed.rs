@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::number::rounded;
 use super::single::{CycleBlock, Lines, Singles, TURNING};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Move, MoveKind, Step};
@@ -78,7 +77,7 @@ impl Singles<'_> {
         let back_to_r = back.is_some() || self.lacks_level(of, returns_to_r);
         restate(of, held, back_to_r.then_some("G99 "), &mut lines)?;
         if let Some(back) = back {
-            lines.at = place(&back.start).map(rounded);
+            lines.at = place(&back.start).map(lines.round);
             lines.out.extend_from_slice(b"G98 ");
             self.one_move(back, of, &place, &mut lines)?;
         }

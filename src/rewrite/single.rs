@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::number::{decimal, rounded, with_blanks};
+use super::number::{decimal, rounded, rounded_finely, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
 use crate::machine::{ALL_AXES, AXES, AxisValues, Family, Language, Lathe, Machine};
@@ -62,6 +62,8 @@ pub struct Singles<'m> {
 
 /// What has been written of a block so far.
 pub(super) struct Lines<'a> {
+    /// How coordinates are rounded.
+    pub(super) round: fn(f64) -> f64,
     pub(super) out: Vec<u8>,
     pub(super) line_end: &'a [u8],
     pub(super) at: AxisValues,
@@ -271,7 +273,7 @@ impl<'m> Singles<'m> {
             },
             _ => return Err("not all of its moves are straight"),
         };
-        let end = place(&mv.end).map(rounded);
+        let end = place(&mv.end).map(lines.round);
         let mut words = word.to_owned();
         for axis in ALL_AXES {
             let index = axis as usize;
@@ -282,7 +284,7 @@ impl<'m> Singles<'m> {
             let value = if of.modal.absolute {
                 to
             } else {
-                rounded(to - from)
+                (lines.round)(to - from)
             };
             let letter = char::from(axis.letter());
             let _ = write!(words, " {letter}{}", decimal(value, true));
@@ -343,10 +345,18 @@ impl<'a> Lines<'a> {
         let start = moves.next().map(|mv| place(&mv.start));
         let moves = of.steps.iter().filter_map(as_move);
         let mut feeds = moves.filter(|mv| matches!(mv.kind, MoveKind::Feed | MoveKind::Arc));
+        // Blocks in polar coordinates go on from the place where this one ends.
+        let polar = |word: &Word| matches!(word.letter, b'@' | b'^');
+        let round = if of.block.words.iter().any(polar) {
+            rounded_finely
+        } else {
+            rounded
+        };
         Self {
+            round,
             out: Vec::new(),
             line_end: if line_end.is_empty() { b"\n" } else { line_end },
-            at: start.unwrap_or([0.0; AXES]).map(rounded),
+            at: start.unwrap_or([0.0; AXES]).map(round),
             motion: None,
             stopped: false,
             feed_mm_s: feeds.next().map(|mv| mv.feed_mm_s),

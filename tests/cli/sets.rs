@@ -249,9 +249,12 @@ fn a_subprogram_in_a_loop() {
 fn lines_that_cannot_suit_all_callers_are_refused() {
     let shop = shop("iso");
     let differ = "it runs several times, under feeds or modes that differ";
-    // The F that would have to be put back is not the same.
-    shop.put("slow.nc", "G21 G90 G94 F500\nG0 X1000.\nM98 P100\nM30\n");
-    shop.put("fast.nc", "G21 G90 G94 F600\nG0 X1000.\nM98 P100\nM30\n");
+    // The F that would have to be put back is not the same, and something counts on it.
+    shop.put("O0101.nc", "O0101\nG1 Z1.\nM99\n");
+    for (name, feed) in [("slow.nc", 500), ("fast.nc", 600)] {
+        let calls = "G0 X1000.\nM98 P100\nM98 P101";
+        shop.put(name, &format!("G21 G90 G94 F{feed}\n{calls}\nM30\n"));
+    }
     fits(&shop, &["slow.nc"]);
     fs::remove_dir_all(shop.path().join("fit")).unwrap();
     stays(&shop, &["slow.nc", "fast.nc"], 1, differ);

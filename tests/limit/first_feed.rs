@@ -86,11 +86,8 @@ fn it_is_asked_for() {
     // A line that meets an F the second time keeps all from getting one.
     let differs = "R1=1\nG1 X-400 Y-300\nAGAIN: X=400*R1 Y=300*R1\nY=R1 F500\nR1=R1-1\n\
                    IF R1>=0 GOTOB AGAIN\nM30\n";
-    let both = [
-        "it runs several times, under feeds or modes that differ",
-        "no F is in force, and one of the blocks that count on none cannot have its own",
-    ];
-    refused(&shop(KNOWN), differs, "--allow feed", &both);
+    let other = ["no F is in force, and one of the blocks that count on none cannot have its own"];
+    refused(&shop(KNOWN), differs, "--allow feed", &other);
 }
 
 /// A printer keeps the F of what ran before, which may be lower than any other: none is

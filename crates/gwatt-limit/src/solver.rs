@@ -239,7 +239,9 @@ impl<'m> Solver<'m> {
             _ => base.feed_mm_s.min(1e6),
         };
         let load_top = load_at(lever, top);
-        if load_top <= 1.0 && lever != SpeedLever::AsFeed {
+        // A path that strays from its move may be bound to more than the axes reach together.
+        let stands = top >= base.feed_mm_s || !mv.stray.strays() || self.load(case, &base) <= 1.0;
+        if load_top <= 1.0 && lever != SpeedLever::AsFeed && stands {
             // The speed in force fits: no word is needed.
             return Some(trial);
         }

@@ -273,9 +273,11 @@ fn survey_path(
             }
             continue;
         }
-        // A block that says all of a cycle depends on none before it.
+        // A block that says all of a cycle depends on none before it, save that increments
+        // begin at the level of the first.
         let has = |letter| line.block.words.iter().any(|word| word.letter == letter);
-        if !lathe && facts.motion_word.is_some() && has(b'R') && has(b'Z') {
+        let says_all = facts.motion_word.is_some() && has(b'R') && has(b'Z');
+        if !lathe && says_all && interpreter.modal().absolute {
             close(&mut open, all);
         }
         let series = open.get_or_insert_default();

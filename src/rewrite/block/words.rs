@@ -3,7 +3,7 @@
 use super::{BlockView, Rewriter, first_word};
 use crate::edit::Edit;
 use crate::interpret::Motion;
-use crate::rewrite::number::{Style, decimal, feed_again, has_point, with_digit};
+use crate::rewrite::number::{Style, at_most, decimal, feed_again, has_point, with_digit};
 use crate::rewrite::state::FeedValue;
 
 impl Rewriter<'_> {
@@ -63,7 +63,12 @@ impl Rewriter<'_> {
         if let Some(word) = facts.feed_word {
             self.written.feed = original;
             if let (Some(value), Some(_)) = (view.change.feed, wanted) {
-                let text = decimal(value, has_point(word.number.of(view.text)));
+                let number = word.number.of(view.text);
+                let family = self.machine.controller.language.family;
+                // What the program works out stays so, unless it stands for a rapid now.
+                let computed = facts.computed_feed && !view.change.as_feed;
+                let text = computed.then(|| at_most(family, number, value)).flatten();
+                let text = text.unwrap_or_else(|| decimal(value, has_point(number)));
                 self.edits.push(Edit::replace(word.number, text));
                 self.written.feed = wanted;
             }

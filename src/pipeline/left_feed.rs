@@ -1,0 +1,146 @@
+//! Which blocks count on the F that another one leaves in force. A line that runs under feeds
+//! that differ cannot put back the F that was in force before it was changed; where all
+//! blocks that count on it can have theirs written, it need not.
+
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+use super::entry::Entry;
+use super::table::{Decision, LineKey};
+use crate::interpret::{FeedMode, MoveKind};
+use crate::limit::Change;
+use crate::rewrite::{FeedAround, Mark};
+
+/// What runs have shown about the F that lines leave.
+#[derive(Debug, Default)]
+pub(super) struct LeftFeeds {
+    /// Lines that have run since an F was last set or counted on.
+    open: Vec<LineKey>,
+    is_open: HashSet<LineKey>,
+    lines: HashMap<LineKey, Left>,
+    users: HashMap<LineKey, User>,
+}
+
+/// What becomes of the F that a line leaves.
+#[derive(Debug, Default)]
+struct Left {
+    /// The lines that count on it next.
+    users: BTreeSet<LineKey>,
+    /// Something may count on it that cannot have its own F.
+    lost: bool,
+}
+
+/// A line that counts on the F in force.
+#[derive(Debug)]
+struct User {
+    /// The same block with its F.
+    restored: Box<Decision>,
+    /// It counts on the same F in each of its runs.
+    one_feed: bool,
+}
+
+/// What a block does with the F in force.
+enum Need {
+    Nothing,
+    /// It sets an F of its own.
+    Sets,
+    /// It obeys it or shows it.
+    Uses,
+    /// Its own F could not be written.
+    Unclear,
+}
+
+impl LeftFeeds {
+    /// Takes note of a run of a line; `before` is the state before it, and `may_change` says
+    /// whether the line may get an F.
+    pub(super) fn run(&mut self, line: LineKey, entry: &Entry, before: &Mark, may_change: bool) {
+        match need(entry, before) {
+            Need::Nothing => {}
+            Need::Sets => self.close(|_| {}),
+            Need::Unclear => self.close(|left| left.lost = true),
+            Need::Uses => {
+                self.close(|left| {
+                    left.users.insert(line);
+                });
+                let feed = before.feed_value();
+                let user = self.users.entry(line).or_insert_with(|| User {
+                    restored: Box::new(Decision {
+                        before: *before,
+                        around: FeedAround::NotKnownBefore,
+                        ..Decision::of(entry, Change::NONE, false)
+                    }),
+                    one_feed: true,
+                });
+                user.one_feed &= user.restored.before.feed_value() == feed;
+            }
+        }
+        if may_change && self.is_open.insert(line) {
+            self.open.push(line);
+        }
+    }
+
+    /// The program has ended.
+    pub(super) fn end(&mut self) {
+        self.close(|left| left.lost = true);
+    }
+
+    fn close(&mut self, mut note: impl FnMut(&mut Left)) {
+        for line in self.open.drain(..) {
+            note(self.lines.entry(line).or_default());
+        }
+        self.is_open.clear();
+    }
+
+    /// Whether a line may leave another F: all that count on it can have theirs; `writable`
+    /// says of a line whether it stands in a text that is written.
+    pub(super) fn may_differ(&self, line: LineKey, writable: impl Fn(LineKey) -> bool) -> bool {
+        let known = |user: &LineKey| {
+            let one_feed = self.users.get(user).is_some_and(|user| user.one_feed);
+            one_feed && writable(*user)
+        };
+        let left = self.lines.get(&line);
+        left.is_none_or(|left| !left.lost && left.users.iter().all(known))
+    }
+
+    /// The lines that count on the F that a line leaves, each with its F.
+    pub(super) fn users(&self, line: LineKey) -> impl Iterator<Item = (LineKey, &Decision)> {
+        let users = self.lines.get(&line).into_iter();
+        let users = users.flat_map(|left| left.users.iter());
+        users.filter_map(|user| Some((*user, &*self.users.get(user)?.restored)))
+    }
+}
+
+/// What a block does with the F in force.
+fn need(entry: &Entry, before: &Mark) -> Need {
+    let facts = &entry.facts;
+    if !facts.executed && !facts.reads_state {
+        return Need::Nothing;
+    }
+    if facts.feed_word.is_some() && !facts.reads_state {
+        return Need::Sets;
+    }
+    let sealed = facts.checksum || facts.dwell_takes_feed;
+    let shows = facts.boundary
+        || facts.selects_tool
+        || facts.stop_word.is_some()
+        || facts.reads_state
+        || facts.turns_knob
+        || entry.block.tape;
+    let takes_word = facts.uses_motion && facts.uses_feed;
+    // Under compensation these are moves of earlier blocks, which have had their turn.
+    let obeys = !facts.compensated
+        && entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell));
+    let per_minute = before.per_minute && entry.feed_mode == FeedMode::PerMinute;
+    if !shows && !obeys && !takes_word {
+        return if per_minute || facts.compensated {
+            Need::Nothing
+        } else {
+            Need::Unclear
+        };
+    }
+    let can_have = (shows || takes_word) && !sealed && !facts.compensated;
+    if can_have && per_minute && before.feed.is_some() {
+        Need::Uses
+    } else {
+        Need::Unclear
+    }
+}

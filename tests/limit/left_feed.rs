@@ -1,0 +1,122 @@
+//! Lines that run under feeds that differ, and feeds that the program works out.
+//!
+//! At the end of its ramp an axis draws 100 W + 0.5 m/s·(200·3 + 100) N/0.8 = 537.5 W.
+
+use crate::shop::Shop;
+
+fn shop(controller: &str, power_w: f64) -> Shop {
+    let converter = format!("peak_power_w = {power_w}");
+    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
+}
+
+/// What is written, which fits.
+fn limited(controller: &str, power_w: f64, program: &str) -> String {
+    let shop = shop(controller, power_w);
+    shop.put("a.nc", program);
+    let (code, text, errors) = shop.run("limit a.nc --allow feed");
+    assert_eq!(code, 0, "{controller}: {errors}");
+    text
+}
+
+fn refused(controller: &str, program: &str, reason: &str) {
+    let shop = shop(controller, 300.0);
+    shop.put("a.nc", program);
+    let (code, text, errors) = shop.run("limit a.nc --allow feed");
+    assert_eq!((code, text.as_str()), (1, ""), "{program}");
+    assert!(errors.contains(reason), "{program}: {errors}");
+}
+
+const DIFFER: &str = "it runs several times, under feeds or modes that differ";
+
+/// The rapids of a macro that is called with one F after another: the next block that obeys F
+/// has its own.
+#[test]
+fn rapids_before_blocks_with_their_own_feed() {
+    let program = "#1=100\nWHILE [#1 LT 400] DO1\nG0 X1000. Y800.\nG1 Z-10. F#1\nG0 Z0.\n\
+                   #1=#1+100\nEND1\nG1 X0. F500.\nM30\n";
+    assert_eq!(
+        limited("iso", 600.0, program),
+        "#1=100\nWHILE [#1 LT 400] DO1\nG1 X1000. Y800. F26404\nG0\nG1 Z-10. F#1\nG0 Z0.\n\
+         #1=#1+100\nEND1\nG1 X0. F500.\nM30\n"
+    );
+}
+
+/// After the loop one F is in force again, which the next block counts on, and so does whoever
+/// looks at the end.
+#[test]
+fn what_counts_on_the_feed_gets_it() {
+    for (after, written) in [
+        ("G1 X0.\nM30\n", "G1 X0. F300\nM30\n"),
+        ("M30\n", "F300\nM30\n"),
+        ("G0 X0.\nG1 X5. F9.\nM30\n", "G0 X0.\nG1 X5. F9.\nM30\n"),
+    ] {
+        let head = "#1=100.\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\n";
+        let tail = "Z0.\n#1=#1+100\nEND1\n";
+        let program = format!("{head}G0 X1000. Y800.\nX0.\nG0 {tail}{after}");
+        assert_eq!(
+            limited("iso", 600.0, &program),
+            format!("{head}G1 X1000. Y800. F26404\nG0\nX0.\nG0 {tail}{written}")
+        );
+    }
+}
+
+/// Nothing can be written where the feeds differ that are counted on.
+#[test]
+fn feeds_that_differ_cannot_be_put_back() {
+    let counted_on = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\nG0 X1000. Y800.\nG1 Z0.\n\
+                      #1=#1+100\nEND1\nM30\n";
+    refused("iso", counted_on, DIFFER);
+    let read = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\nG0 X1000. Y800.\n#2=#4109\nG1 Z0. F1\n\
+                #1=#1+100\nEND1\nM30\n";
+    refused("iso", read, DIFFER);
+    let at_the_end = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\n#1=#1+100\nG0 X1000. Y800.\n\
+                      END1\n";
+    refused("iso", at_the_end, DIFFER);
+}
+
+/// At F20000 an axis draws 391.7 W; half of 591.7 W is the F that the program works out, or the
+/// lower one.
+#[test]
+fn what_the_program_works_out_is_held_below_a_value() {
+    for (controller, program, written) in [
+        (
+            "iso",
+            "#1=20000.\nG1 X1000. F#1\nX0.\nM30\n",
+            "#1=20000.\nG1 X1000. F[[#1+13714.-ABS[#1-13714.]]/2]\nX0.\nF20000\nM30\n",
+        ),
+        (
+            "linuxcnc",
+            "#1=10000\nG61 G1 X1000 F[#1*2]\nX0\nM2\n",
+            "#1=10000\nG61 G1 X1000 F[[[#1*2]+13714.-ABS[[#1*2]-13714.]]/2]\nX0\nF20000\nM2\n",
+        ),
+        (
+            "siemens",
+            "R1=10000\nG60 G1 X1000 F=R1*2\nX0\nM30\n",
+            "R1=10000\nG60 G1 X1000 F=MINVAL(R1*2,13714.)\nX0\nF20000\nM30\n",
+        ),
+    ] {
+        assert_eq!(limited(controller, 300.0, program), written);
+    }
+    // A Fanuc control nests no more than five brackets.
+    let nested = "#1=20000.\nG1 X1000. F[[[#1]]]\nM30\n";
+    refused("iso", nested, "its feed is worked out by the program");
+}
+
+/// In a loop the runs that are slow enough stay as they are.
+#[test]
+fn slower_runs_keep_their_feed() {
+    let program = "G61\nG0 X0\n#1=5000\no1 while [#1 LT 21000]\nG1 X1000 F#1\nG1 X0 F[#1/2]\n\
+                   #1=[#1+5000]\no1 endwhile\nM2\n";
+    let written = limited("linuxcnc", 300.0, program);
+    assert_eq!(
+        written,
+        program.replace("X1000 F#1", "X1000 F[[#1+13714.-ABS[#1-13714.]]/2]")
+    );
+    let shop = shop("linuxcnc", 300.0);
+    shop.put("b.nc", &written);
+    let (_, text, _) = shop.run("moves b.nc");
+    for (feed, runs) in [(5000, 2), (10000, 2), (13714, 2), (2500, 1), (7500, 1)] {
+        let shown = format!("\"feed_mm_min\":{feed},");
+        assert_eq!(text.matches(&shown).count(), runs, "{feed}: {text}");
+    }
+}
