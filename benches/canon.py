@@ -71,7 +71,8 @@ def interpret(program, tools):
             return None
         if found.returncode != 0 and NO_END not in found.stderr:
             return None
-    calls, feed, mode, unit, plane = [], 0.0, "", "", ""
+    # Before the first word for it paths are blended.
+    calls, feed, mode, unit, plane = [], 0.0, "CANON_CONTINUOUS, 0.000000", "", ""
     at, lengths = None, [0.0] * 9
     for line in found.stdout.decode("latin1").splitlines():
         match = CALL.match(line)

@@ -18,6 +18,20 @@ fn limited(shop: &Shop, program: &str) -> String {
     shop.get("out.nc")
 }
 
+/// A dwell in the block comes before its motion, which stops as it did.
+#[test]
+fn a_dwell_before_the_rapid() {
+    let program = "G21 G90 G64\nG4 P0.1 G0 X400 Y300\nG1 X0 F900\nM2\n";
+    assert_snapshot!(limited(&shop("linuxcnc", 520.0), program), @r"
+    G21 G90 G64
+    G4 P0
+    G4 P0.1 G1 X400 Y300 F37500
+    G4 P0
+    G1 X0 F900
+    M2
+    ");
+}
+
 #[test]
 fn tools_stops_and_ends() {
     let program = "G21 G90 G54\nG0 X400 Y300 T3 M8\nX0 Y50 Z40 M0 (LOOK)\nM1 G0 X300\n\

@@ -193,6 +193,19 @@ fn holes_in_polar_words_are_written_out() {
     assert!(text.contains("(G81 written out)"), "{text}");
 }
 
+/// In increments R counts from the level of the first cycle of the series, which is the
+/// series' as long as no other motion comes between.
+#[test]
+fn increments_go_on_at_the_level_of_the_first() {
+    let shop = shop("linuxcnc", 700.0);
+    // The way to X300 Y300 alone is too much.
+    let program = "G21 G90 G0 Z40 F300\nG81 X1 Y1 R2 Z-3\nX300 Y300\n\
+                   G91 G81 X1 Y1 R-20 Z-3 L2\nG80\nM2\n";
+    let text = limited(&shop, program, "expand");
+    same_moves(&shop, &text);
+    assert_eq!(text.matches("(G81 written out)").count(), 3, "{text}");
+}
+
 #[test]
 fn a_turning_cycle_is_written_out() {
     let shop = shop("linuxcnc", 200.0);

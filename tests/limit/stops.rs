@@ -121,3 +121,21 @@ fn a_feed_between_rapids_is_planned() {
         assert_eq!(peak_w(&program), (alone_w, "planned".to_owned()));
     }
 }
+
+/// An arc in a plane that the frame turns is bounded, more loosely the faster its F says that
+/// it goes, though no axis reaches that.
+#[test]
+fn an_arc_in_a_turned_plane() {
+    let program = "G21 G90 G61 G10 L2 P1 X0 Y0 R60\nG54 F254000\nG0 X0 Y0 Z0\n\
+                   G0 Y38.1 Z12.7\nG19\nG2 Y12.7 Z38.1 K25.4\nM2\n";
+    let shop = Shop::mill(
+        "linuxcnc",
+        "peak_power_w = 1000",
+        "[path]\nrapid = \"linear\"",
+        "",
+    );
+    shop.put("a.nc", program);
+    let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(shop.run("check out.nc").0, 0);
+}
