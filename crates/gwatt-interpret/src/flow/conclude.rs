@@ -1,12 +1,13 @@
 //! What is done after a line: the moves of cycles about contours, and where it goes on.
 
-use super::Flow;
+use super::{Flow, Trouble};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
 use crate::report::Diagnostics;
 use crate::transfer::Transfer;
 use gwatt_motion::Step;
 use gwatt_syntax::Block;
+use gwatt_syntax::diagnostic::Diagnostic;
 
 impl Flow {
     /// Lets the program go on after the line that was just executed with these results,
@@ -60,5 +61,53 @@ impl Flow {
             diagnostics.push(*trouble);
         }
         !stuck
+    }
+
+    /// Counts what the line did, and stops what runs away.
+    pub(super) fn end_line(&mut self, run: u32, moves: usize) -> Result<(), Box<Diagnostic>> {
+        if moves == 0 {
+            self.idle_lines += 1;
+            if self.idle_lines > self.limits.idle_lines {
+                let message = format!(
+                    "{} lines in a row have been executed without a move",
+                    self.limits.idle_lines
+                );
+                let help = "look for a loop that does not end; --max-idle-lines sets this limit";
+                return Err(self.trouble(Trouble::new("endless", message, help)));
+            }
+            return Ok(());
+        }
+        self.idle_lines = 0;
+        if run > 1 {
+            self.repeated_moves += moves as u64;
+            if self.repeated_moves > self.limits.repeated_moves {
+                let message = format!(
+                    "more than {} moves by repetition",
+                    self.limits.repeated_moves
+                );
+                let help = "look for a loop that does not end; --max-moves sets this limit";
+                return Err(self.trouble(Trouble::new("endless", message, help)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls the macro that G66 has set, after a block that moved.
+    fn after_move(&mut self, interpreter: &mut Interpreter<'_>) -> Result<(), Box<Diagnostic>> {
+        if self.modal_named.is_some() {
+            return self
+                .modal_call(interpreter)
+                .map_err(|trouble| self.trouble(trouble));
+        }
+        let Some(call) = &self.modal else {
+            return Ok(());
+        };
+        // Moves of the macro itself do not call it.
+        if !self.calls.is_empty() {
+            return Ok(());
+        }
+        let call = call.clone();
+        self.call(call, interpreter)
+            .map_err(|trouble| self.trouble(trouble))
     }
 }
