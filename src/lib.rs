@@ -1,5 +1,7 @@
-//! gwatt fits CNC part programs to the converter that all drives of a machine
-//! share.
+//! gwatt rewrites CNC part programs so that all axes together never draw more than the
+//! converter that they share delivers.
+//!
+//! [`check`], [`report`], [`limit`] and [`Moves`] are where to begin: see [`program`].
 //!
 //! This is the whole of it in one place: what stands in crates of its own is
 //! re-exported here. Crates and modules stand in the order of the data flow; each
@@ -26,3 +28,8 @@ pub mod pipeline;
 pub mod dialect;
 pub mod contour;
 pub mod report;
+pub mod program;
+
+pub use machine::Machine;
+pub use pipeline::Moves;
+pub use program::{Error, Limit, Limited, Report, check, check_as, limit, report, report_as};
