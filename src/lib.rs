@@ -1,7 +1,7 @@
 //! gwatt rewrites CNC part programs so that all axes together never draw more than the
 //! converter that they share delivers.
 //!
-//! [`check`], [`report`], [`limit`] and [`Moves`] are where to begin: see [`program`].
+//! [`check()`], [`report()`], [`limit()`] and [`Moves`] are where to begin: see [`program`].
 //!
 //! This is the whole of it in one place: what stands in crates of its own is
 //! re-exported here. Crates and modules stand in the order of the data flow; each
