@@ -9,6 +9,7 @@ mod converter;
 mod corners;
 mod expressions;
 mod flow;
+mod front_door;
 mod interpret;
 mod compensation;
 mod cycles;
