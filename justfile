@@ -6,7 +6,7 @@ test *args:
     cargo test --locked {{args}}
 
 fmt:
-    cargo fmt
+    cargo fmt --all
 
 lint:
     cargo clippy --all-targets -- -D warnings

@@ -7,9 +7,7 @@ use std::io::Cursor;
 use std::path::Path;
 use std::process::Command;
 
-use gwatt::identify::contour::{
-    ContourRow, ContourSink, ContourSummary, PlotPoint, Settings, Tracer,
-};
+use gwatt::contour::{ContourRow, ContourSink, ContourSummary, PlotPoint, Settings, Tracer};
 use gwatt::identify::{Factor, TransferFunction};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Options, Stretch, analyze, motion};

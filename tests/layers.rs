@@ -1,10 +1,79 @@
-//! The shape of the code: which module may import which, how long files are,
-//! and that no test is forgotten.
+//! The shape of the code: which crate may import which, which module, how long
+//! files are, and that no test is forgotten.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 const LINES_MAX: usize = 500;
+
+/// The crates in their order, each with those that it imports; all but the last
+/// stand in `crates`.
+const CRATES: [(&str, &[&str]); 9] = [
+    ("gwatt-syntax", &[]),
+    ("gwatt-machine", &["gwatt-syntax"]),
+    ("gwatt-motion", &["gwatt-machine"]),
+    (
+        "gwatt-interpret",
+        &["gwatt-machine", "gwatt-motion", "gwatt-syntax"],
+    ),
+    ("gwatt-plan", &["gwatt-machine", "gwatt-motion"]),
+    (
+        "gwatt-power",
+        &["gwatt-machine", "gwatt-motion", "gwatt-plan"],
+    ),
+    (
+        "gwatt-limit",
+        &["gwatt-machine", "gwatt-motion", "gwatt-plan", "gwatt-power"],
+    ),
+    ("gwatt-identify", &["gwatt-machine"]),
+    (
+        "gwatt",
+        &[
+            "gwatt-identify",
+            "gwatt-interpret",
+            "gwatt-limit",
+            "gwatt-machine",
+            "gwatt-motion",
+            "gwatt-plan",
+            "gwatt-power",
+            "gwatt-syntax",
+        ],
+    ),
+];
+
+/// The folder of a crate.
+fn folder_of(name: &str) -> PathBuf {
+    if name == "gwatt" {
+        root().to_owned()
+    } else {
+        root().join("crates").join(name)
+    }
+}
+
+/// The crates of the workspace that a `Cargo.toml` names below headings such as
+/// `[dependencies]`; with `dev` those of tests, else all others.
+fn dependencies(manifest: &str, dev: bool) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut counts = false;
+    for line in manifest.lines() {
+        if let Some(heading) = line.strip_prefix('[') {
+            let heading = heading.trim_end_matches(']');
+            counts = heading.ends_with("dependencies")
+                && heading != "workspace.dependencies"
+                && heading.ends_with("dev-dependencies") == dev;
+        } else if counts && line.starts_with("gwatt") {
+            let end = line.find(|c: char| !(c.is_alphanumeric() || c == '-'));
+            names.push(line[..end.unwrap_or(line.len())].to_owned());
+        }
+    }
+    names
+}
+
+/// The Rust files of all crates, tests of the root excluded.
+fn sources() -> Vec<PathBuf> {
+    let folders = CRATES.iter().map(|(name, _)| folder_of(name).join("src"));
+    folders.flat_map(|folder| rust_files(&folder)).collect()
+}
 
 /// The root of the package.
 fn root() -> &'static Path {
@@ -68,9 +137,58 @@ fn imports(text: &str) -> Vec<(usize, String)> {
 }
 
 #[test]
+fn crates_import_only_from_above() {
+    let mut above: Vec<&str> = Vec::new();
+    for (name, imports) in CRATES {
+        let manifest = fs::read_to_string(folder_of(name).join("Cargo.toml")).unwrap();
+        assert_eq!(dependencies(&manifest, false), imports, "{name} imports");
+        for import in dependencies(&manifest, true)
+            .iter()
+            .chain(&dependencies(&manifest, false))
+        {
+            assert!(
+                above.contains(&import.as_str()),
+                "{name} imports {import}, which does not stand above it"
+            );
+        }
+        above.push(name);
+    }
+}
+
+#[test]
+fn all_crates_are_listed() {
+    let mut found: Vec<String> = fs::read_dir(root().join("crates"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    found.push("gwatt".to_owned());
+    found.sort();
+    let mut listed = CRATES.map(|(name, _)| name.to_owned());
+    listed.sort();
+    assert_eq!(found, listed);
+}
+
+#[test]
+fn every_crate_has_an_example_and_the_lints() {
+    for (name, _) in CRATES {
+        let read = |file| fs::read_to_string(folder_of(name).join(file)).unwrap();
+        let manifest = read("Cargo.toml");
+        assert!(manifest.contains("[lints]\nworkspace = true"), "{name}");
+        for field in ["description", "keywords", "license", "categories"] {
+            let given = |line: &str| line.starts_with(field);
+            assert!(manifest.lines().any(given), "{name}: {field}");
+        }
+        if name != "gwatt" {
+            assert!(read("README.md").contains("```rust"), "{name}");
+            assert!(read("src/lib.rs").contains("include_str!(\"../README.md\")"));
+        }
+    }
+}
+
+#[test]
 fn modules_import_only_from_above() {
     let order = modules();
-    assert!(order.len() > 5, "{order:?}");
+    assert!(order.len() > 4, "{order:?}");
     let mut wrong = Vec::new();
     for path in rust_files(&root().join("src")) {
         let module = module_of(&path);
@@ -97,7 +215,7 @@ fn modules_import_only_from_above() {
 
 #[test]
 fn files_are_short() {
-    let long: Vec<String> = rust_files(&root().join("src"))
+    let long: Vec<String> = sources()
         .into_iter()
         .filter_map(|path| {
             let lines = fs::read_to_string(&path).unwrap().lines().count();

@@ -5,9 +5,7 @@ use std::path::Path;
 use std::slice;
 
 use anyhow::{Context, Result, ensure};
-use gwatt::identify::contour::{
-    ContourRow, ContourSink, ContourSummary, PlotPoint, Settings, Tracer,
-};
+use gwatt::contour::{ContourRow, ContourSink, ContourSummary, PlotPoint, Settings, Tracer};
 use gwatt::pipeline::{self, Failure, MotionNotes};
 use gwatt::report::{
     ArcList, CONTOUR_COLUMNS, ContourChart, Verdict, circle_chart, contour_csv_row, contour_json,

@@ -3,11 +3,10 @@
 use super::front::Line;
 use super::split::Places;
 use super::table::{IN_A_FILE, LineKey};
-use crate::interpret::{
-    CYCLE, Facts, FeedMode, KnobState, Motion, Move, MoveKind, Stance, Step, TURNING_CYCLE,
-};
+use crate::interpret::{Facts, FeedMode, KnobState, Motion, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
+use crate::motion::{CYCLE, TURNING_CYCLE};
 use crate::power::Assessment;
 use crate::rewrite::{Comment, Mark, has_at_most};
 use crate::syntax::Block;

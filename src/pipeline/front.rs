@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use super::table::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step, Transfer};
+use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
@@ -227,42 +227,7 @@ impl<'m, R: Read + Seek> Front<'m, R> {
             ..
         } = self;
         let flow = flow.as_mut()?;
-        // What is wrong in a loop is wrong in each of its runs.
-        *stuck |= diagnostics.errors > 0 && run > 1;
-        let mut transfer = interpreter.transfer();
-        let mut done = Ok(());
-        let cycle = match &mut transfer {
-            Some(Transfer::Contour(contour)) => {
-                let done = flow.turn(contour, interpreter, block, steps, diagnostics);
-                facts.contour = contour.lines;
-                facts.guessed = facts.guessed.or(contour.guessed());
-                Some(done)
-            }
-            Some(Transfer::LatheCycle(cycle)) => {
-                Some(flow.lathe_cycle(cycle, interpreter, block, steps, diagnostics))
-            }
-            _ => None,
-        };
-        if let Some(cycle) = cycle {
-            done = cycle;
-            *stuck |= diagnostics.errors > 0;
-            transfer = None;
-        }
-        let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
-        if done.is_ok() {
-            done = flow.end_line(run, moves.clone().count());
-        }
-        if done.is_ok()
-            && let Some(transfer) = transfer
-        {
-            done = flow.follow(transfer, interpreter);
-        } else if done.is_ok() && moves.count() > 0 {
-            done = flow.after_move(interpreter);
-        }
-        if let Err(trouble) = done {
-            *stuck = true;
-            diagnostics.push(*trouble);
-        }
+        *stuck |= !flow.conclude(run, interpreter, block, steps, facts, diagnostics);
         let place = flow.now();
         Some(Line {
             key: (flow.number(place), place.line as u64 + 1),

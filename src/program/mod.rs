@@ -18,7 +18,7 @@
 //!
 //! [`check`], [`report`] and [`limit`] take a program that is at hand and the usual
 //! [`Options`]; [`Limit`] says what `limit` may do, and reads and writes streams of any
-//! length. [`Moves`] gives the moves of a program one by one. Whoever wants rows as they
+//! length. [`Moves`](crate::Moves) gives the moves of a program one by one. Whoever wants rows as they
 //! come, series over time or sets of programs finds them in [`pipeline`](crate::pipeline).
 
 mod error;
@@ -79,7 +79,7 @@ pub struct Report {
 }
 
 /// Reads a program and gives the figures of each of its moves, all of which are held: for
-/// programs that do not fit into memory see [`analyze`](crate::pipeline::analyze).
+/// programs that do not fit into memory see [`analyze`].
 ///
 /// # Errors
 /// See [`check`].

@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::identify::contour::{ArcResult, BINS, PlotPoint};
+use crate::contour::{ArcResult, BINS, PlotPoint};
 
 /// Points that can be told apart; one more halves them.
 const POINTS_MAX: usize = 8192;

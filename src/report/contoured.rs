@@ -6,7 +6,7 @@ use std::io::{self, Read, Write};
 use serde_json::{Value, json};
 
 use super::identified::number;
-use crate::identify::contour::{ArcResult, ContourRow, ContourSummary, Errors, Roundness};
+use crate::contour::{ArcResult, ContourRow, ContourSummary, Errors, Roundness};
 
 /// Columns of the CSV.
 pub const CONTOUR_COLUMNS: &str = "line,run,move,start_s,duration_s,error_um,error_rms_um,\

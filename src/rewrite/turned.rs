@@ -1,9 +1,10 @@
 //! Knobs that the written program has turned otherwise than the original.
 
 use super::knob_line;
-use crate::interpret::{KnobState, Square, own_path_speed};
+use crate::interpret::{KnobState, Square};
 use crate::limit::Change;
 use crate::machine::{AXES, AxisValues, Knob, KnobArgument, KnobTarget, Machine};
+use crate::motion::own_path_speed;
 
 /// The words that switch `LinuxCNC`'s adaptive feed.
 pub(crate) const SWITCH_ON: &str = "M52 P1";

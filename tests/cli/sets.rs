@@ -253,7 +253,7 @@ fn lines_that_cannot_suit_all_callers_are_refused() {
     shop.put("O0101.nc", "O0101\nG1 Z1.\nM99\n");
     for (name, feed) in [("slow.nc", 500), ("fast.nc", 600)] {
         let calls = "G0 X1000.\nM98 P100\nM98 P101";
-        shop.put(name, &format!("G21 G90 G94 F{feed}\n{calls}\nM30\n"));
+        shop.put(name, format!("G21 G90 G94 F{feed}\n{calls}\nM30\n"));
     }
     fits(&shop, &["slow.nc"]);
     fs::remove_dir_all(shop.path().join("fit")).unwrap();

@@ -4,7 +4,7 @@ use super::{FREE, end, line, machine, plan, start};
 use gwatt::interpret::{FeedMode, Move, MoveKind};
 use gwatt::machine::{AXES, AxisSet, ChordRule, CornerAngle, CornerRule, LookAhead, PathMode};
 use gwatt::plan::Overrides;
-use gwatt::plan::lookahead::{Curve, Element, Piece};
+use gwatt::plan::lookahead::{Curve, Element, Piece, chord_count};
 
 fn rule(corner: CornerRule) -> LookAhead {
     LookAhead {
@@ -136,7 +136,7 @@ fn arcs_become_chords() {
         accel_mm_s2: 1000.0,
     };
     // Chords of 2·√(0.002·19.998) = 0.39998 mm on 31.4159 mm.
-    assert_eq!(chords.count(&curve, 50.0), 78);
+    assert_eq!(chord_count(&chords, &curve, 50.0), 78);
     let coarse = ChordRule {
         deviation_mm: f64::INFINITY,
         max_mm: 2.0,
@@ -145,16 +145,13 @@ fn arcs_become_chords() {
         ..chords
     };
     // 50 mm/s and 50 a second: chords of 1 mm; 200 mm/s: of 2 mm.
-    assert_eq!(coarse.count(&curve, 50.0), 32);
-    assert_eq!(coarse.count(&curve, 200.0), 16);
-    assert_eq!(
-        ChordRule {
-            per_circle: 72.0,
-            ..coarse
-        }
-        .count(&curve, 200.0),
-        36
-    );
+    assert_eq!(chord_count(&coarse, &curve, 50.0), 32);
+    assert_eq!(chord_count(&coarse, &curve, 200.0), 16);
+    let round = ChordRule {
+        per_circle: 72.0,
+        ..coarse
+    };
+    assert_eq!(chord_count(&round, &curve, 200.0), 36);
 }
 
 #[test]

@@ -1,0 +1,88 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # From recordings to parameters
+//!
+//! A [`Recording`] is read, checked and turned to SI. [`rigid`] fits mass and
+//! friction. [`flexible`] finds the [`TransferFunction`] from force to
+//! acceleration, whose zeros are the axis' anti-resonances. [`power_fit`] fits the
+//! electrical power of an axis. [`tune`] makes the filters that let several axes
+//! answer alike. [`excitation`] makes signals that excite an axis. [`merge`] and
+//! [`response_table`] write what was found into machine files.
+
+pub mod excitation;
+pub mod flexible;
+pub mod judgement;
+pub mod merge;
+pub mod power_fit;
+pub mod response_table;
+pub mod rigid;
+pub mod tune;
+
+mod any_delay;
+mod arx;
+mod charge;
+mod choice;
+mod column;
+mod column_map;
+mod command_input;
+mod data;
+mod delay_profile;
+mod described;
+mod discrete;
+mod disturbance;
+mod equations;
+mod fewer_rows;
+mod filter;
+mod friction;
+mod header_name;
+mod integrated;
+mod ladder;
+mod layout;
+mod leaky;
+mod methods;
+mod modal;
+mod mode;
+mod mode_starts;
+mod neighbours;
+mod noise;
+mod normal;
+mod output_error;
+mod parallel;
+mod parameters;
+mod peak_factor;
+mod polynomial;
+mod power_log;
+mod prepared;
+mod quality;
+mod recording;
+mod response_fit;
+mod response_starts;
+mod rigidity;
+mod rows;
+mod rubbing;
+mod sampling;
+mod sandwich;
+mod search;
+mod sensitivity;
+mod spectrum;
+mod spectral_lines;
+mod state_space;
+mod stretch;
+mod subspace;
+mod transfer;
+mod trouble;
+
+pub use column::{Kind, Quantity};
+pub use column_map::MappedColumn;
+pub use discrete::{Discrete, NoTwin, SampledResponse};
+pub use judgement::Judgement;
+pub use neighbours::Given;
+pub use noise::Whiteness;
+pub use peak_factor::PeakFactor;
+pub use polynomial::roots;
+pub use recording::{ReadAs, Recording, Signal};
+pub use rigid::Figure;
+pub use spectrum::{FrequencyResponse, measure};
+pub use state_space::{Measured, Sampled, Simulation, simulate};
+pub use transfer::{Factor, TransferFunction, factors_of};
+pub use trouble::{Outcome, Trouble};

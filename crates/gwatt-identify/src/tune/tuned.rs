@@ -1,0 +1,83 @@
+//! The whole of a tuning: axes, filters, and how far the axes lie apart.
+
+use super::axis::AxisResponse;
+use super::correction::{Correction, Wish, design};
+use super::delay::{Advice, advice};
+use super::mismatch::{Pair, mismatch};
+use crate::trouble::{Outcome, Trouble};
+
+/// Axes, their filters, and what these do.
+#[derive(Debug, Clone)]
+pub struct Tuned {
+    /// The axes.
+    pub axes: Vec<AxisResponse>,
+    /// What was asked for.
+    pub wish: Wish,
+    /// Band in which the axes are compared, from 0 to Hz.
+    pub band_hz: f64,
+    /// The filters, in the order of the axes.
+    pub correction: Correction,
+    /// How far the axes lie apart.
+    pub pairs: Vec<Pair>,
+    /// Their delays, if they are known.
+    pub advice: Option<Vec<Advice>>,
+}
+
+impl Tuned {
+    /// Designs filters for these axes.
+    ///
+    /// # Errors
+    ///
+    /// Axes that cannot be compared, or a filter that cannot be realised.
+    pub fn new(axes: Vec<AxisResponse>, wish: Wish, band_hz: f64) -> Outcome<Self> {
+        if axes.len() < 2 {
+            return Err(Trouble::new(
+                "one axis alone has nothing to be like",
+                "give a recording of each axis that moves along the path",
+            ));
+        }
+        for (index, axis) in axes.iter().enumerate() {
+            let others = axes.iter().take(index);
+            if others.clone().any(|other| other.letter == axis.letter) {
+                return Err(Trouble::new(
+                    format!("axis {} is given twice", axis.letter),
+                    "one recording for each axis",
+                ));
+            }
+            if let Some(other) = others.clone().find(|o| o.from_command != axis.from_command) {
+                let (command, force) = if axis.from_command {
+                    (axis.letter, other.letter)
+                } else {
+                    (other.letter, axis.letter)
+                };
+                return Err(Trouble::new(
+                    format!(
+                        "axis {command} is known from its command, axis {force} from its force"
+                    ),
+                    "record all axes alike; --from-command takes the command where both are recorded",
+                ));
+            }
+        }
+        if !(band_hz > 0.0 && band_hz <= 0.5 / wish.period_s) {
+            return Err(Trouble::new(
+                format!("axes cannot be compared up to {band_hz} Hz"),
+                format!(
+                    "give --band-hz between 0 and {:.1}: filters know no more at this period",
+                    0.5 / wish.period_s
+                ),
+            ));
+        }
+        let zeros: Vec<_> = axes.iter().map(|a| (a.letter, a.zero_factors())).collect();
+        let correction = design(&zeros, &wish)?;
+        let pairs = mismatch(&axes, &correction, band_hz);
+        let advice = advice(&axes);
+        Ok(Self {
+            axes,
+            wish,
+            band_hz,
+            correction,
+            pairs,
+            advice,
+        })
+    }
+}

@@ -1,0 +1,375 @@
+//! Chamfers and rounded corners between two moves of a plane.
+//!
+//! Fanuc B-63944EN, "Optional Chamfering and Corner R": `,C` cuts a corner off
+//! at this distance from it, `,R` rounds it. SINUMERIK, "Chamfer, rounding (CHF,
+//! CHR, RND, RNDM)". The move that has the word waits for the next one.
+
+use std::f64::consts::TAU;
+
+use super::Fault;
+use super::corner::{Circle, Track, meet};
+use super::hold::place;
+use crate::arc::{self, Ends, Slack};
+use crate::code::GCode;
+use crate::execute::{Control, Run};
+use crate::vector::{Vector, along, cross, dot, left, scale, sub, unit};
+use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step};
+
+/// Why such blocks stay as they are.
+const FIXED: &str = "a corner is cut or rounded there";
+/// Directions that differ by less make no corner, rad.
+const STRAIGHT_RAD: f64 = 1e-6;
+/// Ends may be passed by so much, mm and rad: rounding.
+const ROUNDING: f64 = 1e-9;
+/// Longest text of a line that is kept.
+const TEXT_MAX: usize = 256;
+
+/// What is to be put into a corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Insert {
+    /// A chamfer that begins and ends this far from the corner, mm (,C; CHR).
+    Legs(f64),
+    /// A chamfer of this length, mm (CHF).
+    Chamfer(f64),
+    /// An arc of this radius, mm (,R; RND); `modal`: of every corner (RNDM).
+    Round { radius_mm: f64, modal: bool },
+}
+
+/// A move that waits for the next one, and what comes before that.
+#[derive(Debug, Default)]
+pub(crate) struct Corners {
+    /// What the present block asks for.
+    pub(crate) ask: Option<Insert>,
+    waits: Option<(Move, Insert)>,
+    /// The present block has let go of it, with its corner.
+    cut: bool,
+    /// The line of that move, kept for the block that lets it go.
+    text: Option<((u16, u64), Vec<u8>)>,
+}
+
+impl Corners {
+    /// Whether a move waits.
+    pub(crate) fn holds(&self) -> bool {
+        self.waits.is_some()
+    }
+
+    /// Whether the present block holds a corner with the moves next to it.
+    pub(super) fn is_cut(&self) -> bool {
+        self.cut
+    }
+
+    /// The line of a move that waited.
+    pub(crate) fn text_of(&self, mv: &Move) -> Option<&[u8]> {
+        let (key, text) = self.text.as_ref()?;
+        (*key == (mv.text, mv.line)).then_some(text)
+    }
+}
+
+impl Control<'_> {
+    /// Asks for something in the corner after the present block.
+    pub(crate) fn ask_corner(&mut self, insert: Insert) {
+        self.corners.get_or_insert_default().ask = Some(insert);
+    }
+
+    /// Puts in what corners ask for, among what a block gave.
+    #[cold]
+    pub(crate) fn insert_corners(&mut self, run: &mut Run<'_, '_>, before: usize, errors: u64) {
+        let Some(mut corners) = self.corners.take() else {
+            return;
+        };
+        let ask = corners.ask.take();
+        corners.cut = false;
+        if ask.is_none() && corners.waits.is_none() {
+            return;
+        }
+        run.facts.fixed = Some(FIXED);
+        run.facts.compensated = true;
+        if run.report.diagnostics.errors != errors {
+            return;
+        }
+        match self.join(&mut corners, ask, before, run) {
+            Ok(()) => self.corners = Some(corners),
+            // One fault is told once.
+            Err(fault) => fault.report(run),
+        }
+    }
+
+    fn join(
+        &self,
+        corners: &mut Corners,
+        ask: Option<Insert>,
+        before: usize,
+        run: &mut Run<'_, '_>,
+    ) -> Result<(), Fault> {
+        let path = |step: &Step| matches!(step, Step::Move(_));
+        let own = run.steps.get(before..).unwrap_or_default();
+        let moves = own.iter().filter(|step| path(step)).count();
+        let modal = |insert| matches!(insert, Insert::Round { modal: true, .. });
+        let switches = run.words.groups & GCode::CompensationOff.group() != 0;
+        if let Some((first, insert)) = corners.waits.take() {
+            if switches {
+                // The move that waits belongs to the compensation before.
+                return Err(Fault::NoSecondMove);
+            }
+            let feeds = own.iter().all(|step| match step {
+                Step::Move(mv) => matches!(mv.kind, MoveKind::Feed | MoveKind::Arc),
+                Step::Action(_) => true,
+            });
+            if modal(insert) && ask.is_none() && (moves == 0 || !feeds) {
+                // RNDM=0: no corner where its path ends.
+                run.steps.insert(before, Step::Move(first));
+            } else if moves == 0 && own.is_empty() {
+                corners.waits = Some((first, insert));
+                return if ask.is_some_and(|ask| !modal(ask)) {
+                    Err(Fault::NoSecondMove)
+                } else {
+                    Ok(())
+                };
+            } else if moves != 1 || !feeds {
+                return Err(Fault::NoSecondMove);
+            } else {
+                self.put_in(first, insert, before, run)?;
+                corners.cut = true;
+            }
+        }
+        let Some(insert) = ask else { return Ok(()) };
+        let last = matches!(run.steps.get(before..).and_then(<[Step]>::last),
+            Some(Step::Move(mv)) if matches!(mv.kind, MoveKind::Feed | MoveKind::Arc));
+        if moves != 1 || !last || self.ended {
+            let [a, b, _] = self.modal.plane;
+            let in_plane = run.steps.get(before..).unwrap_or_default().iter().any(|step| {
+                matches!(step, Step::Move(mv) if mv.moving.contains(a) || mv.moving.contains(b))
+            });
+            return if modal(insert) && !in_plane {
+                Ok(())
+            } else {
+                Err(Fault::NoFirstMove)
+            };
+        }
+        if let Some(Step::Move(mv)) = run.steps.pop() {
+            let (text, _) = gwatt_syntax::source::split_line_end(run.report.text);
+            let text = text.get(..TEXT_MAX).unwrap_or(text).to_vec();
+            corners.text = Some(((mv.text, mv.line), text));
+            corners.waits = Some((mv, insert));
+        }
+        Ok(())
+    }
+
+    /// Puts the corner in front of the only move of the present block.
+    fn put_in(
+        &self,
+        mut first: Move,
+        insert: Insert,
+        before: usize,
+        run: &mut Run<'_, '_>,
+    ) -> Result<(), Fault> {
+        let [a, b, _] = self.modal.plane;
+        let plane = [a, b];
+        let own = run.steps.get_mut(before..).unwrap_or_default();
+        let second = own.iter_mut().find_map(|step| match step {
+            Step::Move(mv) => Some(mv),
+            Step::Action(_) => None,
+        });
+        let Some(second) = second else {
+            return Err(Fault::NoSecondMove);
+        };
+        for mv in [&first, &*second] {
+            let flat = mv.moving.iter().all(|axis| axis == a || axis == b);
+            let known = mv.unknown_start.is_empty() && mv.feed_mode != FeedMode::InverseTime;
+            let turn = mv
+                .arc
+                .is_none_or(|arc| arc.plane == plane && arc.sweep_rad.abs() <= TAU);
+            if !(flat && known && turn) || mv.moving.is_empty() {
+                return Err(Fault::CornerPlane);
+            }
+        }
+        let inch = self.modal.mm_per_unit == gwatt_machine::units::MM_PER_INCH;
+        let corner = Corner::new(&first, second, plane, inch)?;
+        let (from, to, arc) = corner.cut(insert)?;
+        let mut middle = second.clone();
+        (middle.line, middle.number) = (first.line, first.number);
+        (middle.run, middle.text) = (first.run, first.text);
+        (middle.start, middle.end) = (first.end, first.end);
+        middle.kind = if arc.is_some() {
+            MoveKind::Arc
+        } else {
+            MoveKind::Feed
+        };
+        if !self.is_siemens() {
+            // Which of the two feeds holds there is not documented: the faster.
+            middle.feed_mm_s = middle.feed_mm_s.max(first.feed_mm_s);
+        }
+        corner.shorten(&mut first, corner.before.start, from)?;
+        corner.shorten(second, to, corner.after.end)?;
+        place(&mut middle, plane, from, to, arc);
+        run.steps
+            .splice(before..before, [Step::Move(first), Step::Move(middle)]);
+        Ok(())
+    }
+}
+
+/// A programmed move in the plane.
+#[derive(Debug, Clone, Copy)]
+struct Element {
+    start: Vector,
+    end: Vector,
+    arc: Option<Arc>,
+    /// Directions at its start and its end.
+    directions: [Vector; 2],
+}
+
+impl Element {
+    fn new(mv: &Move, plane: [usize; 2]) -> Result<Self, Fault> {
+        let [start, end] = [&mv.start, &mv.end].map(|at| plane.map(|axis| at[axis]));
+        let directions = match &mv.arc {
+            None => [unit(sub(end, start)); 2],
+            Some(arc) => [start, end].map(|at| {
+                let outward = unit(sub(at, arc.center))?;
+                Some(scale(left(outward), arc.sweep_rad.signum()))
+            }),
+        };
+        let [Some(first), Some(last)] = directions else {
+            return Err(Fault::NoBend);
+        };
+        Ok(Self {
+            start,
+            end,
+            arc: mv.arc,
+            directions: [first, last],
+        })
+    }
+
+    /// What lies `radius_mm` next to it, to the left for a `side` of 1.
+    fn beside(&self, side: f64, radius_mm: f64) -> Result<Track, Fault> {
+        let [direction, _] = self.directions;
+        let Some(arc) = &self.arc else {
+            return Ok(Track::Line {
+                through: along(self.start, left(direction), side * radius_mm),
+                along: direction,
+            });
+        };
+        let counterclockwise = arc.sweep_rad > 0.0;
+        let inside = (side > 0.0) == counterclockwise;
+        let radius = arc.radius_mm + if inside { -radius_mm } else { radius_mm };
+        if radius <= 0.0 {
+            return Err(Fault::LargeCorner);
+        }
+        Ok(Track::Circle(Circle {
+            center: arc.center,
+            radius,
+            counterclockwise,
+            inside,
+            ratio: 1.0,
+        }))
+    }
+
+    /// Where a circle about `center` touches it.
+    fn touched_from(&self, center: Vector) -> Option<Vector> {
+        match &self.arc {
+            None => {
+                let [direction, _] = self.directions;
+                let way = dot(sub(center, self.start), direction);
+                Some(along(self.start, direction, way))
+            }
+            Some(arc) => {
+                let outward = unit(sub(center, arc.center))?;
+                Some(along(arc.center, outward, arc.radius_mm))
+            }
+        }
+    }
+}
+
+/// Two moves that meet.
+struct Corner {
+    plane: [usize; 2],
+    inch: bool,
+    before: Element,
+    after: Element,
+    /// How the path bends there, rad; positive to the left.
+    bend_rad: f64,
+}
+
+impl Corner {
+    fn new(first: &Move, second: &Move, plane: [usize; 2], inch: bool) -> Result<Self, Fault> {
+        let before = Element::new(first, plane)?;
+        let after = Element::new(second, plane)?;
+        let (came, goes) = (before.directions[1], after.directions[0]);
+        let bend_rad = libm::atan2(cross(came, goes), dot(came, goes));
+        let most = std::f64::consts::PI - STRAIGHT_RAD;
+        if !(STRAIGHT_RAD..most).contains(&bend_rad.abs()) {
+            return Err(Fault::NoBend);
+        }
+        Ok(Self {
+            plane,
+            inch,
+            before,
+            after,
+            bend_rad,
+        })
+    }
+
+    /// Where what is put in begins and ends, and its arc.
+    fn cut(&self, insert: Insert) -> Result<(Vector, Vector, Option<Arc>), Fault> {
+        let leg = match insert {
+            Insert::Legs(leg) => leg,
+            Insert::Chamfer(length) => length / (2.0 * libm::cos(self.bend_rad / 2.0)),
+            Insert::Round { radius_mm, .. } => return self.round(radius_mm),
+        };
+        if self.before.arc.is_some() || self.after.arc.is_some() {
+            return Err(Fault::ChamferAtArc);
+        }
+        let from = along(self.before.end, self.before.directions[1], -leg);
+        let to = along(self.after.start, self.after.directions[0], leg);
+        Ok((from, to, None))
+    }
+
+    fn round(&self, radius_mm: f64) -> Result<(Vector, Vector, Option<Arc>), Fault> {
+        let side = self.bend_rad.signum();
+        let [before, after] = [&self.before, &self.after].map(|it| it.beside(side, radius_mm));
+        let center = meet(&before?, &after?, side * radius_mm).map_err(|_| Fault::LargeCorner)?;
+        let from = self.before.touched_from(center);
+        let to = self.after.touched_from(center);
+        let (Some(from), Some(to)) = (from, to) else {
+            return Err(Fault::LargeCorner);
+        };
+        let ends = self.ends(from, to, side < 0.0);
+        let arc = arc::from_center(&ends, center).map_err(|_| Fault::NoArc)?;
+        Ok((from, to, Some(arc)))
+    }
+
+    fn ends(&self, start: Vector, end: Vector, clockwise: bool) -> Ends {
+        Ends {
+            plane: self.plane,
+            start,
+            end,
+            clockwise,
+            turns: 1.0,
+            slack: Slack::of_part(self.inch),
+        }
+    }
+
+    /// Gives a move its shorter ends, which must lie on it.
+    fn shorten(&self, mv: &mut Move, from: Vector, to: Vector) -> Result<(), Fault> {
+        let [a, b] = self.plane;
+        let arc = match &mv.arc {
+            None => {
+                let way = [mv.end[a] - mv.start[a], mv.end[b] - mv.start[b]];
+                let direction = unit(way).ok_or(Fault::NoBend)?;
+                if dot(sub(to, from), direction) < -ROUNDING {
+                    return Err(Fault::LargeCorner);
+                }
+                None
+            }
+            Some(whole) => {
+                let ends = self.ends(from, to, whole.sweep_rad < 0.0);
+                let arc = arc::from_center(&ends, whole.center).map_err(|_| Fault::NoArc)?;
+                if arc.sweep_rad.abs() > whole.sweep_rad.abs() + ROUNDING {
+                    return Err(Fault::LargeCorner);
+                }
+                Some(arc)
+            }
+        };
+        place(mv, self.plane, from, to, arc);
+        Ok(())
+    }
+}

@@ -1,0 +1,336 @@
+//! Cutter radius compensation: G40, G41, G42, G41.1 and G42.1.
+//!
+//! The tool's centre runs next to the programmed path, and where a move ends
+//! depends on the next one. Each move is therefore held back, with what follows
+//! it without leaving its place in the plane, until the next is known.
+//!
+//! How outside corners are passed and where the first and the last move meet
+//! the shifted path is data of the controller profile: as LinuxCNC 2.9 does it
+//! (manual, "Cutter Compensation" and "G41, G42", "G41.1, G42.1"; what it leaves
+//! open was measured), Fanuc (B-63944EN, "Details of Cutter Compensation";
+//! B-63604EN, "Details of Tool Nose Radius Compensation") or SINUMERIK
+//! ("Tool radius compensation").
+//!
+//! Blocks are executed as if there were no compensation; what a block gives
+//! then goes through here.
+
+mod corner;
+mod fault;
+mod follow;
+mod hold;
+mod insert;
+mod radius;
+mod refusals;
+mod straight;
+mod words;
+
+use self::fault::Fault;
+use self::hold::{Hold, place};
+pub(super) use self::insert::{Corners, Insert};
+pub(super) use self::radius::{Choice, ContourFeed};
+use super::execute::{Control, Interpreter, Run};
+use super::vector::Vector;
+use gwatt_machine::{CompensationLead, CutterCompensation};
+use gwatt_motion::{Move, MoveKind, Step};
+
+/// Why blocks under compensation stay as they are.
+const FIXED: &str = "it is under cutter compensation";
+/// Longest text of a line that is kept.
+const TEXT_MAX: usize = 256;
+
+/// How far the compensation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// On, but nothing has moved yet.
+    Entry,
+    /// The tool is next to the path.
+    On,
+    /// G40 was read: the next move begins next to the path and ends on it.
+    Leaving,
+    /// Off.
+    Off,
+}
+
+/// Compensation that is on, or whose end is still to be seen.
+#[derive(Debug)]
+pub(super) struct Compensation {
+    state: State,
+    style: CutterCompensation,
+    /// The radius is 0: the path is as programmed, whatever the style.
+    passive: bool,
+    /// The move that waits is the one that switched it on.
+    entering: bool,
+    /// A move in the plane has come in this block.
+    moved: bool,
+    /// Blocks without one since the last.
+    idle: u32,
+    /// What F speaks for on arcs.
+    feed: ContourFeed,
+    /// Whether the plane was mirrored when it was switched on.
+    flipped: bool,
+    /// Axes of the plane.
+    plane: [usize; 2],
+    /// +1: the tool is to the left of its way; -1: to the right.
+    side: f64,
+    radius_mm: f64,
+    /// From the centre of a lathe tool's nose to the point that the machine
+    /// moves.
+    nose: Vector,
+    /// Where it was switched on the tool was still next to an earlier path: the
+    /// first move must be straight.
+    straight_first: bool,
+    hold: Hold,
+    /// Lines whose moves are held back, or were until this block.
+    texts: Vec<((u16, u64), Vec<u8>)>,
+    /// The steps of a block: a buffer.
+    own: Vec<Step>,
+}
+
+impl Compensation {
+    /// Whether G41 or G42 is in force.
+    pub(super) fn is_on(&self) -> bool {
+        matches!(self.state, State::Entry | State::On)
+    }
+
+    /// Ten times the G word in force: 400 for G40, 410 for G41 and G41.1, 420 for G42
+    /// and G42.1.
+    pub(super) fn code(&self) -> f64 {
+        match self.state {
+            State::Entry | State::On if self.side > 0.0 => 410.0,
+            State::Entry | State::On => 420.0,
+            _ => 400.0,
+        }
+    }
+
+    /// The line of a move that was held back.
+    pub(super) fn text_of(&self, mv: &Move) -> Option<&[u8]> {
+        let key = (mv.text, mv.line);
+        let found = self.texts.iter().find(|(held, _)| *held == key);
+        found.map(|(_, text)| text.as_slice())
+    }
+
+    /// Whether it shifts a path: not with a radius of 0.
+    pub(super) fn shifts(&self) -> bool {
+        !self.passive && self.state != State::Off
+    }
+
+    /// Whether it is on, or was until the last block.
+    pub(super) fn is_at_work(&self) -> bool {
+        self.state != State::Off
+    }
+
+    /// Whether moves wait for their ends.
+    pub(super) fn holds(&self) -> bool {
+        !self.hold.steps.is_empty()
+    }
+
+    /// Keeps the text of a line while its moves wait, and for the block that
+    /// lets them go.
+    fn remember(&mut self, key: (u16, u64), text: &[u8]) {
+        let known = self.texts.last().is_some_and(|(last, _)| *last == key);
+        if self.holds() && !known {
+            let (text, _) = gwatt_syntax::source::split_line_end(text);
+            self.texts
+                .push((key, text.get(..TEXT_MAX).unwrap_or(text).to_vec()));
+        }
+    }
+
+    /// Forgets the lines whose moves have been handed on before this block: all
+    /// but the one that did so.
+    fn forget(&mut self) {
+        if std::mem::take(&mut self.hold.handed_on) {
+            let last = self.texts.pop().filter(|_| self.holds());
+            self.texts.clear();
+            self.texts.extend(last);
+        }
+    }
+
+    /// Whether a move after G40 takes the tool back: in LinuxCNC any, elsewhere
+    /// the first in the plane.
+    fn leaves_by(&self, mv: &Move) -> bool {
+        self.style.lead == CompensationLead::Beside
+            || mv.arc.is_some()
+            || self
+                .plane
+                .iter()
+                .any(|&axis| mv.start[axis] != mv.end[axis])
+    }
+
+    /// The first move after G40 begins where the tool is. True where its
+    /// length is one of linear axes.
+    fn leave(&mut self, mv: &mut Move) -> bool {
+        self.state = State::Off;
+        let end = self.plane.map(|axis| mv.end[axis]);
+        place(mv, self.plane, self.hold.tool, end, None)
+    }
+}
+
+impl Interpreter<'_> {
+    /// The text of the line of a move that was given with the last block, if
+    /// that line came before it; cut if it is long.
+    #[must_use]
+    pub fn held_text(&self, mv: &Move) -> Option<&[u8]> {
+        let control = &self.control;
+        let shifted = control.compensation.as_ref().and_then(|it| it.text_of(mv));
+        shifted.or_else(|| control.corners.as_ref()?.text_of(mv))
+    }
+
+    /// True while cutter compensation is on, and for the block that ends it.
+    #[must_use]
+    pub fn compensates(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.is_at_work())
+    }
+
+    /// True while moves are held back: cutter compensation needs the next one
+    /// to know where they end.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.holds()) || self.holds_corner()
+    }
+
+    /// True while a move waits for its chamfer or rounded corner.
+    #[must_use]
+    pub fn holds_corner(&self) -> bool {
+        let corners = self.control.corners.as_ref();
+        corners.is_some_and(|corners| corners.holds())
+    }
+}
+
+impl Control<'_> {
+    /// LinuxCNC asks the machine where it is after a tool change: what was left
+    /// of a compensation that G40 has switched off is forgotten, and the axes are
+    /// where they are, next to the path.
+    pub(super) fn forget_way_back(&mut self) {
+        let Some(compensation) = &mut self.compensation else {
+            return;
+        };
+        if compensation.state != State::Leaving
+            || compensation.style.lead != CompensationLead::Beside
+        {
+            return;
+        }
+        compensation.state = State::Off;
+        let places = compensation.plane.into_iter().zip(compensation.hold.tool);
+        for (axis, at) in places {
+            self.position.at[axis] = at;
+        }
+    }
+
+    /// Whether the tool is still next to the path of a compensation that was
+    /// switched off.
+    pub(super) fn is_on_way_back(&self) -> bool {
+        let compensation = self.compensation.as_ref();
+        compensation.is_some_and(|compensation| compensation.state == State::Leaving)
+    }
+
+    /// Sends what a block gave through the compensation.
+    #[cold]
+    pub(super) fn compensate(&mut self, run: &mut Run<'_, '_>, before: usize, errors: u64) {
+        let Some(mut compensation) = self.compensation.take() else {
+            return;
+        };
+        if compensation.state == State::Off && !compensation.holds() {
+            return;
+        }
+        if compensation.is_on() || compensation.holds() {
+            run.facts.fixed = Some(FIXED);
+            run.facts.compensated = true;
+        }
+        if compensation.passive {
+            self.compensation = Some(compensation);
+            return;
+        }
+        if run.report.diagnostics.errors == errors {
+            compensation.forget();
+            let mut own = std::mem::take(&mut compensation.own);
+            own.extend(run.steps.drain(before..));
+            if let Err(fault) = self.pass(&mut compensation, &mut own, run) {
+                // One fault is told once: it goes on without compensation.
+                fault.report(run);
+                return;
+            }
+            own.clear();
+            compensation.own = own;
+            compensation.remember((self.text, run.line), run.report.text);
+        }
+        self.compensation = Some(compensation);
+    }
+
+    fn pass(
+        &mut self,
+        compensation: &mut Compensation,
+        own: &mut Vec<Step>,
+        run: &mut Run<'_, '_>,
+    ) -> Result<(), Fault> {
+        let by_corner = compensation.style.lead == CompensationLead::Corner;
+        if !(compensation.is_on() || by_corner && compensation.state == State::Leaving) {
+            compensation.hold.finish(run.steps)?;
+        }
+        compensation.moved = false;
+        if compensation.entering && !compensation.is_on() {
+            return Err(Fault::NothingBetween);
+        }
+        let path = |step: &&Step| matches!(step, Step::Move(mv) if mv.kind != MoveKind::Dwell);
+        let cut = self
+            .corners
+            .as_ref()
+            .is_some_and(|corners| corners.is_cut());
+        if compensation.is_on() && !cut && own.iter().filter(path).count() > 1 {
+            return Err(Fault::OtherMotion);
+        }
+        for mut step in own.drain(..) {
+            match (compensation.state, &mut step) {
+                (State::Leaving, Step::Move(mv))
+                    if mv.kind != MoveKind::Dwell && compensation.leaves_by(mv) =>
+                {
+                    self.leave(compensation, mv, run)?;
+                    run.steps.push(step);
+                }
+                (State::Off, _) => run.steps.push(step),
+                (State::Leaving, _) => compensation.hold.stay(step, run.steps)?,
+                _ => compensation.follow(step, run.steps)?,
+            }
+        }
+        if compensation.moved {
+            compensation.idle = 0;
+        } else if compensation.state == State::On {
+            compensation.idle += 1;
+        }
+        if self.ended {
+            compensation.hold.finish(run.steps)?;
+            compensation.state = State::Off;
+        }
+        Ok(())
+    }
+
+    fn leave(
+        &self,
+        compensation: &mut Compensation,
+        mv: &mut Move,
+        run: &mut Run<'_, '_>,
+    ) -> Result<(), Fault> {
+        if mv.arc.is_some() {
+            return Err(Fault::ArcAfterExit);
+        }
+        let timed = mv.feed_mode == gwatt_motion::FeedMode::InverseTime;
+        let beside = compensation.style.lead == CompensationLead::Beside;
+        if timed && mv.kind != MoveKind::Rapid && !beside {
+            return Err(Fault::InverseTime);
+        }
+        if compensation.style.lead == CompensationLead::Corner {
+            compensation.turn_to_leave(mv, run.steps)?;
+        }
+        let linear = compensation.leave(mv);
+        // Its time is for the programmed way too.
+        if mv.kind != MoveKind::Rapid
+            && !timed
+            && let Some(speed_mm_s) =
+                self.feed_speed(run, &mv.end, mv.arc.as_ref(), mv.length_mm, linear)
+        {
+            mv.feed_mm_s = speed_mm_s;
+        }
+        Ok(())
+    }
+}

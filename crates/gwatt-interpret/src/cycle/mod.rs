@@ -1,0 +1,31 @@
+//! Canned cycles: a hole by one block. Each part is a move of its own.
+
+mod iso;
+mod rs274;
+mod words;
+
+/// The values of a cycle that hold until it is ended.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Held {
+    /// Retract level and bottom: of `Rs274` as they were written, else program
+    /// coordinates in mm.
+    pub(super) r: Option<f64>,
+    pub(super) bottom: Option<f64>,
+    /// Dwell in s.
+    pub(super) dwell_s: Option<f64>,
+    /// Depth of a peck, or the shift of G76 and G87, as it was written.
+    pub(super) q: Option<f64>,
+    /// I, J, K as they were written.
+    pub(super) ijk: [Option<f64>; 3],
+    /// The level at which the series of cycles began.
+    pub(super) initial: Initial,
+}
+
+/// Where a series of cycles began: machine coordinate, and offset and unit at
+/// that time.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Initial {
+    pub(super) at_mm: f64,
+    pub(super) offset_mm: f64,
+    pub(super) mm_per_unit: f64,
+}

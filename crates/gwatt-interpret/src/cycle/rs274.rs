@@ -1,0 +1,457 @@
+//! G73 to G89 as `LinuxCNC` has them ("Canned Cycles" and the following
+//! sections of its G-code reference; the order of moves, and what happens where
+//! the text is silent, as its interpreter 2.9 shows).
+
+use crate::execute::{Control, Run};
+use crate::special::Turning;
+use crate::words::{AXIS_LETTERS, POLAR, bit};
+use gwatt_machine::{ALL_AXES, AXES, AxisValues, PathMode};
+use gwatt_motion::CYCLE as FIXED;
+use gwatt_motion::{ActionKind, Corner, FeedMode, MoveKind};
+
+/// Distance that a peck keeps off the last depth: 0.010 inch.
+const PECK_CLEARANCE_INCH: f64 = 0.010;
+
+/// One hole: levels of the drilling axis in program units, and `clear_mm` and
+/// `r_mm` in machine coordinates.
+struct Hole {
+    number: u16,
+    r: f64,
+    bottom: f64,
+    r_mm: f64,
+    clear_mm: f64,
+    dwell_s: f64,
+    peck: f64,
+    /// Shift in the plane and top of the counterbore of G87.
+    shift_mm: [f64; 2],
+    middle: f64,
+}
+
+/// How an incremental polar target goes on when a cycle is repeated: about the
+/// origin, by the same angle, and by the same length away from it.
+struct PolarStep {
+    origin: [f64; 2],
+    length_mm: f64,
+    angle_rad: f64,
+}
+
+impl PolarStep {
+    /// The step from one place to another, machine coordinates.
+    fn new(origin: &AxisValues, from: &AxisValues, to: &AxisValues) -> Self {
+        let origin = [origin[0], origin[1]];
+        let [from, to] = [from, to].map(|place| Self::polar(origin, place));
+        Self {
+            origin,
+            length_mm: to[0] - from[0],
+            angle_rad: to[1] - from[1],
+        }
+    }
+
+    /// Distance from the origin, and angle.
+    fn polar(origin: [f64; 2], place: &AxisValues) -> [f64; 2] {
+        let [x, y] = [place[0] - origin[0], place[1] - origin[1]];
+        [libm::hypot(x, y), libm::atan2(y, x)]
+    }
+
+    fn step(&self, place: &mut AxisValues) {
+        let [length_mm, angle_rad] = Self::polar(self.origin, place);
+        let (sin, cos) = libm::sincos(angle_rad + self.angle_rad);
+        let length_mm = length_mm + self.length_mm;
+        place[0] = self.origin[0] + length_mm * cos;
+        place[1] = self.origin[1] + length_mm * sin;
+    }
+}
+
+impl Control<'_> {
+    /// A block of a canned cycle.
+    pub(crate) fn rs274_cycle(&mut self, number: u16, run: &mut Run<'_, '_>) {
+        run.facts.fixed = Some(FIXED);
+        run.facts.cycle = true;
+        if !self.cycle_axes_fit(run) || !self.rs274_permits(number, run) {
+            return;
+        }
+        let [first, second, normal] = self.modal.plane;
+        let same = self.special.active == number;
+        let series = self.special.active != 0;
+        let Some(mut hole) = self.rs274_words(number, same, series, run) else {
+            return;
+        };
+        let mut place = self.believed();
+        let Some(unknown) = self.targets(run, false, &mut place) else {
+            return;
+        };
+        // The interpreter takes no L with G74.
+        let repeats = match number {
+            740 => Some(1),
+            _ => run.repeats(b'L'),
+        };
+        let Some(repeats) = repeats else {
+            return;
+        };
+        if repeats == 0 {
+            return run.cycle_value(b'L', "a canned cycle cannot be repeated 0 times");
+        }
+        // A feed that is missing is reported once.
+        if self
+            .feed_speed(run, &self.position.at, None, 1.0, true)
+            .is_none()
+        {
+            return;
+        }
+        let from = self.believed();
+        let step = if self.modal.absolute {
+            [0.0; 2]
+        } else {
+            [first, second].map(|axis| place[axis] - from[axis])
+        };
+        let polar = run.words.present & POLAR != 0 && !self.modal.absolute;
+        let circle = polar.then(|| {
+            let origin = self.position.frame.machine(&[0.0; AXES]);
+            PolarStep::new(&origin, &from, &place)
+        });
+        let initial_mm = self.initial_level(normal, !series);
+        let mut now_mm = from[normal];
+        let mut over_mm = initial_mm;
+        if initial_mm < hole.r_mm {
+            let mut up = self.believed();
+            up[normal] = hole.r_mm;
+            self.part(run, MoveKind::Rapid, &up);
+            over_mm = hole.r_mm;
+            now_mm = hole.r_mm;
+        }
+        // The holes run under G61, whatever is in force.
+        let before = (self.modal.path_mode, self.modal.corner);
+        self.modal.corner = Corner::Exact;
+        if self.machine.path.mode != Some(PathMode::ExactStop) {
+            self.modal.path_mode = self.machine.controller.language.g61;
+        }
+        if !self.special.to_initial {
+            over_mm = hole.r_mm;
+        }
+        hole.clear_mm = over_mm;
+        for repeat in 0..repeats {
+            let before = run.steps.len();
+            if repeat > 0 {
+                if let Some(circle) = &circle {
+                    circle.step(&mut place);
+                } else {
+                    place[first] += step[0];
+                    place[second] += step[1];
+                }
+            }
+            place[normal] = if now_mm > hole.r_mm {
+                now_mm
+            } else {
+                hole.clear_mm
+            };
+            self.go(run, MoveKind::Rapid, &place, unknown, None);
+            if place[normal] != hole.r_mm {
+                place[normal] = hole.r_mm;
+                self.part(run, MoveKind::Rapid, &place);
+            }
+            if !self.rs274_hole(&hole, &mut place, run) {
+                break;
+            }
+            now_mm = hole.clear_mm;
+            if repeat > 0 && !self.count_repeated(before, run) {
+                break;
+            }
+        }
+        (self.modal.path_mode, self.modal.corner) = before;
+        self.special.active = number;
+    }
+
+    /// What forbids a cycle.
+    fn rs274_permits(&self, number: u16, run: &mut Run<'_, '_>) -> bool {
+        let whole = run.whole();
+        if self.feed_mode_is(FeedMode::InverseTime) {
+            run.report
+                .error("cycle-g93", "a canned cycle under G93", whole)
+                .help("write G94 before it");
+            return false;
+        }
+        let own = self
+            .modal
+            .plane
+            .iter()
+            .fold(0, |letters, axis| letters | bit(ALL_AXES[*axis].letter()));
+        if run.words.unused & AXIS_LETTERS & !own != 0 {
+            run.report
+                .error(
+                    "cycle-axes",
+                    "another axis than X, Y and Z in the block of a canned cycle",
+                    whole,
+                )
+                .help("move it in a block of its own");
+            return false;
+        }
+        let turning = self.special.spindle;
+        let wrong = match number {
+            740 => turning != Turning::CounterClockwise,
+            840 => turning != Turning::Clockwise,
+            860..=880 => turning == Turning::Stopped,
+            _ => false,
+        };
+        if wrong {
+            run.report
+                .error(
+                    "cycle-spindle",
+                    format!("the spindle does not turn as G{} needs it", number / 10),
+                    whole,
+                )
+                .help("write M3 before it, or M4 for G74");
+        }
+        !wrong
+    }
+
+    /// Reads the words of a cycle. `same`: the cycle of the block before;
+    /// `series`: any cycle.
+    fn rs274_words(
+        &mut self,
+        number: u16,
+        same: bool,
+        series: bool,
+        run: &mut Run<'_, '_>,
+    ) -> Option<Hole> {
+        let normal = self.modal.plane[2];
+        let letter = ALL_AXES[normal].letter();
+        let held = self.special.held.clone();
+        let depth = run.words.take(letter).or(held.bottom.filter(|_| same));
+        let level = run.words.take(b'R').or(held.r.filter(|_| same));
+        let Some(level) = level else {
+            run.cycle_needs("R", number);
+            return None;
+        };
+        let Some(depth) = depth else {
+            run.cycle_needs((letter as char).encode_utf8(&mut [0; 4]), number);
+            return None;
+        };
+        self.special.held.r = Some(level);
+        self.special.held.bottom = Some(depth);
+        let (mut r, mut bottom) = (level, depth);
+        if !self.modal.absolute {
+            // From where the series began: R, and from there the depth.
+            let initial_mm = self.initial_level(normal, !series);
+            let offset_mm = self.position.absolute(normal, 0.0);
+            r += (initial_mm - offset_mm) / self.modal.mm_per_unit;
+            bottom += r;
+        }
+        if r < bottom {
+            run.cycle_value(b'R', "R is below the bottom of the hole");
+            return None;
+        }
+        let mut r_mm = self.level(normal, r);
+        let initial_mm = self.initial_level(normal, !series);
+        if (r_mm - initial_mm).abs() < 1e-9 {
+            // The same but for rounding.
+            r_mm = initial_mm;
+        }
+        let mut hole = Hole {
+            number,
+            r,
+            bottom,
+            r_mm,
+            clear_mm: 0.0,
+            dwell_s: 0.0,
+            peck: 0.0,
+            shift_mm: [0.0; 2],
+            middle: 0.0,
+        };
+        match number {
+            730 | 830 => {
+                let Some(peck) = run.words.take(b'Q').or(held.q.filter(|_| same)) else {
+                    run.cycle_needs("Q", number);
+                    return None;
+                };
+                if peck <= 0.0 {
+                    run.cycle_value(b'Q', "Q must be greater than 0");
+                    return None;
+                }
+                self.special.held.q = Some(peck);
+                hole.peck = peck;
+            }
+            740 | 820 | 840 | 860 | 880 | 890 => {
+                let tap = matches!(number, 740 | 840);
+                let dwell = run
+                    .words
+                    .take(b'P')
+                    .or(held.dwell_s.filter(|_| same || tap));
+                let Some(dwell_s) = dwell.or(tap.then_some(0.0)) else {
+                    run.cycle_needs("P", number);
+                    return None;
+                };
+                if !(0.0..=1e9).contains(&dwell_s) {
+                    run.cycle_value(b'P', "the dwell is negative or beyond reason");
+                    return None;
+                }
+                self.special.held.dwell_s = Some(dwell_s);
+                hole.dwell_s = dwell_s;
+            }
+            870 => {
+                let mut given = [0.0; 3];
+                for (index, letter) in [(0, b'I'), (1, b'J'), (2, b'K')] {
+                    let word = run.words.take(letter);
+                    let Some(value) = word.or(held.ijk[index].filter(|_| same)) else {
+                        run.cycle_needs("I, J and K", number);
+                        return None;
+                    };
+                    self.special.held.ijk[index] = Some(value);
+                    given[index] = value;
+                }
+                let [first, second, _] = self.modal.plane;
+                hole.shift_mm = [first, second].map(|axis| given[axis] * self.modal.mm_per_unit);
+                hole.middle = given[normal] + if self.modal.absolute { 0.0 } else { bottom };
+            }
+            _ => {}
+        }
+        Some(hole)
+    }
+
+    /// The moves at one place, which `place` holds at the level R; false when
+    /// they are too many.
+    fn rs274_hole(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) -> bool {
+        use MoveKind::{Feed, Rapid, Tap};
+        let normal = self.modal.plane[2];
+        let bottom_mm = self.level(normal, hole.bottom);
+        let mut to = |control: &mut Self, run: &mut Run<'_, '_>, kind, level_mm| {
+            place[normal] = level_mm;
+            control.part(run, kind, place);
+        };
+        let turning = self.special.spindle;
+        match hole.number {
+            730 | 830 => {
+                let off = PECK_CLEARANCE_INCH * gwatt_machine::units::MM_PER_INCH
+                    / self.modal.mm_per_unit;
+                let mut depth = hole.r - hole.peck;
+                // In program units, so that it rounds as the control does.
+                while depth > hole.bottom {
+                    if !run.within_limits() {
+                        return false;
+                    }
+                    let depth_mm = self.level(normal, depth);
+                    to(self, run, Feed, depth_mm);
+                    if hole.number == 830 {
+                        to(self, run, Rapid, hole.r_mm);
+                    }
+                    let back_mm = self.level(normal, depth + off);
+                    to(self, run, Rapid, back_mm);
+                    let next = depth - hole.peck;
+                    if next >= depth {
+                        run.cycle_value(b'Q', "Q is too small for this depth");
+                        return false;
+                    }
+                    depth = next;
+                }
+                to(self, run, Feed, bottom_mm);
+                to(self, run, Rapid, hole.clear_mm);
+            }
+            740 | 840 => {
+                let into = self.rs274_tap_end(place, bottom_mm, run);
+                self.part(run, Tap, &into);
+                run.spin(Turning::Stopped);
+                run.spin(turning.reversed());
+                self.dwell(run, hole.dwell_s);
+                let out = self.rs274_tap_end(place, hole.clear_mm, run);
+                self.part(run, Tap, &out);
+                place[normal] = hole.clear_mm;
+                if *place != out {
+                    self.special.left = Some(*place);
+                }
+                run.spin(Turning::Stopped);
+                run.spin(turning);
+            }
+            850 => {
+                to(self, run, Feed, bottom_mm);
+                to(self, run, Feed, hole.r_mm);
+                to(self, run, Rapid, hole.clear_mm);
+            }
+            870 => self.rs274_back_bore(hole, place, run),
+            _ => {
+                to(self, run, Feed, bottom_mm);
+                if hole.number != 810 {
+                    self.dwell(run, hole.dwell_s);
+                }
+                match hole.number {
+                    860 => {
+                        run.spin(Turning::Stopped);
+                        to(self, run, Rapid, hole.clear_mm);
+                        run.spin(turning);
+                    }
+                    880 => {
+                        run.spin(Turning::Stopped);
+                        run.act(ActionKind::Stop, 0.0);
+                        run.spin(turning);
+                        // The operator retracts; the control counts on it.
+                        place[normal] = hole.clear_mm;
+                        self.special.left = Some(*place);
+                    }
+                    890 => to(self, run, Feed, hole.clear_mm),
+                    _ => to(self, run, Rapid, hole.clear_mm),
+                }
+            }
+        }
+        run.within_limits()
+    }
+
+    /// Where a tap goes for a level of the drilling axis. Outside of G17 the
+    /// interpreter 2.9 takes the coordinates for those of other axes; its own
+    /// tests (`g84/g19`) have it so.
+    fn rs274_tap_end(
+        &self,
+        place: &AxisValues,
+        level_mm: f64,
+        run: &mut Run<'_, '_>,
+    ) -> AxisValues {
+        let [first, second, normal] = self.modal.plane;
+        let mut end = *place;
+        end[normal] = level_mm;
+        if normal == 2 {
+            return end;
+        }
+        let whole = run.whole();
+        let message = "LinuxCNC 2.9 takes the axes of G74 and G84 for others in G18 and G19: \
+                       the moves are what it makes of them";
+        run.report.note_once("mixed-axes", message, whole);
+        let number = |axis: usize| end[axis] - self.position.absolute(axis, 0.0);
+        let [aa, bb, cc] = [number(first), number(second), number(normal)];
+        let mixed = if normal == 0 {
+            [bb, cc, aa]
+        } else {
+            [cc, aa, bb]
+        };
+        for (axis, value) in mixed.into_iter().enumerate() {
+            end[axis] = self.position.absolute(axis, value);
+        }
+        end
+    }
+
+    /// G87: through the hole next to its axis, then a counterbore from below.
+    fn rs274_back_bore(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) {
+        use MoveKind::{Feed, Rapid};
+        let [first, second, normal] = self.modal.plane;
+        let bottom_mm = self.level(normal, hole.bottom);
+        let middle_mm = self.level(normal, hole.middle);
+        let turning = self.special.spindle;
+        let mut beside = *place;
+        beside[first] += hole.shift_mm[0];
+        beside[second] += hole.shift_mm[1];
+        self.part(run, Rapid, &beside);
+        run.spin(Turning::Stopped);
+        beside[normal] = bottom_mm;
+        self.part(run, Rapid, &beside);
+        place[normal] = bottom_mm;
+        self.part(run, Rapid, place);
+        run.spin(turning);
+        place[normal] = middle_mm;
+        self.part(run, Feed, place);
+        place[normal] = bottom_mm;
+        self.part(run, Feed, place);
+        run.spin(Turning::Stopped);
+        self.part(run, Rapid, &beside);
+        beside[normal] = hole.clear_mm;
+        self.part(run, Rapid, &beside);
+        place[normal] = hole.clear_mm;
+        self.part(run, Rapid, place);
+        run.spin(turning);
+    }
+}

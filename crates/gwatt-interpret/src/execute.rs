@@ -1,0 +1,456 @@
+//! One block at a time, in LinuxCNC's order of execution: feed mode, F, S, T,
+//! tool change, spindle, coolant, dwell, plane, units, offsets, path mode,
+//! distance mode, reference points and offsets, motion, stop.
+
+use std::cell::Cell;
+
+use super::compensation::{Choice, Compensation, Corners};
+use super::direct::is_direct;
+use super::facts::Facts;
+use super::isg::Isg;
+use super::knob::KnobState;
+use super::modal::Modal;
+use super::nci::Nci;
+use super::osp::Osp;
+use super::parameters::Parameters;
+use super::position::{BlockDelete, Position, Reading};
+use super::printer;
+use super::probe::Probe;
+use super::programmed::{Polar, Programmed};
+use super::report::{Diagnostics, Report};
+use super::siemens::{Siemens, is_beyond_words};
+use super::special::Special;
+use super::spindle_speed::SpindleMode;
+use super::spindle_told::Told;
+use super::state_words::{Saved, Switches};
+use super::statement::Traces;
+use super::tools::Tools;
+use super::transfer::Transfer;
+use super::turning::Turning;
+use super::words::Words;
+use gwatt_machine::{Family, Machine};
+use gwatt_motion::{Action, ActionKind, Step};
+use gwatt_syntax::Block;
+use gwatt_syntax::source::Span;
+
+/// Executes the blocks of a program.
+#[derive(Debug)]
+pub struct Interpreter<'m> {
+    pub(super) control: Control<'m>,
+    pub(super) words: Words,
+}
+
+/// What holds from block to block.
+#[derive(Debug)]
+pub(super) struct Control<'m> {
+    pub(super) machine: &'m Machine,
+    pub(super) modal: Modal,
+    pub(super) position: Position,
+    pub(super) knobs: KnobState,
+    pub(super) special: Special,
+    pub(super) loads: u32,
+    pub(super) loads_off: u32,
+    pub(super) tools: Tools,
+    pub(super) programmed: Programmed,
+    /// G16.
+    pub(super) polar: Option<Polar>,
+    pub(super) spindle: SpindleMode,
+    pub(super) told: Told,
+    pub(super) switches: Switches,
+    /// What M70 has saved, for each subprogram that is running.
+    pub(super) saved: Vec<Option<Box<Saved>>>,
+    /// What is known of the last probe; M66 has asked.
+    pub(super) probe: Probe,
+    pub(super) input: Option<f64>,
+    /// What a restored state still has to do and to say.
+    pub(super) debts: Vec<(ActionKind, f64)>,
+    pub(super) lost: Option<&'static str>,
+    /// Targets are more than offsets: see `targets`.
+    pub(super) bent: bool,
+    /// Cutter compensation, while it is on or being left.
+    pub(super) compensation: Option<Box<Compensation>>,
+    /// What the next one goes by.
+    pub(super) choice: Choice,
+    /// Chamfers and rounded corners, once the program has any.
+    pub(super) corners: Option<Box<Corners>>,
+    pub(super) printer: printer::State,
+    /// The words of a block need a second look: see `dialect`.
+    adapts: bool,
+    /// Blocks may take the short way: see `direct`.
+    pub(super) direct: bool,
+    /// The program that the block names to be called.
+    pub(super) callee: Option<String>,
+    pub(super) turning: Turning,
+    pub(super) block_delete: BlockDelete,
+    pub(super) begun: bool,
+    pub(super) ended: bool,
+    /// Some axis has been moved.
+    pub(super) moved: bool,
+    pub(super) has_program_number: bool,
+    /// Which run of the line this is, from 1.
+    pub(super) run: u32,
+    /// Which text it stands in; 0 is the program itself.
+    pub(super) text: u16,
+    pub(super) parameters: Parameters,
+    /// Lines that run again and again.
+    pub(super) traces: Traces,
+    pub(super) transfer: Option<Transfer>,
+    /// A value of the block shows the motion word or the F in force.
+    pub(super) reads_state: Cell<bool>,
+    /// What only SINUMERIK keeps; `None` for other languages.
+    pub(super) siemens: Option<Box<Siemens>>,
+    /// The same for the ISG kernel.
+    pub(super) isg: Option<Box<Isg>>,
+    /// The same for OSP.
+    pub(super) osp: Option<Box<Osp>>,
+    /// The same for NC I.
+    pub(super) nci: Option<Nci>,
+}
+
+/// The block that is being executed.
+pub(super) struct Run<'a, 'l> {
+    pub(super) line: u64,
+    pub(super) block: &'a Block,
+    pub(super) words: &'a mut Words,
+    pub(super) facts: &'a mut Facts,
+    pub(super) steps: &'a mut Vec<Step>,
+    pub(super) report: Report<'a, 'l>,
+}
+
+impl Run<'_, '_> {
+    pub(super) fn act(&mut self, kind: ActionKind, value: f64) {
+        self.steps.push(Step::Action(Action {
+            line: self.line,
+            kind,
+            value,
+        }));
+    }
+
+    pub(super) fn whole(&self) -> Span {
+        Span {
+            start: 0,
+            end: self.block.text_end,
+        }
+    }
+}
+
+impl<'m> Interpreter<'m> {
+    /// Begins a program: state at power-on.
+    #[must_use]
+    pub fn new(machine: &'m Machine, reading: &Reading) -> Self {
+        let mut control = Control {
+            machine,
+            modal: Modal::power_on(machine),
+            position: Position::new(machine, reading),
+            knobs: KnobState::new(machine),
+            special: Special::new(machine, reading),
+            loads: 0,
+            loads_off: 0,
+            tools: Tools::new(reading.tools.clone()),
+            programmed: Programmed::default(),
+            polar: None,
+            spindle: SpindleMode::default(),
+            told: Told::default(),
+            switches: Switches::default(),
+            saved: vec![None],
+            probe: Probe::new(reading.probe),
+            input: None,
+            debts: Vec::new(),
+            lost: None,
+            bent: false,
+            compensation: None,
+            choice: Choice::default(),
+            corners: None,
+            printer: printer::State::new(machine, reading),
+            adapts: machine.controller.language.dialect.adapts(),
+            direct: is_direct(machine),
+            callee: None,
+            turning: Turning::default(),
+            block_delete: reading.block_delete,
+            begun: false,
+            ended: false,
+            moved: false,
+            has_program_number: false,
+            run: 1,
+            text: reading.text,
+            parameters: Parameters::new(machine.controller.language.family),
+            traces: Traces::default(),
+            transfer: None,
+            reads_state: Cell::new(false),
+            siemens: (machine.controller.language.family == Family::Siemens)
+                .then(|| Box::new(Siemens::new())),
+            isg: (machine.controller.language.family == Family::Isg).then(|| Box::new(Isg::new())),
+            osp: (machine.controller.language.dialect.osp).then(|| Box::new(Osp::new())),
+            nci: (machine.controller.language.family == Family::Nci).then(Nci::default),
+        };
+        if let Some(file) = &reading.parameters {
+            control.parameters.keep(file);
+        }
+        for given in reading.given.iter() {
+            control.give(given);
+        }
+        control.note_bent();
+        Self {
+            control,
+            words: Words::new(),
+        }
+    }
+
+    /// The modal state after the last block.
+    #[must_use]
+    pub fn modal(&self) -> &Modal {
+        &self.control.modal
+    }
+
+    /// The limits in force after the last block.
+    #[must_use]
+    pub fn knobs(&self) -> &KnobState {
+        &self.control.knobs
+    }
+
+    /// True once the program has ended (M2, M30, closing `%`).
+    #[must_use]
+    pub fn ended(&self) -> bool {
+        self.control.ended
+    }
+
+    /// Executes one block: appends what it does to `steps`. What is not
+    /// understood is reported, and the block then does nothing. Words whose
+    /// values are worked out get them in `block`. What the block is comes into
+    /// `facts`.
+    #[inline]
+    pub fn execute(
+        &mut self,
+        line: u64,
+        text: &[u8],
+        block: &mut Block,
+        steps: &mut Vec<Step>,
+        facts: &mut Facts,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let noted = self.control.note_message(line, text, block, steps);
+        if block.issues.is_empty()
+            && let Some(()) = self.control.direct(line, text, block, steps, facts)
+        {
+            facts.plain &= !noted;
+            return;
+        }
+        *facts = Facts::default();
+        self.execute_any(line, text, block, steps, facts, diagnostics);
+        // It may have gone the short way with values that were worked out.
+        facts.plain = false;
+    }
+
+    /// The same for any block; `facts` are those of nothing.
+    fn execute_any(
+        &mut self,
+        line: u64,
+        text: &[u8],
+        block: &mut Block,
+        steps: &mut Vec<Step>,
+        facts: &mut Facts,
+        diagnostics: &mut Diagnostics,
+    ) {
+        self.control.parameters.line = line;
+        let mut report = Report {
+            diagnostics,
+            line,
+            text,
+        };
+        if self.control.passes_over(block, &mut report) {
+            return;
+        }
+        if printer::is_command(self.control.machine, block) {
+            return self.command_line(block, steps, facts, report);
+        }
+        if self.control.is_dollar(text) {
+            let words = &mut self.words;
+            let mut run = Run {
+                line,
+                block,
+                words,
+                facts,
+                steps,
+                report,
+            };
+            return self.control.dollar(&mut run);
+        }
+        let mut beyond = !block.issues.is_empty();
+        let mut acts = false;
+        if let Some(siemens) = &mut self.control.siemens {
+            siemens.begin_block();
+            beyond |= is_beyond_words(block, text);
+        } else if let Some(isg) = &self.control.isg {
+            beyond |= isg.is_beyond_words(block);
+        } else if let Some(osp) = &mut self.control.osp {
+            osp.only_keeps = false;
+            beyond |= osp.is_beyond_words(block);
+        }
+        beyond |= self.control.nci.is_some();
+        let transfers = beyond && self.control.beyond_words(block, &mut report);
+        let reads_state = beyond && self.control.reads_state.take();
+        if beyond {
+            self.control.learn_from_probe();
+        }
+        if let Some(siemens) = &self.control.siemens {
+            acts = siemens.is_active();
+        }
+        acts |= self.control.nci.as_ref().is_some_and(Nci::is_active);
+        if !block.issues.is_empty() || block.words.is_empty() && !acts {
+            if block.words.is_empty() {
+                self.control.abort(block, &mut report);
+            }
+            facts.reads_state = reads_state;
+            facts.transfers = transfers;
+            return;
+        }
+        if beyond
+            && !transfers
+            && self
+                .control
+                .direct(line, text, block, steps, facts)
+                .is_some()
+        {
+            facts.reads_state = reads_state;
+            return;
+        }
+        // Built once in its place: moving parts of it costs more than it seems.
+        let mut run = Run {
+            line,
+            block,
+            words: &mut self.words,
+            facts,
+            steps,
+            report,
+        };
+        let before = run.steps.len();
+        let errors = run.report.diagnostics.errors;
+        run.facts.executed = true;
+        run.facts.reads_state = reads_state;
+        self.control.execute(&mut run);
+        if self.control.callee.take().is_some() {
+            let whole = run.whole();
+            run.report
+                .error("program-name", "nothing in this block calls the program that it names", whole)
+                .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
+        }
+        if self.control.corners.is_some() {
+            self.control.insert_corners(&mut run, before, errors);
+        }
+        if self.control.compensation.is_some() {
+            self.control.compensate(&mut run, before, errors);
+        }
+        self.control.let_knobs_act(&mut run, before);
+        if run.report.diagnostics.errors != errors {
+            run.steps.truncate(before);
+            self.control.transfer = None;
+        }
+        run.facts.transfers = self.control.transfer.is_some();
+    }
+
+    /// A printer's command.
+    fn command_line(
+        &mut self,
+        block: &Block,
+        steps: &mut Vec<Step>,
+        facts: &mut Facts,
+        report: Report<'_, '_>,
+    ) {
+        let mut run = Run {
+            line: report.line,
+            block,
+            words: &mut self.words,
+            facts,
+            steps,
+            report,
+        };
+        self.control.begun = true;
+        self.control.command_line(&mut run);
+    }
+}
+
+impl Control<'_> {
+    #[inline]
+    fn execute(&mut self, run: &mut Run<'_, '_>) {
+        self.begun = true;
+        run.words
+            .fill(run.block, &self.machine.controller, &mut run.report);
+        run.facts.checksum = run.words.checksum;
+        if self.adapts {
+            self.adapt_words(run);
+        }
+        self.take_dynamics(run);
+        let errors = run.report.diagnostics.errors;
+        if !self.debts.is_empty() {
+            let span = run.whole();
+            self.settle_debts(span, run);
+            self.tell_spindle(run);
+        }
+        let siemens = self.siemens.as_deref();
+        let special = siemens.is_some_and(|siemens| !siemens.is_plain_motion(run.words));
+        if run.words.is_plain_motion() && !special {
+            // The same as below, without asking for what is not there.
+            self.read_feed(run);
+            self.motion_word(run);
+            self.motion(run);
+            if run.report.diagnostics.errors == errors {
+                self.complain_about_rest(run);
+            }
+            return;
+        }
+        if siemens.is_some() {
+            return self.siemens_block(run);
+        }
+        if self.machine.controller.language.family == Family::Marlin
+            && run.report.diagnostics.errors == errors
+            && !run.words.is_alone()
+        {
+            self.command_line(run);
+            return;
+        }
+        self.general(run, errors);
+    }
+
+    /// A block of any words, which are filled in; `errors` from before that.
+    pub(super) fn general(&mut self, run: &mut Run<'_, '_>, errors: u64) {
+        if self.macro_call(run) {
+            return;
+        }
+        if self.program_number(run) {
+            run.words.unused = 0;
+            return;
+        }
+        let dwell_s = self.dwell_time(run);
+        self.feed_mode(run);
+        self.read_feed(run);
+        self.speed_and_tool(run);
+        self.m_words(run);
+        if let Some(dwell_s) = dwell_s {
+            self.dwell(run, dwell_s);
+        }
+        self.settings(run);
+        self.note_queue_and_spindle(run);
+        self.turn_knobs(run);
+        self.motion_in_mode(run);
+        if run.report.diagnostics.errors == errors {
+            self.complain_about_rest(run);
+        }
+        self.end_of_block(run);
+    }
+
+    /// Stops and the end come after the motion.
+    pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
+        self.loads &= !std::mem::take(&mut self.loads_off);
+        if !run.facts.boundary && run.facts.stop_word.is_none() {
+            return;
+        }
+        for index in 0..run.words.m.len() {
+            let number = run.words.m[index].0;
+            let Some(kind @ (ActionKind::Stop | ActionKind::End)) = self.m_kind(number) else {
+                continue;
+            };
+            self.ended |= kind == ActionKind::End;
+            run.act(kind, f64::from(number) / 10.0);
+        }
+    }
+}

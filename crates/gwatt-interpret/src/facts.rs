@@ -1,0 +1,68 @@
+//! What a block is, besides what it does.
+
+use gwatt_syntax::Word;
+use gwatt_syntax::source::Span;
+
+/// What the rewriter must know of a block besides its moves.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Facts {
+    /// The F word that sets the feed (not the one of a dwell).
+    pub feed_word: Option<Word>,
+    /// The word of the motion group, if the block has one.
+    pub motion_word: Option<Word>,
+    /// The block moves by the motion word in force, its own or an earlier one.
+    pub uses_motion: bool,
+    /// That motion obeys F.
+    pub uses_feed: bool,
+    /// G53: the move is in machine coordinates.
+    pub machine_coordinates: bool,
+    /// G28 or G30.
+    pub reference: bool,
+    /// It homes the axes at a speed of the control's own, under the limits in force.
+    pub homes: bool,
+    /// The block carries a checksum.
+    pub checksum: bool,
+    /// An F in this block would be the time of its dwell.
+    pub dwell_takes_feed: bool,
+    /// Why none of its words may be changed, as in "it cuts a thread".
+    pub fixed: Option<&'static str>,
+    /// It moves before any motion word was in force: there is none to put back.
+    pub no_motion_word: bool,
+    /// Its moves are those of a canned cycle, and may stand as single blocks.
+    pub cycle: bool,
+    /// Why what its cycle does is not known exactly, though it counts no lower than it is.
+    pub guessed: Option<&'static str>,
+    /// First and last line, from 1, of the contour that its turning cycle is about.
+    pub contour: Option<[u64; 2]>,
+    /// Compensation is on, or lets go of moves: such blocks follow each other
+    /// without anything between them.
+    pub compensated: bool,
+    /// It changes the tool, saves or restores the state or does more that shows it: the
+    /// modal state must be the original's, and no word of the block is changed.
+    pub boundary: bool,
+    /// Its words that select and change the tool before it moves, where it does no more than
+    /// that besides: they may stand on a line before it.
+    pub tool_words: [Option<Span>; 2],
+    /// It selects a tool: the modal state before it must be the original's.
+    pub selects_tool: bool,
+    /// Its word that stops or ends the program once the axes stand: the modal state before
+    /// and after its motion must be the original's.
+    pub stop_word: Option<Span>,
+    /// One of its values is the motion word or the F in force, which must be the
+    /// original's then.
+    pub reads_state: bool,
+    /// The block is executed: not deleted, not after the end, not empty.
+    pub executed: bool,
+    /// It moves straight on, and changes nothing else of the state: see
+    /// [`Stance`](super::Stance).
+    pub plain: bool,
+    /// The block turns a knob.
+    pub turns_knob: bool,
+    /// The F word is not a plain number: its value is worked out.
+    pub computed_feed: bool,
+    /// The program does not go on at the next line: see
+    /// [`Interpreter::transfer`](super::Interpreter).
+    pub transfers: bool,
+    /// Millimetres in a program unit when the block's F is read, or would be.
+    pub feed_mm_per_unit: f64,
+}

@@ -1,0 +1,84 @@
+//! Runs through the subroutine of a contour for a turning cycle of `LinuxCNC`.
+
+use super::{Flow, Trouble};
+use crate::execute::Interpreter;
+use crate::lathe_cycle::{LatheCycle, Reader};
+use crate::parameters::LOCALS;
+use crate::report::Diagnostics;
+use crate::transfer::{Transfer, Verb};
+use gwatt_motion::Step;
+use gwatt_syntax::Block;
+use gwatt_syntax::diagnostic::Diagnostic;
+
+impl Flow {
+    /// Reads the contour for a cycle of the line that is being executed, and
+    /// adds the cycle's moves to `steps`.
+    pub(crate) fn lathe_cycle(
+        &mut self,
+        cycle: &LatheCycle,
+        interpreter: &mut Interpreter<'_>,
+        block: &Block,
+        steps: &mut Vec<Step>,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<(), Box<Diagnostic>> {
+        let here = self.now;
+        let errors = diagnostics.errors;
+        let mut reader = interpreter.begin_contour(cycle);
+        let done = self.contour_sub(cycle, &mut reader, interpreter, diagnostics);
+        interpreter.end_contour(&reader);
+        done?;
+        self.now = here;
+        if diagnostics.errors != errors {
+            return Ok(());
+        }
+        let number = here.line as u64 + 1;
+        let text = self.text().to_vec();
+        interpreter.run_lathe_cycle(cycle, reader, number, &text, block, steps, diagnostics);
+        Ok(())
+    }
+
+    fn contour_sub(
+        &mut self,
+        cycle: &LatheCycle,
+        reader: &mut Reader,
+        interpreter: &mut Interpreter<'_>,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<(), Box<Diagnostic>> {
+        let depth = self.calls.len();
+        let arguments = Box::new([Some(0.0); LOCALS]);
+        self.structure(cycle.contour.clone(), Verb::Call(arguments), interpreter)
+            .map_err(|trouble| self.trouble(trouble))?;
+        let mut own = Block::default();
+        while self.calls.len() > depth {
+            let Some(place) = self.advance()? else { break };
+            self.read(&mut own);
+            let run = self.begin_line();
+            interpreter.begin_line(run, self.number(place));
+            let line = place.line as u64 + 1;
+            let said = diagnostics.list.len();
+            let errors = diagnostics.errors;
+            let transfer =
+                interpreter.contour_line(reader, line, self.text(), &mut own, diagnostics);
+            for found in diagnostics.list.iter_mut().skip(said) {
+                found.file = self.file().map(str::to_owned);
+            }
+            if diagnostics.errors != errors {
+                return Ok(());
+            }
+            self.end_line(run, 0)?;
+            match transfer {
+                Some(transfer @ Transfer::Structure { .. }) => {
+                    self.follow(transfer, interpreter)?;
+                }
+                Some(_) => {
+                    let message = "the contour of a turning cycle calls or ends a program";
+                    let help = "write only O words and moves into its subroutine";
+                    let trouble = Trouble::new("lathe-cycle", message, help);
+                    return Err(self.trouble(trouble));
+                }
+                None => {}
+            }
+        }
+        Ok(())
+    }
+}

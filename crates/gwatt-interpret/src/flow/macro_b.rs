@@ -1,0 +1,83 @@
+//! GOTO, WHILE and M99.
+
+use super::text::Search;
+use super::{Flow, Place, Style, Trouble};
+use crate::execute::Interpreter;
+
+impl Flow {
+    pub(super) fn go_to(&mut self, block: u64) -> Result<(), Trouble> {
+        self.next = self.find_block(block, self.next)?;
+        Ok(())
+    }
+
+    pub(super) fn begin_loop(&mut self, number: u8, holds: bool) -> Result<(), Trouble> {
+        if holds {
+            return Ok(());
+        }
+        let end = self.find_here(&Search::EndLoop(number), self.next.line);
+        let Some(end) = end else {
+            let message = format!("there is no END{number} for this loop");
+            return Err(Trouble::new(
+                "loop",
+                message,
+                "end each loop with END and its number",
+            ));
+        };
+        self.next.line = end + 1;
+        Ok(())
+    }
+
+    pub(super) fn end_loop(&mut self, number: u8) -> Result<(), Trouble> {
+        let begin = self.find_here(&Search::BeginLoop(number), self.now.line);
+        let Some(begin) = begin else {
+            let message = format!("there is no DO{number} for this END");
+            return Err(Trouble::new(
+                "loop",
+                message,
+                "begin each loop with WHILE [ … ] DO and its number",
+            ));
+        };
+        self.next.line = begin;
+        Ok(())
+    }
+
+    /// M99: back to the caller. A main program begins again: twice is enough to
+    /// see what that means for the converter.
+    pub(super) fn end_of_subprogram(
+        &mut self,
+        block: Option<u64>,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), Trouble> {
+        if self
+            .calls
+            .last()
+            .is_some_and(|frame| frame.style == Style::Sub)
+        {
+            let message = "M99 ends a program that M98 has called";
+            let help = "end what `o… call` has called with endsub or return";
+            return Err(Trouble::new("subprogram", message, help));
+        }
+        if let Some(back) = self.leave(interpreter) {
+            if let Some(block) = block
+                && self.next == back
+            {
+                self.next = self.find_block(block, back)?;
+            }
+            return Ok(());
+        }
+        if let Some(block) = block {
+            return self.go_to(block);
+        }
+        if self.again {
+            interpreter.end();
+        }
+        self.again = true;
+        self.next = Place { text: 0, line: 0 };
+        interpreter.begin_again();
+        Ok(())
+    }
+
+    fn find_here(&mut self, search: &Search, from: usize) -> Option<usize> {
+        self.texts.get_mut(self.now.text)?.find(search, from)
+    }
+}

@@ -1,0 +1,100 @@
+//! grbl's lines that begin with `$` ("Commands", "Configuration v1.1").
+
+use super::execute::{Control, Run};
+use gwatt_machine::Family;
+use gwatt_motion::{ActionKind, MoveKind};
+
+/// Commands that show something or unlock, and move nothing.
+const IDLE: [&str; 6] = ["$X", "$$", "$#", "$G", "$I", "$N"];
+/// Settings that change no move: pulses, reports, limit switches, homing, the
+/// scale of the spindle.
+const IDLE_SETTINGS: [u32; 16] = [0, 1, 4, 5, 6, 10, 13, 20, 21, 22, 24, 25, 26, 27, 30, 31];
+
+impl Control<'_> {
+    /// Whether a line is a command of grbl.
+    pub(super) fn is_dollar(&self, text: &[u8]) -> bool {
+        let language = &self.machine.controller.language;
+        language.family == Family::Rs274
+            && language.loose_o_words
+            && text.trim_ascii_start().starts_with(b"$")
+    }
+
+    /// Executes it.
+    pub(super) fn dollar(&mut self, run: &mut Run<'_, '_>) {
+        run.facts.executed = true;
+        self.begun = true;
+        let line = run.report.text.trim_ascii();
+        let end = line.iter().position(|byte| matches!(byte, b'(' | b';'));
+        let command = line.get(..end.unwrap_or(line.len())).unwrap_or_default();
+        let command = String::from_utf8_lossy(command).to_ascii_uppercase();
+        let command = command.trim_end();
+        if command == "$H" {
+            return self.home_all(run);
+        }
+        if IDLE.contains(&command) {
+            return;
+        }
+        let whole = run.whole();
+        let setting = command.strip_prefix('$').and_then(|it| it.split_once('='));
+        let number = setting.and_then(|(number, _)| number.trim().parse().ok());
+        match number {
+            Some(number) if IDLE_SETTINGS.contains(&number) => {}
+            Some(number) => {
+                let message =
+                    format!("${number} is a setting that may change how the machine moves");
+                run.report.error("setting", message, whole).help(
+                    "send settings apart from the program, and put what they say into the \
+                     machine file",
+                );
+            }
+            None => {
+                let message = format!("{command} is a command of grbl that gwatt does not follow");
+                run.report
+                    .error("setting", message, whole)
+                    .help("send it apart from the program");
+            }
+        }
+    }
+
+    /// `$H`: from anywhere to the limit switches, at a speed of the settings. All axes
+    /// count as moving at once.
+    fn home_all(&mut self, run: &mut Run<'_, '_>) {
+        let whole = run.whole();
+        let axes = || {
+            self.machine
+                .axis_set
+                .iter()
+                .map(|axis| self.machine.axes[axis].as_ref())
+        };
+        let square = |speed_mm_s: f64| speed_mm_s * speed_mm_s;
+        let squares = axes().map(|data| data.map_or(0.0, |it| square(it.reference_mm_s)));
+        let speed_mm_s = squares.sum::<f64>().sqrt();
+        if speed_mm_s.is_infinite() {
+            let message = "without `reference_mm_min` of its axes in the machine file, how fast $H homes \
+                           is not known: every axis counts at its full speed and acceleration";
+            run.report.note_once("unknown-moves", message, whole);
+        }
+        run.facts.reference = true;
+        run.facts.boundary = true;
+        run.facts.fixed = Some("it homes the axes");
+        let all = self.machine.axis_set;
+        let end = self.position.at;
+        // grbl takes $H only while it is idle, and goes on once the axes stand.
+        run.act(ActionKind::Rest, 0.0);
+        self.go_at(run, MoveKind::Feed, &end, all, None, Some(speed_mm_s));
+        for axis in all.iter() {
+            let reference_mm = self.machine.axes[axis]
+                .as_ref()
+                .and_then(|data| data.reference_mm);
+            if let Some(reference_mm) = reference_mm {
+                self.position.home(axis, reference_mm);
+            } else {
+                self.position.unknown.insert(axis);
+                let message = "without `reference_mm` of its axis in the machine file, where $H ends is \
+                               not known: the power of the next moves counts from anywhere";
+                run.report.note_once("home", message, whole);
+            }
+        }
+        run.act(ActionKind::Rest, 0.0);
+    }
+}

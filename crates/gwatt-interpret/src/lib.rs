@@ -1,0 +1,96 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # A line at a time
+//!
+//! [`Interpreter::execute`] takes a block, changes the modal state and gives the
+//! [`Step`]s of the line with its [`Facts`]: whether its words may be changed, and
+//! what depends on them. Where a block does not go on at the next line, [`Flow`]
+//! decides which line comes next. Files of subprograms are found below the paths of
+//! [`Reading`], or on a [`Shelf`].
+
+mod arc;
+mod arc_words;
+mod calls;
+mod beyond_words;
+mod code;
+mod compensation;
+mod cycle;
+mod data_setting;
+mod dialect;
+mod direct;
+mod execute;
+mod expression;
+mod facts;
+mod hidden_words;
+mod flow;
+mod formula;
+mod given;
+mod grbl;
+mod frame;
+mod isg;
+mod knob;
+mod knob_words;
+mod level_words;
+mod lathe_cycle;
+mod m_words;
+mod modal;
+mod motion;
+mod named_parameters;
+mod nci;
+mod offsets;
+mod operator;
+mod osp;
+mod output_knob;
+mod passed_over;
+mod parameter_file;
+mod parameters;
+mod pocket;
+mod position;
+mod programmed;
+mod printer;
+mod probe;
+mod queue_words;
+mod reference;
+mod report;
+mod settings;
+mod shelf;
+mod special;
+mod spline;
+mod siemens;
+mod statement;
+mod subprogram;
+mod system_parameters;
+mod thread;
+mod thread_cycle;
+mod speed_share;
+mod spindle_speed;
+mod spindle_told;
+mod stance;
+mod stray;
+mod state_words;
+mod targets;
+mod tool_table;
+mod tools;
+mod transfer;
+mod turned_arc;
+mod turning;
+mod vector;
+mod words;
+mod written_out;
+
+pub use code::Motion;
+pub use execute::Interpreter;
+pub use facts::Facts;
+pub use flow::{Flow, Limits, Place};
+pub use given::GivenVariable;
+pub use gwatt_motion::{
+    Action, ActionKind, Arc, Corner, FeedMode, Move, MoveKind, Square, Start, Step, Stray,
+};
+pub use knob::KnobState;
+pub use modal::{Feed, Modal, NumberText};
+pub use parameter_file::ParameterFile;
+pub use position::{BlockDelete, ProbeResult, ProbeWay, Reading};
+pub use report::Diagnostics;
+pub use shelf::Shelf;
+pub use stance::Stance;
+pub use tool_table::{Tool, ToolTable};

@@ -1,0 +1,173 @@
+//! M words, S and T: actions, and the loads that they switch.
+
+use super::execute::{Control, Run};
+use gwatt_machine::Family;
+use gwatt_motion::ActionKind;
+use gwatt_syntax::Word;
+use gwatt_syntax::source::Span;
+
+impl Control<'_> {
+    pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
+        self.spindle_mode(run);
+        let other = run
+            .words
+            .m
+            .iter()
+            .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other))
+            && !self.is_siemens()
+            // Such words stand next to S and T: `S580 M13`.
+            && !self.dialect().other_m;
+        if let Some(value) = run.words.take(b'S')
+            && !other
+        {
+            self.set_speed(value, run);
+            run.act(ActionKind::SpindleSpeed, value);
+            self.note_spindle(run);
+        }
+        if let Some(tool) = run.words.take(b'T')
+            && !other
+        {
+            self.select_tool(tool, run);
+            run.act(ActionKind::ToolSelect, tool);
+            run.facts.selects_tool = true;
+        }
+    }
+
+    pub(super) fn note_spindle(&self, run: &mut Run<'_, '_>) {
+        if self.machine.spindle.is_none() {
+            let span = run.whole();
+            let message = "the machine file describes no spindle: its power is not counted";
+            run.report.note_once("no-spindle", message, span);
+        }
+    }
+
+    /// What an M word does; `None` if it is not known.
+    pub(super) fn m_kind(&self, number: u16) -> Option<ActionKind> {
+        let value = f64::from(number) / 10.0;
+        let word = (b'M', value);
+        let is_load = || {
+            self.machine
+                .loads
+                .iter()
+                .any(|load| load.on.contains(&word) || load.off.contains(&word))
+        };
+        match number {
+            0 | 10 | 600 => Some(ActionKind::Stop),
+            20 | 300 => Some(ActionKind::End),
+            170 if self.is_siemens() => Some(ActionKind::End),
+            30 | 40 | 50 => Some(ActionKind::Spindle),
+            60 => Some(ActionKind::ToolChange),
+            70 | 80 | 90 => Some(ActionKind::Coolant),
+            _ if self.is_ignored(number) || is_load() => Some(ActionKind::Other),
+            // SINUMERIK: free M numbers are the machine builder's switches.
+            _ if self.is_siemens() => Some(ActionKind::Other),
+            _ if self.is_other_m(number) => Some(ActionKind::Other),
+            _ => None,
+        }
+    }
+
+    /// A word that moves no axis takes its arguments with it.
+    fn other_word(&self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+        if self.is_other_m(number) && !self.is_ignored(number) {
+            Self::note_other_m(number, span, run);
+        }
+        if !self.dialect().other_m || run.words.groups == 0 && !run.words.has_axes() {
+            run.words.unused &= super::words::AXIS_LETTERS;
+        }
+    }
+
+    /// Whether the profile says that an M word (number × 10) moves no axis.
+    pub(super) fn is_ignored(&self, number: u16) -> bool {
+        number.is_multiple_of(10)
+            && self
+                .machine
+                .controller
+                .language
+                .ignored_m
+                .contains(&(number / 10))
+    }
+
+    pub(super) fn m_words(&mut self, run: &mut Run<'_, '_>) {
+        for index in 0..run.words.m.len() {
+            let (number, span) = run.words.m[index];
+            let value = f64::from(number) / 10.0;
+            self.switch_loads(value);
+            self.switches.switch(number);
+            self.osp_return(number);
+            if self.state_word(number, span, run) {
+                continue;
+            }
+            if matches!(number, 820 | 830)
+                && self.machine.controller.language.family == Family::Marlin
+            {
+                self.extruder_mode(Some(number == 820));
+                continue;
+            }
+            if self.subprogram_word(number, span, run) {
+                continue;
+            }
+            let Some(kind) = self.m_kind(number) else {
+                run.report.refused_m(Word {
+                    letter: b'M',
+                    value,
+                    span,
+                    number: span,
+                });
+                continue;
+            };
+            match kind {
+                ActionKind::Spindle => {
+                    self.special.turn_spindle(number);
+                    self.note_spindle(run);
+                }
+                ActionKind::ToolChange => self.load_tool(number, span, run),
+                ActionKind::Other if self.is_siemens() && self.is_ignored(number) => {}
+                ActionKind::Other if self.is_siemens() => {
+                    let message =
+                        "M words of the machine's builder are taken as switches that move no axis";
+                    run.report.note_once("builder-m", message, span);
+                }
+                // Arguments of a word that moves no axis, as in `M106 S255 P1`.
+                ActionKind::Other => self.other_word(number, span, run),
+                _ => {}
+            }
+            if number == 60 && !run.facts.boundary && self.changes_tool_first(run) {
+                let tool = run.block.words.iter().find(|word| word.letter == b'T');
+                run.facts.tool_words = [tool.map(|word| word.span), Some(span)];
+            }
+            if !matches!(kind, ActionKind::Stop | ActionKind::End) {
+                run.facts.boundary |= kind == ActionKind::ToolChange;
+                run.act(kind, value);
+            } else if matches!(number, 0 | 10 | 20 | 300) && run.facts.stop_word.is_none() {
+                run.facts.stop_word = Some(span);
+            } else {
+                run.facts.boundary = true;
+            }
+        }
+    }
+
+    /// Whether M6 comes before all other words of a block but T: that is documented for
+    /// RS274/NGC, in which S comes before it ("Order of Execution").
+    fn changes_tool_first(&self, run: &Run<'_, '_>) -> bool {
+        let others = run.words.m.iter().filter(|(number, _)| *number != 60);
+        let plain = others.clone().all(|(number, _)| matches!(number, 30..=90));
+        self.machine.controller.language.family == Family::Rs274
+            && plain
+            && run.words.m.len() == others.count() + 1
+            && !run.block.words.iter().any(|word| word.letter == b'S')
+    }
+
+    /// Switches loads on. Those that go off do so after the block's moves,
+    /// since controllers differ in when they do.
+    pub(super) fn switch_loads(&mut self, value: f64) {
+        for (index, load) in self.machine.loads.iter().enumerate().take(32) {
+            if load.on.contains(&(b'M', value)) {
+                self.loads |= 1 << index;
+                self.loads_off &= !(1 << index);
+            }
+            if load.off.contains(&(b'M', value)) {
+                self.loads_off |= 1 << index;
+            }
+        }
+    }
+}

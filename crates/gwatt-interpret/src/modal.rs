@@ -1,0 +1,131 @@
+//! Modal state: what a controller keeps from block to block.
+
+use super::code::Motion;
+use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
+use gwatt_machine::{Machine, PathMode};
+use gwatt_motion::{Corner, FeedMode};
+
+/// The feed in force: value, unit and text of the F word that set it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Feed {
+    /// The number, in program units of that time.
+    pub value: f64,
+    /// Unit of length when it was set, mm.
+    pub mm_per_unit: f64,
+    /// The number as it was written, to be written again.
+    pub text: NumberText,
+}
+
+/// A number as it was written, so small that it is copied with its value;
+/// empty for longer ones.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NumberText {
+    bytes: [u8; NumberText::MAX],
+    len: u8,
+}
+
+impl NumberText {
+    /// Longest text that is kept.
+    pub const MAX: usize = 24;
+
+    /// Keeps a text, unless it is too long.
+    #[must_use]
+    pub fn new(text: &[u8]) -> Self {
+        let mut kept = Self::default();
+        if let Some(bytes) = kept.bytes.get_mut(..text.len()) {
+            bytes.copy_from_slice(text);
+            kept.len = text.len() as u8;
+        }
+        kept
+    }
+
+    /// The text; empty if it was too long.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8] {
+        self.bytes.get(..usize::from(self.len)).unwrap_or_default()
+    }
+}
+
+impl Feed {
+    /// Speed along a path of linear axes under G94, mm/s.
+    #[must_use]
+    pub fn linear_mm_s(&self) -> f64 {
+        self.value * self.mm_per_unit / SECONDS_PER_MINUTE
+    }
+
+    /// Speed of rotary axes alone under G94, degrees/s.
+    #[must_use]
+    pub fn rotary_deg_s(&self) -> f64 {
+        self.value / SECONDS_PER_MINUTE
+    }
+}
+
+/// What holds from block to block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modal {
+    /// The motion word in force.
+    pub motion: Motion,
+    /// Axes of the plane: first, second, normal.
+    pub plane: [usize; 3],
+    /// G90 (true) or G91.
+    pub absolute: bool,
+    /// M82 (true) or M83: positions of the extruder.
+    pub extruder_absolute: bool,
+    /// G90.1 (true) or G91.1.
+    pub arc_absolute: bool,
+    /// Millimetres in one program unit.
+    pub mm_per_unit: f64,
+    /// G93, G94 or G95.
+    pub feed_mode: FeedMode,
+    /// The F in force, if any.
+    pub feed: Option<Feed>,
+    /// Whether the program may run through the end of a block.
+    pub path_mode: PathMode,
+    /// How corners may be taken.
+    pub corner: Corner,
+    /// A word of the program has said so: before that it is a matter of the controller's
+    /// settings.
+    pub corner_known: bool,
+    /// S in force, 1/min; 0 without one.
+    pub spindle_rpm: f64,
+    /// G7: words of X are diameters.
+    pub diameter: bool,
+}
+
+impl Modal {
+    /// The state at power-on.
+    #[must_use]
+    pub fn power_on(machine: &Machine) -> Self {
+        let language = &machine.controller.language;
+        Self {
+            motion: if language.rapid_at_power_on {
+                Motion::Rapid
+            } else {
+                Motion::None
+            },
+            plane: if language.dialect.lathe.is_some() {
+                [2, 0, 1]
+            } else {
+                [0, 1, 2]
+            },
+            absolute: language.absolute,
+            extruder_absolute: language.absolute,
+            arc_absolute: language.arc_absolute,
+            mm_per_unit: if language.metric { 1.0 } else { MM_PER_INCH },
+            feed_mode: if language.dialect.per_revolution {
+                FeedMode::PerRevolution
+            } else {
+                FeedMode::PerMinute
+            },
+            feed: None,
+            path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
+            corner: Corner::Round {
+                tolerance_mm: language.power_on_tolerance_mm,
+                join_mm: 0.0,
+            },
+            corner_known: false,
+            spindle_rpm: 0.0,
+            diameter: language.dialect.diameter,
+        }
+    }
+}

@@ -1,0 +1,403 @@
+//! Motion: straight moves, arcs, reference points, and G92.
+
+use super::code::{GCode, Motion};
+use super::execute::{Control, Run};
+use super::printer::Course;
+use super::report::Report;
+use super::stray;
+use super::words::{AXIS_LETTERS, bit};
+use gwatt_machine::units::SECONDS_PER_MINUTE;
+use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
+use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
+use gwatt_syntax::source::Span;
+
+/// Differences of position below this are rounding, not motion (mm, degrees).
+pub(super) const STANDSTILL_MM: f64 = 1e-9;
+/// Positions beyond this are refused (mm, degrees): no machine is that large.
+pub(super) const POSITION_MAX_MM: f64 = 1e9;
+/// Index of the extruder axis.
+pub(super) const EXTRUDER: usize = 9;
+
+impl Control<'_> {
+    /// The block's motion, with what else uses axis words.
+    pub(super) fn motion(&mut self, run: &mut Run<'_, '_>) {
+        if self.special.left.is_some() && !self.may_follow_a_stop(run) {
+            return;
+        }
+        if run.words.only_moves() {
+            return self.move_on(run);
+        }
+        for index in 0..run.words.g.len() {
+            let (code, number, span) = run.words.g[index];
+            match code {
+                GCode::Reference => return self.reference(number, span, run),
+                GCode::Skip => return self.skip(run),
+                GCode::Turning(number) => return self.turning_block(number, span, run),
+                GCode::Pocket(clockwise) => return self.circular_pocket(clockwise, span, run),
+                GCode::LatheCycle(number) => return self.lathe_cycle(number, span, run),
+                GCode::SetOffset => return self.set_offset(span, run),
+                GCode::ClearOffset { forget } => self.position.clear_offset(forget),
+                GCode::RestoreOffset => self.restore_offset(span, run),
+                GCode::SaveReference => self.save_reference(number, span, run),
+                GCode::DataSetting => return self.data_setting(span, run),
+                GCode::LocalOffset => return self.local_offset(span, run),
+                GCode::Rotation(on) => self.rotation(on, span, run),
+                // A lathe's G50 (G-code system A) is what G92 is elsewhere.
+                GCode::Scaling(false) if run.words.has_axes() => {
+                    return self.set_offset(span, run);
+                }
+                GCode::Scaling(on) => self.scaling(on, span, run),
+                GCode::Mirror(on) => self.mirror(on, span, run),
+                _ => {}
+            }
+        }
+        self.move_on(run);
+    }
+
+    /// Moves by the motion word in force.
+    #[inline]
+    fn move_on(&mut self, run: &mut Run<'_, '_>) {
+        if let Motion::Special(number) = self.modal.motion {
+            return self.special_motion(number, run);
+        }
+        let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
+        let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
+        if !(run.words.has_axes() || arc && center) {
+            return;
+        }
+        run.facts.uses_motion = true;
+        run.facts.uses_feed = self.obeys_feed();
+        match self.modal.motion {
+            Motion::None | Motion::Special(_) => {
+                let span = run.whole();
+                run.report
+                    .error(
+                        "no-motion-word",
+                        "axis words without a motion word in force",
+                        span,
+                    )
+                    .help("write G0, G1, G2 or G3 in this block or before");
+            }
+            Motion::Rapid | Motion::Linear => self.straight(run),
+            Motion::ArcCw | Motion::ArcCcw => self.arc(run),
+        }
+    }
+
+    /// A dwell where the axes stand.
+    pub(super) fn dwell(&self, run: &mut Run<'_, '_>, dwell_s: f64) {
+        run.steps.push(Step::Move(Move {
+            line: run.line,
+            number: run.block.number.map(|word| word.value),
+            run: self.run,
+            text: self.text,
+            kind: MoveKind::Dwell,
+            start: self.position.at,
+            end: self.position.at,
+            moving: AxisSet::default(),
+            unknown_start: AxisSet::default(),
+            arc: None,
+            length_mm: 0.0,
+            feed_mm_s: f64::INFINITY,
+            feed_mode: self.modal.feed_mode,
+            accel_mm_s2: self.knobs.feed_accel_mm_s2,
+            path_accel_mm_s2: f64::INFINITY,
+            rapid_factor: self.knobs.rapid_factor,
+            pace: 1.0,
+            dwell_s,
+            loads: self.loads,
+            path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
+            stray: Stray::NONE,
+        }));
+    }
+
+    /// Reads the axis words into `end`, machine coordinates, which holds the place
+    /// that incremental words count from. Returns the axes
+    /// whose start is not known; `None` when something was wrong.
+    pub(super) fn targets(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        machine_coordinates: bool,
+        end: &mut AxisValues,
+    ) -> Option<AxisSet> {
+        if self.is_bent(run) {
+            return self.bent_targets(run, machine_coordinates, end);
+        }
+        let mut unknown = AxisSet::default();
+        let mut fine = true;
+        for (axis, value) in run.words.axes() {
+            let letter = ALL_AXES[axis].letter();
+            let Some(data) = &self.machine.axes[axis] else {
+                let span = run.words.span(letter, run.block);
+                no_such_axis(letter, span, &mut run.report);
+                fine = false;
+                continue;
+            };
+            let value = if data.kind == AxisKind::Linear {
+                value * self.modal.mm_per_unit
+            } else {
+                value
+            };
+            let absolute = if axis == EXTRUDER {
+                self.modal.extruder_absolute
+            } else {
+                self.modal.absolute
+            };
+            end[axis] = if machine_coordinates {
+                value
+            } else if absolute {
+                self.position.frame.shifted(axis, value)
+            } else {
+                end[axis] + value
+            };
+            if self.position.unknown.contains(axis) && (absolute || machine_coordinates) {
+                unknown.insert(axis);
+            }
+            if end[axis].abs() > POSITION_MAX_MM {
+                let span = run.words.span(letter, run.block);
+                run.report
+                    .error("position-range", "the position is beyond any machine", span)
+                    .help("check the number");
+                fine = false;
+            }
+        }
+        run.words.unused &= !AXIS_LETTERS;
+        fine.then_some(unknown)
+    }
+
+    /// Whether the machine has an axis; reported where it has not.
+    pub(super) fn axis_exists(&self, axis: usize, run: &mut Run<'_, '_>) -> bool {
+        self.axis_exists_at(axis, ALL_AXES[axis].letter(), run)
+    }
+
+    /// The same for the word of that letter.
+    pub(super) fn axis_exists_at(&self, axis: usize, letter: u8, run: &mut Run<'_, '_>) -> bool {
+        if self.machine.axes[axis].is_some() {
+            return true;
+        }
+        let span = run.words.span(letter, run.block);
+        no_such_axis(letter, span, &mut run.report);
+        false
+    }
+
+    fn straight(&mut self, run: &mut Run<'_, '_>) {
+        let rapid =
+            self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
+        let kind = if rapid {
+            MoveKind::Rapid
+        } else {
+            MoveKind::Feed
+        };
+        let mut end = self.believed();
+        let machine_coordinates = run.facts.machine_coordinates;
+        if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
+            if self.printer.adjusts {
+                self.scale_extrusion(&mut end, unknown);
+            }
+            self.go(run, kind, &end, unknown, None);
+        }
+    }
+
+    /// Moves to `end`: a straight line, or `arc`.
+    pub(super) fn go(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        end: &AxisValues,
+        unknown_start: AxisSet,
+        arc: Option<Arc>,
+    ) {
+        self.go_at(run, kind, end, unknown_start, arc, None);
+    }
+
+    /// As [`Self::go`]; at `feed_mm_s` instead of F, where it is given.
+    #[inline]
+    pub(super) fn go_at(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        end: &AxisValues,
+        unknown_start: AxisSet,
+        arc: Option<Arc>,
+        given_mm_s: Option<f64>,
+    ) {
+        let start = &self.position.at;
+        let mut moving = AxisSet::default();
+        for axis in self.machine.axis_set.iter() {
+            if (end[axis] - start[axis]).abs() > STANDSTILL_MM {
+                moving.insert(axis);
+            }
+        }
+        moving.0 &= !unknown_start.0;
+        if let Some(arc) = &arc {
+            moving.insert(arc.plane[0]);
+            moving.insert(arc.plane[1]);
+        }
+        let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
+        let mut feed_mm_s = f64::INFINITY;
+        let given = match kind {
+            MoveKind::Thread | MoveKind::Tap => self.special.speed_mm_s,
+            _ => given_mm_s,
+        };
+        if let Some(given_mm_s) = given {
+            feed_mm_s = given_mm_s;
+        } else if kind != MoveKind::Rapid {
+            let Some(speed_mm_s) = self.feed_speed(run, end, arc.as_ref(), length_mm, linear)
+            else {
+                return;
+            };
+            feed_mm_s = speed_mm_s;
+            if matches!(kind, MoveKind::Feed | MoveKind::Arc) {
+                feed_mm_s = feed_mm_s.min(self.machine.path.max_feed_mm_s);
+            }
+        }
+        let mut rapid_factor = self.knobs.rapid_factor;
+        if self.printer.adjusts {
+            let course = Course {
+                end,
+                commanded: AxisSet(moving.0 | unknown_start.0),
+                length_mm: if arc.is_none() && unknown_start.is_empty() {
+                    length_mm
+                } else {
+                    0.0
+                },
+                unknown: !unknown_start.is_empty(),
+            };
+            feed_mm_s = match given_mm_s {
+                None => self.printer_feed(run, &course, feed_mm_s),
+                Some(_) => self.capped(&course, feed_mm_s),
+            };
+            rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
+        }
+        let path_accel_mm_s2 = self.path_accel(AxisSet(moving.0 | unknown_start.0));
+        let mut accel_mm_s2 = *self.knobs.accel(kind);
+        if !unknown_start.is_empty() {
+            hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
+        }
+        let stray = match &arc {
+            Some(arc) => stray::of_arc(arc, &self.position.at, end),
+            None => Stray::NONE,
+        };
+        self.moved = true;
+        run.steps.push(Step::Move(Move {
+            line: run.line,
+            number: run.block.number.map(|word| word.value),
+            run: self.run,
+            text: self.text,
+            kind,
+            start: self.position.at,
+            end: *end,
+            moving,
+            unknown_start,
+            arc,
+            length_mm,
+            feed_mm_s,
+            feed_mode: self.modal.feed_mode,
+            accel_mm_s2,
+            path_accel_mm_s2,
+            rapid_factor,
+            pace: 1.0,
+            dwell_s: 0.0,
+            loads: self.loads,
+            path_mode: self.modal.path_mode,
+            corner: self.modal.corner,
+            stray,
+        }));
+        self.position.at = *end;
+        self.special.left = None;
+        self.position.unknown.0 &= !unknown_start.0;
+    }
+
+    /// The limit of acceleration along the path of a move.
+    #[inline]
+    pub(super) fn path_accel(&self, moving: AxisSet) -> f64 {
+        let spares = self.machine.controller.language.printer.path_accel_spares;
+        let slot = if moving.0 & !spares.0 == 0 {
+            2
+        } else {
+            usize::from(!moving.contains(EXTRUDER))
+        };
+        self.knobs.path_accel_mm_s2[slot]
+    }
+
+    /// The path speed that F asks for, mm/s; reports an F that is missing.
+    pub(super) fn feed_speed(
+        &self,
+        run: &mut Run<'_, '_>,
+        end: &AxisValues,
+        arc: Option<&Arc>,
+        length_mm: f64,
+        linear: bool,
+    ) -> Option<f64> {
+        let span = run.whole();
+        let feed = match &self.modal.feed {
+            Some(feed) if feed.value > 0.0 => feed,
+            Some(_) => {
+                run.report
+                    .error("no-feed", "a feed move with F0", span)
+                    .help("write the feed: F…");
+                return None;
+            }
+            None if self.machine.controller.language.family == Family::Marlin => {
+                let message = "no F yet: the first moves count at the speed limits of the axes";
+                run.report.note_once("no-feed-yet", message, span);
+                return Some(f64::INFINITY);
+            }
+            None if self.is_siemens() => {
+                let message = "no F in force: the control's data (SD42110) say which feed then; \
+                               counted at the speed limits of the axes";
+                run.report.note_once("no-feed-yet", message, span);
+                return Some(f64::INFINITY);
+            }
+            None => {
+                run.report
+                    .error("no-feed", "a feed move, but no F is in force", span)
+                    .help("write F in this block or before; after G93, G94 or G95 it must be written anew");
+                return None;
+            }
+        };
+        if self.feed_mode_is(FeedMode::InverseTime) {
+            if run.facts.feed_word.is_none() {
+                let help = "under G93 every block needs its own F";
+                run.report
+                    .error("no-feed", "a feed move without F under G93", span)
+                    .help(help);
+                return None;
+            }
+            return Some(length_mm * feed.value / SECONDS_PER_MINUTE);
+        }
+        let per_unit = if linear {
+            feed.linear_mm_s()
+        } else {
+            feed.rotary_deg_s()
+        };
+        if self.feed_mode_is(FeedMode::PerMinute) {
+            return Some(per_unit);
+        }
+        let rpm = self.highest_rpm(end, arc);
+        if self.spindle.surface_mm_min.is_some() {
+            let message = "under G96 a feed per revolution counts at the highest spindle speed \
+                           of its block";
+            run.report.note_once("surface-speed", message, span);
+        }
+        if rpm > 0.0 {
+            return Some(per_unit * rpm);
+        }
+        run.report
+            .error(
+                "no-spindle-speed",
+                "a feed per revolution, but no spindle speed is in force",
+                span,
+            )
+            .help("write S before the first move under G95");
+        None
+    }
+}
+
+fn no_such_axis(letter: u8, span: Span, report: &mut Report<'_, '_>) {
+    let message = format!("the machine has no {} axis", letter as char);
+    report.error("no-such-axis", message, span).help(format!(
+        "choose a machine with it, or describe it in the machine file: [axes.{}]",
+        letter as char
+    ));
+}

@@ -1,0 +1,134 @@
+//! A block, word by word ("Program Configuration", "Sequence Name").
+
+use super::Osp;
+use crate::beyond_words::{Note, not_finite};
+use crate::execute::Control;
+use crate::expression::Fault;
+use crate::formula::{Cursor, Lexis, Outcome, Uses};
+use crate::report::Report;
+use crate::transfer::Go;
+use gwatt_syntax::{Block, Word};
+
+/// A block while it is read.
+pub(super) struct Reading<'c, 't> {
+    pub(super) state: &'c mut Osp,
+    pub(super) cursor: Cursor<'t>,
+    pub(super) notes: Vec<Note>,
+    pub(super) uses: Uses,
+    /// NOEX stands in the block.
+    pub(super) passive: bool,
+}
+
+impl Control<'_> {
+    /// Reads a block that is more than plain words. True when the program does
+    /// not go on at the next line.
+    #[cold]
+    pub(crate) fn osp_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
+        let Some(mut state) = self.osp.take() else {
+            return false;
+        };
+        let text = report.text.get(..block.text_end as usize);
+        let mut reading = Reading {
+            state: &mut state,
+            cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Comments),
+            notes: Vec::new(),
+            uses: Uses::default(),
+            passive: false,
+        };
+        let read = reading.read(block);
+        let notes = reading.notes;
+        self.begun |= read.is_ok();
+        self.osp = Some(state);
+        self.take_reading(read, notes, block, report)
+    }
+}
+
+impl Reading<'_, '_> {
+    /// Reads the block: its words get their values. Gives where the program
+    /// goes on, if that is not the next line.
+    fn read(&mut self, block: &mut Block) -> Outcome<Option<Go>> {
+        if let Some(fault) = not_finite(block) {
+            return Err(fault);
+        }
+        block.words.clear();
+        block.issues.clear();
+        if self.cursor.peek() == Some(b'$') {
+            // `$NAME.MIN%`: the header of the file.
+            return Ok(None);
+        }
+        if self.cursor.take(b'/') {
+            self.cursor.digits();
+        }
+        if self.state.draws {
+            self.state.draws = self.cursor.name() != "END";
+            return Ok(None);
+        }
+        let name = self.cursor.name();
+        if name.starts_with('O') && name.len() > 1 && !self.assigns(&name) {
+            return self.program_name(&name);
+        }
+        let statement = matches!(name.as_str(), "NCYL" | "NMSG" | "NOEX");
+        if name.starts_with('N') && name.len() > 1 && !self.assigns(&name) && !statement {
+            self.cursor.at += name.len();
+        }
+        let mut go = None;
+        while self.cursor.peek().is_some() {
+            let start = self.cursor.at;
+            if let Some(found) = self.item(block)? {
+                if go.is_some() {
+                    let message = "two words of a block say where the program goes on";
+                    let help = "write two blocks";
+                    return Err(self.cursor.fault("flow", message, help, start));
+                }
+                go = Some(found);
+            }
+            block.words_end = self.cursor.end() as u32;
+        }
+        let moves = |word: &&Word| word.letter == b'G' && word.value < 4.0;
+        if self.state.only_keeps
+            && let Some(word) = block.words.iter().find(moves)
+        {
+            let message = "NCYL without a canned cycle";
+            let help = "write it in the block of G73 to G89";
+            return Err(Fault::new("unsupported-word", message, help, word.span));
+        }
+        if self.passive
+            && let Some(word) = block.words.first()
+        {
+            let message = "NOEX with words: whether they move, the control's mode says";
+            let help = "keep assignments in it, and write the words in a block of their own";
+            return Err(Fault::new("unsupported-word", message, help, word.span));
+        }
+        Ok(go)
+    }
+
+    fn assigns(&self, name: &str) -> bool {
+        let mut ahead = self.cursor.clone();
+        ahead.at += name.len();
+        ahead.assigns()
+    }
+
+    /// `O1000`, `OMAIN`: where a program begins.
+    fn program_name(&mut self, name: &str) -> Outcome<Option<Go>> {
+        let start = self.cursor.at;
+        self.cursor.at += name.len();
+        let begun = std::mem::replace(&mut self.state.begun, true);
+        if !begun {
+            return Ok(None);
+        }
+        if self.state.is_called() {
+            let message = "the subprogram ends without RTS";
+            let help = "write RTS at its end";
+            return Err(self.cursor.fault("subprogram", message, help, start));
+        }
+        let message = "a second program name ends the program; \
+                       programs after it run where they are called";
+        self.note("several-programs", message, start);
+        Ok(Some(Go::End))
+    }
+
+    pub(super) fn note(&mut self, rule: &'static str, message: &'static str, start: usize) {
+        let span = self.cursor.span(start);
+        self.notes.push((rule, message, span));
+    }
+}

@@ -1,0 +1,144 @@
+//! Variables ("User Task": common variables, local variables, system variables).
+
+use super::block::Reading;
+use crate::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
+
+/// System variables that move nothing: drawings, barriers of chuck and tail
+/// stock, monitoring of load, outputs and messages.
+const PASSIVE: [&str; 9] = [
+    "VGR", "VCHK", "VTSL", "VTSD", "VWKR", "VLMON", "VUACM", "VDOUT", "VTMNO",
+];
+
+/// What a name stands for.
+enum Name {
+    Common(Ident),
+    Local(Ident),
+    System(Ident),
+}
+
+impl Names for Reading<'_, '_> {
+    fn style(&self) -> Style {
+        Style::Osp
+    }
+
+    fn variable(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<f64>> {
+        let start = cursor.at;
+        let Some(found) = self.variable_name(cursor)? else {
+            return Ok(None);
+        };
+        let (kept, name) = match found {
+            Name::Common(name) => (Some(&self.state.common), name),
+            Name::Local(name) => (self.state.levels.last(), name),
+            Name::System(name) => (None, name),
+        };
+        let value = kept.and_then(|kept| kept.get(&name)).copied();
+        let Some(value) = value else {
+            let message = format!(
+                "{name} has no value in this program: what it holds, only the control knows"
+            );
+            let help = "assign it before it is used";
+            return Err(cursor.fault("unknown-value", message, help, start));
+        };
+        self.uses.reads(name, cursor, start)?;
+        Ok(Some(value))
+    }
+}
+
+impl Reading<'_, '_> {
+    /// Takes the name of a variable with its index.
+    fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Name>> {
+        let name = cursor.name();
+        let letters = name.bytes().take_while(u8::is_ascii_alphabetic).count();
+        if letters == 0 {
+            return Ok(None);
+        }
+        cursor.at += name.len();
+        let number = name.get(letters..).unwrap_or_default();
+        let common = matches!(name.get(..letters), Some("V" | "VC" | "VS"));
+        if !name.starts_with('V') {
+            if letters < 2 {
+                cursor.at -= name.len();
+                return Ok(None);
+            }
+            return Ok(Some(Name::Local(name)));
+        }
+        let mut full = name.clone();
+        if (number.is_empty() || !common) && cursor.peek() == Some(b'[') {
+            cursor.at += 1;
+            let start = cursor.at;
+            let index = expression(cursor, self)?;
+            cursor.expect(b']')?;
+            if index.fract() != 0.0 || !(0.0..=1e6).contains(&index) {
+                let message = format!("{index} is no index");
+                let help = "indices are whole numbers";
+                return Err(cursor.fault("array-index", message, help, start));
+            }
+            full = if common {
+                Ident::of(format_args!("{name}{index}"))
+            } else {
+                Ident::of(format_args!("{name}[{index}]"))
+            };
+        }
+        Ok(Some(if common {
+            Name::Common(full)
+        } else {
+            Name::System(full)
+        }))
+    }
+
+    /// `V1=…`, `VC1=…`, `NAME=…`, where a name of at least two letters or a V
+    /// begins and `=` stands after it; false otherwise.
+    pub(super) fn assignment(&mut self) -> Outcome<bool> {
+        let start = self.cursor.at;
+        let mut cursor = self.cursor.clone();
+        let Some(name) = self.variable_name(&mut cursor)? else {
+            return Ok(false);
+        };
+        if !cursor.assigns() {
+            return Ok(false);
+        }
+        self.cursor = cursor;
+        let (text, local) = match name {
+            Name::Common(name) => (name, false),
+            Name::Local(name) => (name, true),
+            Name::System(name) => {
+                if !PASSIVE.iter().any(|front| name.starts_with(front)) {
+                    let message = format!("{name} belongs to the control, and may change offsets");
+                    let help = "take it out, or write what it does in words";
+                    return Err(self.cursor.fault("unsupported-word", message, help, start));
+                }
+                self.cursor.at += 1;
+                if self.cursor.peek() == Some(b'\'') {
+                    self.cursor.pass_over_rest();
+                } else {
+                    self.number()?;
+                }
+                return Ok(true);
+            }
+        };
+        self.uses.assigns(&text, &self.cursor, start)?;
+        self.cursor.at += 1;
+        let value = self.number()?;
+        self.set(&text, local, value, start)?;
+        self.uses.assigned(text);
+        Ok(true)
+    }
+
+    fn set(&mut self, name: &Ident, local: bool, value: f64, start: usize) -> Outcome<()> {
+        let kept = if local {
+            self.state.levels.last_mut()
+        } else {
+            Some(&mut self.state.common)
+        };
+        let Some(kept) = kept else { return Ok(()) };
+        keep(kept, name, value, &self.cursor, start)
+    }
+
+    /// An expression.
+    pub(super) fn number(&mut self) -> Outcome<f64> {
+        let mut cursor = self.cursor.clone();
+        let value = expression(&mut cursor, self);
+        self.cursor = cursor;
+        value
+    }
+}

@@ -1,0 +1,45 @@
+//! Blocks that are not executed: after the end, skipped, or with words in what is no comment
+//! for the control.
+
+use super::execute::Control;
+use super::report::Report;
+use gwatt_syntax::Block;
+use gwatt_syntax::source::Span;
+
+impl Control<'_> {
+    /// Whether the block is deleted, a tape mark, after the end, or refused.
+    pub(super) fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
+        self.skips(block, report) || self.refuses_hidden_words(block, report)
+    }
+
+    fn skips(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
+        let all = Span::new(0, block.text_end as usize);
+        if self.ended {
+            if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
+                report.note_once(
+                    "after-the-end",
+                    "what follows the end of the program is not executed",
+                    all,
+                );
+            }
+            return true;
+        }
+        if block.tape && self.isg.is_none() {
+            // The first `%` opens the tape; one after any block ends it.
+            self.ended = self.begun;
+            return true;
+        }
+        if block.delete_level == 0 {
+            return false;
+        }
+        if !self.machine.controller.language.block_delete {
+            report.note_once(
+                "no-block-delete",
+                "this controller executes blocks that begin with `/`",
+                all,
+            );
+            return false;
+        }
+        self.block_delete.passes(block.delete_level)
+    }
+}

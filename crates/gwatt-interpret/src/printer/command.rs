@@ -1,0 +1,409 @@
+//! What a command does: which of its readers takes it, in which order.
+
+use super::line::{Head, Parameters, Text, has, value};
+use super::verify_checksum;
+use crate::code::{GCode, Motion, g_code};
+use crate::execute::{Control, Run};
+use crate::report::Report;
+use crate::tools::ToolLength;
+use gwatt_machine::{Command, ExtruderMode, Family};
+use gwatt_motion::{ActionKind, Step};
+use gwatt_syntax::source::Span;
+use gwatt_syntax::{Block, Word};
+
+/// Most commands that a line may hold.
+const COMMANDS: usize = 32;
+
+impl Control<'_> {
+    /// Executes a line of commands. Nothing that it does remains if it has an
+    /// error.
+    pub(crate) fn command_line(&mut self, run: &mut Run<'_, '_>) {
+        let before = run.steps.len();
+        let errors = run.report.diagnostics.errors;
+        run.facts.executed = true;
+        let mut text = Text::new(run.report.text, run.block.text_end as usize);
+        if let Some(star) = text.checksum {
+            run.facts.checksum = true;
+            verify_checksum(star, &self.machine.controller, &mut run.report);
+        }
+        for index in 0..COMMANDS {
+            let so_far = run.steps.len();
+            let next = self.one_command(run, text, index > 0);
+            let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
+            let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
+            if index > 0 && moves(own) && earlier.get(before..).is_some_and(moves) {
+                run.facts.fixed = Some("its line holds several commands that move");
+            }
+            let Some(next) = next.filter(|_| run.report.diagnostics.errors == errors) else {
+                break;
+            };
+            text = text.from(next);
+        }
+        self.loads &= !std::mem::take(&mut self.loads_off);
+        if run.report.diagnostics.errors != errors {
+            run.steps.truncate(before);
+        }
+    }
+
+    /// Executes the first command of `text`; gives the place of the next.
+    fn one_command(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        text: Text<'_>,
+        further: bool,
+    ) -> Option<usize> {
+        let (head, at) = text.head();
+        let (letter, number, span) = match head {
+            Head::Code(letter, number, span) => (letter, number, span),
+            Head::Tool(span) => {
+                self.unknown_moves(run, span);
+                return None;
+            }
+            Head::Name(name, span) => {
+                self.named(run, text, name, span, at);
+                return None;
+            }
+            Head::Other => {
+                self.not_a_command(run);
+                return None;
+            }
+        };
+        if Text::is_text(letter, number) {
+            text_command(run, number);
+            return None;
+        }
+        let (parameters, next) = match text.parameters(at) {
+            Ok(found) => found,
+            // Whatever it is told, the profile says what it does.
+            Err(_) if self.is_listed(letter, number) && self.one_a_line() => {
+                (Parameters::new(), None)
+            }
+            Err(odd) => {
+                odd_text(&mut run.report, odd);
+                return None;
+            }
+        };
+        if further && self.one_a_line() {
+            if !self.changes_nothing(letter, number) {
+                run.report
+                    .error(
+                        "two-commands",
+                        "this controller reads one command a line",
+                        span,
+                    )
+                    .help("write it on a line of its own");
+            }
+            return next;
+        }
+        self.code(run, (letter, number, span), &parameters);
+        next
+    }
+
+    fn one_a_line(&self) -> bool {
+        !self.machine.controller.language.printer.several_commands
+    }
+
+    /// Text without a command that can be read.
+    fn not_a_command(&mut self, run: &mut Run<'_, '_>) {
+        for issue in &run.block.issues {
+            let found = issue.diagnostic(run.line, run.report.text);
+            run.report.diagnostics.push(found);
+        }
+        if run.block.issues.is_empty() && !run.block.words.is_empty() {
+            let block = run.block;
+            self.words(run, block);
+        }
+    }
+
+    /// Whether the profile says what the command does, whatever follows it.
+    fn is_listed(&self, letter: u8, number: u16) -> bool {
+        let printer = &self.machine.controller.language.printer;
+        let listed = |list: &[Command]| list.iter().any(|one| one.is_code(letter, number));
+        self.passes(letter, number) || listed(&printer.unknown_moves) || listed(&printer.shifts)
+    }
+
+    /// Whether the profile says that a word moves nothing. `M862.3` is one of
+    /// `M862`.
+    fn passes(&self, letter: u8, number: u16) -> bool {
+        let language = &self.machine.controller.language;
+        match letter {
+            b'G' => language.ignored_g.contains(&number),
+            b'M' => language.ignored_m.contains(&(number / 10)),
+            _ => false,
+        }
+    }
+
+    /// A second command that this controller does not see, and that would
+    /// change nothing if it did.
+    fn changes_nothing(&self, letter: u8, number: u16) -> bool {
+        if letter == b'M' {
+            return self.passes(letter, number) || number == 300;
+        }
+        match g_code(number, Family::Marlin) {
+            Some(GCode::Absolute(absolute)) => absolute == self.modal.absolute,
+            Some(GCode::Units { mm_per_unit }) => mm_per_unit == self.modal.mm_per_unit,
+            Some(GCode::Plane(plane)) => plane == self.modal.plane,
+            Some(GCode::CompensationOff | GCode::ToolLength(ToolLength::Off)) => true,
+            _ => false,
+        }
+    }
+
+    /// A word with its parameters.
+    fn code(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        (letter, number, span): (u8, u16, Span),
+        parameters: &Parameters,
+    ) {
+        let action = f64::from(number) / 10.0;
+        if letter == b'M' {
+            self.switch_printer_loads(run, action, parameters, span);
+        }
+        let printer = &self.machine.controller.language.printer;
+        let listed = |list: &[Command]| list.iter().any(|one| one.is_code(letter, number));
+        let shifts = listed(&printer.shifts);
+        if self.passes(letter, number) {
+            note_uncounted(run, letter, number, span);
+            run.act(ActionKind::Other, action);
+        } else if shifts {
+            self.shift_axes(parameters);
+            run.act(ActionKind::Other, action);
+        } else if listed(&printer.unknown_moves) {
+            self.unknown_moves(run, span);
+            if has(parameters, b'F') {
+                // Whether it stays in force, firmwares see differently.
+                self.modal.feed = None;
+            }
+        } else if letter == b'T' {
+            self.tool(run, number, span);
+        } else if !self.own_command(run, (letter, number, span), parameters) {
+            self.ordinary(run, (letter, number, span), parameters);
+        }
+    }
+
+    /// Commands that printers alone have, or read in their own way.
+    fn own_command(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        (letter, number, span): (u8, u16, Span),
+        parameters: &Parameters,
+    ) -> bool {
+        match (letter, number) {
+            (b'G', 100 | 110) => self.retract_or_set(run, number, parameters, span),
+            (b'G', 530 | 921..=923) => {
+                // Where machine zero lies may have been lost.
+                self.ordinary(run, (letter, number, span), parameters);
+                self.shift_axes(&Parameters::new());
+            }
+            (b'G', 280) => self.home(run, parameters, span),
+            (b'G', 600) => self.save_position(run, parameters, span),
+            (b'G', 610) => self.return_to_position(run, parameters, span),
+            (b'G', 800) => {
+                self.modal.motion = Motion::None;
+                self.unknown_moves(run, span);
+            }
+            (b'M', 20) => {
+                // RepRapFirmware stops here; the others do not know it.
+                run.facts.boundary = true;
+                run.act(ActionKind::Stop, 2.0);
+            }
+            (b'M', 300) => run.act(ActionKind::Other, 30.0),
+            (b'M', 920) => self.steps_per_unit(run, parameters),
+            (b'M', 1040 | 1060 | 1070 | 1090 | 1400 | 1410 | 1900 | 1910 | 3030 | 5680) => {
+                run.act(ActionKind::Other, f64::from(number) / 10.0);
+            }
+            (b'M', 1200) => self.push_state(run, span),
+            (b'M', 1210) => self.pop_state(run, span),
+            (b'M', 2000) => self.volumetric(run, parameters, span),
+            (b'M', 2010) if parameters.is_empty() => {}
+            (b'M', 2030) => self.speed_caps(run, parameters, span),
+            (b'M', 2040) if self.machine.controller.language.printer.velocity_limit => {
+                let least = match (value(parameters, b'P'), value(parameters, b'T')) {
+                    (Some(print), Some(travel)) => Some(print.min(travel)),
+                    _ => None,
+                };
+                let accel = value(parameters, b'S').or(least);
+                self.limit_velocity(run, None, accel, span);
+            }
+            (b'M', 2040) => return self.path_limits(run, parameters, span),
+            (b'M', 2050) => self.least_speeds(parameters),
+            (b'M', 2070) => self.set_retract(run, parameters, span),
+            (b'M', 2080) => self.set_recover(run, parameters, span),
+            (b'M', 2090) => {
+                if value(parameters, b'S') != Some(0.0) && !parameters.is_empty() {
+                    refuse(run, span, "M209 turns moves of the extruder into retracts");
+                }
+            }
+            (b'M', 2200) => self.feed_percent(run, parameters, span),
+            (b'M', 2210) => self.flow_percent(run, parameters, span),
+            (b'M', 5010) => self.restore_settings(run, span),
+            (b'M', 980) => refuse(run, span, "M98 runs a macro file"),
+            (b'M', 990) => refuse(run, span, "M99 belongs to a macro file"),
+            (b'G', 650..=670) => refuse(run, span, "a macro call is nothing that printers know"),
+            (b'M', 5020) => refuse(
+                run,
+                span,
+                "M502 loads settings that the machine file does not describe",
+            ),
+            _ => return false,
+        }
+        true
+    }
+
+    /// A word as other controllers have it.
+    fn ordinary(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        (letter, number, span): (u8, u16, Span),
+        parameters: &Parameters,
+    ) {
+        let printer = &self.machine.controller.language.printer;
+        let moves = letter == b'G' && number <= 30;
+        let to_endstop = moves
+            && printer
+                .endstop_letters
+                .iter()
+                .any(|letter| value(parameters, *letter).is_some_and(|value| value != 0.0));
+        if letter == b'G' && number == 920 && !parameters.is_empty() {
+            // `G92 E` without a number sets nothing.
+            let valued = parameters.iter().any(|parameter| parameter.value.is_some());
+            if !valued {
+                return;
+            }
+        }
+        let head = Word {
+            letter,
+            value: f64::from(number) / 10.0,
+            span,
+            number: span,
+        };
+        let mut words = vec![head];
+        for parameter in parameters {
+            let endstop = printer.endstop_letters.contains(&parameter.letter);
+            let passed = moves && endstop || to_endstop && parameter.letter != b'F';
+            let Some(value) = parameter.value.filter(|_| !passed) else {
+                continue;
+            };
+            words.push(Word {
+                letter: parameter.letter,
+                value,
+                span: parameter.span,
+                number: parameter.number,
+            });
+        }
+        if moves {
+            flags_of_a_move(run, parameters);
+        }
+        let block = Block {
+            words,
+            number: run.block.number,
+            delete_level: run.block.delete_level,
+            tape: false,
+            words_end: run.block.words_end,
+            text_end: run.block.text_end,
+            issues: Vec::new(),
+        };
+        self.words(run, &block);
+        if to_endstop {
+            self.unknown_moves(run, span);
+        }
+    }
+
+    /// Executes the words of a block in the order of other controllers.
+    fn words(&mut self, run: &mut Run<'_, '_>, block: &Block) {
+        let errors = run.report.diagnostics.errors;
+        let mut inner = Run {
+            line: run.line,
+            block,
+            words: &mut *run.words,
+            facts: &mut *run.facts,
+            steps: &mut *run.steps,
+            report: Report {
+                diagnostics: &mut *run.report.diagnostics,
+                line: run.line,
+                text: run.report.text,
+            },
+        };
+        let controller = &self.machine.controller;
+        inner.words.fill(block, controller, &mut inner.report);
+        if inner.report.diagnostics.errors == errors {
+            self.general(&mut inner, errors);
+        }
+    }
+
+    /// M82 and M83 (`Some`), or a change of G90 and G91.
+    pub(crate) fn extruder_mode(&mut self, set: Option<bool>) {
+        if let Some(absolute) = set {
+            self.printer.extruder_absolute = absolute;
+        }
+        let own = self.printer.extruder_absolute;
+        self.modal.extruder_absolute = match self.machine.controller.language.printer.extruder_mode
+        {
+            ExtruderMode::Follows => set.unwrap_or(self.modal.absolute),
+            ExtruderMode::Own => own,
+            ExtruderMode::Either => own && self.modal.absolute,
+        };
+    }
+}
+
+/// Commands with free text: stops, and those that do nothing.
+fn text_command(run: &mut Run<'_, '_>, number: u16) {
+    let stops = number <= 10;
+    run.facts.boundary |= stops;
+    let kind = if stops {
+        ActionKind::Stop
+    } else {
+        ActionKind::Other
+    };
+    run.act(kind, f64::from(number) / 10.0);
+}
+
+/// An axis without a number in a move: firmwares differ in what it means.
+fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
+    for parameter in parameters.iter().filter(|one| one.value.is_none()) {
+        let letter = parameter.letter as char;
+        let message = format!("`{letter}` has no number after it");
+        run.report
+            .error("missing-number", message, parameter.span)
+            .help("write the number right after the letter, as in `X12.5`");
+    }
+}
+
+/// What is known to be left out of the estimate.
+fn note_uncounted(run: &mut Run<'_, '_>, letter: u8, number: u16, span: Span) {
+    match (letter, number) {
+        (b'M', 9000 | 5720) => note_advance(run, span),
+        (b'M', 4200 | 3750) => note_levelling(run, span),
+        _ => {}
+    }
+}
+
+pub(super) fn note_advance(run: &mut Run<'_, '_>, span: Span) {
+    let message = "what pressure advance adds to the extruder's moves is not counted";
+    run.report.note_once("pressure-advance", message, span);
+}
+
+pub(super) fn note_levelling(run: &mut Run<'_, '_>, span: Span) {
+    let message = "what bed levelling adds to the moves of Z is not counted";
+    run.report.note_once("bed-levelling", message, span);
+}
+
+/// Refuses a command by name.
+pub(super) fn refuse(run: &mut Run<'_, '_>, span: Span, message: &str) {
+    run.report
+        .error("unsupported-code", message, span)
+        .help("nothing is estimated for a program with motion that is not understood");
+}
+
+/// What stands where a parameter should: an expression, or text.
+fn odd_text(report: &mut Report<'_, '_>, odd: Span) {
+    if odd.of(report.text).contains(&b'{') {
+        report
+            .error("expression", "expressions in `{ }` are not supported", odd)
+            .help("write the number itself");
+        return;
+    }
+    report
+        .error("unknown-text", "this is no parameter of the command", odd)
+        .help("parameters are a letter and a number each; put other text after `;`");
+}

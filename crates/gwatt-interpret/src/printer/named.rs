@@ -1,0 +1,197 @@
+//! Extended commands: a name, then `KEY=value`.
+//!
+//! Source: Klipper documentation, "G-Codes". `RepRapFirmware` has `if`,
+//! `while`, `var` and the like at the beginning of a line (Duet documentation,
+//! "Meta commands"); they are refused by name.
+
+use super::command::{note_advance, note_levelling};
+use super::kept::Back;
+use super::line::{Parameters, Text};
+use crate::execute::{Control, Run};
+use crate::flow::library;
+use crate::motion::EXTRUDER;
+use crate::transfer::Transfer;
+use gwatt_machine::Command;
+use gwatt_motion::ActionKind;
+use gwatt_syntax::source::Span;
+
+/// Words of `RepRapFirmware`'s conditional language.
+const META: [&str; 11] = [
+    "if", "elif", "else", "while", "break", "continue", "var", "global", "set", "abort", "skip",
+];
+
+impl Control<'_> {
+    /// Executes an extended command.
+    pub(super) fn named(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        text: Text<'_>,
+        name: &[u8],
+        span: Span,
+        at: usize,
+    ) {
+        let printer = &self.machine.controller.language.printer;
+        let listed = |list: &[Command]| list.iter().any(|one| one.is_macro(name));
+        let upper = name.to_ascii_uppercase();
+        let upper = upper.as_slice();
+        let shifts = listed(&printer.shifts);
+        let moves = shifts && text.argument(at, "MOVE").is_some_and(|value| value != b"0");
+        if listed(&printer.ignored_macros) {
+            match upper {
+                b"SET_PRESSURE_ADVANCE" => note_advance(run, span),
+                b"BED_MESH_PROFILE" => {
+                    note_levelling(run, span);
+                    self.shift_axes(&Parameters::new());
+                }
+                _ => {}
+            }
+            run.act(ActionKind::Other, 0.0);
+        } else if moves || listed(&printer.unknown_moves) {
+            self.unknown_moves(run, span);
+        } else if shifts {
+            self.shift_axes(&Parameters::new());
+            run.act(ActionKind::Other, 0.0);
+        } else if !(printer.velocity_limit && self.klipper(run, text, upper, span, at)) {
+            self.macro_file(run, name, span);
+        }
+    }
+
+    /// A name that the profile does not know: what its file says, if there is one.
+    fn macro_file(&mut self, run: &mut Run<'_, '_>, name: &[u8], span: Span) {
+        let plain = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+        let name = String::from_utf8_lossy(name).to_ascii_uppercase();
+        let files = library::macro_files(&name);
+        if name.as_bytes().iter().all(plain)
+            && !is_meta(name.as_bytes())
+            && library::find_named(&self.printer.sub_paths, &files).is_some()
+        {
+            self.transfer = Some(Transfer::Macro(name));
+            run.facts.transfers = true;
+        } else {
+            refuse_name(run, name.as_bytes(), span);
+        }
+    }
+
+    /// Klipper's commands that set something; false for others.
+    fn klipper(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        text: Text<'_>,
+        name: &[u8],
+        span: Span,
+        at: usize,
+    ) -> bool {
+        let state = || text.argument(at, "NAME").unwrap_or(b"default").to_vec();
+        match name {
+            b"SET_VELOCITY_LIMIT" => {
+                const KEYS: [&str; 5] = [
+                    "VELOCITY",
+                    "ACCEL",
+                    "SQUARE_CORNER_VELOCITY",
+                    "MINIMUM_CRUISE_RATIO",
+                    "ACCEL_TO_DECEL",
+                ];
+                let [velocity, accel, corner, ratio, to_decel] =
+                    KEYS.map(|key| text.number_argument(at, key));
+                let (Ok(velocity), Ok(accel), Ok(corner), Ok(ratio), Ok(to_decel)) =
+                    (velocity, accel, corner, ratio, to_decel)
+                else {
+                    Self::bad_value(
+                        run,
+                        span,
+                        "write numbers after VELOCITY, ACCEL and the like",
+                    );
+                    return true;
+                };
+                self.limit_velocity(run, velocity, accel, span);
+                let ratio = ratio.or_else(|| {
+                    let [x, y, ..] = self.knobs.feed_accel_mm_s2;
+                    let most = self.knobs.path_accel_mm_s2[0].min(x.max(y));
+                    to_decel.map(|accel| 1.0 - (accel / most).min(1.0))
+                });
+                if corner.is_some() || ratio.is_some() {
+                    self.limit_corners(run, corner, ratio, span);
+                }
+                return true;
+            }
+            b"RESET_VELOCITY_LIMIT" => {
+                self.reset_velocity(run);
+                return true;
+            }
+            b"SET_RETRACTION" => self.set_retraction(run, text, span, at),
+            b"SAVE_GCODE_STATE" => self.save_state(run, state(), span),
+            b"RESTORE_GCODE_STATE" => {
+                let moves = text.argument(at, "MOVE").is_some_and(|value| value != b"0");
+                let back = match text.number_argument(at, "MOVE_SPEED") {
+                    _ if !moves => Back::No,
+                    Ok(None) => Back::AtFeed,
+                    Ok(Some(speed)) if speed > 0.0 => Back::At(speed),
+                    _ => {
+                        Self::bad_value(run, span, "write a speed above 0");
+                        return true;
+                    }
+                };
+                self.restore_state(run, &state(), back, span);
+            }
+            b"SET_HEATER_TEMPERATURE" => self.set_heater(run, text, at, span),
+            b"SET_FAN_SPEED" => self.set_fan(run, text, at, span),
+            b"TURN_OFF_HEATERS" => self.turn_off_heaters(),
+            b"SET_EXTRUDER_ROTATION_DISTANCE" => {
+                if let Ok(Some(distance)) = text.number_argument(at, "DISTANCE") {
+                    self.steps_of(run, EXTRUDER, distance, span);
+                }
+            }
+            b"ACTIVATE_EXTRUDER" => {
+                // Another extruder has another place.
+                self.position.unknown.insert(EXTRUDER);
+                run.facts.boundary = true;
+            }
+            _ => return false,
+        }
+        run.act(ActionKind::Other, 0.0);
+        true
+    }
+
+    /// `SET_RETRACTION`: lengths in mm, speeds in mm/s.
+    fn set_retraction(&mut self, run: &mut Run<'_, '_>, text: Text<'_>, span: Span, at: usize) {
+        let mut retract = self.printer.retract;
+        let fields = [
+            ("RETRACT_LENGTH", &mut retract.length_mm),
+            ("RETRACT_SPEED", &mut retract.speed_mm_s),
+            ("UNRETRACT_EXTRA_LENGTH", &mut retract.extra_mm),
+            ("UNRETRACT_SPEED", &mut retract.recover_mm_s),
+        ];
+        for (key, field) in fields {
+            match text.number_argument(at, key) {
+                Ok(None) => {}
+                Ok(Some(value)) => *field = value,
+                Err(_) => return Self::bad_value(run, span, "write numbers after the keys"),
+            }
+        }
+        self.take_retract(run, retract, span);
+    }
+}
+
+/// Whether it is a word of `RepRapFirmware`'s conditional language.
+fn is_meta(name: &[u8]) -> bool {
+    let mut words = META.iter();
+    words.any(|word| word.as_bytes().eq_ignore_ascii_case(name))
+}
+
+fn refuse_name(run: &mut Run<'_, '_>, name: &[u8], span: Span) {
+    let shown = gwatt_syntax::diagnostic::excerpt(span.of(run.report.text), 60);
+    if is_meta(name) {
+        let message = format!("`{shown}`: branches, loops and variables are not supported");
+        run.report
+            .error("meta-command", message, span)
+            .help("write the blocks out in the order in which they are executed");
+        return;
+    }
+    let message = format!("`{shown}` is a macro or a command that this profile does not know");
+    run.report.error("unknown-macro", message, span).help(format!(
+        "write what it comes to into a file {shown}.gcode in the program's folder or one given by \
+         --sub-path; or in the machine file, under [language], list it in `ignored_macros` if it \
+         moves nothing and sets nothing, or in `unknown_moves` if it moves and leaves feed and \
+         modes as they are"
+    ));
+}

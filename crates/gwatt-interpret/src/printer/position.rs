@@ -1,0 +1,127 @@
+//! Moves that a firmware makes of itself: homing, probing, tool changes.
+
+use super::command::note_levelling;
+use super::line::Parameters;
+use crate::execute::{Control, Run};
+use crate::motion::EXTRUDER;
+use gwatt_machine::{AxisId, AxisSet};
+use gwatt_motion::{ActionKind, MoveKind};
+use gwatt_syntax::source::Span;
+
+impl Control<'_> {
+    /// Moves that only the firmware knows: every axis at its full speed and
+    /// acceleration, and from then on in an unknown place.
+    pub(super) fn unknown_moves(&mut self, run: &mut Run<'_, '_>, span: Span) {
+        let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();
+        let message = format!(
+            "{name} moves in a way that only the firmware knows: \
+             every axis counts at its full speed and acceleration"
+        );
+        run.report.note_once("unknown-moves", &message, span);
+        note_levelling_if(run, &name, span);
+        run.facts.boundary = true;
+        let all = self.machine.axis_set;
+        let end = self.position.at;
+        self.go_at(run, MoveKind::Feed, &end, all, None, Some(f64::INFINITY));
+        self.position.unknown.0 |= all.0;
+        run.act(ActionKind::Other, 0.0);
+    }
+
+    /// G28: each group of axes from an unknown place to its endstops.
+    ///
+    /// The axes stand before and after each of these moves: an endstop ends it, and where
+    /// that is becomes the position.
+    ///
+    /// Source: Marlin G28 (no axis: all of X Y Z), Klipper G28, `RepRapFirmware` G28.
+    pub(super) fn home(&mut self, run: &mut Run<'_, '_>, parameters: &Parameters, span: Span) {
+        run.facts.reference = true;
+        run.facts.homes = true;
+        let mut named = AxisSet::default();
+        for parameter in parameters {
+            if let Some(axis) = AxisId::from_letter(parameter.letter) {
+                named.insert(axis as usize);
+            }
+        }
+        named.0 &= self.machine.axis_set.0 & !(1 << EXTRUDER);
+        if named.is_empty() {
+            named = AxisSet(self.machine.axis_set.0 & !(1 << EXTRUDER));
+        }
+        let mut left = named;
+        let groups = self
+            .machine
+            .controller
+            .language
+            .printer
+            .home_together
+            .clone();
+        for group in groups.into_iter().chain([AxisSet(u16::MAX)]) {
+            let group = AxisSet(group.0 & left.0);
+            left.0 &= !group.0;
+            if !group.is_empty() {
+                self.home_group(run, group);
+            }
+        }
+        for axis in named.iter() {
+            let home = self.machine.axes[axis].and_then(|data| data.reference_mm);
+            self.position.home(axis, home.unwrap_or(0.0));
+            if home.is_none() {
+                self.position.unknown.insert(axis);
+                let message = "without `reference_mm` of its axis in the machine file, where G28 ends \
+                               is not known: the power of the next moves counts from anywhere, \
+                               their time from 0";
+                run.report.note_once("home", message, span);
+            }
+        }
+    }
+
+    fn home_group(&mut self, run: &mut Run<'_, '_>, group: AxisSet) {
+        let speeds = group
+            .iter()
+            .filter_map(|axis| Some(self.machine.axes[axis].as_ref()?.reference_mm_s));
+        let feed_mm_s = speeds.fold(0.0, f64::max);
+        let mut end = self.position.at;
+        for axis in group.iter() {
+            end[axis] = self.machine.axes[axis]
+                .and_then(|data| data.reference_mm)
+                .unwrap_or(0.0);
+        }
+        run.act(ActionKind::Rest, 0.0);
+        self.go_at(run, MoveKind::Feed, &end, group, None, Some(feed_mm_s));
+        run.act(ActionKind::Rest, 0.0);
+    }
+
+    /// The coordinates shift: the next absolute move of the axes named, of all
+    /// without names, comes from an unknown place.
+    pub(super) fn shift_axes(&mut self, parameters: &Parameters) {
+        let mut named = AxisSet::default();
+        for parameter in parameters {
+            if let Some(axis) = AxisId::from_letter(parameter.letter) {
+                named.insert(axis as usize);
+            }
+        }
+        named.0 &= self.machine.axis_set.0;
+        if named.is_empty() {
+            named = self.machine.axis_set;
+        }
+        self.position.unknown.0 |= named.0;
+    }
+
+    /// T0 to T9: another tool than the one in use comes by unknown moves.
+    pub(super) fn tool(&mut self, run: &mut Run<'_, '_>, number: u16, span: Span) {
+        let tool = u32::from(number / 10);
+        run.facts.boundary = true;
+        run.act(ActionKind::ToolSelect, f64::from(tool));
+        if tool != self.printer.tool {
+            self.printer.tool = tool;
+            self.unknown_moves(run, span);
+        }
+    }
+}
+
+/// Probing commands switch the correction of the bed on.
+fn note_levelling_if(run: &mut Run<'_, '_>, name: &str, span: Span) {
+    let name = name.to_ascii_uppercase();
+    if name == "G29" || name == "G32" || name.starts_with("BED_MESH") {
+        note_levelling(run, span);
+    }
+}

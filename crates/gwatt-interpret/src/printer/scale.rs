@@ -1,0 +1,86 @@
+//! What settings do to a move: M220, M221, M200, M203, M205.
+
+use super::Course;
+use crate::execute::{Control, Run};
+use crate::motion::EXTRUDER;
+use gwatt_machine::{AxisSet, AxisValues};
+
+/// X and Y, which Klipper's velocity limit speaks for.
+const XY: u16 = 0b11;
+
+impl Control<'_> {
+    /// The feed of a move, mm/s, of which F asks for `feed_mm_s`.
+    pub(crate) fn printer_feed(
+        &self,
+        run: &mut Run<'_, '_>,
+        course: &Course<'_>,
+        feed_mm_s: f64,
+    ) -> f64 {
+        let state = &self.printer;
+        let mut feed = feed_mm_s * state.feed_factor;
+        if state.feed_factor != 1.0 {
+            run.facts.fixed = Some("M220 scales its feed");
+        }
+        let extrudes = course.commanded.contains(EXTRUDER);
+        feed = feed.max(state.least_mm_s[usize::from(!extrudes)]);
+        self.capped(course, feed)
+    }
+
+    /// A speed along the path, mm/s, under the limits that the program has set.
+    pub(crate) fn capped(&self, course: &Course<'_>, feed_mm_s: f64) -> f64 {
+        let knobs = &self.knobs;
+        let mut feed = feed_mm_s;
+        if course.commanded.0 & !(1 << EXTRUDER) != 0 {
+            feed = feed.min(knobs.path_speed_mm_s);
+        }
+        if course.unknown {
+            // In whatever direction: no axis is faster than the largest of their limits.
+            let caps = course.commanded.iter().map(|axis| knobs.speed_mm_s[axis]);
+            return feed.min(caps.fold(0.0, f64::max));
+        }
+        for axis in course.commanded.iter() {
+            let distance = (course.end[axis] - self.position.at[axis]).abs();
+            if distance > 0.0 && course.length_mm > 0.0 {
+                feed = feed.min(knobs.speed_mm_s[axis] * course.length_mm / distance);
+            }
+        }
+        feed
+    }
+
+    /// The limits of speed of the axes that move, as a share of what the machine file
+    /// says, the largest of them: of rapids as it is, of feeds at least 1, since what
+    /// lowers them is in their feed already.
+    pub(crate) fn speed_factor(&self, course: &Course<'_>, rapid: bool) -> f64 {
+        let knobs = &self.knobs;
+        let mut factor = if rapid { 0.0_f64 } else { 1.0 };
+        for axis in course.commanded.iter() {
+            let Some(data) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let mut cap = knobs.speed_mm_s[axis];
+            if XY & 1 << axis != 0 && knobs.path_speed_mm_s.is_finite() {
+                cap = knobs.path_speed_mm_s;
+            }
+            let share = if cap.is_finite() {
+                cap / data.rapid_mm_s
+            } else {
+                1.0
+            };
+            factor = factor.max(share);
+        }
+        if factor > 0.0 { factor } else { 1.0 }
+    }
+
+    /// M221 and M200: of what E names, the extruder moves more or less; E
+    /// itself counts on as it is written.
+    pub(crate) fn scale_extrusion(&mut self, end: &mut AxisValues, unknown: AxisSet) {
+        let factor = self.printer.flow * self.printer.volumetric;
+        if factor == 1.0 || unknown.contains(EXTRUDER) {
+            return;
+        }
+        let written = end[EXTRUDER] - self.position.at[EXTRUDER];
+        let moved = written * factor;
+        end[EXTRUDER] = self.position.at[EXTRUDER] + moved;
+        self.position.shift(EXTRUDER, moved - written);
+    }
+}

@@ -1,0 +1,376 @@
+//! Settings that change later moves: percentages, speed limits, retracts.
+
+use super::line::{Parameters, value};
+use crate::execute::{Control, Run};
+use crate::knob::KnobState;
+use gwatt_machine::units::SECONDS_PER_MINUTE;
+use gwatt_machine::{AxisId, KnobArgument};
+use gwatt_motion::{ActionKind, Corner, Square};
+use gwatt_syntax::source::Span;
+
+/// Largest percentage that is taken for one.
+const PERCENT_MAX: f64 = 10_000.0;
+
+impl Control<'_> {
+    /// Reports a value that no firmware could mean.
+    pub(super) fn bad_value(run: &mut Run<'_, '_>, span: Span, help: &'static str) {
+        run.report
+            .error("printer-value", "this value is out of range", span)
+            .help(help);
+    }
+
+    /// Whether anything changes feeds or lengths of moves.
+    pub(crate) fn settle(&mut self) {
+        let state = &mut self.printer;
+        state.adjusts = state.feed_factor != 1.0
+            || state.flow * state.volumetric != 1.0
+            || state.least_mm_s != [0.0; 2]
+            || self.knobs.limits_speed();
+    }
+
+    /// M220: percentage of all feeds; B puts it by, R takes it back.
+    ///
+    /// Source: Marlin M220; Klipper and `RepRapFirmware` have S alone.
+    pub(super) fn feed_percent(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) {
+        if super::line::has(parameters, b'B') {
+            self.printer.kept_feed_factor = self.printer.feed_factor;
+        }
+        if super::line::has(parameters, b'R') {
+            self.printer.feed_factor = self.printer.kept_feed_factor;
+        }
+        if let Some(percent) = value(parameters, b'S') {
+            if !(percent > 0.0 && percent <= PERCENT_MAX) {
+                return Self::bad_value(run, span, "write a percentage above 0");
+            }
+            self.printer.feed_factor = percent / 100.0;
+        }
+        run.facts.boundary = true;
+        run.act(ActionKind::Other, 220.0);
+        self.settle();
+    }
+
+    /// M221: percentage of all lengths of filament.
+    ///
+    /// Source: Marlin M221, Klipper M221.
+    pub(super) fn flow_percent(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) {
+        let tool = value(parameters, b'T').or_else(|| value(parameters, b'D'));
+        if let Some(percent) = value(parameters, b'S') {
+            if !(percent > 0.0 && percent <= PERCENT_MAX) {
+                return Self::bad_value(run, span, "write a percentage above 0");
+            }
+            if tool.is_some_and(|tool| tool != f64::from(self.printer.tool)) {
+                return Self::bad_value(run, span, "only the flow of the tool in use is followed");
+            }
+            self.printer.flow = percent / 100.0;
+        }
+        run.act(ActionKind::Other, 221.0);
+        self.settle();
+    }
+
+    /// M200: E in mm³ of filament of diameter D; D0 or S0 ends it.
+    ///
+    /// Source: Marlin M200, `RepRapFirmware` M200.
+    pub(super) fn volumetric(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) {
+        let diameter = value(parameters, b'D');
+        let on = value(parameters, b'S') != Some(0.0);
+        match diameter {
+            _ if !on => self.printer.volumetric = 1.0,
+            Some(0.0) => self.printer.volumetric = 1.0,
+            Some(diameter) if (0.1..=20.0).contains(&diameter) => {
+                let radius = diameter / 2.0;
+                self.printer.volumetric = 1.0 / (std::f64::consts::PI * radius * radius);
+            }
+            None if parameters.is_empty() => {}
+            _ => {
+                let help = "write the filament's diameter, as in M200 D1.75";
+                return Self::bad_value(run, span, help);
+            }
+        }
+        run.act(ActionKind::Other, 200.0);
+        self.settle();
+    }
+
+    /// M203: largest speed of each axis.
+    ///
+    /// Source: Marlin M203 (units/s), `RepRapFirmware` M203 (mm/min).
+    pub(super) fn speed_caps(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) {
+        let Some(unit) = self.machine.controller.language.printer.speed_cap_mm_s else {
+            return;
+        };
+        for parameter in parameters {
+            let axis = AxisId::from_letter(parameter.letter).map(|axis| axis as usize);
+            let (Some(axis), Some(value)) = (axis, parameter.value) else {
+                continue;
+            };
+            let cap = value * unit * self.modal.mm_per_unit;
+            if !(cap > 0.0 && cap <= 1e6) {
+                return Self::bad_value(run, span, "write a speed above 0");
+            }
+            self.knobs.limit_axis_speed(self.machine, axis, cap);
+        }
+        run.facts.turns_knob = true;
+        self.settle();
+    }
+
+    /// M205 S and T: smallest speeds; the jerks that it sets too are not
+    /// counted, since corners are priced at full speed.
+    ///
+    /// Source: Marlin M205.
+    pub(super) fn least_speeds(&mut self, parameters: &Parameters) {
+        for (slot, letter) in [b'S', b'T'].into_iter().enumerate() {
+            if let Some(speed) = value(parameters, letter).filter(|speed| *speed >= 0.0) {
+                self.printer.least_mm_s[slot] = speed * self.modal.mm_per_unit;
+            }
+        }
+        self.settle();
+    }
+
+    /// M207: S length, F speed in mm/min, Z lift; `RepRapFirmware` also R extra
+    /// length and T speed of the way back.
+    ///
+    /// Source: Marlin M207, Duet documentation M207.
+    pub(super) fn set_retract(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) {
+        let unit = self.modal.mm_per_unit;
+        let mut retract = self.printer.retract;
+        let speed = |value: f64| value * unit / SECONDS_PER_MINUTE;
+        for parameter in parameters {
+            let Some(value) = parameter.value else {
+                continue;
+            };
+            match parameter.letter {
+                b'S' => retract.length_mm = value * unit,
+                b'Z' => retract.lift_mm = value * unit,
+                b'R' => retract.extra_mm = value * unit,
+                b'F' => {
+                    retract.speed_mm_s = speed(value);
+                    retract.recover_mm_s = retract.recover_mm_s.max(speed(value));
+                }
+                b'T' => retract.recover_mm_s = speed(value),
+                _ => {}
+            }
+        }
+        self.take_retract(run, retract, span);
+        run.act(ActionKind::Other, 207.0);
+    }
+
+    /// M208: S extra length, F speed in mm/min of the way back.
+    ///
+    /// Source: Marlin M208.
+    pub(super) fn set_recover(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) {
+        let unit = self.modal.mm_per_unit;
+        let mut retract = self.printer.retract;
+        if let Some(extra) = value(parameters, b'S') {
+            retract.extra_mm = extra * unit;
+        }
+        if let Some(feed) = value(parameters, b'F').filter(|feed| *feed > 0.0) {
+            retract.recover_mm_s = feed * unit / SECONDS_PER_MINUTE;
+        }
+        let given = self.printer.retract_given;
+        self.take_retract(run, retract, span);
+        self.printer.retract_given = given;
+        run.act(ActionKind::Other, 208.0);
+    }
+
+    pub(super) fn take_retract(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        retract: gwatt_machine::Retract,
+        span: Span,
+    ) {
+        let lengths = [retract.length_mm, retract.lift_mm];
+        let fine = lengths.iter().all(|length| (0.0..=1e4).contains(length))
+            && retract.extra_mm.abs() <= 1e4
+            && retract.speed_mm_s > 0.0
+            && retract.recover_mm_s > 0.0;
+        if !fine {
+            return Self::bad_value(run, span, "write lengths from 0 and speeds above 0");
+        }
+        self.printer.retract = retract;
+        self.printer.retract_given = true;
+    }
+
+    /// M92: what the program names is taken for the truth; another value for
+    /// the same axis cannot be true as well.
+    pub(super) fn steps_per_unit(&mut self, run: &mut Run<'_, '_>, parameters: &Parameters) {
+        for parameter in parameters {
+            let axis = AxisId::from_letter(parameter.letter).map(|axis| axis as usize);
+            if let (Some(axis), Some(value)) = (axis, parameter.value) {
+                self.steps_of(run, axis, value, parameter.span);
+            }
+        }
+        run.act(ActionKind::Other, 92.0);
+    }
+
+    /// Steps per unit, or another scale, of one axis.
+    pub(super) fn steps_of(&mut self, run: &mut Run<'_, '_>, axis: usize, value: f64, span: Span) {
+        let steps = &mut self.printer.steps[axis];
+        if *steps != 0.0 && *steps != value {
+            run.report
+                .error(
+                    "steps-per-unit",
+                    "a second scale for this axis: its real distances are not known",
+                    span,
+                )
+                .help("give the scale once, at the beginning of the program");
+            return;
+        }
+        *steps = value;
+        let message = "the steps per unit in the program are taken to be the machine's true ones";
+        run.report.note_once("steps-per-unit", message, span);
+    }
+
+    /// M204: limits along the path, by the letters of the profile; false where
+    /// it has none. The letters stand in the order in which they are read.
+    ///
+    /// Source: Marlin M204 (S for P and T, before them), `RepRapFirmware` M204.
+    pub(super) fn path_limits(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        parameters: &Parameters,
+        span: Span,
+    ) -> bool {
+        let knobs = &self.machine.controller.knobs;
+        let letters = knobs.iter().find_map(|knob| match &knob.argument {
+            KnobArgument::Path(letters) if knob.code == Some((b'M', 2040)) => Some(letters),
+            _ => None,
+        });
+        let Some(letters) = letters else { return false };
+        for letter in letters {
+            let Some(accel) = value(parameters, *letter) else {
+                continue;
+            };
+            if !(accel > 0.0 && accel <= 1e9) {
+                Self::bad_value(run, span, "write an acceleration above 0");
+                return true;
+            }
+            self.knobs.turn_path(*letter, accel, self.modal.mm_per_unit);
+            run.facts.turns_knob = true;
+        }
+        true
+    }
+
+    /// Klipper's limits of X and Y: `SET_VELOCITY_LIMIT`, `M204 S`.
+    ///
+    /// Source: Klipper, "G-Codes", `[toolhead]`: velocity and acceleration of
+    /// the toolhead; Z and the extruder have limits of their own besides.
+    pub(super) fn limit_velocity(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        velocity_mm_s: Option<f64>,
+        accel_mm_s2: Option<f64>,
+        span: Span,
+    ) {
+        let given = [velocity_mm_s, accel_mm_s2];
+        if given
+            .iter()
+            .flatten()
+            .any(|value| !(*value > 0.0 && *value <= 1e7))
+        {
+            return Self::bad_value(run, span, "write values above 0");
+        }
+        run.facts.turns_knob = true;
+        if let Some(velocity) = velocity_mm_s {
+            self.knobs.limit_path_speed(self.machine, velocity);
+        }
+        if let Some(accel) = accel_mm_s2 {
+            self.knobs.limit_path_accel(self.machine, accel);
+        }
+        self.settle();
+    }
+
+    /// Klipper's look-ahead: the speed at a right angle, mm/s, and the share of each hill
+    /// that is cruised at least.
+    ///
+    /// Source: Klipper, "G-Codes", `SET_VELOCITY_LIMIT`; `ACCEL_TO_DECEL` of earlier
+    /// versions is `ACCEL` less the ratio (`toolhead.py`).
+    pub(super) fn limit_corners(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        corner_mm_s: Option<f64>,
+        cruise_ratio: Option<f64>,
+        span: Span,
+    ) {
+        let Some(own) = Square::of(self.machine) else {
+            return;
+        };
+        let fine = corner_mm_s.is_none_or(|speed| (0.0..=1e7).contains(&speed))
+            && cruise_ratio.is_none_or(|ratio| (0.0..1.0).contains(&ratio));
+        if !fine {
+            let help = "write a corner velocity from 0 and a cruise ratio from 0 to below 1";
+            return Self::bad_value(run, span, help);
+        }
+        let before = self.knobs.square.unwrap_or(own);
+        let square = Square {
+            corner_mm_s: corner_mm_s.unwrap_or(before.corner_mm_s),
+            cruise_ratio: cruise_ratio.unwrap_or(before.cruise_ratio),
+        };
+        run.facts.turns_knob = true;
+        self.take_square((square != own).then_some(square));
+    }
+
+    fn take_square(&mut self, square: Option<Square>) {
+        if self.knobs.square != square {
+            self.knobs.square = square;
+            self.modal.corner = square.map_or_else(Corner::default, Corner::Square);
+        }
+    }
+
+    /// `RESET_VELOCITY_LIMIT`: the configured limits.
+    pub(super) fn reset_velocity(&mut self, run: &mut Run<'_, '_>) {
+        run.facts.turns_knob = true;
+        self.take_square(None);
+        self.knobs = KnobState::new(self.machine);
+        self.settle();
+    }
+
+    /// M501: the stored settings, which the machine file describes.
+    ///
+    /// Source: Marlin M501.
+    pub(super) fn restore_settings(&mut self, run: &mut Run<'_, '_>, span: Span) {
+        run.facts.turns_knob = true;
+        run.facts.boundary = true;
+        self.take_square(None);
+        self.knobs = KnobState::new(self.machine);
+        let state = &mut self.printer;
+        state.least_mm_s = [0.0; 2];
+        state.volumetric = 1.0;
+        state.retract = self.machine.controller.language.printer.retract;
+        state.retract_given = false;
+        // The offset of the home position (M206) is among them.
+        self.position.unknown.0 |= self.machine.axis_set.0;
+        let message = "M501: the stored settings are taken to be those of the machine file";
+        run.report.note_once("stored-settings", message, span);
+        run.act(ActionKind::Other, 501.0);
+        self.settle();
+    }
+}

@@ -1,0 +1,225 @@
+//! G28, G30 and G92: reference points and offsets.
+
+use super::execute::{Control, Run};
+use super::motion::POSITION_MAX_MM;
+use super::offsets::REFERENCE;
+use super::words::bit;
+use arrayvec::ArrayVec;
+use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, RapidPath};
+use gwatt_motion::MoveKind;
+use gwatt_syntax::source::Span;
+
+impl Control<'_> {
+    /// G28 and G30: to the intermediate point, then to the reference point.
+    pub(super) fn reference(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+        run.facts.reference = true;
+        if number == 300 {
+            // Its place is a setting of the control; P2 to P4 name further ones.
+            run.words.take(b'P');
+        }
+        let second = usize::from(number == 300);
+        let mut named = AxisSet::default();
+        run.words.axes().for_each(|(axis, _)| named.insert(axis));
+        self.refuse_turned(named, span, run);
+        if named.is_empty() {
+            let language = &self.machine.controller.language;
+            if language.family == Family::Iso && !language.dialect.g28_all {
+                run.report
+                    .error("reference-axes", "a reference point without axes", span)
+                    .help("name the axes, as in G28 G91 Z0");
+                return;
+            }
+            named = self.machine.axis_set;
+        } else {
+            let mut via = self.believed();
+            let Some(unknown) = self.targets(run, false, &mut via) else {
+                return;
+            };
+            self.go(run, MoveKind::Rapid, &via, unknown, None);
+        }
+        let point = self.reference_point(second, named, span, run);
+        let mut home = self.position.at;
+        if named != self.machine.axis_set && !self.position.frame.is_plain() {
+            // LinuxCNC: the named coordinates of the program become those of
+            // the point, which in turned coordinates moves other axes too.
+            let frame = &self.position.frame;
+            let mut program = frame.program(&home);
+            let there = frame.program(&point);
+            for axis in named.iter() {
+                program[axis] = there[axis];
+            }
+            home = frame.machine(&program);
+        } else {
+            for axis in named.iter() {
+                home[axis] = point[axis];
+            }
+        }
+        let unknown = AxisSet(named.0 & self.position.unknown.0);
+        let rapid_factor = self.knobs.rapid_factor;
+        if second == 0 {
+            self.knobs.rapid_factor *= self.return_factor(&home, named, unknown);
+        }
+        self.go(run, MoveKind::Rapid, &home, unknown, None);
+        self.knobs.rapid_factor = rapid_factor;
+    }
+
+    /// The point that G28 or G30 goes to, machine coordinates: `LinuxCNC` keeps it among
+    /// its parameters, for others the first is in the machine file.
+    fn reference_point(
+        &self,
+        second: usize,
+        named: AxisSet,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> AxisValues {
+        let offsets = self.position.offsets();
+        if self.machine.controller.language.family == Family::Rs274 {
+            let point = offsets.axes_from(REFERENCE[second]);
+            if !offsets.known && point == [0.0; AXES] {
+                note_machine_zero(span, run);
+            }
+            return point;
+        }
+        let mut point = [0.0; AXES];
+        for axis in named.iter() {
+            let data = self.machine.axes[axis].as_ref();
+            match data.and_then(|data| data.reference_mm) {
+                Some(place_mm) if second == 0 => point[axis] = place_mm,
+                _ => note_machine_zero(span, run),
+            }
+        }
+        point
+    }
+
+    /// The share of the rapid speed at which the axes return to the reference point: no
+    /// axis is faster than the machine file says.
+    pub(super) fn return_factor(&self, home: &AxisValues, named: AxisSet, unknown: AxisSet) -> f64 {
+        let mut times = [0.0_f64; 2];
+        let mut largest = 0.0_f64;
+        for axis in named.iter() {
+            let Some(data) = &self.machine.axes[axis] else {
+                continue;
+            };
+            let speed_mm_s = data.reference_mm_s.min(data.rapid_mm_s);
+            let way_mm = (home[axis] - self.position.at[axis]).abs();
+            times[0] = times[0].max(way_mm / data.rapid_mm_s);
+            times[1] = times[1].max(way_mm / speed_mm_s);
+            largest = largest.max(speed_mm_s / data.rapid_mm_s);
+        }
+        // Each axis for itself, or from an unknown place: the least slowed axis counts.
+        let straight = self.machine.path.rapid == RapidPath::Linear && unknown.is_empty();
+        if straight && times[1] > 0.0 {
+            times[0] / times[1]
+        } else {
+            largest
+        }
+    }
+
+    /// G28.1 and G30.1: the place becomes the point that G28 or G30 goes to.
+    pub(super) fn save_reference(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+        let first = REFERENCE[usize::from(number == 301)];
+        if self.position.unknown.0 & self.machine.axis_set.0 != 0 {
+            run.report
+                .error(
+                    "offset-from-unknown",
+                    "a reference point at a position that is not known",
+                    span,
+                )
+                .help("give --start, or move the axes to a known position first");
+            return;
+        }
+        let at = self.position.at;
+        self.position.change(|offsets| {
+            for (axis, value) in at.into_iter().enumerate() {
+                offsets.store_axis(first, axis, value);
+            }
+        });
+    }
+
+    /// TF5200, "Reference point offset (G92)": the values are the offset itself,
+    /// under G91 what is added to it.
+    fn isg_offset(&mut self, words: &[(usize, f64)], run: &mut Run<'_, '_>) {
+        for &(axis, value) in words {
+            let letter = ALL_AXES[axis].letter();
+            run.words.take(letter);
+            if !self.axis_exists_at(axis, letter, run) {
+                continue;
+            }
+            let value_mm = self.length_mm(axis, value);
+            let before = self.position.shifts()[axis];
+            let base = if self.modal.absolute { 0.0 } else { before };
+            self.position
+                .change(|offsets| offsets.set_g92(axis, base + value_mm));
+        }
+    }
+
+    pub(super) fn set_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
+        let mut words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
+        if self.isg.is_some() {
+            return self.isg_offset(&words, run);
+        }
+        if self.refuse_while_turned(span, run) {
+            return;
+        }
+        if words.is_empty() {
+            if run.words.present & bit(b'S') != 0
+                && self.machine.controller.language.family == Family::Iso
+            {
+                // G92 S: the clamp of the spindle.
+                return;
+            }
+            if self.machine.controller.language.family != Family::Marlin {
+                run.report
+                    .error("offset-axes", "G92 without axes", span)
+                    .help("name the axes, as in G92 X0");
+                return;
+            }
+            words = self
+                .machine
+                .axis_set
+                .iter()
+                .map(|axis| (axis, 0.0))
+                .collect();
+        }
+        for (axis, value) in words {
+            let letter = ALL_AXES[axis].letter();
+            run.words.take(letter);
+            let at = run.words.span(letter, run.block);
+            if !self.axis_exists_at(axis, letter, run) {
+                continue;
+            }
+            let frame = &self.position.frame;
+            let unknown = self.position.unknown;
+            if self.machine.controller.language.family == Family::Marlin {
+                // Only differences of positions matter to a printer.
+                self.position.unknown.0 &= !(1 << axis);
+            } else if unknown.iter().any(|by| frame.depends(by, axis)) {
+                run.report
+                    .error(
+                        "offset-from-unknown",
+                        "G92 for an axis whose position is not known",
+                        at,
+                    )
+                    .help("give --start, or move the axis to a known position first");
+                continue;
+            }
+            let mut value = self.length_mm(axis, value);
+            if run.words.incremental & bit(letter) != 0 {
+                // G50 U W of a lathe: the coordinates change by so much.
+                value += self.position.program()[axis];
+            }
+            if value.abs() > POSITION_MAX_MM {
+                run.report
+                    .error("position-range", "the position is beyond any machine", at)
+                    .help("check the number");
+                continue;
+            }
+            self.position.set_offset(axis, value);
+        }
+    }
+}
+
+fn note_machine_zero(span: Span, run: &mut Run<'_, '_>) {
+    let message = "the reference points of G28 and G30 are taken as machine zero";
+    run.report.note_once("reference-point", message, span);
+}

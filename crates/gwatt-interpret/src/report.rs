@@ -1,0 +1,134 @@
+//! Collects what is to be said about a program while it is read.
+
+use std::collections::HashSet;
+
+use super::code::{code_number, refused_g_name, refused_m_name};
+use gwatt_machine::{Family, Language};
+use gwatt_syntax::Word;
+use gwatt_syntax::diagnostic::{Diagnostic, Severity};
+use gwatt_syntax::source::Span;
+
+/// The diagnostics of a run: the first errors in full, the rest counted.
+#[derive(Debug, Default)]
+pub struct Diagnostics {
+    /// What is kept, in program order.
+    pub list: Vec<Diagnostic>,
+    /// Number of errors, listed or not.
+    pub errors: u64,
+    said: HashSet<&'static str>,
+    overflow: Option<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// Errors that are listed; further ones are counted only.
+    pub const LISTED: u64 = 50;
+
+    /// Adds a finding; errors beyond [`Diagnostics::LISTED`] are counted only.
+    pub fn push(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
+        if diagnostic.severity == Severity::Error {
+            self.errors += 1;
+            if self.errors > Self::LISTED {
+                return self.overflow.insert(diagnostic);
+            }
+        }
+        self.list.push(diagnostic);
+        let last = self.list.len() - 1;
+        &mut self.list[last]
+    }
+
+    /// True for the first call with this name: what is said once.
+    pub fn first(&mut self, name: &'static str) -> bool {
+        self.said.insert(name)
+    }
+
+    /// Number of errors beyond those listed.
+    #[must_use]
+    pub fn more(&self) -> u64 {
+        self.errors.saturating_sub(Self::LISTED)
+    }
+}
+
+/// Diagnostics with the line that is being read.
+#[derive(Debug)]
+pub(super) struct Report<'a, 'l> {
+    pub(super) diagnostics: &'a mut Diagnostics,
+    pub(super) line: u64,
+    pub(super) text: &'l [u8],
+}
+
+impl Report<'_, '_> {
+    /// Reports an error at `span`.
+    pub(super) fn error(
+        &mut self,
+        rule: &'static str,
+        message: impl Into<String>,
+        span: Span,
+    ) -> Finding<'_> {
+        let diagnostic = Diagnostic::error(rule, message).at(self.line, span, self.text);
+        Finding(self.diagnostics.push(diagnostic))
+    }
+
+    /// Reports a note once a run.
+    pub(super) fn note_once(&mut self, rule: &'static str, message: &str, span: Span) {
+        if self.diagnostics.first(rule) {
+            let diagnostic = Diagnostic::note(rule, message).at(self.line, span, self.text);
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Reports a G word that is not supported.
+    pub(super) fn refused_g(&mut self, word: Word, language: &Language) {
+        let name = code_number(word.value).map_or("a word", |number| {
+            let own = super::osp::refused_name(number).filter(|_| language.dialect.osp);
+            match language.family {
+                Family::Siemens => super::siemens::refused_name(number),
+                _ => own.unwrap_or_else(|| refused_g_name(number)),
+            }
+        });
+        self.refused(b'G', word, name);
+    }
+
+    /// Reports an M word that is not supported.
+    pub(super) fn refused_m(&mut self, word: Word) {
+        let name = code_number(word.value).map_or("a word", refused_m_name);
+        self.refused(b'M', word, name);
+    }
+
+    fn refused(&mut self, letter: u8, word: Word, name: &str) {
+        let code = format!("{}{}", letter as char, word.value);
+        let (rule, message) = if name == "a word" {
+            (
+                "unknown-code",
+                format!("{code} is not known to this controller profile"),
+            )
+        } else {
+            (
+                "unsupported-code",
+                format!("{code} is {name}, which gwatt does not support"),
+            )
+        };
+        let help = if letter == b'M' {
+            format!(
+                "if it moves no axis, say so in the machine file: ignored = [\"{code}\"] under \
+                 [language]; what it switches on is a [[load]]"
+            )
+        } else if name == "a word" {
+            format!(
+                "if it moves no axis and changes no motion, say so in the machine file: \
+                 ignored = [\"{code}\"] under [language]"
+            )
+        } else {
+            "nothing is estimated for a program with motion that is not understood".to_owned()
+        };
+        self.error(rule, message, word.span).help(help);
+    }
+}
+
+/// A diagnostic that was just reported: advice may be added.
+pub(super) struct Finding<'a>(&'a mut Diagnostic);
+
+impl Finding<'_> {
+    pub(super) fn help(self, help: impl Into<String>) {
+        self.0.help = Some(help.into());
+    }
+}

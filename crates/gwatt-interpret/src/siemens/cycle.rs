@@ -1,0 +1,146 @@
+//! Drilling cycles ("Cycles", chapter "Drilling cycles and drilling patterns").
+//!
+//! All begin with RTP (retraction plane), RFP (reference plane), SDIS (safety
+//! clearance), DP (depth) and DPR (depth below the reference plane), along the
+//! axis at right angles to the plane; levels are absolute.
+
+use super::Siemens;
+use crate::execute::{Control, Run};
+use gwatt_syntax::source::Span;
+
+/// Why no word of such a block is changed.
+pub(super) const FIXED: &str = "it is part of a canned cycle";
+
+/// What is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// CYCLE81 and CYCLE82: drilling, with a dwell.
+    Drill,
+    /// CYCLE83: deep hole.
+    Deep,
+    /// CYCLE84: tapping without compensating chuck.
+    Tap,
+    /// CYCLE840: tapping with compensating chuck.
+    FloatingTap,
+    /// CYCLE85 and CYCLE89: boring, out again at a feed.
+    Bore,
+    /// CYCLE86: boring, out with the spindle turned to a place.
+    BoreAside,
+    /// HOLES1: a row.
+    Row,
+    /// HOLES2: a circle.
+    Circle,
+}
+
+impl Kind {
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "CYCLE81" | "CYCLE82" => Self::Drill,
+            "CYCLE83" => Self::Deep,
+            "CYCLE84" => Self::Tap,
+            "CYCLE840" => Self::FloatingTap,
+            "CYCLE85" | "CYCLE89" => Self::Bore,
+            "CYCLE86" => Self::BoreAside,
+            "HOLES1" => Self::Row,
+            "HOLES2" => Self::Circle,
+            _ => return None,
+        })
+    }
+}
+
+/// A cycle with its arguments, as they were written.
+#[derive(Debug, Clone)]
+pub(super) struct Call {
+    pub(super) kind: Kind,
+    pub(super) values: Vec<Option<f64>>,
+    pub(super) span: Span,
+}
+
+impl Call {
+    /// Whether it is a pattern of holes.
+    pub(super) fn is_pattern(&self) -> bool {
+        matches!(self.kind, Kind::Row | Kind::Circle)
+    }
+
+    /// The argument at a place from 1; `None` where it is left out.
+    pub(super) fn value(&self, place: usize) -> Option<f64> {
+        self.values.get(place.checked_sub(1)?).copied().flatten()
+    }
+}
+
+/// The levels of a hole, program coordinates in mm.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Levels {
+    /// The axis of the hole.
+    pub(super) axis: usize,
+    pub(super) retract: f64,
+    /// Reference plane, and with the safety clearance.
+    pub(super) reference: f64,
+    pub(super) safe: f64,
+    pub(super) depth: f64,
+    /// -1 where the hole goes down.
+    pub(super) sign: f64,
+}
+
+impl Control<'_> {
+    /// Executes a cycle where the axes stand.
+    pub(super) fn cycle(&mut self, state: &mut Siemens, call: &Call, run: &mut Run<'_, '_>) {
+        run.facts.fixed = Some(FIXED);
+        if call.is_pattern() {
+            return self.hole_pattern(state, call, run);
+        }
+        let Some(levels) = self.levels(call, run) else {
+            return;
+        };
+        if state.extra.machine_coordinates {
+            run.report
+                .error("cycle", "a cycle with G53, G153 or SUPA", call.span)
+                .help("write it in a block of its own");
+            return;
+        }
+        match call.kind {
+            Kind::Drill => self.cycle_drill(state, levels, call, run),
+            Kind::Deep => self.deep_hole(state, levels, call, run),
+            Kind::Tap | Kind::FloatingTap => {
+                self.at_any_mode(|control| control.tap(state, levels, call, run));
+            }
+            Kind::Bore => self.cycle_bore(state, levels, call, run),
+            _ => self.bore_aside(state, levels, call, run),
+        }
+    }
+
+    fn levels(&self, call: &Call, run: &mut Run<'_, '_>) -> Option<Levels> {
+        let axis = self.modal.plane[2];
+        let unit = self.unit_of(axis);
+        let value = |place| call.value(place).map(|value| value * unit);
+        let wrong = match (value(1), value(2)) {
+            (Some(retract), Some(reference)) if retract != reference => {
+                let sign = if retract > reference { -1.0 } else { 1.0 };
+                let safe = reference - sign * value(3).unwrap_or(0.0).abs();
+                // DPR counts where both are given; it has no sign.
+                let below = value(5).filter(|below| *below != 0.0);
+                let depth = below.map(|below| reference + sign * below.abs());
+                match depth.or(value(4)) {
+                    Some(depth) if (depth - safe) * sign >= 0.0 => {
+                        return Some(Levels {
+                            axis,
+                            retract,
+                            reference,
+                            safe,
+                            depth,
+                            sign,
+                        });
+                    }
+                    Some(_) => "a cycle whose depth lies above its reference plane",
+                    None => "a cycle without a depth (DP or DPR)",
+                }
+            }
+            (Some(_), Some(_)) => "a cycle whose retraction plane is its reference plane",
+            _ => "a cycle without a retraction plane (RTP) and a reference plane (RFP)",
+        };
+        run.report
+            .error("cycle", wrong, call.span)
+            .help("the arguments are RTP, RFP, SDIS, DP, DPR and those of the cycle");
+        None
+    }
+}

@@ -1,0 +1,163 @@
+//! Percentages of the axes' limits.
+//!
+//! Source for ACC: SINUMERIK 828D Function Manual "Basic Functions" (09/2011), "Percentage
+//! acceleration override (ACC)": 0 to 200 % of the largest acceleration of an axis
+//! (MD32300), in part programs; MD32320 says what holds after RESET and M30. Of the others
+//! no manual was at hand: what they lower is not counted.
+
+use super::reading::Reading;
+use super::value::Val;
+use crate::execute::Control;
+use crate::formula::Outcome;
+use gwatt_machine::{AXES, AxisValues};
+
+/// Largest percentage of ACC, OVRRAP and JERKLIM.
+const PERCENT_MAX: f64 = 200.0;
+
+const NOT_LOWERED: &str = "a limit that the program lowers by a percentage is counted at 100 %";
+
+/// What a program has set.
+#[derive(Debug)]
+pub(super) struct Limits {
+    /// ACC, in percent.
+    accel: AxisValues,
+    /// OVRRAP, in percent; at least 100.
+    rapid: f64,
+    /// Something lower does not act yet, since blocks before it are held back.
+    due: bool,
+}
+
+impl Limits {
+    pub(super) fn new() -> Self {
+        Self {
+            accel: [100.0; AXES],
+            rapid: 100.0,
+            due: false,
+        }
+    }
+
+    pub(super) fn are_due(&self) -> bool {
+        self.due
+    }
+}
+
+impl Reading<'_, '_, '_> {
+    /// `ACC[X]=50`, `OVRRAP=70` and their kin; the name has been taken.
+    pub(super) fn limit(&mut self, name: &str, start: usize) -> Outcome<()> {
+        let axis = if self.cursor.peek() == Some(b'[') {
+            self.limited_axis()?
+        } else {
+            None
+        };
+        let percent = self.value_behind(name, start)?;
+        let most = match name {
+            "ACC" if axis.is_some() => PERCENT_MAX,
+            "OVRRAP" => PERCENT_MAX,
+            "JERKLIM" if !self.has_jerk() => PERCENT_MAX,
+            _ => 100.0,
+        };
+        if !(percent > 0.0 && percent <= most) {
+            let message = format!("{name} of {percent} %");
+            let help = if most > 100.0 {
+                "values above 0 and up to 200 are read"
+            } else {
+                "only values above 0 and up to 100 are read: the machine's limits hold"
+            };
+            return Err(self.cursor.fault("override", message, help, start));
+        }
+        match (name, axis) {
+            ("ACC", Some(axis)) => {
+                self.state.limits.accel[axis] = percent;
+                self.extra().turns_limit = true;
+            }
+            ("OVRRAP", _) => {
+                self.state.limits.rapid = percent.max(100.0);
+                self.extra().turns_limit = true;
+            }
+            _ => {}
+        }
+        if percent < 100.0 && !(name == "ACC" && axis.is_some()) {
+            self.note("limit-not-lowered", NOT_LOWERED, start);
+        }
+        Ok(())
+    }
+
+    fn has_jerk(&self) -> bool {
+        let mut axes = self.control.machine.axes.iter().flatten();
+        axes.any(|axis| axis.jerk_mm_s3 > 0.0)
+    }
+
+    /// The axis in brackets; `None` for a spindle or another axis that the machine file
+    /// does not have.
+    fn limited_axis(&mut self) -> Outcome<Option<usize>> {
+        self.cursor.expect(b'[')?;
+        let before = self.cursor.at;
+        let name = self.cursor.name();
+        self.cursor.at += name.len();
+        let own = !name.starts_with('$') && !self.is_variable(&name);
+        let by_name = own && self.cursor.take(b']');
+        let name = if by_name {
+            name.to_string()
+        } else {
+            self.cursor.at = before;
+            let Val::Text(name) = self.expression()? else {
+                let help = "write an axis, or a variable of the type AXIS";
+                let message = "a number names no axis";
+                return Err(self.cursor.fault("no-such-axis", message, help, before));
+            };
+            self.cursor.expect(b']')?;
+            name
+        };
+        let letter = self.axis_letter(&name);
+        let axis = letter.and_then(gwatt_machine::AxisId::from_letter);
+        Ok(axis.map(|axis| axis as usize))
+    }
+}
+
+impl Control<'_> {
+    /// Before the motion of a block that changes limits: whether they act in it already is
+    /// not known, so the higher ones count.
+    pub(super) fn raise_limits(&mut self, limits: &Limits) {
+        let [feed, rapid] = self.accelerations(limits);
+        let knobs = &mut self.knobs;
+        for axis in 0..AXES {
+            knobs.feed_accel_mm_s2[axis] = knobs.feed_accel_mm_s2[axis].max(feed[axis]);
+            knobs.rapid_accel_mm_s2[axis] = knobs.rapid_accel_mm_s2[axis].max(rapid[axis]);
+        }
+        let factor = knobs.base_rapid_factor * limits.rapid / 100.0;
+        knobs.rapid_factor = knobs.rapid_factor.max(factor);
+    }
+
+    /// After the motion. Under compensation moves are held back: what is lower waits for
+    /// its end.
+    pub(super) fn settle_limits(&mut self, limits: &mut Limits) {
+        limits.due = self.compensation.is_some();
+        if limits.due {
+            self.raise_limits(limits);
+            return;
+        }
+        let [feed, rapid] = self.accelerations(limits);
+        let knobs = &mut self.knobs;
+        knobs.feed_accel_mm_s2 = feed;
+        knobs.rapid_accel_mm_s2 = rapid;
+        knobs.rapid_factor = knobs.base_rapid_factor * limits.rapid / 100.0;
+    }
+
+    /// On the way to the reference point the machine's own acceleration counts: whether
+    /// ACC acts there is not known.
+    pub(super) fn unlimited_return(&mut self) {
+        let [_, level] = self.knobs.base_accel_mm_s2;
+        for axis in self.machine.axis_set.iter() {
+            let own = self.machine.axes[axis].map_or(0.0, |axis| axis.accel_mm_s2);
+            let limit = &mut self.knobs.rapid_accel_mm_s2[axis];
+            *limit = limit.max(level[axis]).max(own);
+        }
+    }
+
+    /// Of feeds and of rapids: ACC's share of what the level in force gives.
+    fn accelerations(&self, limits: &Limits) -> [AxisValues; 2] {
+        let of =
+            |base: AxisValues| std::array::from_fn(|axis| base[axis] * limits.accel[axis] / 100.0);
+        self.knobs.base_accel_mm_s2.map(of)
+    }
+}

@@ -1,0 +1,323 @@
+//! Where a block goes: targets in program coordinates, straight moves,
+//! reference points.
+
+use super::codes::Code;
+use super::{Measure, Siemens};
+use crate::code::{GCode, Motion};
+use crate::execute::{Control, Run};
+use crate::motion::POSITION_MAX_MM;
+use crate::words::AXIS_LETTERS;
+use gwatt_machine::{ALL_AXES, AXES, AxisKind, AxisSet, AxisValues};
+use gwatt_motion::{Arc, MoveKind, Step};
+
+/// The end of a move.
+#[derive(Debug, Clone)]
+pub(super) struct Target {
+    /// Program coordinates, mm and degrees.
+    pub(super) program: AxisValues,
+    pub(super) machine: AxisValues,
+    /// Axes that the block names.
+    pub(super) named: AxisSet,
+    /// Axes that are named but whose start is not known.
+    pub(super) unknown: AxisSet,
+    /// Full turns that DC, ACP and ACN add.
+    turns: AxisValues,
+}
+
+impl Siemens {
+    /// Keeps what follows from the moves to a target, those since there were `before`
+    /// steps.
+    pub(super) fn arrive(&mut self, target: &Target, before: usize, run: &mut Run<'_, '_>) {
+        for step in run.steps.iter_mut().skip(before) {
+            if let Step::Move(mv) = step {
+                mv.feed_mm_s *= self.feed_factor;
+            }
+        }
+        for axis in target.named.iter() {
+            self.turns[axis] += target.turns[axis];
+        }
+        self.adrift.0 &= !target.named.0;
+    }
+}
+
+impl Control<'_> {
+    /// The motion of a block.
+    pub(super) fn siemens_motion(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
+        for index in 0..run.words.g.len() {
+            let (code, number, span) = run.words.g[index];
+            match code {
+                GCode::Siemens(Code::Reference) => {
+                    return self.siemens_reference(number, state, run);
+                }
+                GCode::Siemens(Code::Pole(which)) => return self.set_pole(which, span, state, run),
+                _ => {}
+            }
+        }
+        let extra = &state.extra;
+        let polar = extra.polar_angle.is_some() || extra.polar_radius.is_some();
+        let through = extra.through_point || extra.via.iter().any(Option::is_some);
+        let arc = through || matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
+        let center = extra.opening_deg.is_some()
+            || [b'I', b'J', b'K']
+                .iter()
+                .any(|letter| run.words.has(*letter));
+        if !(run.words.has_axes() || polar || arc && center || through) {
+            return;
+        }
+        run.facts.uses_motion = true;
+        run.facts.uses_feed = self.obeys_feed();
+        if state.feed_factor != 1.0 {
+            run.facts.fixed = Some("a feed override is in force (OVR)");
+        }
+        let Some(target) = self.siemens_target(state, run) else {
+            return;
+        };
+        let tapping = GCode::Siemens(Code::Tapping);
+        if run.words.g.iter().any(|(code, ..)| *code == tapping) {
+            return self.at_any_mode(|control| control.floating_tap(state, &target, run));
+        }
+        if let Motion::Special(number) = self.modal.motion {
+            return self.at_any_mode(|control| {
+                control.siemens_thread(number, state, &target, run);
+            });
+        }
+        if arc {
+            run.facts.uses_feed = true;
+            return self.siemens_arc(state, target, run);
+        }
+        let kind = match self.modal.motion {
+            Motion::Linear => MoveKind::Feed,
+            Motion::None => {
+                let span = run.whole();
+                let message = "no motion word yet: what G word is in force then, the control's \
+                               data say; taken for G0, which is the fastest";
+                run.report.note_once("no-motion-word", message, span);
+                run.facts.no_motion_word = true;
+                MoveKind::Rapid
+            }
+            _ => MoveKind::Rapid,
+        };
+        self.siemens_go(state, run, kind, &target, None);
+    }
+
+    /// Moves to the target, and keeps what follows from it.
+    pub(super) fn siemens_go(
+        &mut self,
+        state: &mut Siemens,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        target: &Target,
+        arc: Option<Arc>,
+    ) {
+        let before = run.steps.len();
+        self.go(run, kind, &target.machine, target.unknown, arc);
+        state.arrive(target, before, run);
+    }
+
+    /// Reads the axis words and polar coordinates. `None` when something was
+    /// wrong.
+    pub(super) fn siemens_target(
+        &self,
+        state: &mut Siemens,
+        run: &mut Run<'_, '_>,
+    ) -> Option<Target> {
+        let errors = run.report.diagnostics.errors;
+        let from = state.increments_from(&self.position.at);
+        let mut target = Target {
+            program: state.program_place(&self.position.at),
+            machine: self.position.at,
+            named: AxisSet::default(),
+            unknown: AxisSet::default(),
+            turns: [0.0; AXES],
+        };
+        let words: arrayvec::ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
+        run.words.unused &= !AXIS_LETTERS;
+        let suppressed = state.extra.machine_coordinates;
+        for (axis, value) in words {
+            let letter = ALL_AXES[axis].letter();
+            let Some(data) = &self.machine.axes[axis] else {
+                let span = run.words.span(letter, run.block);
+                let message = format!("the machine has no {} axis", letter as char);
+                run.report
+                    .error("no-such-axis", message, span)
+                    .help(format!(
+                        "choose a machine with it, or describe it in the machine file: [axes.{}]",
+                        letter as char
+                    ));
+                continue;
+            };
+            let diameter = if axis == 0 && state.diameter {
+                0.5
+            } else {
+                1.0
+            };
+            let value = value * self.unit_of(axis) * diameter;
+            let measure = match state.extra.measures[axis] {
+                Measure::Modal if self.modal.absolute => Measure::Absolute,
+                Measure::Modal => Measure::Increment,
+                measure => measure,
+            };
+            target.named.insert(axis);
+            let unknown = self.position.unknown.contains(axis);
+            match measure {
+                Measure::Increment => {
+                    if state.adrift.contains(axis) {
+                        let span = run.words.span(letter, run.block);
+                        let message = "an increment right behind a change of the frame: \
+                                       the offset is traversed too (SD42440 = 1)";
+                        run.report.note_once("frame-increment", message, span);
+                    }
+                    target.program[axis] = from[axis] + value;
+                    target.machine[axis] += value;
+                }
+                Measure::Direct | Measure::Positive | Measure::Negative => {
+                    if data.kind == AxisKind::Linear || unknown || suppressed {
+                        let span = run.words.span(letter, run.block);
+                        let message = "DC, ACP and ACN go with rotary axes whose position is known";
+                        run.report
+                            .error("rotary-target", message, span)
+                            .help("write a plain value");
+                    }
+                    let way = turn(target.program[axis], value, measure);
+                    target.turns[axis] = target.program[axis] + way - value;
+                    target.program[axis] += way;
+                }
+                _ => {
+                    target.program[axis] = value;
+                    target.machine[axis] = value;
+                    if unknown {
+                        target.unknown.insert(axis);
+                    }
+                }
+            }
+        }
+        self.polar_target(state, &mut target, &from, run);
+        if !suppressed {
+            self.map_target(state, &mut target, run);
+        }
+        if target
+            .machine
+            .iter()
+            .any(|place| place.is_nan() || place.abs() > POSITION_MAX_MM)
+        {
+            let span = run.whole();
+            run.report
+                .error("position-range", "the position is beyond any machine", span)
+                .help("check the number");
+        }
+        (run.report.diagnostics.errors == errors).then_some(target)
+    }
+
+    /// Program coordinates to machine coordinates, for the axes that move.
+    fn map_target(&self, state: &Siemens, target: &mut Target, run: &mut Run<'_, '_>) {
+        let place = state.machine_place(&target.program);
+        for (axis, place) in place.into_iter().enumerate() {
+            target.machine[axis] = self.position.at[axis];
+            if !target.named.iter().any(|by| state.frame.depends(axis, by)) {
+                continue;
+            }
+            target.machine[axis] = place;
+            let mixed = (0..AXES).any(|by| {
+                by != axis && state.frame.depends(axis, by) && self.position.unknown.contains(by)
+            });
+            if mixed && !state.frame.is_plain() {
+                let span = run.whole();
+                run.report
+                    .error(
+                        "turned-from-unknown",
+                        "a move in turned coordinates from a position that is not known",
+                        span,
+                    )
+                    .help("give --start X0,Y0,Z0, or move the axes first");
+                return;
+            }
+        }
+    }
+
+    /// A target in program coordinates of some axes, for cycles.
+    pub(super) fn target_at(&self, state: &Siemens, places: &[(usize, f64)]) -> Target {
+        let mut target = Target {
+            program: state.program_place(&self.position.at),
+            machine: self.position.at,
+            named: AxisSet::default(),
+            unknown: AxisSet::default(),
+            turns: [0.0; AXES],
+        };
+        for &(axis, value) in places {
+            target.program[axis] = value;
+            target.named.insert(axis);
+            if self.position.unknown.contains(axis) {
+                target.unknown.insert(axis);
+            }
+        }
+        let place = state.machine_place(&target.program);
+        for (axis, place) in place.into_iter().enumerate() {
+            if target.named.iter().any(|by| state.frame.depends(axis, by)) {
+                target.machine[axis] = place;
+            }
+        }
+        target
+    }
+
+    /// G74 and G75 ("Reference point approach", "Fixed point approach"): the
+    /// points are data of the machine. Those of G74 may be in the machine file, all
+    /// others are taken as its zero.
+    fn siemens_reference(&mut self, number: u16, state: &mut Siemens, run: &mut Run<'_, '_>) {
+        run.facts.reference = true;
+        let span = run.whole();
+        let mut named = AxisSet::default();
+        run.words.axes().for_each(|(axis, _)| named.insert(axis));
+        run.words.unused &= !AXIS_LETTERS;
+        if named.is_empty() {
+            let message = format!("G{} without axes", number / 10);
+            run.report
+                .error("reference-axes", message, span)
+                .help("name the axes, as in G74 X1=0");
+            return;
+        }
+        let mut target = self.target_at(state, &[]);
+        for axis in named.iter() {
+            let data = self.machine.axes[axis].as_ref();
+            if data.is_none() {
+                let message = format!(
+                    "the machine has no {} axis",
+                    ALL_AXES[axis].letter() as char
+                );
+                run.report
+                    .error("no-such-axis", message, span)
+                    .help("choose a machine with it, or describe it in the machine file");
+                return;
+            }
+            let known = data.and_then(|data| data.reference_mm);
+            let point_mm = known.filter(|_| number == 740);
+            if point_mm.is_none() {
+                let message =
+                    "the reference and fixed points of G74 and G75 are taken as machine zero";
+                run.report.note_once("reference-point", message, span);
+            }
+            target.machine[axis] = point_mm.unwrap_or(0.0);
+            state.turns[axis] = 0.0;
+        }
+        target.named = named;
+        target.unknown = AxisSet(named.0 & self.position.unknown.0);
+        let rapid_factor = self.knobs.rapid_factor;
+        let rapid_accel_mm_s2 = self.knobs.rapid_accel_mm_s2;
+        if number == 740 {
+            self.knobs.rapid_factor *= self.return_factor(&target.machine, named, target.unknown);
+            self.unlimited_return();
+        }
+        self.siemens_go(state, run, MoveKind::Rapid, &target, None);
+        self.knobs.rapid_factor = rapid_factor;
+        self.knobs.rapid_accel_mm_s2 = rapid_accel_mm_s2;
+    }
+}
+
+/// How far a rotary axis turns from `from` to `to`.
+fn turn(from: f64, to: f64, measure: Measure) -> f64 {
+    let up = (to - from).rem_euclid(360.0);
+    match measure {
+        Measure::Negative if up > 0.0 => up - 360.0,
+        Measure::Direct if up > 180.0 => up - 360.0,
+        _ => up,
+    }
+}

@@ -1,0 +1,71 @@
+//! What a plain straight block goes by, and what it leaves after.
+//!
+//! A block that takes the short way (see `direct`) and changes neither motion
+//! word nor feed reads no state but this one, and changes nothing but the place
+//! where the axes stand. Where two interpreters agree in it, such a block does
+//! the same in both.
+
+use super::execute::{Control, Interpreter};
+use super::frame::Frame;
+use super::knob::KnobState;
+use super::modal::Modal;
+use gwatt_machine::{AxisSet, AxisValues};
+
+/// The state that a plain straight block depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stance {
+    /// A straight block may take the short way.
+    direct: bool,
+    modal: Modal,
+    at: AxisValues,
+    unknown: AxisSet,
+    frame: Frame,
+    knobs: KnobState,
+    loads: u32,
+    run: u32,
+    text: u16,
+}
+
+impl Stance {
+    /// A plain block has moved the axes, machine coordinates in mm and degrees.
+    pub fn move_to(&mut self, end: &AxisValues) {
+        self.at = *end;
+    }
+}
+
+impl Control<'_> {
+    fn stance(&self) -> Stance {
+        Stance {
+            direct: self.may_go_direct(),
+            modal: self.modal.clone(),
+            at: self.position.at,
+            unknown: self.position.unknown,
+            frame: self.position.frame.clone(),
+            knobs: self.knobs.clone(),
+            loads: self.loads,
+            run: self.run,
+            text: self.text,
+        }
+    }
+}
+
+impl Interpreter<'_> {
+    /// What a plain block that comes next goes by.
+    #[must_use]
+    pub fn stance(&self) -> Stance {
+        self.control.stance()
+    }
+
+    /// Whether a plain block does here what it does in this stance.
+    #[must_use]
+    pub fn stands_as(&self, stance: &Stance) -> bool {
+        self.control.stance() == *stance
+    }
+
+    /// Plain blocks that began in a stance equal to this interpreter's have
+    /// moved the axes to where `stance` has them.
+    pub fn follow(&mut self, stance: &Stance) {
+        self.control.begun = true;
+        self.control.position.at = stance.at;
+    }
+}

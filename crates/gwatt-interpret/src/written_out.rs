@@ -1,0 +1,83 @@
+//! What is asked of the interpreter to write the moves of a cycle out as single blocks.
+
+use super::code::Motion;
+use super::execute::Interpreter;
+use gwatt_machine::{AxisId, AxisSet, AxisValues};
+
+impl Interpreter<'_> {
+    /// Whether the values of a canned cycle are in force.
+    #[must_use]
+    pub fn in_cycle(&self) -> bool {
+        self.cycle() != 0
+    }
+
+    /// The number of the canned cycle that is in force, times ten; 0 without one.
+    #[must_use]
+    pub fn cycle(&self) -> u16 {
+        self.control.special.active
+    }
+
+    /// The motion word that was in force before the canned cycle.
+    #[must_use]
+    pub fn motion_before_cycle(&self) -> Motion {
+        self.control.special.before()
+    }
+
+    /// Whether canned cycles return to the level R, not to where they began.
+    #[must_use]
+    pub fn returns_to_r(&self) -> bool {
+        !self.control.special.to_initial
+    }
+
+    /// Whether G41 or G42 is in force, though the radius may be 0 here.
+    #[must_use]
+    pub fn chooses_radius(&self) -> bool {
+        let compensation = self.control.compensation.as_ref();
+        compensation.is_some_and(|it| it.is_on())
+    }
+
+    /// A place of the machine, mm and degrees, in coordinates and units of the program.
+    #[must_use]
+    pub fn place_in_program(&self, place: &AxisValues) -> AxisValues {
+        let control = &self.control;
+        let mut place = control.position.frame.program(place);
+        for (axis, value) in place.iter_mut().enumerate() {
+            *value = control.in_unit(axis, *value);
+        }
+        if control.modal.diameter {
+            place[AxisId::X as usize] *= 2.0;
+        }
+        place
+    }
+
+    /// Why the places of the program may not be those of the machine that they are taken
+    /// for, for a move of these axes; `None` where all between them is known.
+    #[must_use]
+    pub fn unsure_of_places(&self, moving: AxisSet) -> Option<&'static str> {
+        let control = &self.control;
+        let language = &control.machine.controller.language;
+        let lathe = language.dialect.lathe.is_some();
+        let offsets_unknown = if control.osp.is_some() {
+            control.tools.selected != 0
+        } else {
+            control.tools.length_guessed
+        };
+        if lathe && offsets_unknown {
+            return Some(
+                "the offsets of the lathe's tool are not known: give them with --tool-table",
+            );
+        }
+        if control.is_siemens() {
+            // The places are those of the machine there, whatever the frames are.
+            let off = control.tools.selected == 0 || control.choice.number == Some(0);
+            return (!off).then_some("the length of the tool is in force: write D0 before it");
+        }
+        if control.tools.length_guessed && moving.contains(AxisId::Z as usize) {
+            return Some("the length of the tool is not known: give it with --tool-table");
+        }
+        (!control.position.offsets().is_known()).then_some(
+            "the work offset is not known: give it in [offsets] of the machine file, or with \
+             --parameters",
+        )
+    }
+}

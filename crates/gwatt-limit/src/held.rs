@@ -1,0 +1,60 @@
+//! Moves that are held to a speed by measure: see [`Paces`](super::Paces).
+
+use super::case::Case;
+use super::change::{Change, feed_word, round_to_step};
+use super::lever::{Levers, Obstacle, SpeedLever};
+use super::solver::Solver;
+use gwatt_plan::blended_speed;
+
+impl Solver<'_> {
+    /// A change that holds a move to a speed, mm/s at the largest override, besides what
+    /// `with` does.
+    ///
+    /// # Errors
+    /// What stands in the way.
+    pub(super) fn held(
+        &self,
+        case: Case<'_>,
+        levers: &Levers,
+        with: &Change,
+        most_mm_s: f64,
+    ) -> Result<Change, Obstacle> {
+        let Case { mv, permit, .. } = case;
+        let changed = with.apply(self.machine, mv, permit);
+        let own_mm_s = if changed.unknown_start.is_empty() {
+            blended_speed(self.machine, &changed, self.largest)
+        } else {
+            self.fastest_axis(&changed)
+        };
+        if own_mm_s <= most_mm_s {
+            return Ok(*with);
+        }
+        let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
+        let asked_mm_s = most_mm_s / self.largest.feed;
+        let mut change = *with;
+        match lever {
+            SpeedLever::FeedWord | SpeedLever::AsFeed => {
+                change.as_feed = lever == SpeedLever::AsFeed;
+                change.exact_stop |= change.as_feed && case.exact_stop;
+                let feed = feed_word(self.machine, mv, permit, asked_mm_s);
+                let positive = feed > 0.0 && feed.is_finite();
+                change.feed = positive.then_some(feed);
+            }
+            SpeedLever::RapidPercent(knob) => {
+                let step = self.machine.controller.knobs.get(knob).map(|it| it.step);
+                let percent = changed.rapid_factor * 100.0 * most_mm_s / own_mm_s;
+                let percent = round_to_step(percent, step.unwrap_or(1.0));
+                change.rapid_percent = (percent > 0.0).then_some((knob, percent));
+            }
+            SpeedLever::Cap(knob) => {
+                let values = self.cap_values(case, knob, asked_mm_s);
+                change.speed = values.map(|values| (knob, values));
+            }
+        }
+        if change == *with {
+            return Err(super::refusal::too_much(case));
+        }
+        self.respect_floor(case, &change)?;
+        Ok(change)
+    }
+}

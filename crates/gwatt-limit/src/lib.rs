@@ -1,0 +1,47 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # From demand to adjustments
+//!
+//! Input: moves with their assessments, and what may be changed about each
+//! ([`Permit`]). Output: for each move, in order, the [`Change`] that makes it fit, or
+//! why there is none ([`Obstacle`]). [`Limiter`] takes the moves of a program,
+//! [`Solver`] one by itself.
+
+mod accels;
+mod along;
+mod bounds;
+mod by_axis;
+mod case;
+mod change;
+mod depth;
+mod first_feed;
+mod halt;
+mod held;
+mod joints;
+mod law;
+mod level;
+mod lever;
+mod limiter;
+mod optimum;
+mod options;
+mod pace;
+mod refusal;
+mod road;
+mod root;
+mod solver;
+mod split;
+mod stages;
+mod steps;
+mod stop;
+mod window;
+
+pub use case::Ends;
+pub use change::{Change, Permit};
+pub use depth::{Deeper, Depths, Place};
+pub use first_feed::FirstFeed;
+pub use lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, UNTOUCHABLE};
+pub use limiter::{Limiter, Outcome, Waiting};
+pub use options::{Allowed, Law, LimitOptions, PresetElse, Strategy};
+pub use pace::{Paced, Paces};
+pub use solver::Solver;
+pub use split::{Piece, Split};

@@ -1,0 +1,145 @@
+//! Why a move cannot be lowered, and what would permit it.
+
+use super::case::Case;
+use super::change::Change;
+use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
+use super::options::{Allowed, LimitOptions};
+use super::solver::Solver;
+use gwatt_machine::{RapidKnob, RapidPath};
+use gwatt_motion::{CYCLE, MoveKind, TURNING_CYCLE};
+
+/// What can always be done about a block that may not be changed.
+const BY_HAND: &str = "change it by hand";
+/// The same for a cycle that could not be written out.
+const STAYS_A_CYCLE: &str = "it cannot be written out as single blocks here: more power, slower \
+     axes or blocks written by hand are needed";
+
+/// The same for rapids whose axes move each for itself, and where they may run along lines.
+const NOT_STRAIGHT: &str = "where the control moves them along a line (a parameter), say rapid = \
+     \"linear\" under [path]; or permit lines where there is room: `clearance` under [path] and \
+     --allow straighten";
+const BELOW_CLEARANCE: &str = "where the control moves them along a line (a parameter), say \
+     rapid = \"linear\" under [path]; it may become a line only beyond the `clearance` under [path]";
+
+impl Solver<'_> {
+    pub(super) fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
+        let Case { mv, permit, .. } = case;
+        let capped = speed_knob(self.machine, mv);
+        if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word && capped.is_none() {
+            return Obstacle::new(
+                UNTOUCHABLE,
+                format!("the block may not be changed: {}", permit.reason),
+                self.help_or(case, BY_HAND),
+            );
+        }
+        if mv.kind != MoveKind::Rapid {
+            // Next to others it is known once the program was limited with the permission.
+            let alone = !case.assessment.ahead && !case.assessment.blended;
+            let by_f = (permit.feed_word && alone).then(|| {
+                self.allowing_feeds()
+                    .speed(case, SpeedLever::FeedWord, &Change::default())
+            });
+            let help = match by_f.flatten().and_then(|it| it.feed) {
+                Some(feed) => format!("it fits at F{feed}: --allow feed permits that"),
+                None => "--allow feed permits lower feeds".to_owned(),
+            };
+            return Obstacle::new(
+                FEED_NOT_ALLOWED,
+                "cutting feeds are not changed without permission",
+                help,
+            );
+        }
+        if !mv.unknown_start.is_empty() {
+            return Obstacle::new(
+                NO_KNOB,
+                "the rapid may not be written as a feed: where it starts is not known",
+                "give --start X…,Y…,Z…, or write the move as a feed by hand",
+            );
+        }
+        let each_for_itself = self.machine.path.rapid == RapidPath::Independent
+            && self.machine.controller.rapid_knob == RapidKnob::G1
+            && mv.moving.iter().count() > 1;
+        if permit.reason.is_empty() && each_for_itself {
+            return Obstacle::new(
+                NO_KNOB,
+                "the rapid may not be written as a feed: its axes move each for itself, not along \
+                 a line",
+                if self.how.allowed.straighten {
+                    BELOW_CLEARANCE
+                } else {
+                    NOT_STRAIGHT
+                },
+            );
+        }
+        let message = if permit.reason.is_empty() {
+            format!(
+                "the controller `{}` has no word that lowers this rapid",
+                self.machine.controller.name
+            )
+        } else {
+            format!("the rapid may not be written as a feed: {}", permit.reason)
+        };
+        let usual = "write the move as a feed by hand, or lower the rapid speed of the machine";
+        let help = self.help_or(case, usual);
+        Obstacle::new(NO_KNOB, message, help)
+    }
+
+    /// What can be done about the reason for which a block may not be changed, or else what
+    /// `usual` says. What is permitted already is not named.
+    fn help_or(&self, case: Case<'_>, usual: &'static str) -> &'static str {
+        let cycle = [CYCLE, TURNING_CYCLE].contains(&case.permit.reason);
+        if cycle && self.how.allowed.expand {
+            return STAYS_A_CYCLE;
+        }
+        case.permit.help_or(usual)
+    }
+
+    /// The same where cutting feeds may be lowered.
+    fn allowing_feeds(&self) -> Self {
+        Self {
+            how: LimitOptions {
+                allowed: Allowed {
+                    feed: true,
+                    ..Allowed::NOTHING
+                },
+                ..self.how
+            },
+            model: self.model.clone(),
+            ..*self
+        }
+    }
+
+    pub(super) fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
+        if !case.permit.edit {
+            let message = format!("the block may not be changed: {}", case.permit.reason);
+            return Obstacle::new(UNTOUCHABLE, message, self.help_or(case, BY_HAND));
+        }
+        let message = format!(
+            "the controller `{}` has no word for this acceleration",
+            self.machine.controller.name
+        );
+        Obstacle::new(NO_KNOB, message, "use --strategy optimal or speed")
+    }
+}
+
+/// No value helps.
+pub(super) fn too_much(case: Case<'_>) -> Obstacle {
+    Obstacle::new(
+        "no-solution",
+        format!(
+            "no value of the permitted words brings {:.0} W down to the limit",
+            case.assessment.demand.peak_w
+        ),
+        "base load and friction leave too little: a larger converter, or another strategy",
+    )
+}
+
+/// No value helps a block that the control blends with its neighbours.
+pub(super) fn no_value_for_all(allowed: Allowed) -> Obstacle {
+    let help = "a word for acceleration, or path.mode = \"exact-stop\" if the machine stops at \
+                every block";
+    let message = "no value of the permitted words brings this block and its neighbours down to \
+                   the limit";
+    let feed = if allowed.feed { "" } else { "--allow feed, " };
+    Obstacle::new("no-solution", message, format!("{feed}{help}"))
+}

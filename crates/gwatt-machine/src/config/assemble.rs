@@ -1,0 +1,251 @@
+//! The file's structs to the validated machine.
+
+use super::findings::Findings;
+use super::machine_file::{
+    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName,
+};
+use super::value::{At, Num, Number, PerAxis};
+use super::{
+    axis, converter, drive_curve, levels, offsets, outputs, own_language, plausible, preset,
+    response, servo, spindle, tool, word,
+};
+use crate::axis::{AXES, Axis, AxisSet};
+use crate::controller::{Controller, PathMode, RapidPath};
+use crate::model::{Converter, Limits, Load, Machine, Path};
+use crate::response::Responses;
+use crate::units::SECONDS_PER_MINUTE;
+
+/// Share of the peak power that is kept free if the file does not say.
+const DEFAULT_MARGIN: f64 = 0.1;
+
+/// Makes a machine; all mistakes go to the findings, and with any of them the
+/// result is not to be used.
+pub(crate) fn machine(
+    findings: &mut Findings<'_>,
+    file: &MachineFile,
+    mut controller: Controller,
+) -> Option<Machine> {
+    let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
+    if let Some(table) = &file.language {
+        own_language::take(findings, table, &mut controller.language);
+    }
+    if let Some(table) = &file.outputs {
+        outputs::take(findings, table, &mut controller);
+    }
+    let errors = file
+        .limits
+        .as_ref()
+        .map_or_else(axis::Errors::default, |table| axis::Errors {
+            mass: table.value.mass_error.as_ref(),
+            friction: table.value.friction_error.as_ref(),
+        });
+    let mut axes: [Option<Axis>; AXES] = [None; AXES];
+    let mut axis_set = AxisSet::default();
+    let mut force_curves = Vec::new();
+    let mut responses = Responses::default();
+    let mut complete = true;
+    for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
+        axes[id as usize] = axis::axis(findings, id, table, errors);
+        axis_set.insert(id as usize);
+        let curve = drive_curve::force(findings, id, &table.value, axes[id as usize].as_ref());
+        force_curves.extend(curve.map(|curve| (id, curve)));
+        response::take(findings, id, &table.value, &mut responses);
+        complete &= axes[id as usize].is_some();
+    }
+    if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
+        && !findings.refused_in("axes")
+    {
+        findings.error(
+            "machine-missing",
+            &table.span,
+            "the machine has no axes",
+            None,
+        );
+    }
+    let limits = limits(findings, file.limits.as_ref().map(|table| &table.value));
+    let converters = file.converter.as_ref().map_or_else(Vec::new, |tables| {
+        converter::converters(findings, tables, axis_set, limits.margin)
+    });
+    servo::factors(findings, file, &mut axes, &converters);
+    let given = file
+        .path
+        .as_ref()
+        .and_then(|table| table.value.response_time_s.as_ref());
+    if given.is_none() {
+        path.response_time_s = servo::response_s(&axes, RESPONSE_TIME_S);
+    }
+    let loads: Vec<Load> = file
+        .load
+        .iter()
+        .flatten()
+        .filter_map(|table| load(findings, table, &converters))
+        .collect();
+    if let Some(tables) = &file.levels {
+        levels::take(findings, tables, &axes, &loads, &mut controller);
+    }
+    let spindle = file
+        .spindle
+        .as_ref()
+        .and_then(|table| spindle::spindle(findings, table, &converters, &controller));
+    let tools = tool::tools(findings, file);
+    let machine = Machine {
+        name: file.name.as_ref()?.value.clone(),
+        path,
+        controller,
+        axes,
+        axis_set,
+        converters,
+        force_curves,
+        responses,
+        spindle,
+        tools,
+        loads,
+        offsets: file.offsets.as_ref().map_or([None; 9], |table| {
+            offsets::offsets(findings, &table.value, axis_set)
+        }),
+        presets: preset::presets(findings, file, &axes, axis_set),
+        limits,
+    };
+    // With an axis left out the machine would look weaker than it is.
+    complete.then_some(machine)
+}
+
+/// Path mode of its name.
+pub(crate) fn path_mode(name: PathModeName) -> PathMode {
+    match name {
+        PathModeName::ExactStop => PathMode::ExactStop,
+        PathModeName::LookAhead => PathMode::LookAhead,
+    }
+}
+
+/// Rapid path of its name.
+pub(crate) fn rapid_path(name: RapidName) -> RapidPath {
+    match name {
+        RapidName::Linear => RapidPath::Linear,
+        RapidName::Independent => RapidPath::Independent,
+    }
+}
+
+/// Drives that follow a step of speed more quickly are rare.
+const RESPONSE_TIME_S: f64 = 0.01;
+
+fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
+    Path {
+        mode: table.and_then(|table| table.mode).map(path_mode),
+        rapid: table
+            .and_then(|table| table.rapid)
+            .map_or(controller.planner.rapid, rapid_path),
+        response_time_s: value(
+            table.and_then(|table| table.response_time_s.as_ref()),
+            RESPONSE_TIME_S,
+        ),
+        max_feed_mm_s: value(
+            table.and_then(|table| table.max_feed_mm_min.as_ref()),
+            f64::INFINITY,
+        ) / SECONDS_PER_MINUTE,
+        clearance_mm: clearance(table.and_then(|table| table.clearance.as_ref())),
+    }
+}
+
+/// Clearances by axis.
+fn clearance(given: Option<&PerAxis<Number>>) -> [Option<f64>; AXES] {
+    let mut clearance_mm = [None; AXES];
+    for (axis, number) in given.iter().flat_map(|given| given.iter()) {
+        clearance_mm[axis as usize] = Some(number.value);
+    }
+    clearance_mm
+}
+
+fn value<B>(number: Option<&Num<B>>, default: f64) -> f64 {
+    number.map_or(default, |number| number.value)
+}
+
+fn load(
+    findings: &mut Findings<'_>,
+    table: &At<LoadTable>,
+    converters: &[Converter],
+) -> Option<Load> {
+    let mut read = |text: &At<String>| {
+        let word = word::parse(&text.value);
+        if word.is_none() {
+            let message = format!("\"{}\" is not a program word", text.value);
+            let help = Some("a letter and a number, such as \"M8\"".to_owned());
+            findings.error("machine-load", &text.span, message, help);
+        }
+        word
+    };
+    let LoadTable {
+        on,
+        off,
+        power_w,
+        converter,
+    } = &table.value;
+    let mut on_words = Vec::new();
+    for text in on.iter().flat_map(|list| &list.0) {
+        on_words.extend(read(text));
+    }
+    let mut off_words = Vec::new();
+    for text in off.iter().flat_map(|list| &list.0) {
+        off_words.extend(read(text).map(|word| (word, &text.span)));
+    }
+    for (word, span) in &off_words {
+        if on_words.contains(word) {
+            let message = "the same word switches the load on and off";
+            findings.error("machine-load", span, message, None);
+        }
+    }
+    let converter = match converter {
+        Some(name) => converter_of(findings, name, converters)?,
+        None if converters.len() > 1 => {
+            let message = "with several converters, a load needs `converter`";
+            findings.error("machine-missing", &table.span, message, None);
+            return None;
+        }
+        None => 0,
+    };
+    if on_words.is_empty() {
+        return None;
+    }
+    Some(Load {
+        on: on_words,
+        off: off_words.into_iter().map(|(word, _)| word).collect(),
+        power_w: power_w.as_ref()?.value,
+        converter,
+    })
+}
+
+/// The converter of that name.
+pub(super) fn converter_of(
+    findings: &mut Findings<'_>,
+    name: &At<String>,
+    converters: &[Converter],
+) -> Option<usize> {
+    let found = converters.iter().position(|other| other.name == name.value);
+    if found.is_none() {
+        let message = format!("no converter is named \"{}\"", name.value);
+        findings.error("machine-load", &name.span, message, None);
+    }
+    found
+}
+
+fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {
+    let overrides = table.and_then(|table| table.override_max_percent.as_ref());
+    if let Some(overrides) = overrides {
+        plausible::overrides(findings, overrides);
+    }
+    let floor = table.and_then(|table| table.min_feed_mm_min.as_ref());
+    let ratio = table.and_then(|table| table.min_feed_ratio.as_ref());
+    Limits {
+        margin: value(
+            table.and_then(|table| table.margin.as_ref()),
+            DEFAULT_MARGIN,
+        ),
+        feed_override_max: value(overrides.and_then(|o| o.feed.as_ref()), 100.0) / 100.0,
+        rapid_override_max: value(overrides.and_then(|o| o.rapid.as_ref()), 100.0) / 100.0,
+        spindle_override_max: value(overrides.and_then(|o| o.spindle.as_ref()), 100.0) / 100.0,
+        override_at: None,
+        override_from: None,
+        min_feed_mm_s: value(floor, 0.0) / SECONDS_PER_MINUTE,
+        min_feed_ratio: value(ratio, 0.0),
+    }
+}

@@ -1,0 +1,55 @@
+//! `[language]` of a machine file: how this machine's programs are written, where that is
+//! not as in the controller profile.
+
+use super::controller_file::DistanceName;
+use super::findings::Findings;
+use super::machine_file::OwnLanguageTable;
+use super::value::At;
+use super::{printer, profile};
+use crate::controller::{Family, Language};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// Takes what the table gives into the language of the profile.
+pub(crate) fn take(
+    findings: &mut Findings<'_>,
+    table: &At<OwnLanguageTable>,
+    language: &mut Language,
+) {
+    let own = &table.value;
+    let dialect = &mut language.dialect;
+    dialect.point = own.decimal_point.map(profile::point).or(dialect.point);
+    dialect.diameter = own.diameter.unwrap_or(dialect.diameter);
+    if let Some(returns) = own.pecks_return_to_r {
+        language.pecks_return_to_r = returns;
+    }
+    if let Some(clearance) = &own.peck_clearance_mm {
+        language.peck_clearance_mm = clearance.value;
+    }
+    if let Some(feed) = &own.power_on_feed_mm_min {
+        language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;
+    }
+    dialect.active = true;
+    if let Some(centre) = own.arc_centre {
+        language.arc_absolute = centre == DistanceName::Absolute;
+    }
+    if let Some(compensation) = &own.cutter_compensation {
+        language.compensation = profile::compensation(compensation);
+    }
+    let (g, m) = profile::ignored(findings, own.ignored.as_deref().unwrap_or_default());
+    language.ignored_g.extend(g);
+    language.ignored_m.extend(m);
+    for (field, list) in [
+        ("ignored_macros", &own.ignored_macros),
+        ("unknown_moves", &own.unknown_moves),
+    ] {
+        if list.is_some() && language.family != Family::Marlin {
+            let message = format!("`{field}` belongs to the controllers of printers");
+            findings.error("machine-kind", &table.span, message, None);
+        }
+    }
+    let printer = &mut language.printer;
+    let ignored = printer::commands(findings, own.ignored_macros.as_ref());
+    printer.ignored_macros.extend(ignored);
+    let moves = printer::commands(findings, own.unknown_moves.as_ref());
+    printer.unknown_moves.extend(moves);
+}

@@ -1,0 +1,180 @@
+//! `[language.printer]`: what 3D printers differ in.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::controller_file::{FamilyName, LanguageTable};
+use super::findings::Findings;
+use super::profile::one_letter;
+use super::value::{At, Letter, NotNegative, Number, Positive};
+use super::word;
+use crate::axis::AxisSet;
+use crate::printer::{Command, ExtruderMode, Printer, Retract};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// What 3D printers differ in; the defaults are Marlin's.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PrinterTable {
+    /// What G90 and G91 mean for the extruder; default "follows".
+    pub(crate) extruder_mode: Option<ExtruderModeName>,
+    /// Whether a line may hold several commands; default false.
+    pub(crate) several_commands: Option<bool>,
+    /// Unit of M203; default per-second.
+    pub(crate) speed_cap: Option<SpeedCapName>,
+    /// Whether M204 and `SET_VELOCITY_LIMIT` set the limits of X and Y
+    /// themselves; default false.
+    pub(crate) velocity_limit: Option<bool>,
+    /// Axes that M204's P, T and S do not limit when no other axis moves;
+    /// default the extruder.
+    pub(crate) path_accel_spares: Option<Vec<At<Letter>>>,
+    /// Axes that home together, in the order of homing; default XY, then Z.
+    pub(crate) home_together: Option<Vec<Vec<At<Letter>>>>,
+    /// G10 and G11 until the program sets them.
+    pub(crate) retract: Option<At<RetractTable>>,
+    /// Letters that make a G0 or G1 end at an endstop; default none.
+    pub(crate) endstop_letters: Option<Vec<At<String>>>,
+    /// Extended commands that certainly move nothing; `*` at the end stands for
+    /// anything.
+    pub(crate) ignored_macros: Option<Vec<At<String>>>,
+    /// Commands whose moves are not known: every axis counts at its full speed
+    /// and acceleration, and its place is not known afterwards. They must leave
+    /// feed and modes as they are.
+    pub(crate) unknown_moves: Option<Vec<At<String>>>,
+    /// Commands that shift the coordinates: the next move of an axis counts at
+    /// full speed and acceleration.
+    pub(crate) shifts: Option<Vec<At<String>>>,
+}
+
+/// What G90 and G91 mean for the extruder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ExtruderModeName {
+    Follows,
+    Own,
+    Either,
+}
+
+/// Unit of M203.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum SpeedCapName {
+    None,
+    PerSecond,
+    PerMinute,
+}
+
+/// How filament is retracted.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RetractTable {
+    /// Length that is pulled back in mm; default 3.
+    pub(crate) length_mm: Option<NotNegative>,
+    /// Its speed in mm/s; default 45.
+    pub(crate) speed_mm_s: Option<Positive>,
+    /// Length that is pushed forward in addition in mm; default 0.
+    pub(crate) extra_mm: Option<Number>,
+    /// Speed of pushing forward in mm/s; default `speed_mm_s`.
+    pub(crate) recover_mm_s: Option<Positive>,
+    /// How far Z is lifted in mm; default 0.
+    pub(crate) lift_mm: Option<NotNegative>,
+}
+
+/// The table of a profile, or the defaults.
+pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> Printer {
+    let own = Printer::default();
+    let Some(at) = &language.printer else {
+        return own;
+    };
+    if language
+        .family
+        .is_some_and(|family| family != FamilyName::Marlin)
+    {
+        let message = "`printer` belongs to family = \"marlin\"";
+        findings.error("machine-kind", &at.span, message, None);
+    }
+    let table = &at.value;
+    let mut endstop_letters = Vec::new();
+    for text in table.endstop_letters.iter().flatten() {
+        endstop_letters.extend(one_letter(findings, text));
+    }
+    let groups = table.home_together.as_ref();
+    Printer {
+        extruder_mode: match table.extruder_mode {
+            None | Some(ExtruderModeName::Follows) => ExtruderMode::Follows,
+            Some(ExtruderModeName::Own) => ExtruderMode::Own,
+            Some(ExtruderModeName::Either) => ExtruderMode::Either,
+        },
+        several_commands: table.several_commands.unwrap_or(own.several_commands),
+        speed_cap_mm_s: match table.speed_cap {
+            Some(SpeedCapName::None) => None,
+            None | Some(SpeedCapName::PerSecond) => Some(1.0),
+            Some(SpeedCapName::PerMinute) => Some(1.0 / SECONDS_PER_MINUTE),
+        },
+        velocity_limit: table.velocity_limit.unwrap_or(own.velocity_limit),
+        path_accel_spares: table
+            .path_accel_spares
+            .as_ref()
+            .map_or(own.path_accel_spares, |letters| set(letters)),
+        home_together: groups.map_or(own.home_together, |groups| {
+            groups.iter().map(|letters| set(letters)).collect()
+        }),
+        retract: retract(table.retract.as_ref().map(|at| &at.value)),
+        endstop_letters,
+        ignored_macros: commands(findings, table.ignored_macros.as_ref()),
+        unknown_moves: commands(findings, table.unknown_moves.as_ref()),
+        shifts: commands(findings, table.shifts.as_ref()),
+    }
+}
+
+fn set(letters: &[At<Letter>]) -> AxisSet {
+    let mut set = AxisSet::default();
+    for letter in letters {
+        set.insert(letter.value.axis() as usize);
+    }
+    set
+}
+
+fn retract(table: Option<&RetractTable>) -> Retract {
+    let own = Retract::default();
+    let Some(table) = table else { return own };
+    let speed_mm_s = table
+        .speed_mm_s
+        .as_ref()
+        .map_or(own.speed_mm_s, |n| n.value);
+    Retract {
+        length_mm: table.length_mm.as_ref().map_or(own.length_mm, |n| n.value),
+        speed_mm_s,
+        extra_mm: table.extra_mm.as_ref().map_or(own.extra_mm, |n| n.value),
+        recover_mm_s: table.recover_mm_s.as_ref().map_or(speed_mm_s, |n| n.value),
+        lift_mm: table.lift_mm.as_ref().map_or(own.lift_mm, |n| n.value),
+    }
+}
+
+/// Names of commands: words such as `G29`, names such as `BED_MESH_*`.
+pub(crate) fn commands(
+    findings: &mut Findings<'_>,
+    list: Option<&Vec<At<String>>>,
+) -> Vec<Command> {
+    let mut commands = Vec::new();
+    for text in list.into_iter().flatten() {
+        let name = text.value.trim().to_ascii_uppercase();
+        let stem = name.strip_suffix('*').unwrap_or(&name);
+        let fine = !stem.is_empty()
+            && stem
+                .bytes()
+                .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+        if let Some((letter, number)) = word::code(&name) {
+            commands.push(Command::Code(letter, number));
+        } else if !fine {
+            let message = format!("\"{}\" is not a command", text.value);
+            let help = Some("a word such as \"G29\", or a name such as \"BED_MESH_*\"".to_owned());
+            findings.error("machine-word", &text.span, message, help);
+        } else if stem.len() < name.len() {
+            commands.push(Command::Macros(stem.to_owned()));
+        } else {
+            commands.push(Command::Macro(name));
+        }
+    }
+    commands
+}

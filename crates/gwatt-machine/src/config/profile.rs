@@ -1,0 +1,439 @@
+//! The profile's structs to the controller.
+
+use super::assemble::{path_mode, rapid_path};
+use super::controller_file::{
+    ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
+    DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
+    PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName, UnitName, UnitsName,
+};
+use super::findings::Findings;
+use super::look_ahead::look_ahead;
+use super::named_knob;
+use super::value::At;
+use super::word;
+use crate::axis::AxisId;
+use crate::controller::{
+    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
+    Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait,
+};
+use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
+use crate::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
+use crate::units::SECONDS_PER_MINUTE;
+
+/// Makes a controller; all mistakes go to the findings, and with any of them
+/// the result is not to be used.
+pub(crate) fn controller(findings: &mut Findings<'_>, file: &ControllerFile) -> Option<Controller> {
+    let language = file
+        .language
+        .as_ref()
+        .and_then(|table| language(findings, &table.value));
+    let knobs: Vec<Knob> = file
+        .knob
+        .iter()
+        .flatten()
+        .filter_map(|table| knob(findings, table))
+        .collect();
+    let (wired, knobs) = knobs.into_iter().partition(|knob| knob.output().is_some());
+    let planner_table = &file.planner.as_ref()?.value;
+    Some(Controller {
+        name: file.name.as_ref()?.value.clone(),
+        description: file.description.clone().unwrap_or_default(),
+        language: Language {
+            name: file.name.as_ref()?.value.clone(),
+            ..language?
+        },
+        planner: planner(findings, planner_table)?,
+        queue: queue(findings, planner_table),
+        knobs,
+        wired,
+        rapid_knob: rapid_knob(findings, planner_table),
+    })
+}
+
+fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Language> {
+    let dwell = dwell(findings, table);
+    let ignored_words = table.ignored.as_deref().unwrap_or_default();
+    let (ignored_g, ignored_m) = ignored(findings, ignored_words);
+    let power_on = path_mode(table.power_on?);
+    let family = match table.family? {
+        FamilyName::Iso => Family::Iso,
+        FamilyName::Rs274 => Family::Rs274,
+        FamilyName::Marlin => Family::Marlin,
+        FamilyName::Isg => Family::Isg,
+        FamilyName::Siemens => Family::Siemens,
+        FamilyName::Nci => Family::Nci,
+    };
+    Some(Language {
+        name: String::new(),
+        family,
+        dwell,
+        power_on_feed_mm_s: table
+            .power_on_feed_mm_min
+            .as_ref()
+            .map_or(f64::INFINITY, |it| it.value / SECONDS_PER_MINUTE),
+        rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
+        loose_o_words: table.loose_o_words.unwrap_or(false),
+        metric: table.units != Some(UnitsName::Inch),
+        absolute: table.distance != Some(DistanceName::Incremental),
+        arc_absolute: table.arc_centre == Some(DistanceName::Absolute),
+        g61: table.g61.map_or(power_on, path_mode),
+        g61_1: table.g61_1.map_or(power_on, path_mode),
+        g64: table.g64.map_or(power_on, path_mode),
+        power_on_mode: power_on,
+        power_on_tolerance_mm: table
+            .power_on_tolerance_mm
+            .as_ref()
+            .map_or(0.0, |tolerance| tolerance.value),
+        exact_stop_word: exact_stop_word(findings, table),
+        rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
+        ignored_g,
+        ignored_m,
+        levels: table.levels.clone().unwrap_or_default(),
+        block_delete: table.block_delete.unwrap_or(true),
+        compensation: table.cutter_compensation.as_ref().and_then(compensation),
+        printer: super::printer::printer(findings, table),
+        mill_cycles: table.mill_cycles.unwrap_or(false),
+        pecks_return_to_r: table.pecks_return_to_r.unwrap_or(false),
+        peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        arc_tolerance_mm: table
+            .arc_tolerance_mm
+            .as_ref()
+            .map(|[metric, inch]| [metric.value, inch.value]),
+        kept_variables: table
+            .kept_variables
+            .clone()
+            .unwrap_or_else(|| kept_variables(family)),
+        dialect: dialect(table),
+    })
+}
+
+/// The word for exact stop in one block.
+fn exact_stop_word(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<u16> {
+    let text = table.exact_stop_word.as_ref()?;
+    if let Some((b'G', code)) = word::code(&text.value) {
+        return Some(code);
+    }
+    let message = format!("\"{}\" is not a G word", text.value);
+    let help = Some("such as \"G9\"".to_owned());
+    findings.error("machine-word", &text.span, message, help);
+    None
+}
+
+/// Fanuc (B-63944EN, "Variables"): #500 to #999 are kept. `LinuxCNC`: what the
+/// parameter file may hold besides its own.
+fn kept_variables(family: Family) -> Vec<[u32; 2]> {
+    match family {
+        Family::Iso => vec![[500, 999]],
+        Family::Rs274 => vec![[31, 5000]],
+        _ => Vec::new(),
+    }
+}
+
+/// How G41 and G42 shift the path.
+pub(crate) fn compensation(table: &CompensationTable) -> Option<CutterCompensation> {
+    Some(CutterCompensation {
+        corner: match table.corner? {
+            CornerName::Arc => CompensationCorner::Arc,
+            CornerName::Line => CompensationCorner::Line,
+        },
+        lead: match table.lead? {
+            LeadName::Beside => CompensationLead::Beside,
+            LeadName::Perpendicular => CompensationLead::Perpendicular,
+            LeadName::Corner => CompensationLead::Corner,
+        },
+        idle_blocks: table.idle_blocks.unwrap_or(1),
+    })
+}
+
+fn dialect(table: &LanguageTable) -> Dialect {
+    let whole = |entry: &At<DwellTable>| {
+        let letter = word::letter(&entry.value.letter.as_ref()?.value)?;
+        Some((letter, entry.value.whole_unit_s.as_ref()?.value))
+    };
+    let mut dialect = Dialect {
+        active: false,
+        point: table.decimal_point.map(point),
+        dwell_whole: table.dwell.iter().flatten().filter_map(whole).collect(),
+        lathe: table.lathe.map(|lathe| match lathe {
+            LatheName::A => Lathe::A,
+            LatheName::B => Lathe::B,
+            LatheName::C => Lathe::C,
+        }),
+        diameter: table.diameter.unwrap_or(false),
+        osp: table.osp.unwrap_or(false),
+        other_m: table.other_m.unwrap_or(false),
+        semicolon_ends_block: table.semicolon_ends_block.unwrap_or(false),
+        per_revolution: table.feed == Some(FeedName::PerRevolution),
+        circular_pocket: table.circular_pocket.unwrap_or(false),
+        g28_all: table.g28_all.unwrap_or(false),
+    };
+    dialect.active = dialect != Dialect::default();
+    dialect
+}
+
+/// What a number without a point means, of its name.
+pub(crate) fn point(name: PointName) -> Point {
+    match name {
+        PointName::Calculator => Point::Calculator,
+        PointName::LeastIncrement => Point::LeastIncrement,
+    }
+}
+
+fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
+    let mut list: Vec<(u8, f64)> = Vec::new();
+    for entry in table.dwell.iter().flatten() {
+        let (Some(text), Some(unit)) = (&entry.value.letter, &entry.value.unit_s) else {
+            continue;
+        };
+        let Some(letter) = one_letter(findings, text) else {
+            continue;
+        };
+        if list.iter().any(|(other, _)| *other == letter) {
+            let message = format!("letter {} is given twice", letter as char);
+            findings.error("machine-twice", &text.span, message, None);
+        }
+        list.push((letter, unit.value));
+    }
+    list
+}
+
+/// Ignored G words (number × 10) and M numbers.
+pub(crate) fn ignored(findings: &mut Findings<'_>, words: &[At<String>]) -> (Vec<u16>, Vec<u16>) {
+    let (mut g, mut m) = (Vec::new(), Vec::new());
+    for text in words {
+        match word::code(&text.value) {
+            Some((b'G', code)) => g.push(code),
+            Some((b'M', code)) if code % 10 == 0 => m.push(code / 10),
+            _ => {
+                let message = format!("\"{}\" is not a G or M word", text.value);
+                let help = Some("such as \"G187\" or \"M48\"".to_owned());
+                findings.error("machine-word", &text.span, message, help);
+            }
+        }
+    }
+    (g, m)
+}
+
+pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
+    let letter = word::letter(&text.value);
+    if letter.is_none() {
+        let message = format!("\"{}\" is not a letter", text.value);
+        findings.error("machine-word", &text.span, message, None);
+    }
+    letter
+}
+
+fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner> {
+    Some(Planner {
+        rapid: rapid_path(table.rapid?),
+        arc_rule: match table.arc_rule {
+            Some(ArcRuleName::LinuxCnc) => ArcRule::LinuxCnc,
+            Some(ArcRuleName::Shared) | None => ArcRule::Shared,
+        },
+        rapid_joint: match table.rapid_joint {
+            Some(RapidJointName::Stop) => RapidJoint::Stop,
+            Some(RapidJointName::Rapids) => RapidJoint::Rapids,
+            Some(RapidJointName::All) | None => RapidJoint::All,
+        },
+        dwell_stops: table.dwell_stops.unwrap_or(false),
+        spindle_wait: match table.spindle_wait {
+            None => SpindleWait::Unknown,
+            Some(SpindleWaitName::Nothing) => SpindleWait::Nothing,
+            Some(SpindleWaitName::Feeds) => SpindleWait::Feeds,
+            Some(SpindleWaitName::Blocks) => SpindleWait::Blocks,
+        },
+        shortest_block_s: table.shortest_block_s.as_ref().map_or(0.005, |it| it.value),
+        shortest_at_feed_s: table.shortest_at_feed_s.as_ref().map_or(0.0, |it| it.value),
+        look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
+    })
+}
+
+/// Which words stop the motion.
+fn queue(findings: &mut Findings<'_>, table: &PlannerTable) -> Queue {
+    let mut list = |words: &Option<Vec<At<String>>>| {
+        let texts = words.iter().flatten();
+        texts
+            .filter_map(|text| queue_word(findings, text))
+            .collect()
+    };
+    Queue {
+        stops: list(&table.stops),
+        stops_on_change: list(&table.stops_on_change),
+        passes: list(&table.passes),
+        joins: list(&table.joins),
+    }
+}
+
+fn queue_word(findings: &mut Findings<'_>, text: &At<String>) -> Option<QueueWord> {
+    let message = MESSAGES.iter().position(|name| *name == text.value);
+    let found = message
+        .map(|index| (MESSAGE, Some(index as u16)))
+        .or_else(|| word::code(&text.value).map(|(letter, number)| (letter, Some(number))))
+        .or_else(|| word::letter(&text.value).map(|letter| (letter, None)));
+    let Some((letter, number)) = found else {
+        let message = format!("\"{}\" is not a program word", text.value);
+        let help = Some("such as \"M8\", \"S\" for every S, or \"MSG\"".to_owned());
+        findings.error("machine-word", &text.span, message, help);
+        return None;
+    };
+    Some(QueueWord { letter, number })
+}
+
+/// A rapid may be written as a feed only where it is straight.
+fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
+    let Some(knob) = table
+        .rapid_knob
+        .as_ref()
+        .filter(|knob| knob.value != RapidKnobName::None)
+    else {
+        return RapidKnob::None;
+    };
+    // Where the machine's rapids are independent, it takes the knob away.
+    if knob.value == RapidKnobName::G1
+        && table.rapid.map(rapid_path) == Some(RapidPath::Independent)
+    {
+        let message = "`rapid_knob` = \"g1\" with independent rapids changes the path";
+        let help = Some("a feed is straight; use \"none\"".to_owned());
+        findings.error("machine-value", &knob.span, message, help);
+    }
+    RapidKnob::G1
+}
+
+fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
+    let knob = &table.value;
+    let target = match knob.target? {
+        TargetName::FeedAccel => KnobTarget::FeedAccel,
+        TargetName::RapidAccel => KnobTarget::RapidAccel,
+        TargetName::Accel => KnobTarget::Accel,
+        TargetName::RapidSpeed => KnobTarget::RapidSpeed,
+        TargetName::Speed => KnobTarget::Speed,
+        TargetName::SpeedShare => KnobTarget::SpeedShare,
+        TargetName::CruiseRatio => KnobTarget::CruiseRatio,
+    };
+    let unit = match knob.unit? {
+        UnitName::Percent => KnobUnit::Percent,
+        UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
+        UnitName::PerSecond => KnobUnit::PerSecond,
+        UnitName::PerMinute => KnobUnit::PerMinute,
+        UnitName::Share => KnobUnit::Share,
+    };
+    let argument = argument(findings, knob)?;
+    let output = argument == KnobArgument::Output(0);
+    let read_back = named_knob::is_read_back(knob.word.as_ref()?, &argument, target, unit);
+    if !read_back && !goes_with(target, unit, output) {
+        let message = "`unit` does not go with `target`";
+        let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
+                    \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
+                    cruise-ratio is a \"share\", as are accel and speed-share with argument = \"output\"";
+        findings.error("machine-kind", &table.span, message, Some(help.to_owned()));
+    }
+    let text = knob.word.as_ref()?;
+    let waits = knob
+        .wait
+        .as_deref()
+        .is_some_and(|it| it.starts_with("M66 "));
+    let read_back = match target {
+        KnobTarget::SpeedShare => text.value == "M67" && knob.wait.is_none(),
+        _ => text.value == "M68" && waits,
+    };
+    if output && !read_back {
+        let message = format!(
+            "\"{}\" with argument = \"output\" is not read back",
+            text.value
+        );
+        let help = "\"M68\" with wait = \"M66 P0 L0\" for accel, \"M67\" alone for speed-share";
+        let help = Some(help.to_owned());
+        findings.error("machine-word", &text.span, message, help);
+        return None;
+    }
+    let code = if named_knob::is_named(text, &argument) {
+        named_knob::check(findings, text, &argument, target, unit)?;
+        None
+    } else if argument == KnobArgument::Value {
+        named_knob::check_value(findings, text, target, unit)?;
+        None
+    } else {
+        let code = word::code(&text.value);
+        if code.is_none() {
+            let message = format!("\"{}\" is not a program word", text.value);
+            let help = Some("a letter and a number, such as \"G131\"".to_owned());
+            findings.error("machine-word", &text.span, message, help);
+        }
+        Some(code?)
+    };
+    Some(Knob {
+        code,
+        name: match code {
+            Some((letter, number)) => format!("{}{}", letter as char, f64::from(number) / 10.0),
+            None => text.value.clone(),
+        },
+        target,
+        argument,
+        unit,
+        step: knob.step.as_ref()?.value,
+        min: knob.min.as_ref()?.value,
+        verified: knob.verified.unwrap_or(false),
+        between_moves: knob.between_moves.unwrap_or(false),
+        wait: knob.wait.clone(),
+        change_s: 0.0,
+        levels: None,
+    })
+}
+
+/// Whether values in a unit can act so; `output`: set by an analog output.
+fn goes_with(target: KnobTarget, unit: KnobUnit, output: bool) -> bool {
+    match target {
+        KnobTarget::Accel | KnobTarget::SpeedShare if output => unit == KnobUnit::Share,
+        _ if output => false,
+        KnobTarget::SpeedShare => false,
+        KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
+            matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
+        }
+        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
+        KnobTarget::Speed => {
+            matches!(
+                unit,
+                KnobUnit::Percent | KnobUnit::PerSecond | KnobUnit::PerMinute
+            )
+        }
+        KnobTarget::CruiseRatio => unit == KnobUnit::Share,
+    }
+}
+
+fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgument> {
+    let argument = knob.argument.as_ref()?;
+    if argument.value != ArgumentName::Path
+        && let Some(letters) = &knob.letters
+    {
+        let message = "`letters` belong to argument = \"path\"";
+        findings.error("machine-kind", &letters.span, message, None);
+    }
+    Some(match argument.value {
+        ArgumentName::Assign => KnobArgument::Assign,
+        ArgumentName::Axes => KnobArgument::Axes,
+        ArgumentName::Index => KnobArgument::Index,
+        // Which one, the machine file says.
+        ArgumentName::Output => KnobArgument::Output(0),
+        ArgumentName::Value => KnobArgument::Value,
+        ArgumentName::Path => {
+            let mut list = Vec::new();
+            for text in knob.letters.iter().flat_map(|letters| &letters.value) {
+                let Some(letter) = one_letter(findings, text) else {
+                    continue;
+                };
+                if AxisId::from_letter(letter).is_some() {
+                    let message = format!("{} is an axis", letter as char);
+                    let help = Some("for a value per axis use argument = \"axes\"".to_owned());
+                    findings.error("machine-word", &text.span, message, help);
+                }
+                list.push(letter);
+            }
+            if list.is_empty() && !findings.refused_in("knob") {
+                let message = "argument = \"path\" needs `letters`";
+                let help = Some("such as letters = [\"P\", \"T\"]".to_owned());
+                findings.error("machine-missing", &argument.span, message, help);
+            }
+            KnobArgument::Path(list)
+        }
+    })
+}

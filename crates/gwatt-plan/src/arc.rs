@@ -1,0 +1,242 @@
+//! Arcs and helices: which directions they meet and how fast they may run.
+//!
+//! Input: an arc of a move. Output: the range of each plane axis' tangent over
+//! the sweep, and the path limits under the controller's [`ArcRule`].
+//!
+//! With θ along the arc the plane axes have the tangents `τ = σ·(−sin θ, cos θ)`
+//! (σ the sense of the sweep). Of a path of length L the plane sees the share
+//! `ρ = r·|sweep|/L`; the rest belongs to the axes that follow in proportion.
+//!
+//! With v, a and j along the arc, of the third derivative of the position
+//!
+//! ```text
+//! j − v³/r²   is along the tangent,   3·a·v/r   along the normal.
+//! ```
+//!
+//! Each gets 1/√2 of the smallest jerk of the plane's axes, as acceleration is
+//! shared, so that no axis exceeds its own at any angle; of the part along the
+//! tangent turning (v³/r²) takes half at most, which limits the speed. The
+//! acceleration is limited by the second at the largest speed that axes and
+//! turning permit, whatever F asks for.
+//!
+//! Where drives have curves of force, turning takes its share of what they leave at
+//! the speed of the arc; how the arc speeds up under them is the matter of `drive`.
+
+use super::drive;
+use super::limits::{self, PathLimits};
+use super::s_curve::cbrt_of_square;
+use super::trajectory::Caps;
+use gwatt_machine::{ArcRule, AxisKind, Machine};
+use gwatt_motion::{Arc, Move};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// Share of the acceleration limit that `LinuxCNC` 2.9 gives to turning: √3/2.
+pub(super) const LINUXCNC_NORMAL_SHARE: f64 = 0.866_025_403_784_438_6;
+/// Share that it leaves for speeding up.
+pub(super) const LINUXCNC_TANGENTIAL_SHARE: f64 = 0.5;
+
+/// √(1 + 3/4) − 1: all of an axis' acceleration along a helix, and √3/2 across.
+const LINUXCNC_HELIX_EXCESS: f64 = 0.322_875_655_532_295_3;
+
+/// Smallest and largest tangent component of one axis over a sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TangentRange {
+    /// At most 0 unless the axis only moves in + direction.
+    pub min: f64,
+    /// At least 0 unless the axis only moves in − direction.
+    pub max: f64,
+}
+
+impl TangentRange {
+    /// The largest size.
+    pub fn largest(self) -> f64 {
+        self.max.max(-self.min)
+    }
+}
+
+/// The tangents of the first and the second axis of the plane.
+pub(super) fn tangent_ranges(arc: &Arc) -> [TangentRange; 2] {
+    let sense = if arc.sweep_rad < 0.0 { -1.0 } else { 1.0 };
+    let (sin0, cos0) = libm::sincos(arc.start_angle_rad);
+    let (sin1, cos1) = libm::sincos(arc.start_angle_rad + arc.sweep_rad);
+    // A sinusoid has an extreme inside wherever its derivative changes sign.
+    let first = range(arc, [-sense * sin0, -sense * sin1], [-cos0, -cos1]);
+    let second = range(arc, [sense * cos0, sense * cos1], [-sin0, -sin1]);
+    [first, second]
+}
+
+/// Range of a unit sinusoid from its values at both ends and its derivatives
+/// in the sense of the sweep.
+fn range(arc: &Arc, value: [f64; 2], slope: [f64; 2]) -> TangentRange {
+    let (mut min, mut max) = (value[0].min(value[1]), value[0].max(value[1]));
+    let sweep = arc.sweep_rad.abs();
+    if sweep >= 2.0 * PI {
+        return TangentRange {
+            min: -1.0,
+            max: 1.0,
+        };
+    }
+    let same_sign = slope[0] * slope[1] > 0.0;
+    // Same slopes at both ends: no extreme inside within half a turn, one of
+    // each kind beyond it. Opposite slopes: the one that the first leads to.
+    if same_sign && sweep > PI {
+        (min, max) = (-1.0, 1.0);
+    } else if !same_sign {
+        let rises = if slope[0] == 0.0 {
+            slope[1] < 0.0
+        } else {
+            slope[0] > 0.0
+        };
+        if rises {
+            max = 1.0;
+        } else {
+            min = -1.0;
+        }
+    }
+    TangentRange { min, max }
+}
+
+/// Share of the path that runs in the plane, per unit of path.
+pub(super) fn plane_share(mv: &Move, arc: &Arc) -> f64 {
+    arc.radius_mm * arc.sweep_rad.abs() / mv.length_mm
+}
+
+/// The largest part of the speed in the plane that each of its axes has to keep
+/// up with.
+fn largest_parts(machine: &Machine, arc: &Arc) -> [f64; 2] {
+    match machine.controller.planner.arc_rule {
+        ArcRule::Shared => tangent_ranges(arc).map(TangentRange::largest),
+        // Whatever directions the arc meets.
+        ArcRule::LinuxCnc => [1.0; 2],
+    }
+}
+
+/// The axes of an arc's plane that move, each with its largest speed at a path speed
+/// of 1.
+pub(super) fn plane_axes(machine: &Machine, mv: &Move, arc: &Arc) -> [(usize, f64); 2] {
+    let share = plane_share(mv, arc);
+    let [first, second] = largest_parts(machine, arc);
+    let [a, b] = arc.plane;
+    [(a, share * first), (b, share * second)]
+}
+
+/// Path speed that the axes' own speeds permit.
+pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
+    let share = plane_share(mv, arc);
+    let parts = largest_parts(machine, arc);
+    let raised = mv.rapid_factor.max(1.0);
+    let per_axis = limits::moving(machine, mv).map(|(axis, limit)| {
+        let part = match arc.plane.iter().position(|&plane| plane == axis) {
+            Some(i) => share * parts[i],
+            None => (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm,
+        };
+        limit.rapid_mm_s * raised / part
+    });
+    per_axis.fold(f64::INFINITY, f64::min)
+}
+
+/// What the axes and the arc rule permit.
+pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> PathLimits {
+    let share = plane_share(mv, arc);
+    let parts = largest_parts(machine, arc);
+    let mut limits = PathLimits::NONE;
+    let mut plane_jerk = f64::INFINITY;
+    let raised = mv.rapid_factor.max(1.0);
+    let mut plane_accel = f64::INFINITY;
+    let mut linear_accel = f64::INFINITY;
+    for (axis, limit) in limits::moving(machine, mv) {
+        let accel = limits::accel(mv, axis, caps);
+        if limit.kind == AxisKind::Linear {
+            linear_accel = linear_accel.min(accel);
+        }
+        let jerk = limits::jerk(limit);
+        if let Some(i) = arc.plane.iter().position(|&plane| plane == axis) {
+            plane_accel = plane_accel.min(accel);
+            plane_jerk = plane_jerk.min(jerk);
+            let speed = limit.rapid_mm_s * raised / (share * parts[i]);
+            limits.speed_mm_s = limits.speed_mm_s.min(speed);
+        } else {
+            limits.take(mv, axis, limit.rapid_mm_s * raised, accel, jerk);
+        }
+    }
+    let radius = arc.radius_mm;
+    let (turning, speeding_up) = match machine.controller.planner.arc_rule {
+        ArcRule::Shared => {
+            let half = linear_accel.min(plane_accel) * FRAC_1_SQRT_2;
+            ((half * radius).sqrt() / share, half)
+        }
+        ArcRule::LinuxCnc => {
+            let rise_mm = mv.length_mm * (1.0 - share * share).max(0.0).sqrt();
+            let turning = linuxcnc_turning(plane_accel, radius) / share;
+            let accel = limits.accel_mm_s2.min(plane_accel / share);
+            let speed = limits.speed_mm_s.min(turning);
+            let (cut, along) = linuxcnc(speed, accel, radius + rise_mm * rise_mm / radius);
+            (turning.min(cut), along)
+        }
+    };
+    let turning = if machine.force_curves.is_empty() {
+        turning
+    } else {
+        let normal_share = match machine.controller.planner.arc_rule {
+            ArcRule::Shared => FRAC_1_SQRT_2,
+            ArcRule::LinuxCnc => LINUXCNC_NORMAL_SHARE,
+        };
+        let axes = plane_axes(machine, mv, arc);
+        let most = turning.min(limits.speed_mm_s);
+        drive::turning_speed(machine, axes, [radius, share, normal_share], most)
+    };
+    let mut limits = PathLimits {
+        speed_mm_s: limits.speed_mm_s.min(turning),
+        accel_mm_s2: limits.accel_mm_s2.min(speeding_up),
+        jerk_mm_s3: limits.jerk_mm_s3,
+    };
+    if plane_jerk < f64::INFINITY {
+        limits.share_jerk(plane_jerk, radius, share);
+    }
+    limits
+}
+
+impl PathLimits {
+    /// Shares the jerk of the plane's axes, see above. Along the path the limits
+    /// are larger than in the plane, by 1/`share`, which is left aside.
+    fn share_jerk(&mut self, jerk: f64, radius: f64, share: f64) {
+        let part = jerk * FRAC_1_SQRT_2;
+        let turning = cbrt_of_square((0.5 * part).sqrt() * radius) / share;
+        self.speed_mm_s = self.speed_mm_s.min(turning);
+        let v = self.speed_mm_s * share;
+        let turn = v / radius;
+        let left = part - v * turn * turn;
+        self.accel_mm_s2 = self.accel_mm_s2.min(part / (3.0 * turn));
+        self.jerk_mm_s3 = self.jerk_mm_s3.min(left);
+    }
+}
+
+/// See [`super::SpeedBound::excess`].
+pub(super) fn excess(machine: &Machine, mv: &Move) -> f64 {
+    let steep = |arc: &Arc| plane_share(mv, arc) < 1.0 - 1e-12;
+    match machine.controller.planner.arc_rule {
+        ArcRule::LinuxCnc if mv.arc.as_ref().is_some_and(steep) => LINUXCNC_HELIX_EXCESS,
+        _ => 0.0,
+    }
+}
+
+/// The speed at which turning takes its share of `LinuxCNC`'s acceleration, mm/s.
+pub(super) fn linuxcnc_turning(accel: f64, radius_mm: f64) -> f64 {
+    (LINUXCNC_NORMAL_SHARE * accel * radius_mm).sqrt()
+}
+
+/// `LinuxCNC` 2.9: an arc's speed and its acceleration along the path, of those
+/// that it has without its curvature. Of the speed counts the largest that axes
+/// and turning permit, whatever F asks for.
+///
+/// `radius_mm` is `r + h²/r` for a helix that rises by h in all: measured, though
+/// the radius of its curvature has h per radian. Steep helices so exceed the axes'
+/// accelerations, up to `√(1 + 3/4)` times in the plane.
+pub(super) fn linuxcnc(speed: f64, accel: f64, radius_mm: f64) -> (f64, f64) {
+    let normal_share = speed * speed / (radius_mm * accel);
+    if normal_share > LINUXCNC_NORMAL_SHARE {
+        let turning = linuxcnc_turning(accel, radius_mm);
+        return (turning, accel * LINUXCNC_TANGENTIAL_SHARE);
+    }
+    (speed, accel * (1.0 - normal_share * normal_share).sqrt())
+}

@@ -1,0 +1,498 @@
+//! Corner speeds of controllers that run through the corner itself.
+//!
+//! Input: the elements on both sides. Output: the largest squared speed at
+//! which the path may pass their joint.
+//!
+//! With `s` the sine of half the inside angle (`cos = −u·w` of the directions),
+//! a circle that touches both sides and stays the distance d from the corner
+//! has the radius `R = d·s/(1 − s)`, and is run at `v² = a·R` (Jeon 2011).
+
+use std::f64::consts::{FRAC_PI_4, SQRT_2};
+
+use super::element::{Element, Joint};
+use super::passage::Passage;
+use gwatt_machine::{AXES, AxisId, AxisValues, CornerAngle, CornerRule};
+
+/// Cosines beyond this are no corner, or a reversal.
+const STRAIGHT: f64 = 0.999_999;
+const LINEAR: usize = 3;
+pub(super) const EXTRUDER: usize = AxisId::E as usize;
+/// How far from 1 the square of a direction may be that counts as a unit.
+pub(super) const UNIT: f64 = 1e-9;
+/// What rounding may make of the figures of a corner, as a share.
+pub(super) const ROUNDING: f64 = 1e-6;
+
+/// What the rules must know of the element before a joint.
+#[derive(Debug, Clone)]
+pub(super) struct Before {
+    /// What happens at the joint.
+    pub joint: Joint,
+    /// Speed that feed, axes and curvature permit, mm/s.
+    pub top_mm_s: f64,
+    /// Direction at the joint, how many axes it needs, and whether X, Y and Z
+    /// make a unit of it.
+    end: AxisValues,
+    /// Of the last chord of an arc: where that heads, which shorter ones come closer to.
+    pub tangent: Option<AxisValues>,
+    span: usize,
+    is_unit: bool,
+    is_curved: bool,
+    /// Length by acceleration, mm²/s².
+    ramp2: f64,
+    /// Squared speed at which it could begin from rest.
+    rest2: f64,
+    prints: Prints,
+    /// See [`After`].
+    square2: f64,
+}
+
+impl Before {
+    /// The largest speed, squared, at which the joint with the element after it is passed.
+    pub fn joint2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> f64 {
+        if self.joint == Joint::Stop {
+            return 0.0;
+        }
+        let (before, next) = (self.top_mm_s, after.top_mm_s);
+        let most2 = if before < next {
+            before * before
+        } else {
+            next * next
+        };
+        let own2 = speed2(rule, self, after, most2);
+        let Some(end) = self.tangent else {
+            return own2;
+        };
+        let tangent = Self {
+            end,
+            ..self.clone()
+        };
+        own2.max(speed2(rule, &tangent, after, most2))
+    }
+
+    /// Whether the element is straight, as long as its part in X, Y and Z, and runs
+    /// through the joint if the corner permits it.
+    pub fn is_straight(&self) -> bool {
+        self.joint != Joint::Stop && self.is_unit && !self.is_curved
+    }
+}
+
+/// Whether X, Y or Z move, and whether the extruder feeds.
+type Prints = (bool, bool);
+
+/// The element after a joint.
+#[derive(Debug)]
+pub(super) struct After<'e, T> {
+    element: &'e Element<T>,
+    /// Speed that feed, axes and curvature permit, mm/s.
+    pub top_mm_s: f64,
+    span: usize,
+    is_unit: bool,
+    /// Squared speed at which motion may begin from rest.
+    pub rest2: f64,
+    /// Of interest to [`CornerRule::SpeedStep`] alone.
+    prints: Prints,
+    /// Squared speed at a right angle, less where its acceleration is below what counts
+    /// for all paths; of interest to [`CornerRule::SquareCorner`] alone.
+    square2: f64,
+}
+
+impl<'e, T> After<'e, T> {
+    #[inline]
+    pub fn new(rule: &CornerRule, element: &'e Element<T>) -> Self {
+        let top_mm_s = element.top_mm_s();
+        let span = span(&element.start);
+        let rest2 = match rule {
+            CornerRule::ClassicJerk { step_mm_s } => {
+                rest2(step_mm_s, &element.start, span, top_mm_s)
+            }
+            _ => 0.0,
+        };
+        let prints = match rule {
+            CornerRule::SpeedStep { .. } => {
+                let mut linear = element.start.iter().take(LINEAR);
+                (
+                    linear.any(|change| *change != 0.0),
+                    element.start[EXTRUDER] > 0.0,
+                )
+            }
+            _ => (false, false),
+        };
+        let square2 = match rule {
+            CornerRule::SquareCorner { velocity_mm_s, .. } => {
+                let own = element.square.map(|square| square.corner_mm_s);
+                let v90 = own.unwrap_or(*velocity_mm_s);
+                accel_share(element.accel_mm_s2, element.common_accel_mm_s2()) * v90 * v90
+            }
+            _ => 0.0,
+        };
+        Self {
+            element,
+            top_mm_s,
+            span,
+            is_unit: is_unit(&element.start),
+            rest2,
+            prints,
+            square2,
+        }
+    }
+
+    /// The same element, before its other joint.
+    #[inline]
+    pub fn before(&self) -> Before {
+        let element = self.element;
+        Before {
+            joint: element.joint,
+            top_mm_s: self.top_mm_s,
+            end: element.end,
+            tangent: None,
+            is_curved: element.curve.is_some(),
+            span: match element.curve {
+                Some(_) => span(&element.end),
+                None => self.span,
+            },
+            is_unit: match element.curve {
+                Some(_) => is_unit(&element.end),
+                None => self.is_unit,
+            },
+            ramp2: element.length_mm * element.accel_mm_s2,
+            rest2: self.rest2,
+            prints: self.prints,
+            square2: self.square2,
+        }
+    }
+}
+
+/// The first axes that a direction needs: all others are 0.
+#[inline]
+fn span(direction: &AxisValues) -> usize {
+    let others = direction.iter().skip(LINEAR);
+    if others.fold(0, |bits, part| bits | part.to_bits() << 1) == 0 {
+        LINEAR
+    } else {
+        AXES
+    }
+}
+
+/// Whether X, Y and Z make a unit.
+#[inline]
+fn is_unit(direction: &AxisValues) -> bool {
+    (dot(direction, direction, LINEAR) - 1.0).abs() <= UNIT
+}
+
+/// The largest squared speed at the joint of two elements, but not above
+/// `most2`. 0: they meet at rest.
+#[inline]
+pub(super) fn speed2<T>(
+    rule: &CornerRule,
+    before: &Before,
+    after: &After<'_, T>,
+    most2: f64,
+) -> f64 {
+    let span = before.span.max(after.span);
+    let v2 = match rule {
+        CornerRule::LinuxCnc { .. } => 0.0,
+        CornerRule::JunctionDeviation {
+            deviation_mm,
+            angle,
+            per_axis,
+            small_block_mm,
+        } => {
+            let corner = Corner {
+                deviation_mm: *deviation_mm,
+                per_axis: *per_axis,
+                small_block_mm: *small_block_mm,
+                axes: match angle {
+                    CornerAngle::AllAxes => span,
+                    CornerAngle::Linear => LINEAR,
+                },
+                are_units: before.is_unit && after.is_unit,
+                before,
+                after: after.element,
+            };
+            if corner.permits(most2) {
+                most2
+            } else {
+                corner.speed2()
+            }
+        }
+        CornerRule::ClassicJerk { step_mm_s } => jerk(step_mm_s, before, after, span),
+        CornerRule::SquareCorner {
+            extruder_step_mm_s, ..
+        } => square(*extruder_step_mm_s, before, after),
+        CornerRule::SpeedStep {
+            step_mm_s,
+            same_kind_only,
+        } => step(step_mm_s, *same_kind_only, before, after, span),
+    };
+    v2.min(most2)
+}
+
+/// Squared speed at which motion may begin from rest.
+fn rest2(steps: &AxisValues, start: &AxisValues, span: usize, top_mm_s: f64) -> f64 {
+    let mut speed = top_mm_s;
+    for (step, change) in steps.iter().zip(start).take(span) {
+        if *change != 0.0 {
+            speed = speed.min(step / change.abs());
+        }
+    }
+    speed * speed
+}
+
+#[inline]
+fn dot(a: &AxisValues, b: &AxisValues, axes: usize) -> f64 {
+    if axes == LINEAR {
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    a.iter().zip(b).take(axes).map(|(a, b)| a * b).sum()
+}
+
+/// The cosine of the inside angle, negative for a shallow corner.
+#[inline]
+fn cosine(axes: usize, before: &AxisValues, after: &AxisValues) -> Option<f64> {
+    let length2 = dot(before, before, axes) * dot(after, after, axes);
+    if length2 <= 0.0 {
+        return None;
+    }
+    Some((-dot(before, after, axes) / length2.sqrt()).clamp(-1.0, 1.0))
+}
+
+/// A corner that is passed within a distance from it.
+struct Corner<'a, T> {
+    deviation_mm: f64,
+    per_axis: bool,
+    small_block_mm: f64,
+    /// The first axes make the angle.
+    axes: usize,
+    /// X, Y and Z of both directions make units.
+    are_units: bool,
+    before: &'a Before,
+    after: &'a Element<T>,
+}
+
+impl<T> Corner<'_, T> {
+    /// True only where [`Self::speed2`] is not below `most2`, at a small part of
+    /// its cost: most corners of a finishing pass are shallow.
+    #[inline]
+    fn permits(&self, most2: f64) -> bool {
+        let (u, w) = (&self.before.end, &self.after.start);
+        if self.axes != LINEAR || !self.are_units {
+            return false;
+        }
+        let mut accel = self.after.accel_mm_s2;
+        if self.per_axis {
+            for axis in 0..LINEAR {
+                let limit = self.after.axis_accel_mm_s2[axis];
+                if limit > 0.0 {
+                    accel = if limit < accel { limit } else { accel };
+                } else if u[axis] != 0.0 || w[axis] != 0.0 {
+                    return false;
+                }
+            }
+        }
+        let passage = Passage {
+            accel_mm_s2: accel,
+            length_mm: self.after.length_mm,
+            speed2: most2,
+        };
+        passage.is_shallow(dot(u, w, LINEAR), self.deviation_mm, self.small_block_mm)
+    }
+
+    fn speed2(&self) -> f64 {
+        let (u, w) = (&self.before.end, &self.after.start);
+        let Some(cos) = cosine(self.axes, u, w) else {
+            return 0.0;
+        };
+        if cos > STRAIGHT {
+            return 0.0;
+        }
+        if cos < -STRAIGHT {
+            return f64::INFINITY;
+        }
+        let after = self.after;
+        let accel = if self.per_axis {
+            let mut change = [0.0; AXES];
+            for (i, value) in change.iter_mut().enumerate().take(self.axes) {
+                *value = w[i] - u[i];
+            }
+            let length = dot(&change, &change, self.axes).sqrt();
+            let limits = change.iter().zip(&after.axis_accel_mm_s2).take(self.axes);
+            let permitted = limits.filter(|(d, _)| **d != 0.0);
+            permitted.fold(after.accel_mm_s2, |accel, (d, limit)| {
+                accel.min(limit * length / d.abs())
+            })
+        } else {
+            after.accel_mm_s2
+        };
+        let s = (0.5 * (1.0 - cos)).sqrt();
+        let mut v2 = accel * self.deviation_mm * s / (1.0 - s);
+        // Chords of a circle: radius = length / turn.
+        if after.length_mm < self.small_block_mm && cos < -std::f64::consts::FRAC_1_SQRT_2 {
+            let turn = libm::acos(-cos);
+            if turn < FRAC_PI_4 {
+                v2 = v2.min(accel * after.length_mm / turn);
+            }
+        }
+        v2
+    }
+}
+
+/// A change of direction counts as the larger of both parts, as Marlin has it.
+fn jerk<T>(steps: &AxisValues, before: &Before, after: &After<'_, T>, span: usize) -> f64 {
+    let speed = before.top_mm_s.min(after.top_mm_s);
+    let mut factor = 1.0_f64;
+    let sides = before.end.iter().zip(&after.element.start);
+    for (step, (exit, entry)) in steps.iter().zip(sides).take(span) {
+        let (exit, entry) = (exit * speed, entry * speed);
+        let jump = if exit * entry < 0.0 {
+            exit.abs().max(entry.abs())
+        } else {
+            (exit - entry).abs()
+        };
+        if jump * factor > *step {
+            factor = step / jump;
+        }
+    }
+    let v2 = (speed * factor) * (speed * factor);
+    // Both sides could as well begin and end on their own.
+    let threshold2 = v2 * (0.99 * 0.99);
+    if after.rest2 > threshold2 && before.rest2 > threshold2 {
+        after.rest2
+    } else {
+        v2
+    }
+}
+
+/// The speed at a right angle holds at the acceleration of all paths; what Z or the
+/// extruder slow down is slower there too, in proportion.
+#[inline]
+pub(super) fn accel_share(accel_mm_s2: f64, common_mm_s2: f64) -> f64 {
+    if accel_mm_s2 < common_mm_s2 && common_mm_s2 < f64::INFINITY {
+        accel_mm_s2 / common_mm_s2
+    } else {
+        1.0
+    }
+}
+
+fn square<T>(extruder_step: f64, before: &Before, after: &After<'_, T>) -> f64 {
+    let square2 = before.square2.min(after.square2);
+    let after = after.element;
+    let Some(cos) = cosine(LINEAR, &before.end, &after.start) else {
+        return 0.0;
+    };
+    let turn = (after.start[EXTRUDER] - before.end[EXTRUDER]).abs();
+    let extruder2 = if turn > 0.0 {
+        (extruder_step / turn) * (extruder_step / turn)
+    } else {
+        f64::INFINITY
+    };
+    let s = (0.5 * (1.0 - cos)).max(0.0).sqrt();
+    let c = (0.5 * (1.0 + cos)).max(0.0).sqrt();
+    if s >= 1.0 || c <= 0.0 {
+        return extruder2;
+    }
+    // Half a block may bend into the circle: v² = a·(L/2)·tan(half angle).
+    let half_tan = 0.5 * s / c;
+    let bent = (after.length_mm * after.accel_mm_s2).min(before.ramp2);
+    (square2 * (SQRT_2 - 1.0) * s / (1.0 - s))
+        .min(bent * half_tan)
+        .min(extruder2)
+}
+
+fn step<T>(
+    steps: &AxisValues,
+    same_kind_only: bool,
+    before: &Before,
+    after: &After<'_, T>,
+    span: usize,
+) -> f64 {
+    if same_kind_only && before.prints != after.prints {
+        return 0.0;
+    }
+    let mut v = f64::INFINITY;
+    let sides = before.end.iter().zip(&after.element.start);
+    for (step, (exit, entry)) in steps.iter().zip(sides).take(span) {
+        let change = (entry - exit).abs();
+        if change > 0.0 {
+            v = v.min(step / change);
+        }
+    }
+    v * v
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{After, Corner, Element, Joint, LINEAR};
+    use crate::random::Random;
+    use gwatt_machine::{CornerAngle, CornerRule};
+
+    impl Random {
+        /// Between 1 and 10 to the power of so much.
+        fn scale(&mut self, decades: f64) -> f64 {
+            libm::pow(10.0, decades * self.next())
+        }
+    }
+
+    fn element(direction: [f64; 3], length_mm: f64, limits: [f64; 3]) -> Element<()> {
+        let mut element = Element::blank(());
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        for axis in 0..LINEAR {
+            element.start[axis] = direction[axis] / length;
+            element.axis_accel_mm_s2[axis] = limits[axis];
+        }
+        element.end = element.start;
+        element.length_mm = length_mm;
+        element.accel_mm_s2 = limits.into_iter().fold(f64::INFINITY, f64::min) * 1.5;
+        element.joint = Joint::Exact;
+        element
+    }
+
+    #[test]
+    fn the_quick_answer_never_permits_more_than_the_rule() {
+        let mut random = Random(11);
+        let (mut permitted, mut refused, mut wrong) = (0, 0, 0);
+        for case in 0..100_000 {
+            let mut direction = || [(); 3].map(|()| 2.0 * random.next() - 1.0);
+            let (first, by) = (direction(), direction());
+            // From reversals over right angles to the straight.
+            let bend = 1e-5 * random.scale(6.0);
+            let second = [0, 1, 2].map(|i| first[i] + bend * by[i]);
+            let limits = [(); 3].map(|()| 100.0 * random.scale(2.0));
+            let length_mm = 0.01 * random.scale(3.0);
+            let rule = CornerRule::JunctionDeviation {
+                deviation_mm: 0.01,
+                angle: CornerAngle::AllAxes,
+                per_axis: case % 2 == 0,
+                small_block_mm: if case % 3 == 0 { 1.0 } else { 0.0 },
+            };
+            let before = element(first, 1.0, limits);
+            let before = After::new(&rule, &before).before();
+            let after = element(second, length_mm, limits);
+            let corner = Corner {
+                deviation_mm: 0.01,
+                per_axis: case % 2 == 0,
+                small_block_mm: if case % 3 == 0 { 1.0 } else { 0.0 },
+                axes: LINEAR,
+                are_units: true,
+                before: &before,
+                after: &after,
+            };
+            let v2 = corner.speed2();
+            // Close to the rule's own figure, and at any other.
+            let most2 = match case % 4 {
+                0 => v2 * (1.0 - 1e-9),
+                1 => v2 * (1.0 + 1e-9),
+                2 => v2 * random.scale(1.0),
+                _ => v2 / random.scale(1.0),
+            };
+            let permits = most2.is_finite() && corner.permits(most2);
+            permitted += usize::from(permits);
+            refused += usize::from(!permits);
+            wrong += usize::from(permits && v2 < most2);
+        }
+        assert_eq!(wrong, 0);
+        assert!(
+            permitted > 10_000 && refused > 10_000,
+            "{permitted} {refused}"
+        );
+    }
+}

@@ -1,0 +1,314 @@
+//! Moves over which the motion keeps its speed.
+//!
+//! Input: moves in program order. Output: the same as by way of the planner, at a
+//! small part of its cost. A joint is passed at the full speed v if the rules
+//! permit that and the path after it is long enough to brake, Σ 2·a·L ≥ v², with
+//! no more blocks than the controller sees. What is not final when that ends is
+//! given to the planner.
+
+mod terms;
+
+use super::Ahead;
+use super::joints::glide_over;
+use super::open::Open;
+use super::pace::Pace;
+use super::surges::Surges;
+use crate::demand::Want;
+use crate::eye::Eye;
+use crate::model::PowerModel;
+use gwatt_machine::{AxisSet, LookAhead, Machine};
+use gwatt_motion::Move;
+use gwatt_plan::Overrides;
+use gwatt_plan::lookahead::{Gliding, Line};
+use terms::{Terms, lower};
+
+/// What rounding may make of the sum, as a share.
+const ROUNDING: f64 = 1e-6;
+/// Moves that pass at most before another look where one was in vain.
+const PAUSE_MAX: usize = 8;
+
+/// What is known of gliding beforehand, and how far it has come.
+#[derive(Debug)]
+pub(super) struct Glider {
+    terms: Terms,
+    /// Moves that pass before another look, and before the one after that.
+    wait: usize,
+    pause: usize,
+    /// The planner does not know of the last moves.
+    glide: Option<Glide>,
+}
+
+/// Where a motion glides.
+#[derive(Debug)]
+struct Glide {
+    /// Of F, mm/s.
+    feed_mm_s: f64,
+    /// The same under the override, and its inverse.
+    speed_mm_s: f64,
+    s_per_mm: f64,
+    /// The last move, and room for the next one; they change places.
+    lines: [Line; 2],
+    last: usize,
+    /// The first move of all.
+    begun: u64,
+    /// The first move that is not final.
+    first: u64,
+    /// Σ 2·a·L, at least, of the moves after the first one.
+    ramp2: f64,
+}
+
+/// What a move that glides comes to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Glided {
+    length_mm: f64,
+    /// 2·a·L, at least.
+    ramp2: f64,
+}
+
+impl Glider {
+    /// `blocks`: moves that may be open; 0: nothing glides.
+    pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
+        Self {
+            terms: Terms::new(machine, rules, overrides.feed, blocks),
+            wait: 0,
+            pause: 1,
+            glide: None,
+        }
+    }
+
+    /// A look was in vain.
+    fn back_off(&mut self) {
+        self.wait = self.pause;
+        if self.pause < PAUSE_MAX {
+            self.pause += 1;
+        }
+    }
+
+    /// The first move over which the motion glides, if it does.
+    pub fn begun(&self) -> Option<u64> {
+        self.glide.as_ref().map(|glide| glide.begun)
+    }
+}
+
+/// Whether nothing but the time and the largest speed of a move is of interest,
+/// which has this speed all along.
+#[inline]
+fn is_plain(model: &PowerModel, mv: &Move, speed_mm_s: f64, want: Want) -> bool {
+    !want.energy && model.is_below_floor(mv, [speed_mm_s, 0.0], want)
+}
+
+impl Ahead {
+    /// Adds a move where the motion glides on to it, nothing is in doubt, and the
+    /// peaks are of no interest; false, and nothing done, otherwise.
+    #[inline]
+    pub(super) fn glide(
+        &mut self,
+        model: &PowerModel,
+        eye: &mut Eye,
+        mv: &Move,
+        text: &[u8],
+        want: Want,
+    ) -> bool {
+        let doubtful = self.in_doubt || self.reach2.is_some();
+        if doubtful || want.accel || !eye.is_closed() || !self.glider.terms.suit(mv) {
+            return false;
+        }
+        if self.glider.glide.is_none() {
+            if self.glider.wait > 0 {
+                self.glider.wait -= 1;
+                return false;
+            }
+            self.glider.glide = self.begin_gliding(model, eye);
+        }
+        let Some(speed_mm_s) = self.glide_on(model, mv) else {
+            self.glider.back_off();
+            return false;
+        };
+        let pace = self.open.back().map(|last| Pace {
+            own2: 0.0,
+            ..last.pace
+        });
+        let open = self.open.push(mv, text, want);
+        open.assessment.speed_mm_s = speed_mm_s;
+        open.moves = true;
+        // The same speed is asked for; how far it reaches matters when this ends.
+        open.pace = pace.unwrap_or_default();
+        self.count_gliding(model);
+        true
+    }
+
+    /// Glides through the joint before a move; gives the speed, mm/s.
+    #[inline]
+    fn glide_on(&mut self, model: &PowerModel, mv: &Move) -> Option<f64> {
+        let Glider { terms, glide, .. } = &mut self.glider;
+        let glide = glide.as_mut()?;
+        let number = self.open.end();
+        if number.checked_sub(glide.first)? > terms.blocks || glide.feed_mm_s != mv.feed_mm_s {
+            return None;
+        }
+        let last = self.open.back_mut()?;
+        let axes = AxisSet(mv.moving.0 | last.mv.moving.0);
+        let [one, other] = &mut glide.lines;
+        let (before, line) = if glide.last == 0 {
+            (one, other)
+        } else {
+            (other, one)
+        };
+        if !terms.describe(line, mv, axes, glide.speed_mm_s) {
+            return None;
+        }
+        let planner = &self.largest.planner;
+        if !planner.passes(before, line, glide.speed_mm_s)
+            || !is_plain(model, &last.mv, glide.speed_mm_s, last.want)
+        {
+            return None;
+        }
+        let least_mm_s2 = lower(before.least_accel_mm_s2, line.least_accel_mm_s2);
+        let ramp2 = 2.0 * planner.accel_share() * least_mm_s2 * before.length_mm;
+        let length_mm = before.length_mm;
+        last.glided = Glided { length_mm, ramp2 };
+        if glide.first + 1 < number {
+            glide.ramp2 += ramp2;
+        }
+        glide.last ^= 1;
+        Some(glide.speed_mm_s)
+    }
+
+    /// How the motion glides over the moves that are open, if it does.
+    fn begin_gliding(&mut self, model: &PowerModel, eye: &mut Eye) -> Option<Glide> {
+        self.largest.planner.settle();
+        self.pump(model, eye);
+        // What has become final may have left a doubt.
+        if self.steps.is_doubtful() || self.reach2.is_some() {
+            return None;
+        }
+        let planner = &self.largest.planner;
+        let accel_share = planner.accel_share();
+        let Gliding {
+            first,
+            open,
+            speed2,
+        } = planner.gliding()?;
+        let terms = &self.glider.terms;
+        if self.open.end().checked_sub(first) != Some(open as u64) || open as u64 > terms.blocks {
+            // Pieces of arcs, or a path that is too short to brake on.
+            return None;
+        }
+        let feed_mm_s = self.open.back()?.mv.feed_mm_s;
+        let speed_mm_s = feed_mm_s * terms.feed;
+        if speed_mm_s * speed_mm_s != speed2 {
+            return None;
+        }
+        // Where rapids and feeds meet, another rapid override speeds the feed up.
+        let one = |surges: &Surges| surges.are_one(false, speed2);
+        if !self.surges.as_ref().is_none_or(one) {
+            return None;
+        }
+        let (mut ramp2, mut line) = (0.0, Line::default());
+        for index in 0..open {
+            let each = self.open.get_mut(first + index as u64)?;
+            let glides = terms.suit(&each.mv)
+                && each.mv.feed_mm_s == feed_mm_s
+                && each.certain
+                && !each.in_doubt
+                && is_plain(model, &each.mv, speed_mm_s, each.want)
+                && terms.describe(&mut line, &each.mv, each.mv.moving, speed_mm_s);
+            if !glides {
+                return None;
+            }
+            if index + 1 < open {
+                each.glided = Glided::whole(&line, accel_share);
+                ramp2 += if index > 0 { each.glided.ramp2 } else { 0.0 };
+            }
+        }
+        Some(Glide {
+            feed_mm_s,
+            speed_mm_s,
+            s_per_mm: 1.0 / speed_mm_s,
+            lines: [line; 2],
+            last: 0,
+            begun: first,
+            first,
+            ramp2,
+        })
+    }
+
+    /// Counts the moves that are final.
+    #[inline]
+    fn count_gliding(&mut self, model: &PowerModel) {
+        let Some(glide) = &mut self.glider.glide else {
+            return;
+        };
+        let needed2 = glide.speed_mm_s * glide.speed_mm_s * (1.0 + ROUNDING);
+        while glide.ramp2 >= needed2 {
+            let Some(open) = self.open.get_mut(glide.first) else {
+                break;
+            };
+            let duration_s = open.glided.length_mm * glide.s_per_mm;
+            open.glides_for(duration_s, glide.speed_mm_s);
+            self.largest.next = glide.first;
+            self.glider.pause = 1;
+            let glides = [duration_s, glide.speed_mm_s];
+            glide_over(&mut self.steps, &mut self.open, model, glide.first, glides);
+            glide.first += 1;
+            let Some(next) = self.open.get_mut(glide.first) else {
+                break;
+            };
+            glide.ramp2 -= next.glided.ramp2;
+        }
+    }
+
+    /// Tells the planner of the moves since it was left alone.
+    #[inline]
+    pub(super) fn catch_up(&mut self, machine: &Machine) {
+        if let Some(glide) = self.glider.glide.take() {
+            self.end_gliding(machine, &glide);
+        }
+    }
+
+    fn end_gliding(&mut self, machine: &Machine, glide: &Glide) {
+        let side = &mut self.largest;
+        let speed2 = glide.speed_mm_s * glide.speed_mm_s;
+        for number in glide.first..self.open.end() {
+            let open = self.open.get(number);
+            // All have a path: their lengths and their limits are above 0.
+            if !open.is_some_and(|open| side.describe(machine, &open.mv, number)) {
+                continue;
+            }
+            if let (Some(surges), Some(open)) = (&mut self.surges, self.open.get_mut(number))
+                && open.pace.own2 == 0.0
+            {
+                open.pace = surges.push(number, &side.element);
+            }
+            if number == glide.first {
+                side.planner.glide_to(&side.element, speed2);
+            } else {
+                side.planner.push(&side.element);
+            }
+        }
+    }
+}
+
+impl Glided {
+    /// A line that is run as it is.
+    fn whole(line: &Line, accel_share: f64) -> Self {
+        Self {
+            length_mm: line.length_mm,
+            ramp2: 2.0 * accel_share * line.least_accel_mm_s2 * line.length_mm,
+        }
+    }
+}
+
+impl Open {
+    /// Counts a time at a constant speed, which it does not begin or end at rest.
+    #[inline]
+    fn glides_for(&mut self, duration_s: f64, speed_mm_s: f64) {
+        let assessment = &mut self.assessment;
+        self.alone = false;
+        assessment.duration_s += duration_s;
+        assessment.fastest_s += duration_s;
+        if assessment.top_speed_mm_s < speed_mm_s {
+            assessment.top_speed_mm_s = speed_mm_s;
+        }
+    }
+}

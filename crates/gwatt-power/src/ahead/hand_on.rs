@@ -1,0 +1,234 @@
+//! Moves that nothing can change any more, on their way out.
+
+use super::Ahead;
+use super::open::Open;
+use super::queue::Leaving;
+use crate::assessment::{Assessment, Certificate};
+use crate::demand::{Demand, Want, larger};
+use crate::eye::{Eye, span};
+use crate::late::unpaced;
+use crate::model::PowerModel;
+use crate::robust::{Extremes, Part};
+use crate::watch::{Known, Span};
+use gwatt_machine::Machine;
+use gwatt_motion::Move;
+use gwatt_plan::{Overrides, SpeedBound, blended_bound, blended_speed};
+
+impl Ahead {
+    /// Hands on the moves that are finished, and whose neighbours are. All, when
+    /// nothing moves after the last one.
+    #[inline]
+    pub fn hand_on(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        eye: &mut Eye,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
+        if let Some(begun) = self.glider.begun()
+            && self.open.first() > begun
+        {
+            return self.hand_on_gliding(sink);
+        }
+        let nominal = self.nominal.as_ref();
+        let nominal = nominal.map_or(u64::MAX, |nominal| nominal.next);
+        let finished = self.largest.next.min(nominal);
+        loop {
+            let first = self.open.first();
+            let Some(front) = self.open.get(first) else {
+                break;
+            };
+            if !front.moves {
+                // Those that do not move are passed.
+                eye.pass();
+                sink(&front.mv, &front.assessment, &front.text);
+                self.open.pass();
+                continue;
+            }
+            if first + 1 >= finished && !self.at_rest {
+                return;
+            }
+            let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
+            let next = (first + 1..self.open.end()).find(moves);
+            let known = first < finished && next.map_or(self.at_rest, |next| next < finished);
+            if !known {
+                return;
+            }
+            let Some(Leaving { before, own, next }) = self.open.leaving(next) else {
+                return;
+            };
+            let next = next.filter(|_| !own.rests);
+            let before = before.filter(|before| !before.rests);
+            let driven = self.driven && !own.steady;
+            if driven {
+                let largest = self.largest.overrides;
+                let doubtful = self.in_doubt || self.unwaited.is_some();
+                let ends_mm_s = [before, next].map(|beside| match beside {
+                    _ if doubtful => f64::INFINITY,
+                    Some(beside) => blended_speed(machine, &unpaced(&beside.mv), largest),
+                    None => 0.0,
+                });
+                own.drive(ends_mm_s, machine, model, largest);
+            }
+            if self.surges.is_some()
+                && let Some(cruises) = model.cruises(&own.mv, own.assessment.top_speed_mm_s)
+            {
+                own.assessment.demand.include(&cruises);
+            }
+            if own.mv.pace < 1.0 {
+                let of_plan = [own.assessment.speed_mm_s, own.assessment.accel_mm_s2];
+                let late = model.late(machine, &own.mv, of_plan, self.largest.overrides);
+                if let Some(late) = late {
+                    own.assessment.demand.include(&late);
+                }
+            }
+            if own.mv.stray.strays() && own.assessment.ahead {
+                let top_speed_mm_s = own.assessment.top_speed_mm_s;
+                let demand = own.assessment.demand;
+                own.assessment.demand = model.with_stray(demand, &own.mv, top_speed_mm_s);
+            }
+            let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
+            // What no piece speaks of is not known.
+            let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;
+            if planned && own.certain && certain(before) && certain(next) {
+                own.assessment.blended = !own.alone;
+                if own.assessment.ahead && own.in_turn {
+                    eye.kept(model, &own.mv, &mut own.kept);
+                } else if own.assessment.ahead {
+                    let overrides = self.largest.overrides;
+                    let span = if driven {
+                        span(machine, &own.mv, overrides)
+                    } else {
+                        Span::of(own.assessment.fastest_s)
+                    };
+                    own.watch([before, next], span, (machine, model), eye, overrides);
+                } else {
+                    eye.alone(machine, model, &own.mv, self.largest.overrides);
+                }
+            } else {
+                let overrides = self.largest.overrides;
+                let unwaited = &mut self.unwaited;
+                own.bound([before, next], unwaited, machine, model, eye, overrides);
+                if !(next.is_none() && self.at_rest && self.in_doubt) {
+                    self.unwaited = None;
+                }
+            }
+            sink(&own.mv, &own.assessment, &own.text);
+            self.open.leave();
+        }
+        if self.at_rest && !self.in_doubt {
+            self.open.begin_at_rest();
+            if let Some(surges) = &mut self.surges {
+                surges.runs.clear();
+            }
+            self.unwaited = None;
+            self.driven = false;
+        }
+    }
+
+    /// The same over moves where the motion glides: all move, and all is certain.
+    #[inline]
+    fn hand_on_gliding(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+        while self.open.first() + 1 < self.largest.next {
+            let Some(front) = self.open.get(self.open.first()) else {
+                break;
+            };
+            sink(&front.mv, &front.assessment, &front.text);
+            self.open.leave();
+        }
+    }
+}
+
+impl Open {
+    /// Gives it the robust bound, with those before and after it. `unwaited` stands in
+    /// place of the one before, where that did not wait for it, and is then what this
+    /// bound covers.
+    fn bound(
+        &mut self,
+        beside: [Option<&Self>; 2],
+        unwaited: &mut Option<Extremes>,
+        machine: &Machine,
+        model: &PowerModel,
+        eye: &mut Eye,
+        largest: Overrides,
+    ) {
+        let mut kept = std::mem::take(&mut self.kept);
+        let bounds = self.bounds(beside, machine, largest);
+        let mut window = self.window(beside, &bounds);
+        if let Some(unwaited) = unwaited {
+            window[0] = unwaited.part();
+        }
+        eye.blended(machine, model, &self.mv, &window, &mut kept, largest);
+        let mut demand = model.robust_over(&self.mv, &window, self.want);
+        let covered = Extremes::of(&window);
+        // Chords of a small arc may ask for more than the axes' limits.
+        demand.include(&self.assessment.demand);
+        self.assessment.demand = Demand {
+            energy_j: self.assessment.demand.energy_j,
+            ..demand
+        };
+        self.assessment.certificate = Certificate::Robust;
+        *unwaited = Some(covered);
+    }
+
+    /// Over time it counts with no more than its peaks, where these are known of the
+    /// converter, for as long as it may last.
+    #[cold]
+    fn watch(
+        &mut self,
+        beside: [Option<&Self>; 2],
+        span: Span,
+        (machine, model): (&Machine, &PowerModel),
+        eye: &mut Eye,
+        largest: Overrides,
+    ) {
+        if eye.watch.is_none() {
+            return;
+        }
+        let mut kept = std::mem::take(&mut self.kept);
+        let bounds = self.bounds(beside, machine, largest);
+        let window = self.window(beside, &bounds);
+        let Demand {
+            peak_w, regen_w, ..
+        } = self.assessment.demand;
+        let Want {
+            floor_w,
+            regen_floor_w,
+            ..
+        } = self.want;
+        let most_w = [larger(peak_w, floor_w), larger(regen_w, regen_floor_w)];
+        let known = Known {
+            span,
+            most_w: (model.converters.len() == 1).then_some(most_w),
+        };
+        eye.unknown(model, &self.mv, &window, &mut kept, known);
+    }
+
+    /// The speeds of the one before it, its own, and those of the one after it.
+    fn bounds(
+        &self,
+        [before, next]: [Option<&Self>; 2],
+        machine: &Machine,
+        largest: Overrides,
+    ) -> [SpeedBound; 3] {
+        // A change of pace is part of what is not known.
+        [before.unwrap_or(self), self, next.unwrap_or(self)]
+            .map(|open| blended_bound(machine, &unpaced(&open.mv), largest))
+    }
+
+    fn window<'a>(
+        &'a self,
+        [before, next]: [Option<&'a Self>; 2],
+        [first, own, last]: &'a [SpeedBound; 3],
+    ) -> [Part<'a>; 3] {
+        let part = |bound, open: &'a Self| Part {
+            bound,
+            accel_mm_s2: &open.mv.accel_mm_s2,
+        };
+        [
+            part(first, before.unwrap_or(self)),
+            part(own, self),
+            part(last, next.unwrap_or(self)),
+        ]
+    }
+}

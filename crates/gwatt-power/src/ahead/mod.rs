@@ -1,0 +1,367 @@
+//! Moves that a controller plans together: what each of them asks for.
+//!
+//! Input: moves and stops in program order. Output: an [`Assessment`] for each
+//! move, once nothing after it can change it any more.
+//!
+//! ```text
+//! moves ─→ elements ─PathPlanner→ pieces of path ─PowerModel→ demand of each move
+//! ```
+//!
+//! A piece that the planner is not certain of, and the moves next to it, get the
+//! robust bound; and so does all whose speed depends on what happens there: the
+//! moves before it that may have to brake for it, and those after it until they
+//! run as fast as planned even from rest.
+
+mod count;
+mod driven;
+mod glide;
+mod hand_on;
+mod joints;
+mod open;
+mod pace;
+mod queue;
+mod runs;
+mod surges;
+
+use super::assessment::Assessment;
+use super::demand::Want;
+use super::eye::Eye;
+use super::model::PowerModel;
+use super::robust::Extremes;
+use super::steps::Steps;
+use super::tandem::Ride;
+use glide::Glider;
+use gwatt_machine::{AXES, AxisValues, LookAhead, Machine, PathMode};
+use gwatt_motion::{Move, MoveKind};
+use gwatt_plan::Overrides;
+use gwatt_plan::lookahead::{Element, PathPlanner};
+use queue::Queue;
+use surges::Surges;
+
+pub use open::{Role, joint, role};
+
+/// The moves that are planned together.
+#[derive(Debug)]
+pub(super) struct Ahead {
+    /// At the largest overrides: peaks.
+    largest: Side,
+    glider: Glider,
+    /// At 100 %: times and energies; where that is the same, nothing.
+    nominal: Option<Side>,
+    /// Moves that are not handed on.
+    open: Queue,
+    /// Nothing moves after the last move.
+    at_rest: bool,
+    /// Something stands after the last move that may or may not stop it.
+    in_doubt: bool,
+    /// What the motion reaches at least, from rest where it was in doubt last,
+    /// mm²/s²; nothing once that is as fast as planned.
+    reach2: Option<f64>,
+    /// How far a lower pace may still come late, mm, and up to which speed, mm/s.
+    late: Option<(f64, f64)>,
+    /// What was handed on last, and what before that, where nobody waited for what
+    /// may be blended with it.
+    unwaited: Option<Extremes>,
+    /// Since the last stop a drive leaves less than the axis' own acceleration at the
+    /// speed of some move.
+    driven: bool,
+    /// What lower overrides may make of them, if these count.
+    surges: Option<Surges>,
+    /// Steps of speed at joints.
+    steps: Box<Steps>,
+}
+
+/// A planner and how far it has come.
+#[derive(Debug)]
+struct Side {
+    planner: PathPlanner<u64>,
+    overrides: Overrides,
+    /// Of the last move.
+    element: Element<u64>,
+    /// The first move that is not finished.
+    next: u64,
+    /// Speeds of the axes at the end of the last piece, mm/s, where they are of
+    /// interest.
+    end_mm_s: AxisValues,
+    /// The last piece, where the next one may run already while it does.
+    last_ride: Option<Ride>,
+}
+
+impl Side {
+    /// Describes a move for the planner; false where it has no path.
+    #[inline]
+    fn describe(&mut self, machine: &Machine, mv: &Move, number: u64) -> bool {
+        self.element.tag = number;
+        self.element
+            .describe(machine, mv, self.overrides, joint(mv))
+    }
+
+    /// Whether the move that was described can be followed.
+    #[inline]
+    fn follows(&self) -> bool {
+        self.planner.follows(&self.element)
+    }
+}
+
+impl Ahead {
+    /// Nothing moves yet. `overrides`: the largest, and 100 % or what is
+    /// permitted of it.
+    pub fn new(machine: &Machine, rules: LookAhead, overrides: [Overrides; 2]) -> Self {
+        let most_feed = machine.limits.feed_override_max;
+        let [largest, nominal] = overrides.map(|overrides| Side {
+            planner: PathPlanner::new(machine, rules).expecting(most_feed / overrides.feed),
+            overrides,
+            element: Element::blank(0),
+            next: 0,
+            end_mm_s: [0.0; AXES],
+            last_ride: None,
+        });
+        let alike = largest.overrides == nominal.overrides;
+        // What is decided for another override does not glide.
+        let blocks = if alike && largest.overrides.feed >= most_feed {
+            largest.planner.glide_blocks()
+        } else {
+            0
+        };
+        Self {
+            glider: Glider::new(machine, &rules, largest.overrides, blocks),
+            largest,
+            nominal: (!alike).then_some(nominal),
+            open: Queue::new(),
+            at_rest: true,
+            in_doubt: false,
+            reach2: None,
+            late: None,
+            unwaited: None,
+            driven: false,
+            surges: machine
+                .limits
+                .counts_lower()
+                .then(|| Surges::new(machine, &rules)),
+            steps: joints::steps_of(machine, &rules),
+        }
+    }
+
+    /// Whether an arc that ends at rest runs otherwise with nothing after it.
+    pub fn slows_last_arcs(&self) -> bool {
+        self.largest.planner.slows_last_arcs()
+    }
+
+    /// Whether a move waits, or the next one may be blended with the last.
+    pub fn is_open(&self) -> bool {
+        self.in_doubt || !self.open.is_empty()
+    }
+
+    /// Adds a move that has a path which the rules speak of; false, and nothing
+    /// done, for all others.
+    #[inline]
+    pub fn push_path(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        eye: &mut Eye,
+        mv: &Move,
+        text: &[u8],
+        want: Want,
+    ) -> bool {
+        if self.glide(model, eye, mv, text, want) {
+            return true;
+        }
+        if role(machine, mv) != Role::Path {
+            return false;
+        }
+        self.catch_up(machine);
+        let number = self.open.end();
+        if !(self.largest.describe(machine, mv, number) && self.largest.follows()) {
+            return false;
+        }
+        if let Some(nominal) = &mut self.nominal
+            && !(nominal.describe(machine, mv, number) && nominal.follows())
+        {
+            return false;
+        }
+        // At lower overrides what is in doubt may brake for this one.
+        let surges = self.surges.as_mut();
+        let pace = surges.map(|surges| surges.push(number, &self.largest.element));
+        if self.in_doubt {
+            self.brake_in_doubt(model, eye);
+        }
+        let open = self.open.push(mv, text, want);
+        if let Some(pace) = pace {
+            open.pace = pace;
+        }
+        let own = &self.nominal.as_ref().unwrap_or(&self.largest).element;
+        open.assessment.speed_mm_s = own.top_mm_s();
+        open.assessment.accel_mm_s2 = own.accel_mm_s2;
+        open.moves = true;
+        open.in_doubt = std::mem::take(&mut self.in_doubt);
+        open.rests = mv.path_mode == PathMode::ExactStop;
+        self.driven |= self.largest.element.is_driven();
+        // The planner holds it back, even if it ends at rest.
+        self.at_rest = false;
+        let chords2 = self.largest.planner.push(&self.largest.element);
+        if let (Some(surges), Some(chords2)) = (&mut self.surges, chords2)
+            && let Some(open) = self.open.back_mut()
+        {
+            surges.run_chords(&mut open.pace, chords2);
+        }
+        if let Some(side) = &mut self.nominal {
+            side.planner.push(&side.element);
+        }
+        self.pump(model, eye);
+        true
+    }
+
+    /// Adds any other move with what is known of it by itself.
+    #[allow(clippy::too_many_arguments, reason = "what is known of a move")]
+    pub fn push_other(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        eye: &mut Eye,
+        mv: &Move,
+        text: &[u8],
+        assessment: Assessment,
+        want: Want,
+    ) {
+        self.catch_up(machine);
+        if role(machine, mv) == Role::Nothing {
+            if mv.kind == MoveKind::Rapid {
+                // Nothing is put together over a rapid, wherever it leads.
+                self.part();
+            }
+            self.open.push(mv, text, want).assessment = assessment;
+            return self.pump(model, eye);
+        }
+        self.brake_in_doubt(model, eye);
+        self.stop_planners();
+        let open = self.open.push(mv, text, want);
+        open.assessment = Assessment {
+            blended: true,
+            ahead: true,
+            ..assessment
+        };
+        open.certain = false;
+        open.moves = true;
+        open.in_doubt = std::mem::replace(&mut self.in_doubt, true);
+        self.at_rest = false;
+        self.pump(model, eye);
+        self.rest_after(model);
+        // No piece will speak of it.
+        self.finish();
+        let side = self.nominal.as_ref().unwrap_or(&self.largest);
+        eye.show(machine, mv, side.overrides);
+    }
+
+    /// Where the motion stops after the last move, or whether it does, cannot be
+    /// waited for.
+    pub fn run_dry(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+        if self.at_rest {
+            return;
+        }
+        let stops = self.rests();
+        self.catch_up(machine);
+        self.brake_in_doubt(model, eye);
+        self.stop_planners();
+        self.rest(model, eye);
+        self.in_doubt = !stops;
+    }
+
+    /// The motion stops after the last move.
+    pub fn stop(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+        self.catch_up(machine);
+        self.stop_planners();
+        self.rest(model, eye);
+    }
+
+    /// The motion stops after the last move; the controller sees that another one
+    /// comes.
+    pub fn stop_between(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+        self.catch_up(machine);
+        self.largest.planner.stop_between();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.planner.stop_between();
+        }
+        self.rest(model, eye);
+    }
+
+    fn rest(&mut self, model: &PowerModel, eye: &mut Eye) {
+        self.at_rest = true;
+        self.in_doubt = false;
+        self.pump(model, eye);
+    }
+
+    /// Lines before and after this place are not put together. Where the motion
+    /// glides nothing is.
+    pub fn part(&mut self) {
+        self.largest.planner.part();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.planner.part();
+        }
+    }
+
+    /// Whether the last move ends at rest whatever comes.
+    pub fn rests(&self) -> bool {
+        self.open.back().is_some_and(|last| last.rests)
+    }
+
+    /// Something stands here that may or may not stop the motion.
+    pub fn doubt(&mut self) {
+        self.in_doubt |= !(self.at_rest || self.rests());
+    }
+
+    /// The moves that a stop here would change are in doubt.
+    fn brake_in_doubt(&mut self, model: &PowerModel, eye: &mut Eye) {
+        self.largest.planner.settle();
+        self.pump(model, eye);
+        let unfinished = self.largest.next.max(self.open.first());
+        for number in unfinished..self.open.end() {
+            if let Some(open) = self.open.get_mut(number) {
+                open.certain = false;
+            }
+        }
+    }
+
+    fn stop_planners(&mut self) {
+        self.largest.planner.stop();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.planner.stop();
+        }
+    }
+
+    /// Nothing more comes of the moves so far.
+    fn finish(&mut self) {
+        self.largest.next = self.open.end();
+        if let Some(nominal) = &mut self.nominal {
+            nominal.next = self.largest.next;
+        }
+    }
+
+    /// Takes what the planners have finished.
+    fn pump(&mut self, model: &PowerModel, eye: &mut Eye) {
+        let times = self.nominal.is_none();
+        while let Some(planned) = self.largest.planner.pop() {
+            self.largest.next = planned.first;
+            self.take(model, eye, &planned, true, times);
+        }
+        while let Some(nominal) = &mut self.nominal
+            && let Some(planned) = nominal.planner.pop()
+        {
+            nominal.next = planned.first;
+            self.take(model, eye, &planned, false, true);
+        }
+        if self.at_rest {
+            self.rest_after(model);
+            self.finish();
+        }
+    }
+
+    /// What was planned ends at rest.
+    fn rest_after(&mut self, model: &PowerModel) {
+        self.follow_rest(model);
+        self.largest.end_mm_s = [0.0; AXES];
+        if let Some(nominal) = &mut self.nominal {
+            nominal.end_mm_s = [0.0; AXES];
+        }
+    }
+}

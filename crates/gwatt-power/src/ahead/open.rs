@@ -1,0 +1,128 @@
+//! A move that waits for what is planned after it, and how moves take part.
+
+use super::glide::Glided;
+use super::pace::Pace;
+use crate::assessment::Assessment;
+use crate::demand::Want;
+use crate::watch::Kept;
+use gwatt_machine::{Machine, PathMode};
+use gwatt_motion::{Corner, Move, MoveKind};
+use gwatt_plan::is_independent;
+use gwatt_plan::lookahead::Joint;
+
+/// A move that is not handed on.
+#[derive(Debug)]
+pub(super) struct Open {
+    pub mv: Move,
+    pub text: Vec<u8>,
+    pub assessment: Assessment,
+    pub want: Want,
+    pub certain: bool,
+    /// It runs in turn, and as planned over time; else only its figures are known.
+    pub in_turn: bool,
+    /// The speed with which it begins is not certain.
+    pub in_doubt: bool,
+    /// It ends at rest whatever follows.
+    pub rests: bool,
+    /// Some axis moves.
+    pub moves: bool,
+    /// It neither begins nor ends in motion.
+    pub alone: bool,
+    /// It runs at one speed throughout.
+    pub steady: bool,
+    /// What is asked of it.
+    pub pace: Pace,
+    /// How it comes out where the motion glides.
+    pub glided: Glided,
+    /// Its pieces over time, where they are looked at.
+    pub kept: Kept,
+}
+
+/// How a move takes part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// It has a path that the rules speak of.
+    Path,
+    /// It has none, and is passed.
+    Nothing,
+    /// How it runs together with others is not known.
+    Unknown,
+}
+
+impl Open {
+    /// A move of which no piece is planned yet.
+    #[cold]
+    pub fn new(mv: &Move, text: &[u8], want: Want) -> Self {
+        Self {
+            mv: mv.clone(),
+            text: text.to_vec(),
+            assessment: Assessment::AHEAD,
+            want,
+            certain: true,
+            in_turn: true,
+            in_doubt: false,
+            rests: false,
+            moves: false,
+            alone: true,
+            steady: true,
+            pace: Pace::default(),
+            glided: Glided::default(),
+            kept: Kept::default(),
+        }
+    }
+
+    /// The same in place.
+    #[inline]
+    pub fn renew(&mut self, mv: &Move, text: &[u8], want: Want) {
+        // At once, without a copy between.
+        self.mv = Move { ..*mv };
+        self.text.clear();
+        self.text.extend_from_slice(text);
+        self.assessment = Assessment::AHEAD;
+        self.want = want;
+        (self.certain, self.in_turn) = (true, true);
+        (self.alone, self.steady) = (true, true);
+        (self.in_doubt, self.rests, self.moves) = (false, false, false);
+        self.kept.clear();
+    }
+}
+
+/// How a move takes part in look-ahead.
+#[must_use]
+pub fn role(machine: &Machine, mv: &Move) -> Role {
+    let synchronous = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap | MoveKind::Probe);
+    if mv.moving.is_empty() && mv.unknown_start.is_empty() {
+        Role::Nothing
+    } else if synchronous
+        || !mv.unknown_start.is_empty()
+        || mv.stray.is_far()
+        || is_independent(machine, mv)
+    {
+        Role::Unknown
+    } else {
+        Role::Path
+    }
+}
+
+/// What the planner may do at the end of a move.
+#[must_use]
+pub fn joint(mv: &Move) -> Joint {
+    match (mv.path_mode, mv.corner) {
+        (PathMode::ExactStop, _) => Joint::Stop,
+        (PathMode::LookAhead, Corner::Exact) => Joint::Exact,
+        (
+            PathMode::LookAhead,
+            Corner::Round {
+                tolerance_mm,
+                join_mm,
+            },
+        ) => Joint::Blend {
+            tolerance_mm,
+            join_mm,
+        },
+        (PathMode::LookAhead, Corner::Square(_)) => Joint::Blend {
+            tolerance_mm: 0.0,
+            join_mm: 0.0,
+        },
+    }
+}

@@ -1,0 +1,181 @@
+//! Words of the program that speak to the spindle: kept until the moves before
+//! them are through, then carried out.
+
+use super::SpindleBus;
+use crate::Assessment;
+use crate::spindle_trace::SpindleSpan;
+use crate::surface_speed::Surface;
+use gwatt_machine::SpindleWait;
+use gwatt_motion::{Action, ActionKind, Move};
+
+/// Commands that wait before it is looked whether they still must.
+const QUEUE: usize = 4096;
+
+/// A command that waits for the moves before it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Queued {
+    /// How many moves come before it.
+    pub(super) after: u64,
+    pub(super) action: Action,
+}
+
+impl SpindleBus<'_> {
+    /// Takes an action.
+    pub fn act(&mut self, action: &Action) {
+        let speaks = match action.kind {
+            ActionKind::Spindle
+            | ActionKind::SpindleRpm
+            | ActionKind::SurfaceSpeed
+            | ActionKind::SpindleClamp
+            | ActionKind::SpindleCenter
+            | ActionKind::ToolLoaded
+            | ActionKind::ToolSelect
+            | ActionKind::ToolChange
+            | ActionKind::Stop
+            | ActionKind::End => true,
+            ActionKind::Other => {
+                matches!(action.value, 13.0 | 14.0 | 19.0) || is_range(action.value)
+            }
+            _ => false,
+        };
+        if speaks {
+            self.queue.push_back(Queued {
+                after: self.pushed,
+                action: *action,
+            });
+            if self.queue.len() > QUEUE {
+                self.catch_up();
+            }
+            self.reserve_w = [f64::INFINITY; 2];
+        }
+    }
+
+    /// Carries out the commands before the next move.
+    pub(super) fn catch_up(&mut self) {
+        while let Some(queued) = self.queue.front()
+            && queued.after <= self.handed
+        {
+            let action = queued.action;
+            self.queue.pop_front();
+            self.carry_out(&action);
+        }
+    }
+
+    pub(super) fn carry_out(&mut self, action: &Action) {
+        let value = action.value;
+        match action.kind {
+            ActionKind::SpindleRpm => self.rpm = Some(value),
+            ActionKind::SpindleClamp => {
+                self.clamp_rpm = value;
+                return;
+            }
+            ActionKind::SpindleCenter => {
+                self.center_mm = value;
+                return;
+            }
+            ActionKind::SurfaceSpeed => {
+                self.surface = (value > 0.0).then_some(Surface {
+                    speed_mm_s: value,
+                    clamp_rpm: self.clamp_rpm,
+                    center_mm: self.center_mm,
+                    sign: 1.0,
+                });
+            }
+            ActionKind::ToolLoaded => {
+                self.cutting.load(value);
+                return;
+            }
+            ActionKind::ToolSelect => {
+                self.cutting.select(value);
+                return;
+            }
+            ActionKind::ToolChange => {
+                // The spindle stops for it, on most machines.
+                self.states[0].lose(&self.motor);
+                if let Some(slower) = &mut self.slower {
+                    slower.state.lose(&self.motor);
+                }
+                self.states
+                    .iter_mut()
+                    .for_each(|state| state.pass([0.0, 0.0]));
+                self.wait_unknown();
+                return;
+            }
+            ActionKind::Stop => return self.wait_unknown(),
+            ActionKind::Other if is_range(value) => {
+                // Gears are changed at low speed, or at rest.
+                let target = self.states[0].target();
+                if target != 0.0 {
+                    let range = [target.min(0.0), target.max(0.0)];
+                    self.wander(range, target);
+                    self.wait_unknown();
+                }
+                return;
+            }
+            ActionKind::End => self.direction = 0.0,
+            _ if value == 3.0 || value == 13.0 => self.direction = 1.0,
+            _ if value == 4.0 || value == 14.0 => self.direction = -1.0,
+            _ => self.direction = 0.0,
+        }
+        self.asked = Some(action.line);
+    }
+
+    /// Something takes a time that is not known.
+    pub(super) fn wait_unknown(&mut self) {
+        self.states[0].pass([0.0, f64::INFINITY]);
+        if let Some(slower) = &mut self.slower {
+            slower.state.pass([0.0, f64::INFINITY]);
+        }
+    }
+
+    /// The speed that is asked for now, 1/min, at an override.
+    pub(super) fn target(&self, factor: f64) -> f64 {
+        let max = self.spindle.max_rpm;
+        // Without S what was in force before the program.
+        let rpm = self.rpm.unwrap_or(max);
+        self.direction * (rpm * factor).min(max)
+    }
+
+    /// Sets off the run that was asked for; rows of runs that do not fit.
+    pub(super) fn set_off(
+        &mut self,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+        next: Option<&Move>,
+    ) {
+        let Some(line) = self.asked.take() else {
+            return;
+        };
+        self.commands = self.commands.wrapping_add(1);
+        self.switched_on = self.direction != 0.0;
+        for side in 0..2 {
+            let target = self.target(self.overrides[side].spindle);
+            self.states[side].command(&self.motor, target);
+            if let (0, Some(slower)) = (side, &mut self.slower) {
+                slower.command(&self.motor, target);
+            }
+        }
+        let nominal = self.target(self.overrides[1].spindle);
+        if let Some(shown) = &mut self.shown {
+            shown.state.command(&self.motor, nominal);
+        }
+        // Whether a word that stops it is waited for, no profile says.
+        let blocks = self.spindle.wait == SpindleWait::Blocks && self.direction == 0.0;
+        let unknown = blocks || self.spindle.wait == SpindleWait::Unknown;
+        if unknown && !self.states[0].is_steady() {
+            self.wait_unknown();
+        }
+        let mut demand = self.alone(next, self.states[0].henceforth(&self.motor));
+        if let (true, Some(slower)) = (self.model.fits(&demand), &self.slower) {
+            // Turned down, the run before has come further.
+            demand = self.alone(next, slower.henceforth(&self.motor));
+        }
+        if !self.model.fits(&demand) {
+            self.row(line, next, demand, SpindleSpan::steady(0.0, 0.0), 0.0, sink);
+        }
+    }
+}
+
+/// M40 to M45: ranges of the spindle's gear.
+fn is_range(number: f64) -> bool {
+    (40.0..=45.0).contains(&number)
+}
