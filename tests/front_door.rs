@@ -77,8 +77,8 @@ fn errors_say_where_and_what() {
 #[test]
 fn streams_are_written_whole_or_not_at_all() {
     let machine = machine();
-    let looped = "G21 G90\nG1 Z1 F500\no1 repeat [3]\nG0 X400 Y300 Z-200\nG0 X0 Y0 Z0\n\
-                  o1 endrepeat\nM2\n";
+    let looped = "G21 G90\nG1 Z1 F500\n#1=0\nWHILE [#1 LT 3] DO1\nG0 X400. Y300. Z-200.\n\
+                  G0 X0 Y0 Z0\n#1=#1+1\nEND1\nM30\n";
     for program in [TOO_MUCH, FEED, looped] {
         let mut output = Vec::new();
         let input = Cursor::new(program);
@@ -129,6 +129,6 @@ fn moves_end_with_the_error() {
     assert!(moves.next().is_none());
     let failed = Moves::of(program, &machine, &options).any(|mv| mv.is_err());
     assert!(failed);
-    let looped = "o1 repeat [3]\nG0 X10\nG0 X0\no1 endrepeat\nM2\n";
+    let looped = "#1=0\nWHILE [#1 LT 3] DO1\nG0 X10\nG0 X0\n#1=#1+1\nEND1\nM30\n";
     assert_eq!(Moves::of(looped, &machine, &options).count(), 6);
 }
