@@ -56,7 +56,7 @@ impl Limited {
 ///     ..Limit::default()
 /// };
 /// let limited = limit.run(program, &machine)?;
-/// assert_eq!(limited.summary.edited_lines, 1);
+/// assert!(limited.summary.after.fits());
 /// # Ok(())
 /// # }
 /// ```
