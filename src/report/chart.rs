@@ -136,7 +136,14 @@ impl SpindleChart {
         }
         let room = 0.05 * (most - least);
         let value = Scale::new(least - room, most + room, top + PANEL, top);
-        let mut text = grid(name, top, time, &value);
+        let frame = Frame {
+            left: LEFT,
+            right: WIDTH - RIGHT,
+            top,
+            bottom: top + PANEL,
+            unit: "",
+        };
+        let mut text = grid(name, &frame, time, &value);
         if index == 0 {
             let points = self.buckets.iter().flat_map(|bucket| {
                 [
@@ -215,19 +222,35 @@ impl Scale {
     }
 }
 
-fn grid(name: &str, top: f64, time: &Scale, value: &Scale) -> String {
-    let (right, bottom) = (WIDTH - RIGHT, top + PANEL);
+/// Where a panel of a chart stands: its edges, and the unit after its values.
+pub(super) struct Frame {
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) top: f64,
+    pub(super) bottom: f64,
+    pub(super) unit: &'static str,
+}
+
+/// The name and the grid of a panel, with values and seconds along its edges.
+pub(super) fn grid(name: &str, frame: &Frame, time: &Scale, value: &Scale) -> String {
+    let Frame {
+        left,
+        right,
+        top,
+        bottom,
+        unit,
+    } = frame;
     let mut text = format!(
-        "<text x=\"{LEFT}\" y=\"{}\" font-weight=\"bold\">{name}</text>\n",
+        "<text x=\"{left}\" y=\"{}\" font-weight=\"bold\">{name}</text>\n",
         top - 8.0
     );
     for mark in value.marks() {
         let y = value.at(mark);
         let _ = writeln!(
             text,
-            "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"#dddddd\"/>\
-             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\">{mark}</text>",
-            LEFT - 6.0,
+            "<path d=\"M{left} {y:.2}H{right}\" stroke=\"#dddddd\"/>\
+             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\">{mark}{unit}</text>",
+            left - 6.0,
             y + 4.0
         );
     }

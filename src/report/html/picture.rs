@@ -10,7 +10,7 @@ use super::data::{channel_places, channels};
 use super::page::Page;
 use super::shares::PageSeries;
 use crate::power::PowerModel;
-use crate::report::chart::Scale;
+use crate::report::chart::{Frame, Scale, grid};
 use crate::report::quantity::{duration, power};
 
 const WIDTH: f64 = 1000.0;
@@ -80,7 +80,14 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         let top = TOP + (PANEL + GAP) * index as f64;
         let time = Scale::new(0.0, most_s, LEFT, WIDTH - RIGHT);
         let value = Scale::new(least_w - room, most_w + room, top + PANEL, top);
-        let mut text = grid(&heading(name, &peaks), top, &time, &value);
+        let frame = Frame {
+            left: LEFT,
+            right: WIDTH - RIGHT,
+            top,
+            bottom: top + PANEL,
+            unit: " W",
+        };
+        let mut text = grid(&heading(name, &peaks), &frame, &time, &value);
         if let Some(series) = series {
             areas(&mut text, page, series, &time, &value);
         }
@@ -156,34 +163,6 @@ fn colour(page: &Page<'_>, index: usize) -> &'static str {
         .get(place.saturating_sub(2))
         .copied()
         .unwrap_or("#9a9a9a")
-}
-
-fn grid(name: &str, top: f64, time: &Scale, value: &Scale) -> String {
-    let (right, bottom) = (WIDTH - RIGHT, top + PANEL);
-    let mut text = format!(
-        "<text x=\"{LEFT}\" y=\"{}\" font-weight=\"bold\">{name}</text>\n",
-        top - 8.0
-    );
-    for mark in value.marks() {
-        let y = value.at(mark);
-        let _ = writeln!(
-            text,
-            "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"#dddddd\"/>\
-             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\">{mark} W</text>",
-            LEFT - 6.0,
-            y + 4.0
-        );
-    }
-    for mark in time.marks() {
-        let x = time.at(mark);
-        let _ = writeln!(
-            text,
-            "<path d=\"M{x:.2} {top}V{bottom}\" stroke=\"#eeeeee\"/>\
-             <text x=\"{x:.2}\" y=\"{}\" text-anchor=\"middle\">{mark} s</text>",
-            bottom + 15.0
-        );
-    }
-    text
 }
 
 /// The planned power by axis and spindle: what is drawn upwards, what is fed back down.
