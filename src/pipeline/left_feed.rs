@@ -98,7 +98,7 @@ impl LeftFeeds {
             one_feed && writable(*user)
         };
         let left = self.lines.get(&line);
-        left.is_none_or(|left| !left.lost && left.users.iter().all(known))
+        left.is_some_and(|left| !left.lost && left.users.iter().all(known))
     }
 
     /// The lines that count on the F that a line leaves, each with its F.
@@ -115,8 +115,13 @@ fn need(entry: &Entry, before: &Mark) -> Need {
     if !facts.executed && !facts.reads_state {
         return Need::Nothing;
     }
-    if facts.feed_word.is_some() && !facts.reads_state {
-        return Need::Sets;
+    if facts.feed_word.is_some() {
+        // An F that is worked out from the one in force is put back by no number.
+        return if facts.reads_state {
+            Need::Unclear
+        } else {
+            Need::Sets
+        };
     }
     let sealed = facts.checksum || facts.dwell_takes_feed;
     let shows = facts.boundary
