@@ -25,6 +25,7 @@ mod paced;
 mod partial;
 mod presets;
 mod random;
+mod rapid_percent;
 mod reader;
 mod returns;
 mod rewriting;

@@ -282,12 +282,15 @@ struct Line {
     end: [f64; 2],
     /// m/s; infinite for a rapid.
     feed: f64,
+    /// Of the axes' speeds.
+    rapid_share: f64,
     acc: [f64; 2],
 }
 
-/// Reads G0, G1, G9, X, Y, F and ACC; gives the moves and ACC at the end.
+/// Reads G0, G1, G9, X, Y, F, ACC and OVRRAP; gives the moves and ACC at the end.
 fn read(program: &str) -> (Vec<Line>, [f64; 2]) {
     let (mut at, mut feed, mut rapid, mut acc) = ([0.0; 2], 0.0, true, [100.0; 2]);
+    let mut percent = 100.0;
     let mut lines = Vec::new();
     for line in program.lines() {
         let mut end = at;
@@ -295,6 +298,7 @@ fn read(program: &str) -> (Vec<Line>, [f64; 2]) {
             let value = |from: usize| word[from..].parse::<f64>().expect("a number");
             match word.as_bytes() {
                 [b'A', b'C', b'C', b'[', axis, ..] => acc[usize::from(axis - b'X')] = value(7),
+                [b'O', ..] => percent = value(7),
                 [b'G', ..] if value(1) < 2.0 => rapid = word == "G0",
                 [axis @ b'X'..=b'Y', ..] => end[usize::from(axis - b'X')] = value(1),
                 [b'F', ..] => feed = value(1) / 6e4,
@@ -302,11 +306,11 @@ fn read(program: &str) -> (Vec<Line>, [f64; 2]) {
             }
         }
         if end != at {
-            let feed = if rapid { f64::INFINITY } else { feed };
             lines.push(Line {
                 start: at,
                 end,
-                feed,
+                feed: if rapid { f64::INFINITY } else { feed },
+                rapid_share: if rapid { percent / 100.0 } else { 1.0 },
                 acc,
             });
         }
@@ -323,7 +327,7 @@ impl Drives {
         let share = way.map(|way| way.abs() / length);
         let (mut v, mut a) = (line.feed, f64::INFINITY);
         for (n, share) in share.iter().enumerate() {
-            v = v.min(self.speed[n] / share);
+            v = v.min(self.speed[n] * line.rapid_share / share);
             a = a.min(self.accel[n] * line.acc[n] / 100.0 / share);
         }
         let top = v.min((a * length / 1e3).sqrt());
@@ -405,7 +409,11 @@ proptest! {
                 prop_assert!(v_after <= v * (1.0 + 1e-9) && a_after <= a * (1.0 + 1e-9), "{old:?} {new:?}");
                 prop_assert!(peak_w <= drives.peak_w * (1.0 + 1e-6), "{peak_w} {new:?}\n{text}");
             }
-            let again = analyze(Cursor::new(&text), &machine, &options(RIG.options), None);
+            let mut trusting = machine;
+            for knob in &mut trusting.controller.knobs {
+                knob.verified = true;
+            }
+            let again = analyze(Cursor::new(&text), &trusting, &options(RIG.options), None);
             prop_assert!(again.expect("a program").fits());
         }
     }

@@ -281,12 +281,17 @@ fn knobs_with_names() {
     };
     assert_eq!(findings(&knob("ACC", "accel", "index", "percent")), "");
     assert_eq!(findings(&knob("DynOvr", "accel", "assign", "share")), "");
+    assert_eq!(
+        findings(&knob("OVRRAP", "rapid-speed", "assign", "percent")),
+        ""
+    );
     for (word, target, argument, unit) in [
         ("VELOLIM", "speed", "index", "percent"),
         ("ACC", "feed-accel", "index", "percent"),
         ("ACC", "accel", "index", "per-second-squared"),
         ("DynOvr", "accel", "index", "percent"),
         ("DynOvr", "accel", "assign", "percent"),
+        ("OVRRAP", "accel", "assign", "percent"),
     ] {
         let found = findings(&knob(word, target, argument, unit));
         let message = format!("\"{word}\" is not read back in this form");

@@ -1,4 +1,5 @@
-//! Moves that are held to a speed by measure: see [`Paces`](super::Paces).
+//! Moves whose speed is found elsewhere: by measure (see [`Paces`](super::Paces)), or with their
+//! neighbours.
 
 use super::case::Case;
 use super::change::{Change, feed_word, round_to_step};
@@ -56,5 +57,48 @@ impl Solver<'_> {
         }
         self.respect_floor(case, &change)?;
         Ok(change)
+    }
+
+    /// A change that leaves a move a share of the speed that it has with what `with` does;
+    /// `None` where no word says it.
+    pub(super) fn slowed(
+        &self,
+        case: Case<'_>,
+        lever: SpeedLever,
+        with: &Change,
+        share: f64,
+    ) -> Option<Change> {
+        let Case { mv, permit, .. } = case;
+        let changed = with.apply(self.machine, mv, permit);
+        if let SpeedLever::RapidPercent(knob) = lever {
+            let step = self.machine.controller.knobs.get(knob)?.percent_step();
+            let percent = round_to_step(changed.rapid_factor * share * 100.0, step);
+            return (percent > 0.0).then_some(Change {
+                rapid_percent: Some((knob, percent)),
+                ..*with
+            });
+        }
+        let capped = matches!(lever, SpeedLever::Cap(_));
+        let own_mm_s = if changed.unknown_start.is_empty() {
+            blended_speed(self.machine, &changed, self.largest)
+        } else if capped {
+            self.fastest_axis(&changed)
+        } else {
+            changed.feed_mm_s.min(1e6) * self.largest.feed
+        };
+        let speed_mm_s = own_mm_s * share / self.largest.feed;
+        if let SpeedLever::Cap(knob) = lever {
+            let values = self.cap_values(case, knob, speed_mm_s)?;
+            return Some(Change {
+                speed: Some((knob, values)),
+                ..*with
+            });
+        }
+        let feed = feed_word(self.machine, mv, permit, speed_mm_s);
+        (feed > 0.0 && feed.is_finite()).then_some(Change {
+            feed: Some(feed),
+            as_feed: lever == SpeedLever::AsFeed,
+            ..*with
+        })
     }
 }

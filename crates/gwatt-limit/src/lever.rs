@@ -92,16 +92,22 @@ pub(super) fn accel_knob(machine: &Machine, target: KnobTarget) -> Option<usize>
 
 /// The knob for the speed of rapids.
 fn rapid_knob(machine: &Machine, permit: &Permit) -> Option<usize> {
+    let knobs = &machine.controller.knobs;
+    let levels = knobs.iter().filter_map(|knob| knob.levels.as_ref());
+    // Where there are levels of it, they are the speed that a percentage is taken of.
+    let has_levels = levels
+        .flat_map(|levels| &levels.list)
+        .any(|level| level.rapid_factor != 1.0);
     let suits = |knob: &Knob| {
         knob.verified
             && knob.levels.is_none()
             && match knob.target {
-                KnobTarget::RapidSpeed => true,
+                KnobTarget::RapidSpeed => !has_levels,
                 KnobTarget::SpeedShare => permit.line_before,
                 _ => false,
             }
     };
-    machine.controller.knobs.iter().position(suits)
+    knobs.iter().position(suits)
 }
 
 /// Whether the axes stand for a knob where its word is put back right away: a feed costs less.

@@ -10,7 +10,7 @@ use arrayvec::ArrayVec;
 
 use super::bounds::{envelope, factor, path_speed, scale};
 use super::case::{Case, Ends};
-use super::change::{Change, Permit, feed_word};
+use super::change::{Change, Permit};
 use super::halt;
 use super::law;
 use super::level;
@@ -22,7 +22,7 @@ use super::root::largest;
 use super::solver::Solver;
 use gwatt_machine::AxisValues;
 use gwatt_motion::Move;
-use gwatt_plan::{SpeedBound, blended_bound, blended_speed, plan};
+use gwatt_plan::{SpeedBound, blended_bound, plan};
 
 /// A move of a window.
 #[derive(Debug, Clone, Copy)]
@@ -94,7 +94,7 @@ pub(super) fn lower(
         .iter()
         .map(|member| levers_joined(solver, member.mv, &member.permit))
         .collect();
-    let by_speed = || found.iter().any(|levers| speed_lever(levers).is_some());
+    let by_speed = || found.iter().any(|levers| levers.speed.is_some());
     let accel = |levers: &Levers| levers.accel_word(solver.machine);
     let by_accel = || found.iter().any(|levers| accel(levers).is_some());
     let by_rule = solver.how.strategy == Strategy::Preset || solver.how.law == Law::Patent;
@@ -177,7 +177,7 @@ fn by_law(
         }
     });
     let others: Vec<Levers> = others.collect();
-    let by_speed = others.iter().any(|levers| speed_lever(levers).is_some());
+    let by_speed = others.iter().any(|levers| levers.speed.is_some());
     by_speed && lower_speed(solver, slots, window, &others)
 }
 
@@ -215,13 +215,6 @@ fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
     let behind = (center + 1..slots.len()).find(|index| !slots[*index].rider);
     window.extend(behind.filter(|_| slots[center].joined));
     window
-}
-
-/// Blended moves are lowered by F or by a word for the largest speed, also a rapid written as a feed.
-fn speed_lever(levers: &Levers) -> Option<SpeedLever> {
-    levers
-        .speed
-        .filter(|lever| !matches!(lever, SpeedLever::RapidPercent(_)))
 }
 
 fn own_bound(solver: &Solver<'_>, slots: &VecDeque<Slot>, member: &Member<'_>) -> SpeedBound {
@@ -272,10 +265,7 @@ fn lower_speed(
         .iter()
         .map(|member| member.changed(slots).accel_mm_s2)
         .collect();
-    let adjustable: Vec<bool> = found
-        .iter()
-        .map(|levers| speed_lever(levers).is_some())
-        .collect();
+    let adjustable: Vec<bool> = found.iter().map(|levers| levers.speed.is_some()).collect();
     let (top, accel) = envelope(bounds.iter().copied().zip(accels.iter()));
     let factors = |cap: f64| -> Vec<f64> {
         bounds
@@ -302,8 +292,8 @@ fn lower_speed(
     };
     for ((member, factor), levers) in window.iter().zip(factors(cap)).zip(found) {
         if factor < 1.0
-            && let Some(lever) = speed_lever(levers)
-            && !lower_feed(solver, slots, member, lever, factor)
+            && let Some(lever) = levers.speed
+            && !lower_one(solver, slots, member, lever, factor)
         {
             return false;
         }
@@ -311,44 +301,17 @@ fn lower_speed(
     load(solver, slots, window) <= 1.0 + 1e-9
 }
 
-/// Sets the F of one move, or its largest speed, to a share of the speed that it has now.
-fn lower_feed(
+/// Lowers the speed of one move to a share of what it has now.
+fn lower_one(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
     member: &Member<'_>,
     lever: SpeedLever,
     factor: f64,
 ) -> bool {
-    let changed = member.changed(slots);
-    let speed_mm_s = if let SpeedLever::Cap(_) = lever
-        && !changed.unknown_start.is_empty()
-    {
-        solver.fastest_axis(changed)
-    } else if changed.unknown_start.is_empty() {
-        blended_speed(solver.machine, changed, solver.largest)
-    } else {
-        changed.feed_mm_s.min(1e6) * solver.largest.feed
-    };
-    let speed_mm_s = speed_mm_s * factor / solver.largest.feed;
     let before = change(slots, member);
-    let change = if let SpeedLever::Cap(knob) = lever {
-        let Some(values) = solver.cap_values(member.case(slots), knob, speed_mm_s) else {
-            return false;
-        };
-        Change {
-            speed: Some((knob, values)),
-            ..before
-        }
-    } else {
-        let feed = feed_word(solver.machine, member.mv, &member.permit, speed_mm_s);
-        if !(feed > 0.0 && feed.is_finite()) {
-            return false;
-        }
-        Change {
-            feed: Some(feed),
-            as_feed: lever == SpeedLever::AsFeed,
-            ..before
-        }
+    let Some(change) = solver.slowed(member.case(slots), lever, &before, factor) else {
+        return false;
     };
     if let Err(obstacle) = solver.respect_floor(member.case(slots), &change) {
         slots[member.index].outcome.obstacle = Some(Box::new(obstacle));

@@ -3,7 +3,8 @@
 //! Source for ACC: SINUMERIK 828D Function Manual "Basic Functions" (09/2011), "Percentage
 //! acceleration override (ACC)": 0 to 200 % of the largest acceleration of an axis
 //! (MD32300), in part programs; MD32320 says what holds after RESET and M30. Of the others
-//! no manual was at hand: what they lower is not counted.
+//! no manual was at hand: what they lower is not counted, but for OVRRAP where its user
+//! vouches for it.
 
 use super::reading::Reading;
 use super::value::Val;
@@ -16,12 +17,15 @@ const PERCENT_MAX: f64 = 200.0;
 
 const NOT_LOWERED: &str = "a limit that the program lowers by a percentage is counted at 100 %";
 
+const NOT_VOUCHED_FOR: &str =
+    "OVRRAP below 100 % is counted at 100 %, unless the profile has it with `verified = true`";
+
 /// What a program has set.
 #[derive(Debug)]
 pub(super) struct Limits {
     /// ACC, in percent.
     accel: AxisValues,
-    /// OVRRAP, in percent; at least 100.
+    /// OVRRAP, in percent.
     rapid: f64,
     /// Something lower does not act yet, since blocks before it are held back.
     due: bool,
@@ -71,15 +75,34 @@ impl Reading<'_, '_, '_> {
                 self.extra().turns_limit = true;
             }
             ("OVRRAP", _) => {
-                self.state.limits.rapid = percent.max(100.0);
+                let least = if self.is_vouched_for(name) {
+                    0.0
+                } else {
+                    100.0
+                };
+                self.state.limits.rapid = percent.max(least);
                 self.extra().turns_limit = true;
             }
             _ => {}
         }
-        if percent < 100.0 && !(name == "ACC" && axis.is_some()) {
-            self.note("limit-not-lowered", NOT_LOWERED, start);
+        let counts = match name {
+            "ACC" => axis.is_some(),
+            _ => self.is_vouched_for(name),
+        };
+        if percent < 100.0 && !counts {
+            let message = match name {
+                "OVRRAP" => NOT_VOUCHED_FOR,
+                _ => NOT_LOWERED,
+            };
+            self.note("limit-not-lowered", message, start);
         }
         Ok(())
+    }
+
+    /// Whether the profile says that this word does what it is taken to do.
+    fn is_vouched_for(&self, name: &str) -> bool {
+        let mut knobs = self.control.machine.controller.knobs.iter();
+        knobs.any(|knob| knob.name == name && knob.verified)
     }
 
     fn has_jerk(&self) -> bool {

@@ -114,7 +114,8 @@ fn clashes(other: &Knob, knob: &Knob) -> bool {
             (other.target, knob.target),
             (FeedAccel, RapidAccel) | (RapidAccel, FeedAccel)
         );
-    accels || speeds(other) && speeds(knob)
+    // OVRRAP is read as a percentage of what the levels give.
+    accels || speeds(other) && speeds(knob) && !other.is_named_for_all()
 }
 
 fn knob(

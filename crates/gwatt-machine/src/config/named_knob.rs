@@ -1,5 +1,5 @@
-//! Knobs whose words are names, such as `ACC[X]=70`, `DynOvr=0.5` and `SET_VELOCITY_LIMIT
-//! ACCEL=500`.
+//! Knobs whose words are names, such as `ACC[X]=70`, `OVRRAP=70`, `DynOvr=0.5` and
+//! `SET_VELOCITY_LIMIT ACCEL=500`.
 
 use super::findings::Findings;
 use super::value::At;
@@ -9,7 +9,7 @@ use crate::knob::{KnobArgument, KnobTarget, KnobUnit};
 pub(super) fn is_named(text: &At<String>, argument: &KnobArgument) -> bool {
     match argument {
         KnobArgument::Index => true,
-        KnobArgument::Assign => text.value == "DynOvr",
+        KnobArgument::Assign => matches!(text.value.as_str(), "DynOvr" | "OVRRAP"),
         _ => false,
     }
 }
@@ -22,11 +22,12 @@ pub(super) fn is_read_back(
     unit: KnobUnit,
 ) -> bool {
     let read = match (text.value.as_str(), argument) {
-        ("ACC", KnobArgument::Index) => Some(KnobUnit::Percent),
-        ("DynOvr", KnobArgument::Assign) => Some(KnobUnit::Share),
+        ("ACC", KnobArgument::Index) => Some((KnobTarget::Accel, KnobUnit::Percent)),
+        ("OVRRAP", KnobArgument::Assign) => Some((KnobTarget::RapidSpeed, KnobUnit::Percent)),
+        ("DynOvr", KnobArgument::Assign) => Some((KnobTarget::Accel, KnobUnit::Share)),
         _ => None,
     };
-    target == KnobTarget::Accel && read == Some(unit)
+    read == Some((target, unit))
 }
 
 /// Only a word that is read back may be written; `None` for others, which are reported.
@@ -42,7 +43,8 @@ pub(super) fn check(
     }
     let message = format!("\"{}\" is not read back in this form", text.value);
     let help = "\"ACC\" with target = \"accel\", argument = \"index\" and unit = \"percent\" \
-                (SINUMERIK), or \"DynOvr\" with target = \"accel\", argument = \"assign\" and unit \
+                or \"OVRRAP\" with target = \"rapid-speed\", argument = \"assign\" and unit = \
+                \"percent\" (SINUMERIK), or \"DynOvr\" with target = \"accel\", argument = \"assign\" and unit \
                 = \"share\" (TwinCAT NC I)";
     findings.error("machine-word", &text.span, message, Some(help.to_owned()));
     None
