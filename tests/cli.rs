@@ -7,6 +7,7 @@ mod identify;
 mod interrupts;
 mod levels;
 mod machines;
+mod many;
 mod marks;
 mod prices;
 mod sets;
@@ -198,7 +199,7 @@ fn the_worst_verdict_of_several_programs_wins_and_all_are_told() {
         .filter(|line| !line.starts_with(' '))
         .filter_map(|line| line.split(": ").next())
         .collect();
-    assert_eq!(heads, programs);
+    assert_eq!(heads, [&programs[..], &["4 programs"]].concat());
     assert_eq!(check(&programs, "8").stdout, one.stdout);
 }
 
@@ -209,7 +210,10 @@ fn what_cannot_be_read_is_told() {
     for command in ["limit", "report", "moves"] {
         let run = |program| shop.run(&[command, program, "-m", "three-axis"]);
         run("missing.ngc").refused("missing.ngc: cannot read the program");
-        run("folder").refused("folder: cannot read the program");
+        run("folder").refused(match command {
+            "moves" => "folder: cannot read the program",
+            _ => "folder: no file below it is a program",
+        });
     }
     let ran = shop.run(&["check", "gentle.ngc", "-m", "no-such-machine"]);
     ran.refused("no-such-machine");

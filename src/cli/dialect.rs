@@ -1,15 +1,13 @@
 //! Arguments of `dialect`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
-use super::ProgramArgs;
+use super::{ProgramArgs, ProgramsArgs};
 
 const EXAMPLES: &str = "\
 Examples:
   gwatt dialect part.nc
-  gwatt dialect programs/* -m vmc
+  gwatt dialect programs/ -m vmc
   gwatt check part.nc -m vmc --dialect auto
 
 Exit status: 2 where a file is known to be in a language that no profile reads, is no text, has
@@ -19,9 +17,9 @@ no program in it or cannot be read; else 0, also where no mark of a controller i
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct DialectArgs {
-    /// The programs; - for standard input
-    #[arg(required = true, value_name = "PROGRAM")]
-    pub programs: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub programs: ProgramsArgs,
     /// Try to read each program on this machine too, as the profiles that are found
     #[arg(short, long, value_name = "MACHINE")]
     pub machine: Option<String>,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::ProgramArgs;
+use super::{ProgramArgs, ProgramsArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -17,9 +17,9 @@ Exits with 1 if a move that fits on --from does not fit on --to.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct DiffArgs {
-    /// The programs; - for standard input
-    #[arg(required = true, value_name = "PROGRAM")]
-    pub programs: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub programs: ProgramsArgs,
     /// The machine to compare with: a file, or the name of a built-in one
     #[arg(long, value_name = "MACHINE")]
     pub from: String,

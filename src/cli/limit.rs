@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use gwatt::pipeline::{self, Allowed, RapidMark, RapidMarkError};
+use serde::Deserialize;
 
-use super::{MachineArgs, ProgramArgs};
+use super::{MachineArgs, ProgramArgs, ProgramsArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -15,23 +16,24 @@ Examples:
   gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
   gwatt limit part.ngc -m vmc -o fit.ngc --html part.html
   gwatt limit - -m vmc < part.ngc > fit.ngc
+  gwatt limit programs/ -m vmc -o fit        each program by itself
   gwatt limit a.nc b.nc -m vmc --with-subprograms -o fit    with O-numbers and macros
 
 Nothing is written unless the result is certified: it is read, planned and
 evaluated again, and every move fits.";
 
 /// Arguments of `limit`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct LimitArgs {
-    /// The program, or - for standard input; several with --with-subprograms
-    #[arg(required = true, value_name = "PROGRAM")]
-    pub programs: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub programs: ProgramsArgs,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub machine: MachineArgs,
-    /// Write the program here [default: standard output]; with --with-subprograms, the
-    /// files into this folder
+    /// Write the program here [default: standard output]; several programs, and with
+    /// --with-subprograms their files, into this folder
     #[arg(short, long, value_name = "OUT", conflicts_with = "in_place")]
     pub output: Option<PathBuf>,
     /// Replace the program, and keep it as PROGRAM.bak
@@ -44,7 +46,11 @@ pub struct LimitArgs {
     /// Write no program; print what would change as a unified diff
     #[arg(long)]
     pub dry_run: bool,
-    /// Write what each move draws, before and after, as CSV
+    /// Show only programs that cannot be made to fit or are not read, and the totals
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Write what each move draws, before and after, as CSV; of several programs this and
+    /// the next three name folders
     #[arg(long, value_name = "CSV")]
     pub report: Option<PathBuf>,
     /// Write the same, with a summary, as JSON
@@ -102,7 +108,8 @@ fn mark(text: &str) -> Result<RapidMark, RapidMarkError> {
 }
 
 /// What `--allow` allows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Allow {
     /// Cutting feeds may be lowered
     Feed,

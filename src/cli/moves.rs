@@ -15,7 +15,7 @@ Positions are machine coordinates in mm or degrees. `turns` of an arc is positiv
 counter-clockwise, from the first letter of `plane` to the second.";
 
 /// Arguments of `moves`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MovesArgs {
     /// The program, or - for standard input

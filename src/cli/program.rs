@@ -27,7 +27,7 @@ impl From<ProbeArg> for ProbeResult {
 }
 
 /// How programs are read.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct ProgramArgs {
     /// Read programs as this controller does, instead of the machine's own; `auto`: as
     /// the one that marks in the text speak for (see `gwatt dialect`)
@@ -106,10 +106,17 @@ pub struct ProgramArgs {
 }
 
 /// The machine.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct MachineArgs {
-    /// Machine file, or the name of a built-in machine
-    #[arg(short, long, value_name = "MACHINE")]
+    /// Machine file, or the name of a built-in machine [default: `machine` in the file
+    /// gwatt.toml next to the programs]
+    #[arg(
+        short,
+        long,
+        value_name = "MACHINE",
+        env = "GWATT_MACHINE",
+        hide_env_values = true
+    )]
     pub machine: Option<String>,
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Allow, MachineArgs, OverrideArg, ProgramArgs};
+use super::{Allow, MachineArgs, OverrideArg, ProgramArgs, ProgramsArgs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -12,6 +12,7 @@ Examples:
   gwatt report part.ngc -m vmc --csv moves.csv --json moves.json --fail
   gwatt report part.ngc -m vmc --series series.csv --step-ms 2
   gwatt report part.ngc -m vmc --html part.html
+  gwatt report programs/ -m vmc -o reports
 
 A series has a row every --step-ms and at every instant at which an acceleration
 changes; where something jumps, two rows with the same time. First the program
@@ -24,16 +25,18 @@ deliver, regen_w what is fed back. With --limited the program in that file is sh
 as `after`.";
 
 /// Arguments of `report`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ReportArgs {
-    /// The program, or - for standard input
-    pub program: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub programs: ProgramsArgs,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub machine: MachineArgs,
-    /// Write CSV here [default: standard output, if no file is given]
-    #[arg(long, value_name = "FILE")]
+    /// Write CSV here [default: standard output, if no file is given]; of several programs
+    /// this and the next three name folders
+    #[arg(short = 'o', long, visible_alias = "output", value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// Write JSON here
     #[arg(long, value_name = "FILE")]
@@ -57,6 +60,9 @@ pub struct ReportArgs {
     /// Allow cutting feeds to be lowered, for the series
     #[arg(long, value_enum, value_name = "WHAT", requires = "series")]
     pub allow: Option<Allow>,
+    /// Show only programs that do not fit or are not read, and the totals
+    #[arg(short, long)]
+    pub quiet: bool,
     /// Exit with 1 if a move does not fit
     #[arg(long)]
     pub fail: bool,

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::{Allow, Certificate, Law, MachineArgs, ProgramArgs, Strategy};
+use super::{Allow, Certificate, Law, MachineArgs, ProgramArgs, ProgramsArgs, Strategy};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,12 +26,12 @@ const STEPS_MAX: usize = 1000;
 const LOSS_MAX: f64 = 1e6;
 
 /// Arguments of `size`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SizeArgs {
-    /// The programs, which count together; - for standard input
-    #[arg(required = true, value_name = "PROGRAM")]
-    pub programs: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub programs: ProgramsArgs,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub machine: MachineArgs,

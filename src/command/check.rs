@@ -1,30 +1,32 @@
 //! `gwatt check`.
 
-use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc;
-use std::thread;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, RowSink};
-use gwatt::report::{self, Checked, PageRows, Verdict};
-use rayon::iter::{ParallelBridge, ParallelIterator};
+use gwatt::pipeline::{self, Row, RowSink};
+use gwatt::report::{self, Checked, PageRows, Totals, Verdict};
 
 use super::clash::refuse_clashes;
 use super::dialect;
+use super::in_order::in_order;
 use super::input::Program;
+use super::listing::Listing;
 use super::output::print;
 use super::page::{self, Pictures};
+use super::settings::Settings;
 use super::setup::{Setup, machine_file, share_threads};
 use super::terminal::Terminal;
 use crate::cli::{CheckArgs, Format};
 
 /// Says whether programs fit.
 pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
-    let mut programs = Program::list(&args.programs)?;
+    let listing = Listing::of(&args.programs, terminal)?;
+    let mut programs = listing.programs();
+    let mut args = args.clone();
+    Settings::of(&programs, terminal)?.fill(&mut args.machine, &mut args.reading)?;
+    let args = &args;
     let pictures = pictures(args, &programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     if let Some(overrides) = args.overrides {
@@ -40,9 +42,13 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     }
     pictures.check(&setup)?;
     let mut frames = pictures.open()?;
-    let check = |program: &Program| check_program(program, &setup, pictures.is_any());
+    let wanted = Wanted {
+        page: pictures.is_any(),
+        energy: args.format == Format::Jsonl,
+    };
+    let check = |program: &Program| check_program(program, &setup, wanted);
 
-    let mut worst = Verdict::Fits;
+    let mut totals = Totals::default();
     let mut kept = Vec::new();
     in_order(&programs, at_once, check, |result| {
         let Found {
@@ -56,23 +62,35 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
             let drawn = page::draw_report(&mut frames, program, &setup, &machine, summary, &rows);
             drawn.map_err(page::Refused::into_error)?;
         }
-        worst = worst.max(checked.verdict());
-        if let Some(note) = note {
-            terminal.note(format_args!("{}: {note}", checked.program));
+        totals.count(checked.counted());
+        let shown = !(args.quiet && checked.verdict() == Verdict::Fits);
+        if shown {
+            if let Some(note) = note {
+                terminal.note(format_args!("{}: {note}", checked.program));
+            }
+            tell(&checked, terminal);
         }
-        tell(&checked, terminal);
-        if args.format == Format::Text {
-            let text = report::check_text(&checked, &setup.machine);
-            return print(|out| out.write_all(text.as_bytes()));
+        match args.format {
+            Format::Text if shown => {
+                let text = report::check_text(&checked, &setup.machine);
+                print(|out| out.write_all(text.as_bytes()))?;
+            }
+            Format::Text => {}
+            Format::Jsonl => {
+                print(|out| report::check_json_line(&checked, &setup.machine.name, out))?;
+            }
+            _ => kept.push(checked),
         }
-        kept.push(checked);
         Ok(())
     })?;
+    if args.format == Format::Text && listing.is_many {
+        print(|out| writeln!(out, "{totals}"))?;
+    }
     print(|out| write_all(&kept, args.format, &setup, out))?;
-    if worst != Verdict::Refused {
+    if totals.worst() != Verdict::Refused {
         frames.deliver()?;
     }
-    Ok(worst)
+    Ok(totals.worst())
 }
 
 /// The page that is asked for: it shows one program.
@@ -109,8 +127,26 @@ struct Found {
     drawn: Option<(PageRows, Machine)>,
 }
 
-/// Checks a program; `draws` is whether a page is asked for.
-fn check_program(program: &Program, setup: &Setup, draws: bool) -> Found {
+/// What is wanted of a program besides the verdict.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    /// What a page shows of it.
+    page: bool,
+    /// The energy that it takes.
+    energy: bool,
+}
+
+/// Rows of which only the sum counts.
+struct Summed;
+
+impl RowSink for Summed {
+    fn row(&mut self, _: &Row) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Checks a program.
+fn check_program(program: &Program, setup: &Setup, wanted: Wanted) -> Found {
     let found = |outcome, note, drawn| Found {
         checked: Checked {
             program: program.name.clone(),
@@ -119,11 +155,16 @@ fn check_program(program: &Program, setup: &Setup, draws: bool) -> Found {
         note,
         drawn,
     };
-    let mut rows = draws.then(PageRows::default);
+    let mut rows = wanted.page.then(PageRows::default);
+    let mut summed = wanted.energy.then_some(Summed);
     let mut analyze = |machine: &Machine| {
         let options = setup.options_for(program);
         let mut input = program.open()?;
-        let sink = rows.as_mut().map(|rows| rows as &mut dyn RowSink);
+        let summed = summed.as_mut().map(|rows| rows as &mut dyn RowSink);
+        let sink = rows
+            .as_mut()
+            .map(|rows| rows as &mut dyn RowSink)
+            .or(summed);
         let mut summary = pipeline::analyze(&mut input, machine, &options, sink)?;
         pipeline::take_hints(input, machine, &options, &mut summary)?;
         Ok(summary)
@@ -164,55 +205,10 @@ fn write_all(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     match format {
-        Format::Text => Ok(()),
+        Format::Text | Format::Jsonl => Ok(()),
         Format::Json => report::check_json(checked, &setup.machine.name, out),
         Format::Sarif => report::sarif(checked, out),
         Format::Junit => report::junit(checked, &setup.machine, out),
         Format::Github => report::github(checked, out),
     }
-}
-
-/// Does `work` for all `items`, so many at once, and hands the results over in
-/// the order of the items as soon as each one's turn comes.
-pub fn in_order<I: Sync, O: Send>(
-    items: &[I],
-    at_once: usize,
-    work: impl Fn(&I) -> O + Sync,
-    mut each: impl FnMut(O) -> Result<()>,
-) -> Result<()> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(at_once)
-        .build()
-        .context("cannot start threads")?;
-    // Set when results are no longer wanted: the output is closed.
-    let closed = AtomicBool::new(false);
-    thread::scope(|scope| {
-        let (sender, results) = mpsc::channel();
-        let (pool, work, closed) = (&pool, &work, &closed);
-        scope.spawn(move || {
-            // A bridge takes the items one after another.
-            pool.install(|| {
-                items.iter().enumerate().par_bridge().for_each_with(
-                    sender,
-                    |sender, (index, item)| {
-                        // Nobody listens any more: the output is closed.
-                        let _ = sender.send((index, work(item)));
-                    },
-                );
-            });
-        });
-        let mut early = BTreeMap::new();
-        let mut next = 0;
-        for (index, result) in results {
-            early.insert(index, result);
-            while let Some(result) = early.remove(&next) {
-                if let Err(error) = each(result) {
-                    closed.store(true, Relaxed);
-                    return Err(error);
-                }
-                next += 1;
-            }
-        }
-        Ok(())
-    })
 }

@@ -1,12 +1,13 @@
 //! Files that a run would both read and write, or write twice.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::input::is_dash;
 
 /// What tells one file from another.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 struct Identity {
     path: PathBuf,
     /// Device and inode: the same file may have several names.
@@ -29,14 +30,6 @@ impl Identity {
                 (data.dev(), data.ino())
             }),
         })
-    }
-
-    fn is_same(&self, other: &Self) -> bool {
-        #[cfg(unix)]
-        if self.inode.is_some() && self.inode == other.inode {
-            return true;
-        }
-        self.path == other.path
     }
 }
 
@@ -66,18 +59,43 @@ pub fn refuse_clashes(inputs: &[&Path], outputs: &[&Path]) -> anyhow::Result<()>
             .filter_map(|path| Some((path.to_path_buf(), Identity::of(path)?)))
             .collect()
     };
-    let (inputs, outputs) = (known(inputs), known(outputs));
-    for (index, (path, output)) in outputs.iter().enumerate() {
+    let mut read = Known::default();
+    for (_, input) in known(inputs) {
+        read.add(input);
+    }
+    let mut written = Known::default();
+    for (path, output) in known(outputs) {
         let shown = path.display();
         anyhow::ensure!(
-            !inputs.iter().any(|(_, input)| input.is_same(output)),
+            !read.has(&output),
             "{shown} is read by this run: write to another file"
         );
-        let others = outputs.iter().take(index);
-        anyhow::ensure!(
-            !others.into_iter().any(|(_, other)| other.is_same(output)),
-            "{shown} would be written twice"
-        );
+        anyhow::ensure!(!written.has(&output), "{shown} would be written twice");
+        written.add(output);
     }
     Ok(())
+}
+
+/// Files that are known, by what tells them apart: there may be very many.
+#[derive(Default)]
+struct Known {
+    paths: HashSet<PathBuf>,
+    #[cfg(unix)]
+    inodes: HashSet<(u64, u64)>,
+}
+
+impl Known {
+    fn has(&self, file: &Identity) -> bool {
+        #[cfg(unix)]
+        if file.inode.is_some_and(|inode| self.inodes.contains(&inode)) {
+            return true;
+        }
+        self.paths.contains(&file.path)
+    }
+
+    fn add(&mut self, file: Identity) {
+        #[cfg(unix)]
+        self.inodes.extend(file.inode);
+        self.paths.insert(file.path);
+    }
 }

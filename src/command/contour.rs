@@ -57,7 +57,7 @@ pub fn run(args: &ContourArgs, terminal: Terminal) -> Result<Verdict> {
     let (mut summary, notes) = match traced {
         Ok(found) => found,
         Err(failure) => {
-            dialect::failure(&setup, &program, &failure, terminal);
+            terminal.say(|messages| dialect::failure(&setup, &program, &failure, messages));
             return Ok(Verdict::Refused);
         }
     };

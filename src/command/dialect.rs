@@ -7,9 +7,10 @@ use gwatt::pipeline::{self, Failure, Limits};
 use gwatt::report::Verdict;
 
 use super::input::Program;
+use super::listing::Listing;
 use super::output::print;
 use super::setup::Setup;
-use super::terminal::{Shown, Terminal};
+use super::terminal::{Messages, Shown, Terminal};
 use crate::cli::DialectArgs;
 
 /// Larger programs are not read just to try.
@@ -19,7 +20,7 @@ const TRIAL_REPEATS_MAX: u64 = 100_000;
 
 /// Says which controllers programs are for.
 pub fn run(args: &DialectArgs, terminal: Terminal) -> Result<Verdict> {
-    let mut programs = Program::list(&args.programs)?;
+    let mut programs = Listing::of(&args.programs, terminal)?.programs();
     let setup = args.machine.as_deref();
     let setup = setup
         .map(|name| Setup::of(name, &args.reading, terminal))
@@ -161,12 +162,12 @@ fn unsuitable(setup: &Setup, language: &Language) -> Option<String> {
     Some(wrong.to_string())
 }
 
-/// Prints why a program came to no result, under the profiles that would read it.
-pub fn failure(setup: &Setup, program: &Program, failure: &Failure, terminal: Terminal) {
+/// Says why a program came to no result, under the profiles that would read it.
+pub fn failure(setup: &Setup, program: &Program, failure: &Failure, messages: &mut Messages) {
     if let Some(hint) = hint(setup, program, failure) {
-        terminal.note(format_args!("{}: {hint}", program.name));
+        messages.note(format_args!("{}: {hint}", program.name));
     }
-    terminal.failure(&program.name, failure);
+    messages.failure(&program.name, failure);
 }
 
 /// Which other profiles a refused program is for, and from what that is seen; `None`

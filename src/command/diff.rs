@@ -15,10 +15,11 @@ use gwatt::interpret::MoveKind;
 use gwatt::pipeline::{self, Failure, Row, RowSink, Summary};
 use gwatt::report::{Change, Comparison, Verdict, comparison_csv, comparison_text};
 
-use super::check::in_order;
 use super::clash::refuse_clashes;
 use super::dialect;
+use super::in_order::in_order;
 use super::input::Program;
+use super::listing::Listing;
 use super::output::{Target, print};
 use super::setup::{Setup, machine_file, share_threads};
 use super::terminal::Terminal;
@@ -31,7 +32,7 @@ const FIT_TOLERANCE: f64 = 1e-9;
 
 /// Compares two machines over programs.
 pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
-    let mut programs = Program::list(&args.programs)?;
+    let mut programs = Listing::of(&args.programs, terminal)?.programs();
     let machines = [&args.from, &args.to];
     let machines = machines
         .into_iter()
@@ -83,8 +84,8 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
 fn tell(program: &Program, comparison: &Comparison, setups: [&Setup; 2], terminal: Terminal) {
     let [from, to] = setups;
     match (&comparison.from, &comparison.to) {
-        (Err(failure), _) => dialect::failure(from, program, failure, terminal),
-        (_, Err(failure)) => dialect::failure(to, program, failure, terminal),
+        (Err(failure), _) => terminal.say(|it| dialect::failure(from, program, failure, it)),
+        (_, Err(failure)) => terminal.say(|it| dialect::failure(to, program, failure, it)),
         (Ok(summary), Ok(_)) => terminal.diagnostics(&program.name, &summary.notes),
     }
 }

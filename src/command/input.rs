@@ -39,13 +39,6 @@ impl Program {
         }
     }
 
-    /// The programs, of which one may be standard input.
-    pub fn list(paths: &[PathBuf]) -> anyhow::Result<Vec<Self>> {
-        let dashes = paths.iter().filter(|path| is_dash(path)).count();
-        anyhow::ensure!(dashes <= 1, "standard input can be read only once");
-        Ok(paths.iter().map(|path| Self::new(path)).collect())
-    }
-
     /// Its path, unless it is standard input.
     pub fn path(&self) -> Option<&Path> {
         match &self.source {

@@ -6,79 +6,128 @@ use std::path::{Path, PathBuf};
 use std::slice;
 
 use anyhow::{Context, Result, bail, ensure};
-use gwatt::pipeline::{self, LimitOptions, LimitSummary};
+use gwatt::pipeline::{self, Failure, LimitOptions, LimitSummary};
 use gwatt::report::{Found, Verdict, limit_json, limit_text, partial_text, unified_diff};
 
 use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::Program;
 use super::limit_set;
+use super::listing::Listing;
+use super::many::{OfMany, each_by_itself};
 use super::output::{Spool, Target, back_up, print};
-use super::page::{self, Pictures};
+use super::page;
+use super::places::Places;
 use super::rows::Rows;
+use super::settings::Settings;
 use super::setup::{Setup, machine_file};
-use super::terminal::Terminal;
+use super::terminal::{Messages, Terminal};
 use crate::cli::{LimitArgs, Strategy, allowed};
 
 /// Bytes that go to the spool at once.
 const SPOOL_BYTES: usize = 1 << 16;
 
-/// Writes a program that fits.
+/// Writes programs that fit.
 pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     ensure!(
         args.preset_else.is_none() || matches!(args.strategy, Strategy::Preset),
         "--preset-else goes with --strategy preset"
     );
+    let listing = Listing::of(&args.programs, terminal)?;
+    let mut programs = listing.programs();
+    let mut args = args.clone();
+    let settings = Settings::of(&programs, terminal)?;
+    settings.fill(&mut args.machine, &mut args.reading)?;
+    settings.allow(&mut args.allow);
+    let args = &args;
     if args.with_subprograms {
-        return limit_set::run(args, terminal);
+        return limit_set::run(args, &listing, terminal);
     }
-    let [path] = args.programs.as_slice() else {
-        bail!("one program at a time: --with-subprograms limits several together");
+    for program in programs.iter().filter(|_| args.in_place) {
+        ensure!(
+            program.path().is_some(),
+            "standard input cannot be changed in place: use -o"
+        );
+        // A pipe cannot be kept as a copy and replaced, and waits for ever.
+        let file = program
+            .path()
+            .is_some_and(|it| it.is_file() || !it.exists());
+        ensure!(file, "only a file can be changed in place: use -o");
+    }
+    if listing.is_many {
+        return limit_each(args, &listing, terminal);
+    }
+    let [program] = programs.as_mut_slice() else {
+        bail!("there is no program");
     };
-    let mut program = Program::new(path);
+    let places = places(args);
+    refuse_all_clashes(args, program, &places)?;
+    let mut setup = setup(args, terminal)?;
+    dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
+    let mut messages = terminal.messages();
+    let verdict = limit_one(args, &setup, program, &places, &mut messages);
+    terminal.show(&messages);
+    Ok(verdict?.unwrap_or(Verdict::Fits))
+}
+
+/// Limits several programs, each by itself, into a folder or in place.
+fn limit_each(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Verdict> {
     ensure!(
-        !args.in_place || program.path().is_some(),
-        "standard input cannot be changed in place: use -o"
+        args.output.is_some() || args.in_place || args.dry_run,
+        "several programs: give a folder by -o, or --in-place (and --with-subprograms if they \
+         share files of subprograms)"
     );
-    // A pipe cannot be kept as a copy and replaced, and waits for ever.
-    ensure!(
-        !args.in_place || path.is_file() || !path.exists(),
-        "only a file can be changed in place: use -o"
-    );
-    refuse_all_clashes(args, &program)?;
+    let machine = machine_file(args.machine.machine.as_deref());
+    let places = places(args).of_each(listing, machine)?;
+    let setup = setup(args, terminal)?;
+    let how = OfMany {
+        quiet: args.quiet,
+        // Diffs are printed as they come.
+        at_once: if args.dry_run { 1 } else { usize::MAX },
+    };
+    each_by_itself(listing.programs(), places, setup, how, terminal, |it| {
+        limit_one(args, it.setup, it.program, it.places, it.messages)
+    })
+}
+
+fn setup(args: &LimitArgs, terminal: Terminal) -> Result<Setup> {
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
-    dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);
     setup.options.rapid_mark.clone_from(&args.mark_rapids);
-    let report = args.report.as_deref().map(Target::new).transpose()?;
-    let pictures = pictures(args);
-    pictures.check(&setup)?;
-    let mut rows = Rows::new(report, args.json.as_deref())?.with_page(pictures.is_any());
-    let mut frames = pictures.open()?;
-    let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target(args, path)?.spool()?);
+    Ok(setup)
+}
 
-    let done = (|| {
-        program.keep()?;
-        let sink = rows.sink();
-        let how = options(args);
-        let input = program.open()?;
-        let options = setup.options_for(&program);
-        pipeline::limit(input, &setup.machine, &options, how, &mut spool, sink)
-    })();
-    let done = done.and_then(|mut summary| {
-        let options = setup.options_for(&program);
-        let how = self::options(args);
-        let input = program.open()?;
-        pipeline::price(input, &setup.machine, &options, how, &mut summary)?;
-        let input = program.open()?;
-        summary.ideal = pipeline::ideal(input, &setup.machine, &options, how, &summary)?;
-        Ok(summary)
-    });
-    let summary = match done {
+/// Where the results go; a diff needs no program.
+fn places(args: &LimitArgs) -> Places {
+    Places {
+        program: args.output.clone().filter(|_| !args.dry_run),
+        csv: args.report.clone(),
+        json: args.json.clone(),
+        html: args.html.clone(),
+        svg: args.svg.clone(),
+    }
+}
+
+/// Limits a program by itself; `None` where it holds only subprograms.
+fn limit_one(
+    args: &LimitArgs,
+    setup: &Setup,
+    program: &Program,
+    places: &Places,
+    messages: &mut Messages,
+) -> Result<Option<Verdict>> {
+    let report = places.csv.as_deref().map(Target::new).transpose()?;
+    let pictures = places.pictures();
+    pictures.check(setup)?;
+    let mut rows = Rows::new(report, places.json.as_deref())?.with_page(pictures.is_any());
+    let mut frames = pictures.open()?;
+    let target = target(args, program, places)?;
+    let mut spool = BufWriter::with_capacity(SPOOL_BYTES, target.spool()?);
+    let summary = match limited(args, setup, program, &mut spool, &mut rows) {
         Ok(summary) => summary,
         Err(failure) => {
-            dialect::failure(&setup, &program, &failure, terminal);
-            return Ok(Verdict::Refused);
+            dialect::failure(setup, program, &failure, messages);
+            return Ok(Some(Verdict::Refused));
         }
     };
     let mut spool = spool.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -89,24 +138,42 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
             partly,
         };
         let written = spool.read()?;
-        match page::draw_limit(&mut frames, &program, &setup, found, &drawn, written) {
+        match page::draw_limit(&mut frames, program, setup, found, &drawn, written) {
             Ok(()) => {}
             Err(page::Refused::Error(error)) => return Err(error),
             Err(page::Refused::Program(failure)) => {
-                dialect::failure(&setup, &program, &failure, terminal);
-                return Ok(Verdict::Refused);
+                dialect::failure(setup, program, &failure, messages);
+                return Ok(Some(Verdict::Refused));
             }
         }
     }
-    tell(&program.name, &summary, partly, &setup, terminal);
+    tell(&program.name, &summary, partly, setup, messages);
     rows.deliver(|blocks, out| {
         limit_json(&program.name, &setup.machine.name, &summary, blocks, out)
     })?;
     frames.deliver()?;
     if summary.certified || partly {
-        deliver(args, &program, &summary, spool, terminal)?;
+        deliver(args, program, &summary, spool, messages)?;
     }
-    Ok(Verdict::of(summary.certified))
+    let looked_at = !summary.before.only_subprograms();
+    Ok(looked_at.then_some(Verdict::of(summary.certified)))
+}
+
+/// The program as it is written goes to the spool, what its moves draw to the rows.
+fn limited(
+    args: &LimitArgs,
+    setup: &Setup,
+    program: &Program,
+    spool: &mut BufWriter<Spool>,
+    rows: &mut Rows,
+) -> Result<LimitSummary, Failure> {
+    let how = options(args);
+    let options = setup.options_for(program);
+    let machine = &setup.machine;
+    let mut summary = pipeline::limit(program.open()?, machine, &options, how, spool, rows.sink())?;
+    pipeline::price(program.open()?, machine, &options, how, &mut summary)?;
+    summary.ideal = pipeline::ideal(program.open()?, machine, &options, how, &summary)?;
+    Ok(summary)
 }
 
 pub(super) fn options(args: &LimitArgs) -> LimitOptions {
@@ -119,44 +186,35 @@ pub(super) fn options(args: &LimitArgs) -> LimitOptions {
     }
 }
 
-fn refuse_all_clashes(args: &LimitArgs, program: &Program) -> Result<()> {
+fn refuse_all_clashes(args: &LimitArgs, program: &Program, places: &Places) -> Result<()> {
     let machine = machine_file(args.machine.machine.as_deref());
     let inputs: Vec<&Path> = program.path().into_iter().chain(machine).collect();
-    let program_out = match &args.output {
-        Some(path) => Some(path.as_path()),
-        None if args.in_place => None,
-        None => Some(Path::new("-")),
-    };
-    let outputs: Vec<&Path> = program_out
-        .into_iter()
-        .chain(args.report.as_deref())
-        .chain(args.json.as_deref())
-        .chain(pictures(args).paths())
-        .collect();
+    let printed = places.program.is_none() && !args.in_place;
+    let printed = printed.then_some(Path::new("-"));
+    let outputs: Vec<&Path> = places.paths().chain(printed).collect();
     refuse_clashes(&inputs, &outputs)
 }
 
-fn pictures(args: &LimitArgs) -> Pictures<'_> {
-    Pictures {
-        html: args.html.as_deref(),
-        svg: args.svg.as_deref(),
-    }
-}
-
 /// Where the program goes. A diff needs only a spool.
-fn target(args: &LimitArgs, program: &Path) -> Result<Target> {
-    match &args.output {
+fn target(args: &LimitArgs, program: &Program, places: &Places) -> Result<Target> {
+    match (&places.program, program.path()) {
         _ if args.dry_run => Ok(Target::Stdout),
-        _ if args.in_place => Target::new(program),
-        Some(path) => Target::new(path),
-        None => Ok(Target::Stdout),
+        (_, Some(path)) if args.in_place => Target::new(path),
+        (Some(path), _) => Target::new(path),
+        (None, _) => Ok(Target::Stdout),
     }
 }
 
-fn tell(program: &str, summary: &LimitSummary, partly: bool, setup: &Setup, terminal: Terminal) {
-    terminal.diagnostics(program, &summary.before.notes);
-    terminal.diagnostics(program, &summary.reasons);
-    terminal.text(&if partly {
+fn tell(
+    program: &str,
+    summary: &LimitSummary,
+    partly: bool,
+    setup: &Setup,
+    messages: &mut Messages,
+) {
+    messages.diagnostics(program, &summary.before.notes);
+    messages.diagnostics(program, &summary.reasons);
+    messages.text(&if partly {
         partial_text(program, summary, &setup.machine)
     } else {
         limit_text(program, summary, &setup.machine)
@@ -168,7 +226,7 @@ fn deliver(
     program: &Program,
     summary: &LimitSummary,
     mut spool: Spool,
-    terminal: Terminal,
+    messages: &mut Messages,
 ) -> Result<()> {
     if args.dry_run {
         let old = BufReader::new(program.open()?);
@@ -184,7 +242,7 @@ fn deliver(
         return Ok(());
     }
     let backup = replace(path, spool)?;
-    terminal.note(format_args!(
+    messages.note(format_args!(
         "the program as it was is {}",
         backup.display()
     ));

@@ -14,6 +14,7 @@ use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::{Program, is_dash};
 use super::limit::options;
+use super::listing::Listing;
 use super::output::{Target, print};
 use super::rows::Rows;
 use super::setup::{Setup, machine_file};
@@ -22,9 +23,9 @@ use super::together::Together;
 use crate::cli::LimitArgs;
 
 /// Writes programs that fit, with the files of subprograms that they call.
-pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
-    refuse_usage(args)?;
-    let mut programs = Program::list(&args.programs)?;
+pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Verdict> {
+    let mut programs = listing.programs();
+    refuse_usage(args, &programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     dialect::settle(&mut setup, &mut programs, terminal)?;
     setup.options.certificate = args.certificate.map(Into::into);
@@ -46,7 +47,9 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
         Ok(limited) => limited,
         Err(SetFailure { program, failure }) => {
             match program.and_then(|place| programs.get(place)) {
-                Some(program) => dialect::failure(&setup, program, &failure, terminal),
+                Some(program) => {
+                    terminal.say(|it| dialect::failure(&setup, program, &failure, it));
+                }
                 None => terminal.failure("limit", &failure),
             }
             return Ok(Verdict::Refused);
@@ -80,9 +83,9 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     Ok(Verdict::of(certified))
 }
 
-fn refuse_usage(args: &LimitArgs) -> Result<()> {
+fn refuse_usage(args: &LimitArgs, programs: &[Program]) -> Result<()> {
     ensure!(
-        !args.programs.iter().any(|path| is_dash(path)),
+        programs.iter().all(|program| program.path().is_some()),
         "--with-subprograms: standard input lies in no folder: give the program's file"
     );
     let Some(folder) = &args.output else {

@@ -10,6 +10,7 @@ use gwatt::report::{Verdict, write_move};
 use super::dialect;
 use super::input::Program;
 use super::output::Target;
+use super::settings::Settings;
 use super::setup::Setup;
 use super::terminal::Terminal;
 use crate::cli::MovesArgs;
@@ -17,6 +18,9 @@ use crate::cli::MovesArgs;
 /// Prints every move of a program.
 pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
     let mut program = Program::new(&args.program);
+    let mut args = args.clone();
+    let settings = Settings::of(slice::from_ref(&program), terminal)?;
+    settings.fill(&mut args.machine, &mut args.reading)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     setup.one_way("`moves` shows")?;
     dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
@@ -37,7 +41,7 @@ pub fn run(args: &MovesArgs, terminal: Terminal) -> Result<Verdict> {
             Ok(Verdict::Fits)
         }
         Err(failure) => {
-            dialect::failure(&setup, &program, &failure, terminal);
+            terminal.say(|messages| dialect::failure(&setup, &program, &failure, messages));
             Ok(Verdict::Refused)
         }
     }

@@ -3,28 +3,39 @@
 use std::path::Path;
 use std::slice;
 
-use anyhow::Result;
+use anyhow::{Result, bail, ensure};
 use gwatt::pipeline::{self, RowSink};
 use gwatt::report::{Checked, Verdict, check_text, report_json};
 
 use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::Program;
+use super::listing::Listing;
+use super::many::{OfMany, each_by_itself};
 use super::output::Target;
-use super::page::{self, Pictures};
+use super::page;
+use super::places::Places;
 use super::rows::Rows;
 use super::series::{self, Refused};
+use super::settings::Settings;
 use super::setup::{Setup, machine_file};
-use super::terminal::Terminal;
+use super::terminal::{Messages, Terminal};
 use crate::cli::ReportArgs;
 
-/// Says what each move of a program draws.
+/// Says what each move of programs draws.
 pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
-    let mut program = Program::new(&args.program);
-    let pictures = Pictures {
-        html: args.html.as_deref(),
-        svg: args.svg.as_deref(),
+    let listing = Listing::of(&args.programs, terminal)?;
+    let mut programs = listing.programs();
+    let mut args = args.clone();
+    Settings::of(&programs, terminal)?.fill(&mut args.machine, &mut args.reading)?;
+    let args = &args;
+    if listing.is_many {
+        return report_each(args, &listing, terminal);
+    }
+    let [program] = programs.as_mut_slice() else {
+        bail!("there is no program");
     };
+    let places = places(args);
     let machine = machine_file(args.machine.machine.as_deref());
     let inputs: Vec<&Path> = program
         .path()
@@ -32,42 +43,90 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
         .chain(machine)
         .chain(args.limited.as_deref())
         .collect();
-    let outputs: Vec<&Path> = args
-        .csv
-        .iter()
-        .chain(&args.json)
-        .chain(&args.series)
-        .map(AsRef::as_ref)
-        .chain(pictures.paths())
-        .collect();
+    let outputs: Vec<&Path> = places.paths().chain(args.series.as_deref()).collect();
     refuse_clashes(&inputs, &outputs)?;
+    let mut setup = setup(args, terminal)?;
+    // It is read more than once: what `limit` would do is looked up in it.
+    dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
+    let mut messages = terminal.messages();
+    let done = report_one(args, &setup, program, &places, &mut messages);
+    terminal.show(&messages);
+    Ok(match done?.unwrap_or(Verdict::Fits) {
+        Verdict::DoesNotFit if !args.fail => Verdict::Fits,
+        verdict => verdict,
+    })
+}
+
+/// The same of several programs, into folders.
+fn report_each(args: &ReportArgs, listing: &Listing, terminal: Terminal) -> Result<Verdict> {
+    ensure!(
+        args.series.is_none(),
+        "--series shows one program: give one at a time"
+    );
+    let places = places(args);
+    ensure!(
+        places.paths().next().is_some(),
+        "several programs: give a folder for their reports by -o"
+    );
+    let machine = machine_file(args.machine.machine.as_deref());
+    let places = places.of_each(listing, machine)?;
+    let setup = setup(args, terminal)?;
+    let how = OfMany {
+        quiet: args.quiet,
+        at_once: usize::MAX,
+    };
+    let worst = each_by_itself(listing.programs(), places, setup, how, terminal, |it| {
+        report_one(args, it.setup, it.program, it.places, it.messages)
+    })?;
+    Ok(match worst {
+        Verdict::DoesNotFit if !args.fail => Verdict::Fits,
+        worst => worst,
+    })
+}
+
+fn setup(args: &ReportArgs, terminal: Terminal) -> Result<Setup> {
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     if args.series.is_some() {
         setup.one_way("--series shows")?;
     }
-    pictures.check(&setup)?;
-    dialect::settle(&mut setup, slice::from_mut(&mut program), terminal)?;
     if let Some(overrides) = args.overrides {
         overrides.apply(&mut setup.machine.limits);
     }
-    let csv = match &args.csv {
+    Ok(setup)
+}
+
+fn places(args: &ReportArgs) -> Places {
+    Places {
+        program: None,
+        csv: args.csv.clone(),
+        json: args.json.clone(),
+        html: args.html.clone(),
+        svg: args.svg.clone(),
+    }
+}
+
+/// Reports one program; `None` where it holds only subprograms.
+fn report_one(
+    args: &ReportArgs,
+    setup: &Setup,
+    program: &Program,
+    places: &Places,
+    messages: &mut Messages,
+) -> Result<Option<Verdict>> {
+    let pictures = places.pictures();
+    pictures.check(setup)?;
+    let csv = match &places.csv {
         Some(path) => Some(Target::new(path)?),
-        None if args.json.is_none() && args.series.is_none() && !pictures.is_any() => {
+        None if places.json.is_none() && args.series.is_none() && !pictures.is_any() => {
             Some(Target::Stdout)
         }
         None => None,
     };
-    let mut rows = Rows::new(csv, args.json.as_deref())?.with_page(pictures.is_any());
+    let mut rows = Rows::new(csv, places.json.as_deref())?.with_page(pictures.is_any());
     let mut frames = pictures.open()?;
-
-    // It is read more than once: what `limit` would do is looked up in it.
-    if let Err(failure) = program.keep() {
-        dialect::failure(&setup, &program, &failure, terminal);
-        return Ok(Verdict::Refused);
-    }
     let outcome = program.open().and_then(|mut input| {
         let sink = rows.sink().map(|rows| rows as &mut dyn RowSink);
-        let options = setup.options_for(&program);
+        let options = setup.options_for(program);
         let mut summary = pipeline::analyze(&mut input, &setup.machine, &options, sink)?;
         pipeline::take_hints(input, &setup.machine, &options, &mut summary)?;
         Ok(summary)
@@ -75,23 +134,23 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     let summary = match outcome {
         Ok(summary) => summary,
         Err(failure) => {
-            dialect::failure(&setup, &program, &failure, terminal);
-            return Ok(Verdict::Refused);
+            dialect::failure(setup, program, &failure, messages);
+            return Ok(Some(Verdict::Refused));
         }
     };
-    let series = match series::write(args, &program, &setup, terminal) {
+    let series = match series::write(args, program, setup, messages) {
         Ok(series) => series,
-        Err(Refused::Told) => return Ok(Verdict::Refused),
+        Err(Refused::Told) => return Ok(Some(Verdict::Refused)),
         Err(Refused::Error(error)) => return Err(error),
     };
     if let Some(drawn) = rows.page.take() {
         let machine = &setup.machine;
-        match page::draw_report(&mut frames, &program, &setup, machine, &summary, &drawn) {
+        match page::draw_report(&mut frames, program, setup, machine, &summary, &drawn) {
             Ok(()) => {}
             Err(page::Refused::Error(error)) => return Err(error),
             Err(page::Refused::Program(failure)) => {
-                dialect::failure(&setup, &program, &failure, terminal);
-                return Ok(Verdict::Refused);
+                dialect::failure(setup, program, &failure, messages);
+                return Ok(Some(Verdict::Refused));
             }
         }
     }
@@ -102,12 +161,11 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
         series.deliver()?;
     }
     frames.deliver()?;
-    terminal.diagnostics(&program.name, &summary.notes);
+    messages.diagnostics(&program.name, &summary.notes);
     let checked = Checked {
-        program: program.name,
+        program: program.name.clone(),
         outcome: Ok(summary),
     };
-    terminal.text(&check_text(&checked, &setup.machine));
-    let verdict = checked.verdict();
-    Ok(if args.fail { verdict } else { Verdict::Fits })
+    messages.text(&check_text(&checked, &setup.machine));
+    Ok(checked.counted())
 }

@@ -9,7 +9,7 @@ use gwatt::report::SeriesRows;
 use super::input::Program;
 use super::output::{Spool, Target};
 use super::setup::Setup;
-use super::terminal::Terminal;
+use super::terminal::Messages;
 use crate::cli::{Allow, ReportArgs};
 
 /// Writes the series of a program before and after limiting, if one is asked
@@ -18,7 +18,7 @@ pub fn write(
     args: &ReportArgs,
     program: &Program,
     setup: &Setup,
-    terminal: Terminal,
+    messages: &mut Messages,
 ) -> Result<Option<Spool>, Refused> {
     let Some(path) = &args.series else {
         return Ok(None);
@@ -27,16 +27,12 @@ pub fn write(
     let spool = Target::new(path)?.spool()?;
     let mut rows = SeriesRows::new(BufWriter::new(spool), machine, "before")?;
     let step_s = args.step_ms * 1e-3;
-    let refused = |name: &str, failure: Failure| {
-        terminal.failure(name, &failure);
-        Refused::Told
-    };
     let options = setup.options_for(program);
     let coarse = program
         .open()
         .and_then(|input| pipeline::series(input, machine, &options, step_s, &mut rows))
-        .map_err(|failure| refused(&program.name, failure))?;
-    terminal.diagnostics(&program.name, coarse.as_slice());
+        .map_err(|failure| refused(&program.name, &failure, messages))?;
+    messages.diagnostics(&program.name, coarse.as_slice());
     rows.program("after");
     if let Some(path) = &args.limited {
         let limited = Program::new(path);
@@ -44,8 +40,8 @@ pub fn write(
         let coarse = limited
             .open()
             .and_then(|input| pipeline::series(input, machine, &options, step_s, &mut rows))
-            .map_err(|failure| refused(&limited.name, failure))?;
-        terminal.diagnostics(&limited.name, coarse.as_slice());
+            .map_err(|failure| refused(&limited.name, &failure, messages))?;
+        messages.diagnostics(&limited.name, coarse.as_slice());
     } else {
         let how = LimitOptions {
             strategy: Strategy::Optimal,
@@ -60,14 +56,14 @@ pub fn write(
         let summary = program
             .open()
             .and_then(|input| pipeline::limit(input, machine, &options, how, &mut written, None))
-            .map_err(|failure| refused(&program.name, failure))?;
+            .map_err(|failure| refused(&program.name, &failure, messages))?;
         if summary.certified {
             let mut written = written.into_inner().map_err(IntoInnerError::into_error)?;
             let input = written.read()?;
             pipeline::series(input, machine, &options, step_s, &mut rows)
-                .map_err(|failure| refused(&program.name, failure))?;
+                .map_err(|failure| refused(&program.name, &failure, messages))?;
         } else {
-            terminal.note(format_args!(
+            messages.note(format_args!(
                 "{}: `gwatt limit` cannot make it fit: the series shows it only as it is",
                 program.name
             ));
@@ -78,6 +74,11 @@ pub fn write(
         .into_inner()
         .map_err(IntoInnerError::into_error)?;
     Ok(Some(spool))
+}
+
+fn refused(name: &str, failure: &Failure, messages: &mut Messages) -> Refused {
+    messages.failure(name, failure);
+    Refused::Told
 }
 
 /// Why there is no series.

@@ -24,7 +24,7 @@ const DATA_BYTES_MAX: u64 = 16 << 20;
 const AUTO: &str = "auto";
 
 /// What a program is judged with.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Setup {
     /// The machine.
     pub machine: Machine,

@@ -12,14 +12,21 @@ use gwatt::report::{Verdict, chain, size_chart, size_csv, size_json, size_text, 
 
 use super::clash::refuse_clashes;
 use super::input::{Program, is_dash};
+use super::listing::Listing;
 use super::output::{Spool, Target, print};
+use super::settings::Settings;
 use super::setup::{Setup, machine_file, machine_name};
 use super::terminal::Terminal;
 use crate::cli::{SizeArgs, allowed};
 
 /// Says how large the converter must be.
 pub fn run(args: &SizeArgs, terminal: Terminal) -> Result<Verdict> {
-    let mut programs = Program::list(&args.programs)?;
+    let mut programs = Listing::of(&args.programs, terminal)?.programs();
+    let mut args = args.clone();
+    let settings = Settings::of(&programs, terminal)?;
+    settings.fill(&mut args.machine, &mut args.reading)?;
+    settings.allow(&mut args.allow);
+    let args = &args;
     let machine = machine_file(args.machine.machine.as_deref());
     let inputs: Vec<&Path> = programs
         .iter()

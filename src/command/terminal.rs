@@ -1,8 +1,8 @@
 //! Standard error, for people. What cannot be written there is lost: there is
 //! no other place to say so.
 
-use std::fmt::Display;
-use std::io::{self, IsTerminal, Write};
+use std::fmt::{Display, Write as _};
+use std::io::{self, IsTerminal, Write as _};
 
 use clap::ColorChoice;
 use gwatt::diagnostic::Diagnostic;
@@ -33,14 +33,28 @@ impl Terminal {
         Self { colour }
     }
 
+    /// Messages that are not shown yet, in its colours.
+    pub fn messages(self) -> Messages {
+        Messages {
+            colour: self.colour,
+            text: String::new(),
+        }
+    }
+
+    /// Shows messages.
+    pub fn show(self, messages: &Messages) {
+        // In one piece, so that lines of several programs do not mix.
+        self.text(&messages.text);
+    }
+
     /// A remark.
     pub fn note(self, message: impl Display) {
-        self.line(format_args!("gwatt: note: {message}"));
+        self.say(|messages| messages.note(message));
     }
 
     /// What went wrong.
     pub fn error(self, message: impl Display) {
-        self.line(format_args!("gwatt: {message}"));
+        self.say(|messages| messages.error(message));
     }
 
     /// Text that has its line end.
@@ -51,13 +65,76 @@ impl Terminal {
 
     /// Findings in `file`, with the lines under them.
     pub fn diagnostics(self, file: &str, diagnostics: &[Diagnostic]) {
-        for diagnostic in diagnostics {
-            self.line(diagnostic.render(file, self.colour));
-        }
+        self.say(|messages| messages.diagnostics(file, diagnostics));
     }
 
     /// Why a program came to no result.
     pub fn failure(self, program: &str, failure: &Failure) {
+        self.say(|messages| messages.failure(program, failure));
+    }
+
+    /// Says what `say` says.
+    pub fn say(self, say: impl FnOnce(&mut Messages)) {
+        let mut messages = self.messages();
+        say(&mut messages);
+        self.show(&messages);
+    }
+}
+
+/// Messages that are kept until it is their turn.
+#[derive(Debug)]
+pub struct Messages {
+    colour: bool,
+    text: String,
+}
+
+impl Messages {
+    /// A remark.
+    pub fn note(&mut self, message: impl Display) {
+        self.line(format_args!("gwatt: note: {message}"));
+    }
+
+    /// What went wrong.
+    pub fn error(&mut self, message: impl Display) {
+        self.line(format_args!("gwatt: {message}"));
+    }
+
+    /// Text that has its line end.
+    pub fn text(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    /// Findings in `file`, with the lines under them. What is found again and again is shown
+    /// a few times, and then the lines are named.
+    pub fn diagnostics(&mut self, file: &str, diagnostics: &[Diagnostic]) {
+        let mut kinds: Vec<(String, Vec<&Diagnostic>)> = Vec::new();
+        for diagnostic in diagnostics {
+            let kind = kind(diagnostic);
+            match kinds.iter_mut().find(|(known, _)| *known == kind) {
+                Some((_, alike)) => alike.push(diagnostic),
+                None => kinds.push((kind, vec![diagnostic])),
+            }
+        }
+        let shown = |diagnostic: &Diagnostic| {
+            let mut alike = kinds.iter().map(|(_, alike)| alike.iter().take(SHOWN));
+            alike.any(|mut first| first.any(|it| std::ptr::eq(*it, diagnostic)))
+        };
+        for diagnostic in diagnostics.iter().filter(|it| shown(it)) {
+            let text = diagnostic.render(file, self.colour);
+            self.line(text);
+        }
+        for (kind, alike) in &kinds {
+            if let Some(more @ [_, ..]) = alike.get(SHOWN..) {
+                let (count, lines) = (more.len(), lines(more));
+                self.line(format_args!(
+                    "{file}: and {count} more like it in {lines}: {kind}"
+                ));
+            }
+        }
+    }
+
+    /// Why a program came to no result.
+    pub fn failure(&mut self, program: &str, failure: &Failure) {
         let Failure::Refused { diagnostics, more } = failure else {
             return self.error(format_args!("{program}: {}", chain(failure)));
         };
@@ -67,8 +144,55 @@ impl Terminal {
         }
     }
 
-    fn line(self, text: impl Display) {
-        // In one piece, so that lines of several programs do not mix.
-        self.text(&format!("{text}\n"));
+    fn line(&mut self, text: impl Display) {
+        // Memory takes it.
+        let _ = writeln!(self.text, "{text}");
     }
+}
+
+/// Findings of one kind that are shown.
+const SHOWN: usize = 3;
+
+/// What makes findings alike: rule and message, whatever the numbers in it; that of a word,
+/// such as G5.1, belongs to it.
+fn kind(diagnostic: &Diagnostic) -> String {
+    let mut kind = String::new();
+    let (mut is_number, mut is_word) = (false, false);
+    for sign in diagnostic.message.chars() {
+        let goes_on = (is_number || is_word) && matches!(sign, '.' | ',');
+        if !(sign.is_ascii_digit() || goes_on) {
+            kind.push(sign);
+            (is_number, is_word) = (false, sign.is_alphabetic());
+        } else if is_word {
+            kind.push(sign);
+        } else if !is_number {
+            kind.push('…');
+            is_number = true;
+        }
+    }
+    format!("[{}] {kind}", diagnostic.rule)
+}
+
+/// Where findings are: `line 3`, or `lines 3-5, 9`.
+fn lines(found: &[&Diagnostic]) -> String {
+    let mut numbers: Vec<u64> = found.iter().map(|it| it.line).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let mut ranges: Vec<[u64; 2]> = Vec::new();
+    for number in numbers {
+        match ranges.last_mut() {
+            Some([_, last]) if *last + 1 == number => *last = number,
+            _ => ranges.push([number; 2]),
+        }
+    }
+    let noun = match ranges.as_slice() {
+        [[first, last]] if first == last => "line",
+        _ => "lines",
+    };
+    let ranges = ranges.iter().map(|[first, last]| match last - first {
+        0 => first.to_string(),
+        1 => format!("{first}, {last}"),
+        _ => format!("{first}-{last}"),
+    });
+    format!("{noun} {}", ranges.collect::<Vec<_>>().join(", "))
 }

@@ -407,6 +407,38 @@ pub fn check_json(checked: &[Checked], machine: &str, mut out: impl Write) -> io
     writeln!(out)
 }
 
+/// Version of the lines of [`check_json_line`]: it grows when a key changes its meaning or goes.
+const LINE_VERSION: u32 = 1;
+
+/// Writes what `check` found of a program as one object in a line: its keys in
+/// [`check_json`], the version of the format, and the energy where it was asked for.
+///
+/// # Errors
+/// Those of `out`.
+pub fn check_json_line(checked: &Checked, machine: &str, mut out: impl Write) -> io::Result<()> {
+    #[derive(Serialize)]
+    struct Line<'a> {
+        version: u32,
+        gwatt: &'static str,
+        #[serde(flatten)]
+        program: CheckedProgram<'a>,
+        only_subprograms: bool,
+        moves: Option<u64>,
+        energy_j: Option<Figure>,
+    }
+    let summary = checked.outcome.as_ref().ok();
+    let line = Line {
+        version: LINE_VERSION,
+        gwatt: env!("CARGO_PKG_VERSION"),
+        program: CheckedProgram::new(checked, machine),
+        only_subprograms: checked.counted().is_none(),
+        moves: summary.map(|summary| summary.moves),
+        energy_j: summary.and_then(|summary| summary.energy_j).map(Figure),
+    };
+    serde_json::to_writer(&mut out, &line)?;
+    writeln!(out)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

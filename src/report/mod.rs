@@ -28,7 +28,7 @@ mod tune_page;
 mod tuned;
 
 pub use chart::SpindleChart;
-pub use checked::{Checked, Verdict, chain};
+pub use checked::{Checked, Totals, Verdict, chain};
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
 pub use contour_chart::{ContourChart, circle_chart};
 pub use contoured::{
@@ -41,7 +41,7 @@ pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
     rigid_text,
 };
-pub use json::{JsonRows, check_json, limit_json, report_json, set_json};
+pub use json::{JsonRows, check_json, check_json_line, limit_json, report_json, set_json};
 pub use junit::junit;
 pub use level_table::level_table;
 pub use moves::write_move;

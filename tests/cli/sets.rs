@@ -156,7 +156,7 @@ fn without_the_flag_files_of_subprograms_stay() {
     assert!(ran.stderr.contains(help), "{}", ran.stderr);
     assert!(!shop.path().join("fit.nc").exists());
     shop.run(&["limit", "one.nc", "both.nc", "-m", "rig.toml"])
-        .refused("one program at a time: --with-subprograms");
+        .refused("several programs: give a folder by -o, or --in-place (and --with-subprograms if");
 }
 
 #[test]
