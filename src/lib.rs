@@ -27,6 +27,7 @@ pub mod rewrite;
 pub mod pipeline;
 pub mod dialect;
 pub mod contour;
+pub mod verify;
 pub mod report;
 pub mod program;
 

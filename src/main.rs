@@ -69,6 +69,7 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Tune(args) => command::tune::run(args, terminal),
         Command::Contour(args) => command::contour::run(args, terminal),
         Command::PowerFit(args) => command::power_fit::run(args, terminal),
+        Command::Verify(args) => command::verify::run(args, terminal),
         Command::Completions { shell } => completions(*shell),
         Command::Man => manual(),
     }

@@ -13,6 +13,7 @@ mod prices;
 mod sets;
 mod sizes;
 mod verdicts;
+mod verifies;
 mod ways;
 
 use std::fs::{self, File};

@@ -17,6 +17,7 @@ mod report;
 mod size;
 mod spindle;
 mod tune;
+mod verify;
 
 use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
@@ -38,6 +39,7 @@ pub use report::ReportArgs;
 pub use size::SizeArgs;
 pub use spindle::SpindleArgs;
 pub use tune::{DiscretizeArg, TuneArgs};
+pub use verify::VerifyArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -102,6 +104,8 @@ pub enum Command {
     Contour(ContourArgs),
     /// Fit the power model of an axis to a log of the drive's power
     PowerFit(PowerFitArgs),
+    /// Lay a recording of the power over the prediction of a program
+    Verify(VerifyArgs),
     /// Print a completion script for a shell
     #[command(
         after_help = "Example:\n  gwatt completions bash > ~/.local/share/bash-completion/completions/gwatt"

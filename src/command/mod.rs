@@ -14,6 +14,7 @@ pub mod report;
 pub mod size;
 pub mod spindle;
 pub mod tune;
+pub mod verify;
 
 mod beside;
 mod clash;

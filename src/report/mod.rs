@@ -16,6 +16,7 @@ mod junit;
 mod level_table;
 mod moves;
 mod over_time;
+mod overlay_chart;
 mod patch;
 mod quantity;
 mod record;
@@ -26,6 +27,7 @@ mod spindle;
 mod text;
 mod tune_page;
 mod tuned;
+mod verified;
 
 pub use chart::SpindleChart;
 pub use checked::{Checked, Totals, Verdict, chain};
@@ -45,6 +47,7 @@ pub use json::{JsonRows, check_json, check_json_line, limit_json, report_json, s
 pub use junit::junit;
 pub use level_table::level_table;
 pub use moves::write_move;
+pub use overlay_chart::OverlayChart;
 pub use patch::unified_diff;
 pub use quantity::{duration, power};
 pub use record::COLUMNS;
@@ -55,3 +58,4 @@ pub use spindle::{SpindleRows, spindle_text};
 pub use text::{axis_table, check_text, limit_text, partial_text, set_text};
 pub use tune_page::tune_page;
 pub use tuned::{sections_csv, tuned_json, tuned_text};
+pub use verified::{VerifiedNames, verified_csv, verified_json, verified_text};

@@ -248,7 +248,7 @@ fn reports_of_many_go_into_a_folder() {
 fn what_is_found_again_and_again_is_counted() {
     let shop = Shop::new();
     shop.put(
-        "probe.nc",
+        "strange.nc",
         "G0 X1\n".to_owned() + &"G5.5 X2\n".repeat(40) + "M30\n",
     );
     let ran = shop.run(&[&["check", "strange.nc"], &ON[..]].concat());

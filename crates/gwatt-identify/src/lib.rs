@@ -13,6 +13,7 @@ pub mod excitation;
 pub mod flexible;
 pub mod judgement;
 pub mod merge;
+pub mod overlay;
 pub mod power_fit;
 pub mod response_table;
 pub mod rigid;

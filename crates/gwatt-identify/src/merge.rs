@@ -73,6 +73,18 @@ pub fn into_machine(
     finished(path, &document)
 }
 
+/// Raises the margin of a machine file to `margin`, a share, unless it has a larger one; all
+/// else stays byte for byte. `path` is what messages call it.
+///
+/// # Errors
+///
+/// When the file is no sound machine file, before or after.
+pub fn margin_into_machine(path: &str, text: &str, margin: f64) -> Outcome<String> {
+    let mut document = sound(path, text)?;
+    raise_margin(&mut document, margin);
+    finished(path, &document)
+}
+
 fn refused(path: &str, what: &str) -> Trouble {
     Trouble::new(format!("{path}: {what}"), "nothing was written")
 }

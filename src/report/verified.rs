@@ -1,0 +1,229 @@
+//! What laying a recording over its prediction has come to.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use super::figure::Figure;
+use super::quantity::power;
+use crate::identify::overlay::{Agreement, BlockPeaks, Overlay};
+
+/// Blocks that are listed for people.
+const LISTED: usize = 10;
+
+/// What was laid over what.
+#[derive(Debug, Clone)]
+pub struct VerifiedNames {
+    /// The program.
+    pub program: String,
+    /// The recording.
+    pub log: String,
+    /// The machine.
+    pub machine: String,
+    /// The margin that its file has.
+    pub margin: f64,
+}
+
+/// The blocks that draw most above their prediction, worst first.
+fn worst(overlay: &Overlay) -> Vec<&BlockPeaks> {
+    let mut blocks: Vec<&BlockPeaks> = overlay.blocks.iter().collect();
+    let excess = |it: &BlockPeaks| it.measured_w - it.predicted_w;
+    blocks.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
+    blocks
+}
+
+/// For people.
+#[must_use]
+pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
+    let Overlay {
+        start_s,
+        pace,
+        correlation,
+        averaging_s,
+        gain,
+        offset_w,
+        rms_w,
+        energy_ratio,
+        measured_peak_w,
+        factor,
+        ..
+    } = overlay;
+    let mut text = format!("{}: {} on {}\n", names.log, names.program, names.machine);
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<18}{value}");
+    };
+    line("begins at", format!("{start_s:.3} s of the log"));
+    line(
+        "takes",
+        format!("{:.2} % of the time that is planned", pace * 100.0),
+    );
+    line("correlation", format!("{correlation:.4}"));
+    if *averaging_s > 0.0 {
+        let shown = format!(
+            "over {:.0} ms: what is shorter is not in the log",
+            averaging_s * 1e3
+        );
+        line("meter averages", shown);
+    }
+    line(
+        "measured",
+        format!(
+            "{gain:.3} × predicted {} {}, rms error {}",
+            if *offset_w < 0.0 { '-' } else { '+' },
+            power(offset_w.abs()),
+            power(*rms_w)
+        ),
+    );
+    line("energy", format!("{energy_ratio:.3} × predicted"));
+    line("largest", format!("{} measured", power(*measured_peak_w)));
+    let needed = overlay.margin();
+    let only = if needed <= names.margin { "" } else { "only " };
+    line(
+        "peaks",
+        format!(
+            "at most {:.3} × predicted, {} of them",
+            factor.seen, factor.peaks
+        ),
+    );
+    line(
+        "margin",
+        format!(
+            "{needed:.3} covers them; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
+            overlay.margin_of_others(),
+            names.margin
+        ),
+    );
+    let worst = worst(overlay);
+    let above: Vec<_> = worst
+        .iter()
+        .filter(|it| it.measured_w > it.predicted_w)
+        .collect();
+    if above.is_empty() {
+        text.push_str("no block draws more than predicted\n");
+    } else {
+        let _ = writeln!(
+            text,
+            "blocks that draw most above their prediction, of {}:",
+            overlay.blocks.len()
+        );
+        for it in above.into_iter().take(LISTED) {
+            let _ = writeln!(
+                text,
+                "  line {:<7} {:>9} measured, {:>9} predicted, {:+.1} %, at {:.2} s",
+                it.block,
+                power(it.measured_w),
+                power(it.predicted_w),
+                (it.ratio() - 1.0) * 100.0,
+                it.start_s,
+            );
+        }
+    }
+    let _ = writeln!(text, "verdict: {}", verdict(overlay));
+    text
+}
+
+/// The agreement in a sentence.
+fn verdict(overlay: &Overlay) -> String {
+    let why = match overlay.agreement() {
+        Agreement::Good => return "good".to_owned(),
+        Agreement::RunsOtherwise => {
+            "times differ along the program: record at 100 % override, without waits for the operator"
+        }
+        Agreement::AnotherProgram => "the log does not go up and down as this program would",
+    };
+    format!("{}: {why}", overlay.agreement().name())
+}
+
+#[derive(Serialize)]
+struct Record<'a> {
+    log: &'a str,
+    program: &'a str,
+    machine: &'a str,
+    verdict: &'static str,
+    start_s: Figure,
+    pace: Figure,
+    correlation: Figure,
+    averaging_s: Figure,
+    gain: Figure,
+    offset_w: Figure,
+    rms_w: Figure,
+    energy_ratio: Figure,
+    measured_peak_w: Figure,
+    peak_factor: Figure,
+    peak_factor_seen: Figure,
+    peaks: usize,
+    margin: Figure,
+    margin_of_others: Figure,
+    blocks: Vec<BlockRecord>,
+}
+
+#[derive(Serialize)]
+struct BlockRecord {
+    line: u64,
+    runs: u64,
+    start_s: Figure,
+    measured_w: Figure,
+    predicted_w: Figure,
+    ratio: Figure,
+}
+
+impl From<&BlockPeaks> for BlockRecord {
+    fn from(it: &BlockPeaks) -> Self {
+        Self {
+            line: it.block,
+            runs: it.runs,
+            start_s: Figure(it.start_s),
+            measured_w: Figure(it.measured_w),
+            predicted_w: Figure(it.predicted_w),
+            ratio: Figure(it.ratio()),
+        }
+    }
+}
+
+/// As JSON.
+///
+/// # Errors
+/// Those of `out`.
+pub fn verified_json(
+    names: &VerifiedNames,
+    overlay: &Overlay,
+    mut out: impl Write,
+) -> io::Result<()> {
+    let record = Record {
+        log: &names.log,
+        program: &names.program,
+        machine: &names.machine,
+        verdict: overlay.agreement().name(),
+        start_s: Figure(overlay.start_s),
+        pace: Figure(overlay.pace),
+        correlation: Figure(overlay.correlation),
+        averaging_s: Figure(overlay.averaging_s),
+        gain: Figure(overlay.gain),
+        offset_w: Figure(overlay.offset_w),
+        rms_w: Figure(overlay.rms_w),
+        energy_ratio: Figure(overlay.energy_ratio),
+        measured_peak_w: Figure(overlay.measured_peak_w),
+        peak_factor: Figure(overlay.factor.factor),
+        peak_factor_seen: Figure(overlay.factor.seen),
+        peaks: overlay.factor.peaks,
+        margin: Figure(overlay.margin()),
+        margin_of_others: Figure(overlay.margin_of_others()),
+        blocks: overlay.blocks.iter().map(BlockRecord::from).collect(),
+    };
+    serde_json::to_writer_pretty(&mut out, &record)?;
+    writeln!(out)
+}
+
+/// The blocks as CSV, in order of their lines.
+///
+/// # Errors
+/// Those of `out`.
+pub fn verified_csv(overlay: &Overlay, out: impl Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    for block in &overlay.blocks {
+        csv.serialize(BlockRecord::from(block))
+            .map_err(io::Error::other)?;
+    }
+    csv.flush()
+}

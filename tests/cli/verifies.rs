@@ -1,0 +1,164 @@
+//! `verify`: a recording of the power over its prediction.
+
+use std::fmt::Write as _;
+
+use super::Shop;
+
+/// Two axes that start together, rests and a feed.
+const PROGRAM: &str = "G21 G90 G94 G17\nG0 X300 Y200\nG4 P0.4\nG1 F2000 X320\nG0 X0\nG4 P0.7\n\
+                       G0 X250 Y250 Z-50\nG1 F500 Y260\nG0 X0 Y0 Z0\nM30\n";
+
+/// What a meter records: the planned power from 12.5 s on, at 103 % of the time, 8 % more.
+fn shop() -> Shop {
+    let shop = Shop::new();
+    shop.put("part.nc", PROGRAM);
+    let machine = shop.run(&["machine", "show", "three-axis"]).stdout;
+    shop.put(
+        "mill.toml",
+        machine.replace("margin = 0.1", "margin = 0.02"),
+    );
+    let series = ["report", "part.nc", "-m", "three-axis", "--series", "s.csv"];
+    assert_eq!(
+        shop.run(&[&series[..], &["--step-ms", "0.5"]].concat())
+            .code,
+        0
+    );
+    let series = shop.get("s.csv");
+    let mut rows = series.lines();
+    let names: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let place = |name| names.iter().position(|it| *it == name).unwrap();
+    let [time, drawn, fed_back] = ["time_s", "bus_w", "regen_w"].map(place);
+    let points: Vec<(f64, f64)> = rows
+        .filter(|row| row.starts_with("before"))
+        .map(|row| {
+            let cells: Vec<f64> = row.split(',').map(|it| it.parse().unwrap_or(0.0)).collect();
+            (cells[time], cells[drawn] - cells[fed_back])
+        })
+        .collect();
+    let at = |t: f64| {
+        let next = points.partition_point(|(other, _)| *other <= t);
+        match (next.checked_sub(1).map(|k| points[k]), points.get(next)) {
+            (Some((a, w)), Some((b, v))) => w + (v - w) * (t - a) / (b - a),
+            _ => 0.0,
+        }
+    };
+    let mut log = "time_s,power_kw\n".to_owned();
+    for k in 0..9000 {
+        let t = f64::from(k) * 2e-3;
+        writeln!(log, "{t:.3},{:.5}", 1.08e-3 * at((t - 12.5) / 1.03)).unwrap();
+    }
+    shop.put("log.csv", log);
+    shop
+}
+
+const VERIFY: [&str; 5] = ["verify", "part.nc", "log.csv", "-m", "mill.toml"];
+
+#[test]
+fn shift_pace_and_margin_are_found() {
+    let shop = shop();
+    let written = ["--json", "v.json", "--csv", "v.csv", "--svg", "v.svg"];
+    let ran = shop.run(&[&VERIFY[..], &written].concat());
+    // More than the margin of the file.
+    assert_eq!(ran.code, 1, "{}", ran.stderr);
+    assert!(ran.stdout.ends_with("verdict: good\n"), "{}", ran.stdout);
+    let json: serde_json::Value = serde_json::from_str(&shop.get("v.json")).unwrap();
+    let figure = |key: &str| json[key].as_f64().unwrap();
+    assert!((figure("start_s") - 12.5).abs() < 2e-3, "{json}");
+    assert!((figure("pace") - 1.03).abs() < 1e-3, "{json}");
+    assert!((figure("gain") - 1.08).abs() < 5e-3, "{json}");
+    assert!(
+        (figure("margin") - (1.0 - 1.0 / 1.08)).abs() < 0.01,
+        "{json}"
+    );
+    assert!(figure("correlation") > 0.999);
+    // Every block that draws, by its line.
+    let lines: Vec<u64> = json["blocks"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| it["line"].as_u64().unwrap())
+        .collect();
+    assert_eq!(lines, [2, 3, 4, 5, 6, 7, 8, 9]);
+    assert!(
+        shop.get("v.csv")
+            .starts_with("line,runs,start_s,measured_w,predicted_w,ratio\n2,1,12.")
+    );
+    let picture = shop.get("v.svg");
+    assert!(
+        picture.contains("Around line 9") || picture.contains("Around line 7"),
+        "{picture}"
+    );
+    assert!(picture.ends_with("</svg>\n"));
+}
+
+#[test]
+fn the_margin_goes_into_the_machine_file() {
+    let shop = shop();
+    let before = shop.get("mill.toml");
+    let into = [&VERIFY[..], &["--into", "mill.toml"]].concat();
+    let ran = shop.run(&into);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(shop.get("mill.toml.bak"), before);
+    let margin = shop.get("mill.toml");
+    let margin = margin
+        .lines()
+        .find(|line| line.starts_with("margin"))
+        .unwrap();
+    let margin: f64 = margin
+        .split(['=', '#'])
+        .nth(1)
+        .unwrap()
+        .trim()
+        .parse()
+        .unwrap();
+    assert!((margin - 0.074).abs() < 0.01, "{margin}");
+    // With it the recording is covered.
+    assert_eq!(shop.run(&VERIFY).code, 0);
+}
+
+#[test]
+fn another_program_changes_no_machine_file() {
+    let shop = shop();
+    let before = shop.get("mill.toml");
+    shop.put(
+        "other.nc",
+        "G21 G90 G94\nG0 X10\nG4 P3\nG0 Y400\nG4 P0.2\nG1 F9000 Z-400\nM30\n",
+    );
+    let other = [
+        "verify",
+        "other.nc",
+        "log.csv",
+        "-m",
+        "mill.toml",
+        "--into",
+        "mill.toml",
+    ];
+    let ran = shop.run(&other);
+    assert_eq!(ran.code, 1, "{}", ran.stdout);
+    assert!(!ran.stdout.contains("verdict: good"), "{}", ran.stdout);
+    assert!(
+        ran.stderr.contains("mill.toml is as it was"),
+        "{}",
+        ran.stderr
+    );
+    assert_eq!(shop.get("mill.toml"), before);
+}
+
+#[test]
+fn what_cannot_be_laid_over_is_refused() {
+    let shop = shop();
+    shop.put("empty.csv", "");
+    shop.put("torque.csv", "time_s,torque_nm\n0,1\n1,2\n");
+    shop.put("broken.nc", "G1 X\n");
+    let verify = |program: &'static str, log: &'static str| {
+        shop.run(&["verify", program, log, "-m", "mill.toml"])
+    };
+    verify("part.nc", "empty.csv").refused("empty.csv: the recording is empty");
+    verify("part.nc", "torque.csv").refused("the log has no column of power");
+    verify("part.nc", "missing.csv").refused("missing.csv: cannot read the log");
+    verify("broken.nc", "log.csv").refused("broken.nc:1");
+    shop.run(&[&VERIFY[..], &["--csv", "log.csv"]].concat())
+        .refused("log.csv is read by this run");
+    shop.run(&[&VERIFY[..], &["--map", "power=P*1kW"]].concat())
+        .refused("there is no column P");
+}
