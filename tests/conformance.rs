@@ -203,9 +203,10 @@ fn own_programs(folder: &Path, tools: bool) -> usize {
 fn other_programs_as_rs274_reads_them() {
     let given = folders("GWATT_CONFORMANCE");
     if given.is_empty() || !rs274::installed() {
-        println!("skipped: needs rs274 and folders of programs in GWATT_CONFORMANCE");
+        crate::evidence::cannot_run("it needs rs274, and folders of programs in GWATT_CONFORMANCE");
         return;
     }
+    crate::evidence::runs();
     let given_table = env::var_os("GWATT_CONFORMANCE_TABLE").map(PathBuf::from);
     let table = given_table
         .clone()

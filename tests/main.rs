@@ -57,4 +57,5 @@ mod lathe_cycles;
 mod repeated;
 mod strayed;
 mod effort;
+mod evidence;
 mod oracle;

@@ -56,8 +56,8 @@ Exit status:
 
 gwatt works with a model. It protects nothing: the drives' own limits stay on.";
 
-/// Fits CNC part programs to the converter that all the drives of a machine
-/// share.
+/// Rewrites CNC part programs so that the axes never draw more than the supply that they share
+/// delivers.
 #[derive(Debug, Parser)]
 #[command(name = "gwatt", version, after_help = EXAMPLES, arg_required_else_help = true)]
 pub struct Cli {

@@ -29,10 +29,14 @@ fn a_page_works_in_chromium() {
         .arg(desk.at("page.html"))
         .output()
     else {
-        eprintln!("skipped: there is no node");
+        crate::evidence::cannot_run("there is no node");
         return;
     };
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    eprintln!("{}", String::from_utf8_lossy(&output.stdout));
+    let said = String::from_utf8_lossy(&output.stdout);
+    match said.trim().strip_prefix("skipped: ") {
+        Some(why) => crate::evidence::cannot_run(why),
+        None => crate::evidence::runs(),
+    }
 }

@@ -155,9 +155,10 @@ fn folder(path: &Path, programs: &mut Vec<String>) {
 #[ignore = "runs LinuxCNC for minutes"]
 fn recorded_limited_programs_keep_their_limit() {
     if !is_installed() {
-        println!("skipped: LinuxCNC not installed");
+        crate::evidence::cannot_run("LinuxCNC is not installed");
         return;
     }
+    crate::evidence::runs();
     let mut random = Random(0x1234_5678_9ABC_DEF1);
     let mut wrong = Vec::new();
     for letters in ["XYZ", "XYZA", "XYZUV"] {
@@ -199,9 +200,10 @@ fn hal(output: u16) -> String {
 #[ignore = "runs LinuxCNC for minutes"]
 fn recorded_accelerations_over_hal_keep_the_limit() {
     if !is_installed() {
-        println!("skipped: LinuxCNC not installed");
+        crate::evidence::cannot_run("LinuxCNC is not installed");
         return;
     }
+    crate::evidence::runs();
     let rest = "[outputs]\nacceleration = 3\nchange_s = 0.012\n";
     let mut random = Random(0x0FED_CBA9_8765_4321);
     let mut wrong = Vec::new();

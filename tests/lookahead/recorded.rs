@@ -206,9 +206,10 @@ fn plans_are_what_linuxcnc_does() {
         .output()
         .is_ok_and(|output| output.status.success());
     if !installed || !folder.is_dir() {
-        println!("skipped: LinuxCNC not installed");
+        crate::evidence::cannot_run("LinuxCNC is not installed");
         return;
     }
+    crate::evidence::runs();
     let scratch = tempfile::tempdir().unwrap();
     let mut wrong = Vec::new();
     for (name, program) in &programs {

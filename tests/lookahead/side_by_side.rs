@@ -253,9 +253,10 @@ fn compare(
 #[ignore = "runs LinuxCNC for minutes"]
 fn recorded_random_programs_draw_no_more_than_planned() {
     if !is_installed() {
-        println!("skipped: LinuxCNC not installed");
+        crate::evidence::cannot_run("LinuxCNC is not installed");
         return;
     }
+    crate::evidence::runs();
     let count = std::env::var("GWATT_PROGRAMS");
     let count = count
         .ok()

@@ -95,9 +95,10 @@ fn the_page_computes_redraws_and_saves() {
         .arg(&path)
         .output()
     else {
-        eprintln!("skipped: there is no node");
+        crate::evidence::cannot_run("there is no node");
         return;
     };
+    crate::evidence::runs();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     check(&serde_json::from_slice(&output.stdout).unwrap());
@@ -109,9 +110,10 @@ fn the_page_works_in_chromium() {
     let names = ["chromium", "chromium-browser", "google-chrome"];
     let is_there = |name: &&str| Command::new(name).arg("--version").output().is_ok();
     let Some(browser) = names.into_iter().find(is_there) else {
-        eprintln!("skipped: there is no Chromium");
+        crate::evidence::cannot_run("there is no Chromium");
         return;
     };
+    crate::evidence::runs();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("page.html");
     let probe = fs::read_to_string(script("browser.js")).unwrap();
