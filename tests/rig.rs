@@ -62,6 +62,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         path: Path {
             max_feed_mm_s: f64::INFINITY,
             clearance_mm: [None; AXES],
+            accel_mm_s2: [f64::INFINITY; 3],
             mode: None,
             rapid: RapidPath::Linear,
             response_time_s: 0.01,

@@ -51,11 +51,7 @@ impl KnobState {
         let mut state = Self {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
-            path_accel_mm_s2: [
-                own_path_accel(machine),
-                own_path_accel(machine),
-                f64::INFINITY,
-            ],
+            path_accel_mm_s2: path_accel(machine),
             rapid_factor: 1.0,
             speed_share: 1.0,
             speed_share_next: None,
@@ -248,6 +244,14 @@ impl KnobState {
             }
         }
     }
+}
+
+/// Limits along the path when a program begins: Klipper's for all axes, or those that M204
+/// sets.
+fn path_accel(machine: &Machine) -> [f64; 3] {
+    let all = own_path_accel(machine);
+    let [print, travel, alone] = machine.path.accel_mm_s2;
+    [print.min(all), travel.min(all), alone]
 }
 
 /// What a limit that is read back may differ from the machine's own by, as a share.

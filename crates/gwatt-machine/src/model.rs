@@ -21,6 +21,9 @@ pub struct Machine {
     pub path: Path,
     /// Force or torque over speed of the axes for which it is given.
     pub force_curves: Vec<(AxisId, Vec<ForcePoint>)>,
+    /// What the mass (of rotary axes: inertia) is the sum of, of axes whose drives are
+    /// described by parts.
+    pub mass_parts: Vec<(AxisId, Vec<MassPart>)>,
     /// How loads follow commands, of the axes for which it is given.
     pub responses: Responses,
     /// The spindle, if described.
@@ -168,6 +171,9 @@ pub struct Path {
     /// Machine coordinates from which on, in positive direction, nothing stands in the way
     /// of the axes, mm or degrees; `None` for axes without such a place.
     pub clearance_mm: [Option<f64>; AXES],
+    /// Accelerations along the path when a program begins, mm/s²: of moves that extrude, of
+    /// others, and of the extruder alone (M204 P, T and R); infinite without one.
+    pub accel_mm_s2: [f64; 3],
 }
 
 impl Path {
@@ -251,6 +257,19 @@ pub struct TorquePoint {
     pub rpm: f64,
     /// Largest torque there in N·m.
     pub torque_nm: f64,
+}
+
+/// A part of an axis that moves with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MassPart {
+    /// What it is.
+    pub name: &'static str,
+    /// What it adds to the mass in kg; of a rotary axis to the inertia in kg·m².
+    pub mass_kg: f64,
+    /// Where it turns: the inertia of one about its own shaft in kg·m².
+    pub inertia_kg_m2: Option<f64>,
+    /// How many of them there are.
+    pub count: f64,
 }
 
 /// A point of an axis' force curve, load side.

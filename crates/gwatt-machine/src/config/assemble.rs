@@ -6,8 +6,8 @@ use super::machine_file::{
 };
 use super::value::{At, Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, levels, offsets, outputs, own_language, plausible, preset,
-    response, servo, spindle, tool, word,
+    axis, converter, drive_curve, levels, look_ahead, offsets, outputs, own_language, parts,
+    path_accel, plausible, preset, response, servo, spindle, tool, word,
 };
 use crate::axis::{AXES, Axis, AxisSet};
 use crate::controller::{Controller, PathMode, RapidPath};
@@ -25,9 +25,16 @@ pub(crate) fn machine(
     file: &MachineFile,
     mut controller: Controller,
 ) -> Option<Machine> {
+    look_ahead::own(findings, file.look_ahead.as_ref(), &mut controller.planner);
     let mut path = path(file.path.as_ref().map(|table| &table.value), &controller);
     if let Some(table) = &file.language {
         own_language::take(findings, table, &mut controller.language);
+    }
+    if let Some(table) = file.path.as_ref().map(|table| &table.value) {
+        path.accel_mm_s2 = path_accel::take(findings, table, &controller);
+        if let Some(time) = &table.shortest_at_feed_s {
+            controller.planner.shortest_at_feed_s = time.value;
+        }
     }
     if let Some(table) = &file.outputs {
         outputs::take(findings, table, &mut controller);
@@ -42,6 +49,7 @@ pub(crate) fn machine(
     let mut axes: [Option<Axis>; AXES] = [None; AXES];
     let mut axis_set = AxisSet::default();
     let mut force_curves = Vec::new();
+    let mut mass_parts = Vec::new();
     let mut responses = Responses::default();
     let mut complete = true;
     for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
@@ -50,6 +58,10 @@ pub(crate) fn machine(
         let curve = drive_curve::force(findings, id, &table.value, axes[id as usize].as_ref());
         force_curves.extend(curve.map(|curve| (id, curve)));
         response::take(findings, id, &table.value, &mut responses);
+        if let Some(axis) = &axes[id as usize] {
+            let parts = parts::all(axis.kind, &table.value, axis.mass_kg);
+            mass_parts.extend((!parts.is_empty()).then_some((id, parts)));
+        }
         complete &= axes[id as usize].is_some();
     }
     if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
@@ -67,6 +79,7 @@ pub(crate) fn machine(
         converter::converters(findings, tables, axis_set, limits.margin)
     });
     servo::factors(findings, file, &mut axes, &converters);
+    plausible::drives(findings, file, &axes, &converters, &force_curves);
     let given = file
         .path
         .as_ref()
@@ -96,6 +109,7 @@ pub(crate) fn machine(
         axis_set,
         converters,
         force_curves,
+        mass_parts,
         responses,
         spindle,
         tools,
@@ -143,6 +157,7 @@ fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
             table.and_then(|table| table.max_feed_mm_min.as_ref()),
             f64::INFINITY,
         ) / SECONDS_PER_MINUTE,
+        accel_mm_s2: [f64::INFINITY; 3],
         clearance_mm: clearance(table.and_then(|table| table.clearance.as_ref())),
     }
 }

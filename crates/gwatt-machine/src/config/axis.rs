@@ -11,8 +11,9 @@ use std::ops::Range;
 
 use super::findings::Findings;
 use super::machine_file::{AxisTable, KindName};
+use super::parts;
 use super::plausible;
-use super::quantity::{Quantities, form};
+use super::quantity::{Given, Quantities, form};
 use super::servo;
 use super::value::{At, Num, Part};
 use crate::axis::{Axis, AxisId, AxisKind};
@@ -77,7 +78,7 @@ struct Builder {
 
 impl Builder {
     fn linear(&self, findings: &mut Findings<'_>, table: &AxisTable) -> Option<Axis> {
-        let lead_mm = table.lead_mm.as_ref().map(|lead| lead.value);
+        let lead_mm = parts::lead_mm(table);
         let gear = value(table.gear_ratio.as_ref(), 1.0);
         if lead_mm.is_none()
             && let Some(gear) = &table.gear_ratio
@@ -112,8 +113,10 @@ impl Builder {
             [
                 form("mass_kg", table.mass_kg.as_ref(), 1.0),
                 form("inertia_kg_m2", table.inertia_kg_m2.as_ref(), squared),
+                form("moved_mass_kg", table.moved_mass_kg.as_ref(), 1.0),
             ],
         );
+        let mass = self.with_parts(findings, table, mass);
         let coulomb_n = self.quantities.optional(
             findings,
             [
@@ -164,6 +167,34 @@ impl Builder {
             si_per_unit: M_PER_MM,
             ..self.blank()
         })
+    }
+
+    /// The mass with that of the parts that turn.
+    fn with_parts(
+        &self,
+        findings: &mut Findings<'_>,
+        table: &AxisTable,
+        given: Option<Given>,
+    ) -> Option<Given> {
+        parts::check(findings, self.letter, self.kind, table);
+        if let Some(rotor) = table.rotor_kg_m2.as_ref().filter(|rotor| rotor.value > 0.0)
+            && self.kind == AxisKind::Linear
+            && parts::lead_mm(table).is_none()
+            && table.screw.is_none()
+        {
+            self.quantities
+                .needs_lead(findings, "rotor_kg_m2", &rotor.span);
+        }
+        let turning = parts::list(self.kind, table);
+        let turning: f64 = turning.iter().map(|part| part.mass_kg).sum();
+        let mut given = given?;
+        given.value += turning;
+        if !given.value.is_finite() {
+            let message = format!("the parts of axis {} are too large to compute with", self.letter);
+            findings.error("machine-range", &given.span, message, None);
+            return None;
+        }
+        Some(given)
     }
 
     /// Speed on the way to the reference point, mm/s, and its place, mm.
@@ -225,8 +256,16 @@ impl Builder {
         let inertia = self.quantities.required(
             findings,
             "an inertia",
-            [form("inertia_kg_m2", table.inertia_kg_m2.as_ref(), squared)],
+            [
+                form("inertia_kg_m2", table.inertia_kg_m2.as_ref(), squared),
+                form(
+                    "moved_inertia_kg_m2",
+                    table.moved_inertia_kg_m2.as_ref(),
+                    1.0,
+                ),
+            ],
         );
+        let inertia = self.with_parts(findings, table, inertia);
         let coulomb_n = self.quantities.optional(
             findings,
             [form("friction_nm", table.friction_nm.as_ref(), gear)],
@@ -299,6 +338,9 @@ impl Builder {
         fn span<B>(number: Option<&Num<B>>) -> Option<Range<usize>> {
             number.map(|number| number.span.clone())
         }
+        fn place<T>(table: Option<&At<T>>) -> Option<Range<usize>> {
+            table.map(|table| table.span.clone())
+        }
         let t = table;
         let (others, this, other) = match self.kind {
             AxisKind::Linear => (
@@ -319,6 +361,11 @@ impl Builder {
                         "reference_deg",
                         span(t.reference_deg.as_ref()),
                         "reference_mm",
+                    ),
+                    (
+                        "moved_inertia_kg_m2",
+                        span(t.moved_inertia_kg_m2.as_ref()),
+                        "moved_mass_kg",
                     ),
                 ],
                 "linear",
@@ -358,6 +405,14 @@ impl Builder {
                     ),
                     ("gravity_n", span(t.gravity_n.as_ref()), "gravity_nm"),
                     ("lead_mm", span(t.lead_mm.as_ref()), "gear_ratio"),
+                    (
+                        "moved_mass_kg",
+                        span(t.moved_mass_kg.as_ref()),
+                        "moved_inertia_kg_m2",
+                    ),
+                    ("screw", place(t.screw.as_ref()), "gear_ratio"),
+                    ("pulley", place(t.pulley.as_ref()), "gear_ratio"),
+                    ("pinion", place(t.pinion.as_ref()), "gear_ratio"),
                 ],
                 "rotary",
                 "linear",
@@ -382,7 +437,10 @@ fn warn_unused_lead(findings: &mut Findings<'_>, table: &AxisTable) {
         || table.friction_nm.is_some()
         || table.viscous_nm_s_rad.is_some()
         || table.gravity_nm.is_some()
-        || table.copper_w_nm2.is_some();
+        || table.copper_w_nm2.is_some()
+        || table.rotor_kg_m2.is_some()
+        || table.screw.is_some()
+        || table.torque_curve.is_some();
     if let Some(lead) = table.lead_mm.as_ref().filter(|_| !at_motor) {
         let message = "`lead_mm` has no effect: nothing is given at the motor";
         findings.warning("machine-unit", &lead.span, message, None);

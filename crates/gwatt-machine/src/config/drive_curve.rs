@@ -98,7 +98,7 @@ pub(crate) fn force(
                 // One revolution per minute of the motor, at the table.
                 let degrees = TAU / RAD_PER_DEG / SECONDS_PER_MINUTE / gear;
                 (list, degrees, gear)
-            } else if let Some(lead) = table.lead_mm.as_ref().map(|lead| lead.value) {
+            } else if let Some(lead) = super::parts::lead_mm(table) {
                 let rad_per_m = TAU * gear / (lead * M_PER_MM);
                 (list, lead / SECONDS_PER_MINUTE / gear, rad_per_m)
             } else {

@@ -1,4 +1,4 @@
-//! `[planner.look_ahead]`: how corners are run through.
+//! `[planner.look_ahead]` of a profile, `[look_ahead]` of a machine file: how corners are run through.
 
 use std::ops::Range;
 
@@ -6,8 +6,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::findings::Findings;
-use super::value::{At, AtLeastOne, NotNegative, Part, PerAxis, Positive};
+use super::value::{At, AtLeastOne, NotNegative, Num, Part, PerAxis, Positive};
 use crate::axis::{AXES, AxisValues};
+use crate::controller::Planner;
 use crate::look_ahead::{ChordRule, CornerAngle, CornerRule, LookAhead};
 
 /// How corners are run through where the path mode looks ahead. Exactly one of
@@ -121,51 +122,7 @@ pub(crate) fn look_ahead(
     at: Option<&At<LookAheadTable>>,
 ) -> Option<LookAhead> {
     let table = &at?.value;
-    let mut rules: Vec<(CornerRule, &Range<usize>)> = Vec::new();
-    if let Some(At { value, span }) = &table.linuxcnc {
-        let rule = CornerRule::LinuxCnc {
-            cycle_s: value.servo_period_s.as_ref().map_or(0.001, |it| it.value),
-            kink_ratio: value.kink_ratio.as_ref().map_or(0.1, |it| it.value),
-            gap_cycles: value.gap_cycles.as_ref().map_or(4.0, |it| it.value),
-        };
-        rules.push((rule, span));
-    }
-    if let Some(At { value, span }) = &table.junction_deviation {
-        let rule = CornerRule::JunctionDeviation {
-            deviation_mm: value.deviation_mm.as_ref()?.value,
-            angle: match value.angle {
-                Some(AngleName::Linear) => CornerAngle::Linear,
-                Some(AngleName::AllAxes) | None => CornerAngle::AllAxes,
-            },
-            per_axis: value.per_axis.unwrap_or(false),
-            small_block_mm: value.small_block_mm.as_ref().map_or(0.0, |it| it.value),
-        };
-        rules.push((rule, span));
-    }
-    if let Some(At { value, span }) = &table.classic_jerk {
-        let step_mm_s = steps(value.step_mm_s.as_ref()?);
-        rules.push((CornerRule::ClassicJerk { step_mm_s }, span));
-    }
-    if let Some(At { value, span }) = &table.square_corner {
-        let rule = CornerRule::SquareCorner {
-            velocity_mm_s: value.corner_mm_s.as_ref()?.value,
-            extruder_step_mm_s: value.extruder_step_mm_s.as_ref().map_or(1.0, |it| it.value),
-        };
-        rules.push((rule, span));
-    }
-    if let Some(At { value, span }) = &table.speed_step {
-        let rule = CornerRule::SpeedStep {
-            step_mm_s: steps(value.step_mm_s.as_ref()?),
-            same_kind_only: value.same_kind_only.unwrap_or(false),
-        };
-        rules.push((rule, span));
-    }
-    if let Some((_, second)) = rules.get(1) {
-        let message = "a planner has one rule for corners";
-        findings.error("machine-twice", second, message, None);
-        return None;
-    }
-    let Some((corner, _)) = rules.into_iter().next() else {
+    let Some(corner) = corner(findings, table, None).ok()? else {
         if !findings.refused_in("planner.look_ahead") {
             let message = "`look_ahead` has no rule for corners";
             let help = "one of the tables linuxcnc, junction_deviation, classic_jerk, \
@@ -175,36 +132,176 @@ pub(crate) fn look_ahead(
         }
         return None;
     };
-    Some(LookAhead {
+    let bare = LookAhead {
         corner,
-        blocks: table.blocks.as_ref().map(|it| it.value as u32),
-        path_accel_mm_s2: table
-            .path_accel_mm_s2
+        blocks: None,
+        path_accel_mm_s2: f64::INFINITY,
+        min_cruise_ratio: 0.0,
+        chords: None,
+    };
+    Some(with(table, bare))
+}
+
+/// Takes what `[look_ahead]` of a machine file gives into the planner of the profile; what
+/// it does not give stays.
+pub(crate) fn own(
+    findings: &mut Findings<'_>,
+    at: Option<&At<LookAheadTable>>,
+    planner: &mut Planner,
+) {
+    let Some(at) = at else { return };
+    let Some(rules) = planner.look_ahead else {
+        let message = "how corners are run through is not modelled for this controller";
+        let help = "leave [look_ahead] out: the robust bound counts".to_owned();
+        findings.error("machine-kind", &at.span, message, Some(help));
+        return;
+    };
+    if let Ok(found) = corner(findings, &at.value, Some(&rules.corner)) {
+        let corner = found.unwrap_or(rules.corner);
+        planner.look_ahead = Some(with(&at.value, LookAhead { corner, ..rules }));
+    }
+}
+
+/// The rules with what a table gives besides the corner.
+fn with(table: &LookAheadTable, rules: LookAhead) -> LookAhead {
+    LookAhead {
+        corner: rules.corner,
+        blocks: table
+            .blocks
             .as_ref()
-            .map_or(f64::INFINITY, |it| it.value),
-        min_cruise_ratio: table.min_cruise_ratio.as_ref().map_or(0.0, |it| it.value),
-        chords: table.chords.as_ref().map(chords),
+            .map_or(rules.blocks, |it| Some(it.value as u32)),
+        path_accel_mm_s2: or(table.path_accel_mm_s2.as_ref(), rules.path_accel_mm_s2),
+        min_cruise_ratio: or(table.min_cruise_ratio.as_ref(), rules.min_cruise_ratio),
+        chords: match &table.chords {
+            Some(table) => Some(chords(table, rules.chords)),
+            None => rules.chords,
+        },
+    }
+}
+
+fn or<B>(number: Option<&Num<B>>, otherwise: f64) -> f64 {
+    number.map_or(otherwise, |number| number.value)
+}
+
+/// The rule for corners that a table gives, its fields otherwise those of `base` where that
+/// is of the same kind; `Err` with a mistake.
+fn corner(
+    findings: &mut Findings<'_>,
+    table: &LookAheadTable,
+    base: Option<&CornerRule>,
+) -> Result<Option<CornerRule>, ()> {
+    let mut rules: Vec<(CornerRule, &Range<usize>)> = Vec::new();
+    if let Some(At { value, span }) = &table.linuxcnc {
+        rules.push((linuxcnc(value, base), span));
+    }
+    if let Some(At { value, span }) = &table.junction_deviation {
+        rules.push((deviation(value, base).ok_or(())?, span));
+    }
+    if let Some(At { value, span }) = &table.classic_jerk {
+        let known = match base {
+            Some(CornerRule::ClassicJerk { step_mm_s }) => Some(step_mm_s),
+            _ => None,
+        };
+        let step_mm_s = steps(value.step_mm_s.as_ref().ok_or(())?, known);
+        rules.push((CornerRule::ClassicJerk { step_mm_s }, span));
+    }
+    if let Some(At { value, span }) = &table.square_corner {
+        let known = match base {
+            Some(CornerRule::SquareCorner {
+                extruder_step_mm_s, ..
+            }) => *extruder_step_mm_s,
+            _ => 1.0,
+        };
+        let rule = CornerRule::SquareCorner {
+            velocity_mm_s: value.corner_mm_s.as_ref().ok_or(())?.value,
+            extruder_step_mm_s: or(value.extruder_step_mm_s.as_ref(), known),
+        };
+        rules.push((rule, span));
+    }
+    if let Some(At { value, span }) = &table.speed_step {
+        let (known, same) = match base {
+            Some(CornerRule::SpeedStep {
+                step_mm_s,
+                same_kind_only,
+            }) => (Some(step_mm_s), *same_kind_only),
+            _ => (None, false),
+        };
+        let rule = CornerRule::SpeedStep {
+            step_mm_s: steps(value.step_mm_s.as_ref().ok_or(())?, known),
+            same_kind_only: value.same_kind_only.unwrap_or(same),
+        };
+        rules.push((rule, span));
+    }
+    if let Some((_, second)) = rules.get(1) {
+        let message = "a planner has one rule for corners";
+        findings.error("machine-twice", second, message, None);
+        return Err(());
+    }
+    Ok(rules.into_iter().next().map(|(rule, _)| rule))
+}
+
+fn linuxcnc(table: &LinuxCncTable, base: Option<&CornerRule>) -> CornerRule {
+    let known = match base {
+        Some(CornerRule::LinuxCnc {
+            cycle_s,
+            kink_ratio,
+            gap_cycles,
+        }) => [*cycle_s, *kink_ratio, *gap_cycles],
+        _ => [0.001, 0.1, 4.0],
+    };
+    CornerRule::LinuxCnc {
+        cycle_s: or(table.servo_period_s.as_ref(), known[0]),
+        kink_ratio: or(table.kink_ratio.as_ref(), known[1]),
+        gap_cycles: or(table.gap_cycles.as_ref(), known[2]),
+    }
+}
+
+fn deviation(table: &DeviationTable, base: Option<&CornerRule>) -> Option<CornerRule> {
+    let (angle, per_axis, small) = match base {
+        Some(CornerRule::JunctionDeviation {
+            angle,
+            per_axis,
+            small_block_mm,
+            ..
+        }) => (*angle, *per_axis, *small_block_mm),
+        _ => (CornerAngle::AllAxes, false, 0.0),
+    };
+    Some(CornerRule::JunctionDeviation {
+        deviation_mm: table.deviation_mm.as_ref()?.value,
+        angle: match table.angle {
+            Some(AngleName::Linear) => CornerAngle::Linear,
+            Some(AngleName::AllAxes) => CornerAngle::AllAxes,
+            None => angle,
+        },
+        per_axis: table.per_axis.unwrap_or(per_axis),
+        small_block_mm: or(table.small_block_mm.as_ref(), small),
     })
 }
 
-fn steps(given: &PerAxis<NotNegative>) -> AxisValues {
-    let mut steps = [f64::INFINITY; AXES];
+/// Steps of speed; axes that are not named have those of `base`, or no limit.
+fn steps(given: &PerAxis<NotNegative>, base: Option<&AxisValues>) -> AxisValues {
+    let mut steps = base.copied().unwrap_or([f64::INFINITY; AXES]);
     for (axis, step) in given.iter() {
         steps[axis as usize] = step.value;
     }
     steps
 }
 
-fn chords(table: &ChordsTable) -> ChordRule {
+fn chords(table: &ChordsTable, base: Option<ChordRule>) -> ChordRule {
+    let base = base.unwrap_or(ChordRule {
+        max_mm: f64::INFINITY,
+        min_mm: 0.0,
+        deviation_mm: f64::INFINITY,
+        per_second: 0.0,
+        per_circle: 0.0,
+        round_up: false,
+    });
     ChordRule {
-        max_mm: table.max_mm.as_ref().map_or(f64::INFINITY, |it| it.value),
-        min_mm: table.min_mm.as_ref().map_or(0.0, |it| it.value),
-        deviation_mm: table
-            .deviation_mm
-            .as_ref()
-            .map_or(f64::INFINITY, |it| it.value),
-        per_second: table.per_second.as_ref().map_or(0.0, |it| it.value),
-        per_circle: table.per_circle.as_ref().map_or(0.0, |it| it.value),
-        round_up: table.round_up.unwrap_or(false),
+        max_mm: or(table.max_mm.as_ref(), base.max_mm),
+        min_mm: or(table.min_mm.as_ref(), base.min_mm),
+        deviation_mm: or(table.deviation_mm.as_ref(), base.deviation_mm),
+        per_second: or(table.per_second.as_ref(), base.per_second),
+        per_circle: or(table.per_circle.as_ref(), base.per_circle),
+        round_up: table.round_up.unwrap_or(base.round_up),
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! Text → tree (`document`) → checked against the schema (`structure`) →
 //! structs (`machine_file`, `controller_file`) → `Machine`, `Controller`
-//! (`assemble`, `axis`, `converter`, `preset`, `profile`, `servo`, `spindle`). All mistakes of a file are
+//! (`assemble`, `axis`, `converter`, `parts`, `preset`, `profile`, `servo`, `spindle`). All mistakes of a file are
 //! collected on the way, each with its line.
 
 mod assemble;
 mod axis;
+mod axis_table;
 mod controller_file;
 mod converter;
 mod document;
@@ -22,6 +23,8 @@ mod named_knob;
 mod offsets;
 mod outputs;
 mod own_language;
+mod parts;
+mod path_accel;
 mod plausible;
 mod preset;
 mod printer;

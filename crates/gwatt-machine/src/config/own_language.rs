@@ -1,7 +1,7 @@
 //! `[language]` of a machine file: how this machine's programs are written, where that is
 //! not as in the controller profile.
 
-use super::controller_file::DistanceName;
+use super::controller_file::{DistanceName, UnitsName};
 use super::findings::Findings;
 use super::machine_file::OwnLanguageTable;
 use super::value::At;
@@ -29,6 +29,12 @@ pub(crate) fn take(
         language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;
     }
     dialect.active = true;
+    if let Some(units) = own.units {
+        language.metric = units == UnitsName::Mm;
+    }
+    if let Some(tolerance) = &own.power_on_tolerance_mm {
+        language.power_on_tolerance_mm = tolerance.value;
+    }
     if let Some(centre) = own.arc_centre {
         language.arc_absolute = centre == DistanceName::Absolute;
     }
@@ -46,6 +52,13 @@ pub(crate) fn take(
             let message = format!("`{field}` belongs to the controllers of printers");
             findings.error("machine-kind", &table.span, message, None);
         }
+    }
+    if let Some(retract) = &own.retract {
+        if language.family != Family::Marlin {
+            let message = "`retract` belongs to the controllers of printers";
+            findings.error("machine-kind", &retract.span, message, None);
+        }
+        language.printer.retract = printer::retract(Some(&retract.value));
     }
     let printer = &mut language.printer;
     let ignored = printer::commands(findings, own.ignored_macros.as_ref());

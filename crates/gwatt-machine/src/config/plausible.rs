@@ -3,9 +3,11 @@
 use std::ops::Range;
 
 use super::findings::Findings;
-use super::machine_file::{AxisTable, ConverterTable, OverrideTable};
+use super::machine_file::{AxisTable, ConverterTable, MachineFile, OverrideTable};
 use super::quantity::Given;
 use super::value::Num;
+use crate::axis::{AXES, Axis, AxisId, AxisKind};
+use crate::model::{Converter, ForcePoint};
 
 const RULE: &str = "machine-unit";
 
@@ -185,6 +187,101 @@ pub(crate) fn rotary(
 /// Checks a converter.
 pub(crate) fn converter(findings: &mut Findings<'_>, table: &ConverterTable) {
     field(findings, "peak_power_w", table.peak_power_w.as_ref());
+}
+
+/// Longer than this no axis takes to its full acceleration, s.
+const JERK_TIME_S: f64 = 2.0;
+
+/// Checks what is absurd once axes and converters are known: a jerk that hardly lets the axis
+/// accelerate, friction beyond what the converter delivers, an acceleration that asks for
+/// more than the drive's curve gives.
+pub(crate) fn drives(
+    findings: &mut Findings<'_>,
+    file: &MachineFile,
+    axes: &[Option<Axis>; AXES],
+    converters: &[Converter],
+    curves: &[(AxisId, Vec<ForcePoint>)],
+) {
+    for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
+        let Some(axis) = &axes[id as usize] else {
+            continue;
+        };
+        let letter = id.letter() as char;
+        let [length, force] = match axis.kind {
+            AxisKind::Linear => ["mm", "N"],
+            AxisKind::Rotary => ["degrees", "N·m"],
+        };
+        let table = &table.value;
+        jerk(findings, table, axis, length);
+        let speed = axis.rapid_mm_s * axis.si_per_unit;
+        let rubs = axis.coulomb_n + axis.viscous_n_s_m * speed;
+        let friction_w = rubs * speed / axis.efficiency;
+        let fed_by = converters.iter().find(|it| it.axes.contains(id as usize));
+        if let Some(converter) = fed_by.filter(|it| friction_w > it.peak_power_w) {
+            let message = format!(
+                "friction alone takes {} W of axis {letter} at its rapid speed, more than the \
+                 converter's {} W",
+                round(friction_w),
+                round(converter.peak_power_w)
+            );
+            let help = format!("friction in {force} is meant, speed in {length}/min, power in W");
+            let span = friction_span(table).unwrap_or(0..0);
+            findings.warning(RULE, &span, message, Some(help));
+        }
+        let curve = curves.iter().find(|(of, _)| *of == id);
+        let at_rest = curve.and_then(|(_, points)| points.first());
+        let needed = axis.mass_kg * axis.accel_mm_s2 * axis.si_per_unit
+            + axis.coulomb_n
+            + axis.gravity_n.abs();
+        if let Some(point) = at_rest.filter(|point| needed > point.force_n) {
+            let message = format!(
+                "the acceleration of axis {letter} needs {} {force}, and its drive gives {} {force} \
+                 at rest: it accelerates as that permits",
+                round(needed),
+                round(point.force_n)
+            );
+            let list = [
+                table.accel_mm_s2.as_ref().map(|it| it.span.clone()),
+                table.accel_deg_s2.as_ref().map(|it| it.span.clone()),
+                table.accel_time_s.as_ref().map(|it| it.span.clone()),
+            ];
+            let span = list.into_iter().flatten().next().unwrap_or(0..0);
+            let help = "check mass, acceleration and the curve".to_owned();
+            findings.warning(RULE, &span, message, Some(help));
+        }
+    }
+}
+
+/// A jerk that is given in m/s³ makes an axis that never accelerates.
+fn jerk(findings: &mut Findings<'_>, table: &AxisTable, axis: &Axis, length: &str) {
+    let given = [
+        table.jerk_mm_s3.as_ref().map(|it| it.span.clone()),
+        table.jerk_deg_s3.as_ref().map(|it| it.span.clone()),
+    ];
+    let Some(span) = given.into_iter().flatten().next() else {
+        return;
+    };
+    let seconds = axis.accel_mm_s2 / axis.jerk_mm_s3;
+    if axis.jerk_mm_s3 > 0.0 && seconds > JERK_TIME_S {
+        let message = format!(
+            "a jerk of {} {length}/s³ takes {} s to the full acceleration",
+            axis.jerk_mm_s3,
+            round(seconds)
+        );
+        let help = "m/s³ given? 1 m/s³ is 1000 mm/s³; powers would be too low".to_owned();
+        findings.warning(RULE, &span, message, Some(help));
+    }
+}
+
+/// Where the friction of an axis stands.
+fn friction_span(table: &AxisTable) -> Option<Range<usize>> {
+    let list = [
+        table.coulomb_n.as_ref().map(|it| it.span.clone()),
+        table.friction_nm.as_ref().map(|it| it.span.clone()),
+        table.viscous_n_s_m.as_ref().map(|it| it.span.clone()),
+        table.viscous_nm_s_rad.as_ref().map(|it| it.span.clone()),
+    ];
+    list.into_iter().flatten().next()
 }
 
 /// Checks the overrides: a factor instead of percent is far below 100.

@@ -135,7 +135,8 @@ fn set(letters: &[At<Letter>]) -> AxisSet {
     set
 }
 
-fn retract(table: Option<&RetractTable>) -> Retract {
+/// How filament is retracted; what is absent is as Marlin has it.
+pub(crate) fn retract(table: Option<&RetractTable>) -> Retract {
     let own = Retract::default();
     let Some(table) = table else { return own };
     let speed_mm_s = table
