@@ -11,8 +11,10 @@
 //! bytes ─syntax→ blocks ─interpret→ moves ─plan→ profiles ─power→ demand ─limit→ adjustments ─rewrite→ bytes
 //! TOML  ─machine→ Machine ─────────────────┴──────┴────────────────┘            └→ analysed again: certificate
 //! CSV   ─identify→ masses, friction, transfer functions → TOML
+//! settings of controls ─import→ TOML
 //! ```
 pub use gwatt_identify as identify;
+pub use gwatt_import as import;
 pub use gwatt_interpret as interpret;
 pub use gwatt_limit as limit;
 pub use gwatt_machine as machine;

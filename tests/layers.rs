@@ -8,7 +8,7 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 9] = [
+const CRATES: [(&str, &[&str]); 10] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
     ("gwatt-motion", &["gwatt-machine"]),
@@ -26,10 +26,12 @@ const CRATES: [(&str, &[&str]); 9] = [
         &["gwatt-machine", "gwatt-motion", "gwatt-plan", "gwatt-power"],
     ),
     ("gwatt-identify", &["gwatt-machine"]),
+    ("gwatt-import", &["gwatt-machine", "gwatt-syntax"]),
     (
         "gwatt",
         &[
             "gwatt-identify",
+            "gwatt-import",
             "gwatt-interpret",
             "gwatt-limit",
             "gwatt-machine",

@@ -1,6 +1,9 @@
 //! Arguments of `machine`.
 
-use clap::Subcommand;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use gwatt::import::FORMATS;
 
 /// What to do with machine descriptions.
 #[derive(Debug, Subcommand)]
@@ -20,7 +23,44 @@ pub enum MachineCommand {
         /// The file, or the name of a built-in machine.
         file: String,
     },
+    /// Make a machine file of the settings that a control has already
+    #[command(after_help = IMPORT)]
+    Import(ImportArgs),
     /// Print the JSON Schema of machine files, for editors
     #[command(after_help = "Example:\n  gwatt machine schema > gwatt-machine.schema.json")]
     Schema,
+}
+
+const IMPORT: &str = "\
+Reads LinuxCNC's INI file (with its HAL files), what grbl and grblHAL print for $$, FluidNC's
+config.yaml, Marlin's M503 and Configuration.h, Klipper's printer.cfg (with its includes),
+config.g of RepRapFirmware, parameter files of Fanuc, and machine data of SINUMERIK. Every
+value has its source next to it. Masses, friction and the power of the supply, which no
+control knows, are asked for in the file; `gwatt machine check` names what is missing.
+
+Examples:
+  gwatt machine import printer.cfg -o printer.toml
+  gwatt machine import Configuration.h Configuration_adv.h -o printer.toml
+  gwatt machine import CNCPARAM.TXT -c haas -o mill.toml";
+
+/// Arguments of `machine import`.
+#[derive(Debug, Args)]
+pub struct ImportArgs {
+    /// The files, read as one; `-` is standard input
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where the machine file goes; default: standard output
+    #[arg(short, long, value_name = "TOML")]
+    pub output: Option<PathBuf>,
+    /// What the files are; default: as their lines say
+    #[arg(long, value_parser = formats(), value_name = "FORMAT")]
+    pub format: Option<String>,
+    /// The controller profile; default: that of the format
+    #[arg(short, long, value_name = "NAME")]
+    pub controller: Option<String>,
+}
+
+/// Names of formats.
+fn formats() -> clap::builder::PossibleValuesParser {
+    FORMATS.map(|(_, name)| name).into()
 }

@@ -29,7 +29,7 @@ pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
 pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy, allowed};
-pub use machine::MachineCommand;
+pub use machine::{ImportArgs, MachineCommand};
 pub use moves::MovesArgs;
 pub use override_arg::OverrideArg;
 pub use power_fit::PowerFitArgs;
@@ -88,7 +88,7 @@ pub enum Command {
     Moves(MovesArgs),
     /// Plan a spindle's speed period by period, and what it draws
     Spindle(SpindleArgs),
-    /// List, show and check machine descriptions
+    /// List, show, check and import machine descriptions
     Machine {
         /// What to do with them.
         #[command(subcommand)]

@@ -4,19 +4,20 @@ use anyhow::{Context, Result, bail};
 use gwatt::machine::{builtin, schema};
 use gwatt::pipeline::assumptions;
 use gwatt::power::spindle_run;
-use gwatt::report::{Verdict, axis_table, duration, level_table, power};
+use gwatt::report::{Verdict, axis_table, duration, level_table, mass_table, power};
 
 use super::output::print;
 use super::setup::load_machine;
 use super::terminal::Terminal;
 use crate::cli::MachineCommand;
 
-/// Lists, shows and checks machine descriptions.
+/// Lists, shows, checks and imports machine descriptions.
 pub fn run(command: &MachineCommand, terminal: Terminal) -> Result<Verdict> {
     match command {
         MachineCommand::List => list()?,
         MachineCommand::Show { name } => show(name)?,
         MachineCommand::Check { file } => check(file, terminal)?,
+        MachineCommand::Import(args) => super::machine_import::run(args, terminal)?,
         MachineCommand::Schema => print(|out| {
             serde_json::to_writer_pretty(&mut *out, &schema())?;
             writeln!(out)
@@ -83,7 +84,8 @@ fn check(file: &str, terminal: Terminal) -> Result<()> {
         .with_context(|| format!("{file}: [spindle]"))?;
     print(|out| {
         writeln!(out, "{file}: {}", machine.name)?;
-        write!(out, "{}{}", axis_table(&machine), level_table(&machine))?;
+        write!(out, "{}{}", axis_table(&machine), mass_table(&machine))?;
+        write!(out, "{}", level_table(&machine))?;
         for converter in &machine.converters {
             let share = 1.0 - machine.limits.margin;
             let limit = power(share * converter.peak_power_w);

@@ -8,6 +8,7 @@ pub mod excite;
 pub mod identify;
 pub mod limit;
 pub mod machine;
+mod machine_import;
 pub mod moves;
 pub mod power_fit;
 pub mod report;

@@ -14,6 +14,7 @@ mod identified;
 mod json;
 mod junit;
 mod level_table;
+mod mass_table;
 mod moves;
 mod over_time;
 mod overlay_chart;
@@ -46,6 +47,7 @@ pub use identified::{
 pub use json::{JsonRows, check_json, check_json_line, limit_json, report_json, set_json};
 pub use junit::junit;
 pub use level_table::level_table;
+pub use mass_table::mass_table;
 pub use moves::write_move;
 pub use overlay_chart::OverlayChart;
 pub use patch::unified_diff;

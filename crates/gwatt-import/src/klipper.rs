@@ -1,0 +1,265 @@
+//! Klipper: `printer.cfg` with the files that it includes.
+//!
+//! Sources: Klipper documentation, "Configuration reference"; defaults of the extruder's own
+//! limits from `klippy/kinematics/extruder.py`.
+
+use std::f64::consts::PI;
+
+use gwatt_machine::AxisId;
+
+use crate::found::{Build, Figure, Found, FoundAxis, entry, highest, shown};
+use crate::ini::{Item, Style, items, last};
+use crate::kinematics;
+use crate::near::Job;
+use crate::text::Log;
+
+/// How its files are written.
+pub(crate) const STYLE: Style = Style {
+    separators: &[':', '='],
+    saved: Some("#*#"),
+    inline: &['#', ';'],
+};
+
+const AXES: [(AxisId, &str); 3] = [
+    (AxisId::X, "stepper_x"),
+    (AxisId::Y, "stepper_y"),
+    (AxisId::Z, "stepper_z"),
+];
+
+/// Minutes to seconds.
+const MIN: f64 = 60.0;
+
+/// The files that a line includes.
+pub(crate) fn include(line: &str) -> Option<&str> {
+    let name = line.strip_prefix("[include ")?.split(']').next()?.trim();
+    (!name.is_empty()).then_some(name)
+}
+
+/// Values of the files.
+struct Config<'i, 't> {
+    items: &'i [Item<'t>],
+}
+
+impl Config<'_, '_> {
+    /// A value above 0.
+    fn positive(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
+        let item = last(self.items, section, key)?;
+        let value = log.positive(&item.place, item.value, &format!("`{key}`"))?;
+        Some(Figure::new(value, item.source()))
+    }
+
+    /// Any number.
+    fn number(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
+        let item = last(self.items, section, key)?;
+        let value = log.number(&item.place, item.value)?;
+        Some(Figure::new(value, item.source()))
+    }
+
+    fn has(&self, section: &str) -> bool {
+        let mut items = self.items.iter();
+        items.any(|item| item.section.eq_ignore_ascii_case(section))
+    }
+}
+
+/// Reads the configuration.
+pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
+    let items = items(job, STYLE);
+    let config = Config { items: &items };
+    let mut found = Found::new("klipper", "Printer under Klipper", Build::Belts);
+    kinematics_of(&config, &mut found, log);
+    let velocity = config.positive(log, "printer", "max_velocity");
+    let accel = config.positive(log, "printer", "max_accel");
+    let z_velocity = config.positive(log, "printer", "max_z_velocity");
+    let z_accel = config.positive(log, "printer", "max_z_accel");
+    for (id, section) in AXES {
+        let axis = found.axis(id);
+        let own = |given: &Option<Figure>, all: &Option<Figure>| {
+            let all = all.clone();
+            match id {
+                AxisId::Z => {
+                    let other = || all.map(|it| it.named("as Z has none of its own: "));
+                    given.clone().or_else(other)
+                }
+                _ => all,
+            }
+        };
+        axis.rapid = own(&z_velocity, &velocity).map(|it| it.times(MIN));
+        axis.accel = own(&z_accel, &accel);
+        stepper(&config, axis, section, log);
+    }
+    extruder(&config, &mut found, log, velocity.as_ref(), accel.as_ref());
+    corners(&config, &mut found, log, accel.as_ref());
+    macros(&config, &mut found);
+    found
+}
+
+fn kinematics_of(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
+    let Some(item) = last(config.items, "printer", "kinematics") else {
+        return;
+    };
+    match item.value {
+        "cartesian" | "generic_cartesian" => {}
+        "corexy" | "corexz" | "hybrid_corexy" | "hybrid_corexz" => {
+            kinematics::core(found, log, &item.place, item.whole);
+        }
+        other => kinematics::refuse(log, &item.place, other),
+    }
+}
+
+/// Travel, homing and transmission of an axis.
+fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, section: &str, log: &mut Log) {
+    let min = config.number(log, section, "position_min");
+    let max = config.number(log, section, "position_max");
+    if let Some(max) = &max {
+        let min = min.map_or("0".to_owned(), |min| shown(min.value));
+        axis.comments
+            .push(format!("Travel: {min} to {} mm: {}", shown(max.value), max.source));
+    }
+    let first = config.positive(log, section, "homing_speed");
+    let first = first.unwrap_or(Figure::new(5.0, "homing_speed is 5 by default"));
+    let second = config.positive(log, section, "second_homing_speed");
+    axis.reference_speed = highest([Some(first), second].into_iter().flatten()).map(|it| it.times(MIN));
+    let probe = last(config.items, section, "endstop_pin").is_some_and(|it| it.value.contains("probe:"));
+    match config.number(log, section, "position_endstop") {
+        Some(_) if probe => {}
+        endstop => axis.reference = endstop,
+    }
+    if probe {
+        let note = "where the probe touches: Z after homing is not known";
+        axis.comments.push(format!("Its endstop is a probe, {note}."));
+    }
+    if let Some(turn) = config.positive(log, section, "rotation_distance") {
+        let gear = last(config.items, section, "gear_ratio");
+        let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
+        axis.drive.push(format!("Travel of a revolution: {} mm, {}{gear}", shown(turn.value), turn.source));
+    }
+    let more = (1..16).filter(|number| config.has(&format!("{section}{number}")));
+    axis.motors = 1 + more.count();
+}
+
+/// The extruder. Its own limits hold for moves of the extruder alone; next to the axes it
+/// follows them, as fast as the largest cross section permits: the higher counts.
+fn extruder(
+    config: &Config<'_, '_>,
+    found: &mut Found,
+    log: &mut Log,
+    velocity: Option<&Figure>,
+    accel: Option<&Figure>,
+) {
+    if !config.has("extruder") {
+        return;
+    }
+    let nozzle = config.positive(log, "extruder", "nozzle_diameter");
+    let filament = config.positive(log, "extruder", "filament_diameter");
+    let section = config.positive(log, "extruder", "max_extrude_cross_section");
+    let (Some(nozzle), Some(filament)) = (nozzle, filament) else {
+        found.axis(AxisId::E);
+        return;
+    };
+    let area = PI / 4.0 * filament.value * filament.value;
+    let usual = 4.0 * nozzle.value * nozzle.value / area;
+    let ratio = section.as_ref().map_or(usual, |it| it.value / area);
+    let with_axes = |all: Option<&Figure>, ratio: f64, why: &str| {
+        all.map(|all| Figure::new(all.value * ratio, format!("{why}: {} x {}", all.source, shown(round(ratio)))))
+    };
+    let mut limit = |key: &str, all: Option<&Figure>| {
+        let own = config.positive(log, "extruder", key);
+        let own = own.or_else(|| with_axes(all, usual, "by default"));
+        highest([own, with_axes(all, ratio, "next to the axes")].into_iter().flatten())
+    };
+    let rapid = limit("max_extrude_only_velocity", velocity).map(|it| it.times(MIN));
+    let accel = limit("max_extrude_only_accel", accel);
+    let axis = found.axis(AxisId::E);
+    (axis.rapid, axis.accel) = (rapid, accel);
+    if let Some(turn) = config.positive(log, "extruder", "rotation_distance") {
+        let gear = last(config.items, "extruder", "gear_ratio");
+        let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
+        axis.drive.push(format!("Travel of a revolution: {} mm, {}{gear}", shown(turn.value), turn.source));
+    }
+}
+
+/// Four digits of a ratio.
+fn round(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
+
+fn corners(config: &Config<'_, '_>, found: &mut Found, log: &mut Log, accel: Option<&Figure>) {
+    let ratio = config.number(log, "printer", "minimum_cruise_ratio");
+    let to_decel = config.positive(log, "printer", "max_accel_to_decel");
+    let ratio = ratio.or_else(|| {
+        let (to_decel, accel) = (to_decel?, accel?);
+        let ratio = 1.0 - (to_decel.value / accel.value).min(1.0);
+        Some(Figure::new(ratio, to_decel.source))
+    });
+    if let Some(ratio) = ratio {
+        if (0.0..1.0).contains(&ratio.value) {
+            found.look_ahead(format!("min_cruise_ratio = {}", shown(ratio.value)), ratio.source);
+        } else if let Some(item) = last(config.items, "printer", "minimum_cruise_ratio") {
+            let message = format!("a cruise ratio of {} is none", ratio.value);
+            log.error(&item.place, message, "it is a share from 0 to below 1");
+        }
+    }
+    if let Some(arc) = config.positive(log, "gcode_arcs", "resolution") {
+        found.look_ahead(format!("chords = {{ max_mm = {} }}", shown(arc.value)), arc.source);
+    }
+    let mut fields = Vec::new();
+    if let Some(speed) = config.number(log, "printer", "square_corner_velocity") {
+        fields.push(entry(format!("corner_mm_s = {}", shown(speed.value)), speed.source));
+    }
+    if let Some(step) = config.number(log, "extruder", "instantaneous_corner_velocity") {
+        if fields.is_empty() {
+            fields.push(entry("corner_mm_s = 5", "as Klipper has it by default"));
+        }
+        fields.push(entry(format!("extruder_step_mm_s = {}", shown(step.value)), step.source));
+    }
+    if !fields.is_empty() {
+        found.corner = Some(("square_corner", fields));
+    }
+    retract(config, found, log);
+}
+
+fn retract(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
+    let section = "firmware_retraction";
+    if !config.has(section) {
+        return;
+    }
+    let mut value = |key: &str, otherwise: f64| {
+        config.number(log, section, key).map_or(otherwise, |it| it.value.max(0.0))
+    };
+    let [length, speed, extra, back] = [
+        value("retract_length", 0.0),
+        value("retract_speed", 20.0),
+        value("unretract_extra_length", 0.0),
+        value("unretract_speed", 10.0),
+    ];
+    if speed > 0.0 && back > 0.0 {
+        let field = format!(
+            "retract = {{ length_mm = {}, speed_mm_s = {}, extra_mm = {}, recover_mm_s = {} }}",
+            shown(length),
+            shown(speed),
+            shown(extra),
+            shown(back)
+        );
+        found.language(field, "[firmware_retraction]");
+    }
+}
+
+/// Programs call macros, whose commands stand in the configuration.
+fn macros(config: &Config<'_, '_>, found: &mut Found) {
+    let mut names: Vec<String> = Vec::new();
+    for item in config.items {
+        if let Some(name) = item.section.strip_prefix("gcode_macro ") {
+            let name = name.trim().to_ascii_uppercase();
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    if !names.is_empty() {
+        let list = names.join(", ");
+        found.remarks.push(format!(
+            "Macros ({list}): what a program calls of them is written into a file of its name, or \
+             listed under `ignored_macros` or `unknown_moves` in [language]"
+        ));
+    }
+}

@@ -1,0 +1,303 @@
+//! LinuxCNC: the INI file, with scales and limits of its HAL files where those are there.
+//!
+//! Source: LinuxCNC documentation, "INI Configuration", "G-Code Quick Reference". Speeds are
+//! in machine units per second; `[AXIS_n]` of a number is that of versions before 2.8.
+
+mod hal;
+
+use gwatt_machine::AxisId;
+
+use crate::found::{Build, Figure, Found, entry, highest, shown};
+use crate::ini::{Item, Style, items, last};
+use crate::kinematics;
+use crate::near::{Job, Near};
+use crate::text::{File, Log};
+use hal::Hal;
+
+/// How its files are written.
+const STYLE: Style = Style {
+    separators: &['='],
+    saved: None,
+    inline: &['#', ';'],
+};
+
+const MIN: f64 = 60.0;
+const INCH: f64 = 25.4;
+
+/// The file that a line includes.
+pub(crate) fn include(line: &str) -> Option<&str> {
+    let name = line.strip_prefix("#INCLUDE")?.trim();
+    (!name.is_empty()).then_some(name)
+}
+
+/// The values, and how many millimetres and degrees a unit of the machine has.
+struct Config<'j> {
+    items: Vec<Item<'j>>,
+    linear: f64,
+    angular: f64,
+    hal: Hal,
+}
+
+impl Config<'_> {
+    fn item(&self, sections: &[String], key: &str) -> Option<&Item<'_>> {
+        sections.iter().find_map(|section| last(&self.items, section, key))
+    }
+
+    fn positive(&self, log: &mut Log, sections: &[String], key: &str, factor: f64) -> Option<Figure> {
+        let item = self.item(sections, key)?;
+        let value = log.positive(&item.place, item.value, key)?;
+        Some(Figure::new(value * factor, self.source(item)))
+    }
+
+    fn number(&self, log: &mut Log, sections: &[String], key: &str, factor: f64) -> Option<Figure> {
+        let item = self.item(sections, key)?;
+        let value = log.number(&item.place, item.value)?;
+        Some(Figure::new(value * factor, self.source(item)))
+    }
+
+    fn source(&self, item: &Item<'_>) -> String {
+        format!("[{}] {}", item.section, item.source())
+    }
+}
+
+fn section(name: &str) -> Vec<String> {
+    vec![name.to_owned()]
+}
+
+/// Reads the INI file; HAL files that it names are looked for next to it.
+pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
+    let items = items(job, STYLE);
+    let mut found = Found::new("linuxcnc", "Machine under LinuxCNC", Build::Screws);
+    if let Some(name) = last(&items, "EMC", "MACHINE").filter(|it| !it.value.is_empty()) {
+        name.value.clone_into(&mut found.name);
+    }
+    let files: Vec<File> = items
+        .iter()
+        .filter(|it| it.section == "HAL" && matches!(it.key.as_str(), "HALFILE" | "POSTGUI_HALFILE"))
+        .filter_map(|it| it.value.split_whitespace().next())
+        .filter(|name| !name.starts_with("LIB:") && name.ends_with(".hal"))
+        .flat_map(|name| near.files(job.name(), name))
+        .collect();
+    let linear = units(&items, log, "LINEAR_UNITS");
+    let angular = units(&items, log, "ANGULAR_UNITS");
+    let config = Config {
+        items,
+        linear,
+        angular,
+        hal: Hal::new(&files, log),
+    };
+    kinematics_of(&config, &mut found, log);
+    for (id, joints) in coordinates(&config) {
+        axis(&config, &mut found, log, id, &joints);
+    }
+    trajectory(&config, &mut found, log);
+    start_up(&config, &mut found, log);
+    corners(&config, &mut found, log);
+    for name in ["SPINDLE_0", "SPINDLE"] {
+        if found.spindle_rpm.is_none() {
+            found.spindle_rpm = config.positive(log, &section(name), "MAX_FORWARD_VELOCITY", 1.0);
+        }
+    }
+    found
+}
+
+/// Millimetres, or degrees, of a unit.
+fn units(items: &[Item<'_>], log: &mut Log, key: &str) -> f64 {
+    let Some(item) = last(items, "TRAJ", key) else {
+        return 1.0;
+    };
+    match item.value.to_ascii_lowercase().as_str() {
+        "mm" | "metric" | "degree" | "degrees" | "deg" => 1.0,
+        "inch" | "in" | "imperial" => INCH,
+        "cm" => 10.0,
+        "rad" | "radian" => 180.0 / std::f64::consts::PI,
+        "grad" | "gon" => 0.9,
+        other => match other.parse::<f64>() {
+            // Units per millimetre, or per degree.
+            Ok(number) if number > 0.0 && number.is_finite() => 1.0 / number,
+            _ => {
+                let message = format!("`{}` is no unit", item.value);
+                log.error(&item.place, message, "write mm or inch, degree or rad");
+                1.0
+            }
+        },
+    }
+}
+
+fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
+    let Some(item) = last(&config.items, "KINS", "KINEMATICS") else {
+        return;
+    };
+    match item.value.split_whitespace().next().unwrap_or("") {
+        "trivkins" | "" => {}
+        "corexykins" => kinematics::core(found, log, &item.place, item.whole),
+        other => kinematics::refuse(log, &item.place, other),
+    }
+}
+
+/// The letters of the axes, each with its joints in the order of `coordinates=`.
+fn coordinates(config: &Config<'_>) -> Vec<(AxisId, Vec<usize>)> {
+    let kins = last(&config.items, "KINS", "KINEMATICS").and_then(|it| {
+        let words = it.value.split_whitespace();
+        words.filter_map(|word| word.strip_prefix("coordinates=")).last()
+    });
+    let named = kins.or_else(|| last(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
+    let mut axes: Vec<(AxisId, Vec<usize>)> = Vec::new();
+    let letters = named.unwrap_or("XYZ").bytes().filter(u8::is_ascii_alphabetic);
+    for (joint, letter) in letters.enumerate() {
+        let Some(id) = AxisId::from_letter(letter.to_ascii_uppercase()) else {
+            continue;
+        };
+        match axes.iter_mut().find(|(known, _)| *known == id) {
+            Some((_, joints)) => joints.push(joint),
+            None => axes.push((id, vec![joint])),
+        }
+    }
+    axes
+}
+
+fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joints: &[usize]) {
+    let letter = id.letter() as char;
+    let joint = joints.first().copied().unwrap_or(0);
+    // Before 2.8 the number is that of the letter in XYZABCUVW.
+    let sections = [
+        format!("AXIS_{letter}"),
+        format!("JOINT_{joint}"),
+        format!("AXIS_{}", id as usize),
+    ];
+    let kind = config.item(&sections, "TYPE").map(|it| it.value.to_ascii_uppercase());
+    let by_letter = matches!(id, AxisId::A | AxisId::B | AxisId::C);
+    let rotary = kind.map_or(by_letter, |kind| kind == "ANGULAR");
+    let unit = if rotary { config.angular } else { config.linear };
+    let mut rapid = config.positive(log, &sections, "MAX_VELOCITY", unit * MIN);
+    let accel = config.positive(log, &sections, "MAX_ACCELERATION", unit);
+    // The path is never faster, and so is none of its axes.
+    let top = traj_velocity(config, log).filter(|_| !rotary);
+    if let (Some(own), Some(top)) = (&rapid, top)
+        && top.value < own.value
+    {
+        rapid = Some(Figure::new(top.value, format!("{}, below {}", top.source, own.source)));
+    }
+    let [min, max] = ["MIN_LIMIT", "MAX_LIMIT"].map(|key| config.number(log, &sections, key, unit));
+    let home = config.number(log, &sections[1..], "HOME", unit);
+    let search = config.number(log, &sections[1..], "HOME_SEARCH_VEL", unit * MIN);
+    let scales = ["STEP_SCALE", "SCALE", "INPUT_SCALE", "OUTPUT_SCALE"];
+    let scale = scales.iter().find_map(|key| config.item(&sections, key).map(|it| config.source(it)));
+    let to = found.axis(id);
+    to.rotary = rotary;
+    (to.rapid, to.accel) = (rapid, accel);
+    if let (Some(min), Some(max)) = (min, max) {
+        to.comments.push(format!("Travel: {} to {}: {}, {}", shown(min.value), shown(max.value), min.source, max.source));
+    }
+    if let Some(home) = home {
+        let search = search.map_or(String::new(), |it| format!(", {} per minute", shown(it.value.abs())));
+        to.comments.push(format!(
+            "Home: {}{search}. G28 goes to the place in #5161 and on, at the rapid speed.",
+            home.source
+        ));
+    }
+    if let Some(scale) = scale {
+        to.drive.push(format!("Steps or counts per unit of travel: {scale}"));
+    }
+    for joint in joints {
+        to.drive.extend(config.hal.of(*joint));
+    }
+    to.motors = joints.len();
+}
+
+/// The largest speed along the path: before 2.8 that is `MAX_VELOCITY`, and the other one is
+/// the screen's.
+fn traj_velocity(config: &Config<'_>, log: &mut Log) -> Option<Figure> {
+    let traj = section("TRAJ");
+    let keys = ["MAX_LINEAR_VELOCITY", "MAX_VELOCITY"];
+    let found = keys.map(|key| config.positive(log, &traj, key, config.linear * MIN));
+    highest(found.into_iter().flatten())
+}
+
+fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
+    if let Some(top) = traj_velocity(config, log) {
+        found.path(format!("max_feed_mm_min = {}", shown(top.value)), top.source);
+    }
+    let left = [
+        ("MAX_LINEAR_ACCELERATION", "acceleration along the path"),
+        ("ARC_BLEND_ENABLE", "blend arcs"),
+        ("ARC_BLEND_FALLBACK_ENABLE", "blends where arcs do not fit"),
+        ("ARC_BLEND_RAMP_FREQ", "frequency of ramps"),
+        ("PLANNER_TYPE", "planner with limits of jerk"),
+        ("MAX_LINEAR_JERK", "jerk along the path"),
+    ];
+    for (key, what) in left {
+        let Some(item) = last(&config.items, "TRAJ", key) else {
+            continue;
+        };
+        if (key == "ARC_BLEND_ENABLE" && item.value == "1") || (key.ends_with("_ENABLE") && key.contains("FALLBACK") && item.value == "0") {
+            continue;
+        }
+        found.remarks.push(format!("{} ({what})", config.source(item)));
+        let help = "gwatt plans as LinuxCNC 2.9 does without it; --certificate robust holds for any blending";
+        log.warning(&item.place, format!("{key}, {what}, is not taken over"), help);
+    }
+}
+
+/// `RS274NGC_STARTUP_CODE`: units, centres, tolerance.
+fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
+    let item = ["RS274NGC_STARTUP_CODE", "STARTUP_CODE"].iter().find_map(|key| {
+        let own = last(&config.items, "RS274NGC", key);
+        own.or_else(|| last(&config.items, "EMC", key))
+    });
+    let code = item.map_or(String::new(), |it| it.value.to_ascii_uppercase());
+    let words: Vec<&str> = code.split_whitespace().collect();
+    let has = |word: &str| words.contains(&word);
+    let source = item.map_or(String::new(), |it| config.source(it));
+    let inch = has("G20") || (config.linear == INCH && !has("G21"));
+    if inch {
+        let units = last(&config.items, "TRAJ", "LINEAR_UNITS").map(|it| config.source(it));
+        let source = if has("G20") { source.clone() } else { units.unwrap_or_default() };
+        found.language("units = \"inch\"", source);
+    }
+    if has("G90.1") {
+        found.language("arc_centre = \"absolute\"", source.clone());
+    }
+    if let Some(at) = words.iter().position(|word| *word == "G64") {
+        let tolerance = words.get(at + 1).and_then(|word| word.strip_prefix('P')).map(str::parse::<f64>);
+        let unit = if inch { INCH } else { 1.0 };
+        match (tolerance, item) {
+            (None, _) => found.language("power_on_tolerance_mm = 0", source),
+            (Some(Ok(value)), _) if value >= 0.0 => {
+                found.language(format!("power_on_tolerance_mm = {}", shown(value * unit)), source);
+            }
+            (_, Some(item)) => log.error(
+                &item.place,
+                "the tolerance of G64 cannot be read".to_owned(),
+                "write it as G64 P0.01",
+            ),
+            _ => {}
+        }
+    }
+    for word in ["G61", "G61.1"] {
+        if has(word) {
+            let note = format!("Start-up code {word}: programs count as in the mode that they select, else in G64");
+            found.remarks.push(note);
+        }
+    }
+}
+
+fn corners(config: &Config<'_>, found: &mut Found, log: &mut Log) {
+    let traj = section("TRAJ");
+    if let Some(depth) = config.positive(log, &traj, "ARC_BLEND_OPTIMIZATION_DEPTH", 1.0) {
+        found.look_ahead(format!("blocks = {}", shown(depth.value)), depth.source);
+    }
+    let mut fields = Vec::new();
+    if let Some(period) = config.positive(log, &section("EMCMOT"), "SERVO_PERIOD", 1e-9) {
+        fields.push(entry(format!("servo_period_s = {}", shown(period.value)), period.source));
+    }
+    if let Some(ratio) = config.positive(log, &traj, "ARC_BLEND_KINK_RATIO", 1.0) {
+        fields.push(entry(format!("kink_ratio = {}", shown(ratio.value)), ratio.source));
+    }
+    if let Some(cycles) = config.positive(log, &traj, "ARC_BLEND_GAP_CYCLES", 1.0) {
+        fields.push(entry(format!("gap_cycles = {}", shown(cycles.value)), cycles.source));
+    }
+    if !fields.is_empty() {
+        found.corner = Some(("linuxcnc", fields));
+    }
+}

@@ -1,0 +1,338 @@
+//! Marlin: `Configuration.h` and `Configuration_adv.h`.
+//!
+//! Which of the compiler's branches hold is not followed: of several values of a name the
+//! highest counts. Source: the files' own comments, and Marlin's `planner.cpp` for
+//! `S_CURVE_ACCELERATION`, whose speed over time is the quintic `6t⁵ − 15t⁴ + 10t³`: its
+//! steepest slope, at the middle, is 15/8 of the mean.
+
+use gwatt_machine::{ALL_AXES, AxisId};
+
+use crate::expression;
+use crate::found::{Build, Figure, Found, FoundAxis, entry, shown};
+use crate::kinematics;
+use crate::marlin::classic;
+use crate::near::Job;
+use crate::text::{Log, Place};
+
+/// Steepest slope of the S-curve by its mean.
+const S_CURVE: f64 = 1.875;
+/// Names refer to each other no deeper than this.
+const DEPTH: u32 = 16;
+
+/// Other kinematics than Cartesian and Core.
+const OTHERS: [&str; 9] = [
+    "DELTA",
+    "MORGAN_SCARA",
+    "MP_SCARA",
+    "AXEL_TPARA",
+    "POLAR",
+    "POLARGRAPH",
+    "MAKERARM_SCARA",
+    "SCARA",
+    "FOAMCUTTER_XYUV",
+];
+
+/// A `#define` that is in force.
+struct Define<'t> {
+    name: &'t str,
+    value: &'t str,
+    whole: &'t str,
+    place: Place<'t>,
+}
+
+impl Define<'_> {
+    fn source(&self) -> String {
+        self.place.source(self.whole.trim_start_matches("#define").trim())
+    }
+}
+
+/// All defines.
+struct Defines<'t> {
+    list: Vec<Define<'t>>,
+    /// Names that stand there commented out.
+    off: Vec<&'t str>,
+}
+
+impl<'t> Defines<'t> {
+    fn new(job: &'t Job) -> Self {
+        let mut found = Self {
+            list: Vec::new(),
+            off: Vec::new(),
+        };
+        for (_, place) in job.places() {
+            let line = place.line().trim();
+            if let Some(rest) = line.strip_prefix("//") {
+                let rest = rest.trim_start().strip_prefix("#define ");
+                found.off.extend(rest.and_then(|rest| rest.split_whitespace().next()));
+                continue;
+            }
+            let code = line.split("//").next().unwrap_or(line);
+            let code = code.split("/*").next().unwrap_or(code).trim_end();
+            let Some(rest) = code.strip_prefix("#define") else {
+                continue;
+            };
+            let Some(rest) = rest.strip_prefix([' ', '\t']).map(str::trim_start) else {
+                continue;
+            };
+            let (name, value) = rest.split_once([' ', '\t']).unwrap_or((rest, ""));
+            let value = value.trim();
+            found.list.push(Define {
+                name,
+                value,
+                whole: code,
+                place: place.of(if value.is_empty() { name } else { value }),
+            });
+        }
+        found
+    }
+
+    fn all<'d>(&'d self, name: &'d str) -> impl Iterator<Item = &'d Define<'t>> {
+        self.list.iter().filter(move |define| define.name == name)
+    }
+
+    fn is_on(&self, name: &str) -> bool {
+        self.all(name).next().is_some_and(|it| it.value != "false" && it.value != "0")
+    }
+
+    /// The value of an expression.
+    fn eval(&self, text: &str, depth: u32) -> Option<f64> {
+        if depth > DEPTH {
+            return None;
+        }
+        let name = |name: &str, depth: u32| {
+            let values = self.all(name).filter_map(|it| self.eval(it.value, depth));
+            values.fold(None, |best: Option<f64>, value| Some(best.map_or(value, |best| best.max(value))))
+        };
+        expression::value(text, &name, depth)
+    }
+
+    /// The highest value of a name; reports one that cannot be read.
+    fn figure(&self, log: &mut Log, name: &str) -> Option<Figure> {
+        let mut best: Option<Figure> = None;
+        for define in self.all(name) {
+            let Some(value) = self.eval(define.value, 0) else {
+                unreadable(log, define);
+                continue;
+            };
+            if best.as_ref().is_none_or(|best| value > best.value) {
+                best = Some(Figure::new(value, define.source()));
+            }
+        }
+        best
+    }
+
+    /// The entries of a list in braces.
+    fn list(&self, log: &mut Log, name: &str) -> Option<(Vec<f64>, String)> {
+        let define = self.all(name).next()?;
+        let inner = define.value.strip_prefix('{').and_then(|it| it.strip_suffix('}'));
+        let read = |inner: &str| {
+            let entries = inner.split(',').map(|entry| self.eval(entry, 0));
+            entries.collect::<Option<Vec<f64>>>()
+        };
+        let values = inner.and_then(read);
+        if values.is_none() {
+            unreadable(log, define);
+        }
+        Some((values?, define.source()))
+    }
+}
+
+fn unreadable(log: &mut Log, define: &Define<'_>) {
+    let message = format!("`{}` cannot be read", define.value);
+    log.error(&define.place, message, "write it as a number, or a sum of numbers, and import again");
+}
+
+/// Reads the configuration.
+pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
+    let defines = Defines::new(job);
+    let mut found = Found::new("marlin", "Printer under Marlin", Build::Belts);
+    if let Some(name) = defines.all("CUSTOM_MACHINE_NAME").next() {
+        let text = name.value.trim_matches('"').trim();
+        if !text.is_empty() {
+            text.clone_into(&mut found.name);
+        }
+    }
+    for name in ["COREXY", "COREXZ", "COREYZ", "COREYX", "COREZX", "COREZY", "MARKFORGED_XY", "MARKFORGED_YX"] {
+        if let Some(define) = defines.all(name).next() {
+            kinematics::core(&mut found, log, &define.place, define.whole);
+        }
+    }
+    for name in OTHERS {
+        if let Some(define) = defines.all(name).next() {
+            kinematics::refuse(log, &define.place, name);
+        }
+    }
+    axes(&defines, &mut found, log);
+    path(&defines, &mut found, log);
+    corners(&defines, &mut found, log);
+    found
+}
+
+/// Which axis each entry of a list is for.
+fn letters(defines: &Defines<'_>, entries: usize) -> Vec<AxisId> {
+    let mut list = vec![AxisId::X, AxisId::Y, AxisId::Z];
+    for name in ["AXIS4_NAME", "AXIS5_NAME", "AXIS6_NAME"] {
+        let letter = defines.all(name).next().map(|it| it.value.trim_matches('\'').as_bytes());
+        let driven = defines.all(match name {
+            "AXIS4_NAME" => "I_DRIVER_TYPE",
+            "AXIS5_NAME" => "J_DRIVER_TYPE",
+            _ => "K_DRIVER_TYPE",
+        });
+        if let (Some([letter]), true) = (letter, driven.count() > 0) {
+            list.extend(AxisId::from_letter(*letter));
+        }
+    }
+    list.truncate(entries);
+    // Extruders come last; several have one value or one each.
+    while list.len() < entries {
+        list.push(AxisId::E);
+    }
+    list
+}
+
+fn axes(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
+    let mut put = |name: &str, factor: f64, set: fn(&mut FoundAxis) -> &mut Option<Figure>| {
+        let Some((values, source)) = defines.list(log, name) else {
+            return;
+        };
+        for (id, value) in letters(defines, values.len()).into_iter().zip(values) {
+            let slot = set(found.axis(id));
+            if slot.as_ref().is_none_or(|old| value * factor > old.value) {
+                *slot = Some(Figure::new(value * factor, source.clone()));
+            }
+        }
+    };
+    put("DEFAULT_MAX_FEEDRATE", 60.0, |axis| &mut axis.rapid);
+    put("DEFAULT_MAX_ACCELERATION", 1.0, |axis| &mut axis.accel);
+    let homing = defines.list(log, "HOMING_FEEDRATE_MM_M");
+    let old = ["HOMING_FEEDRATE_XY", "HOMING_FEEDRATE_XY", "HOMING_FEEDRATE_Z"];
+    for (at, (id, old)) in [AxisId::X, AxisId::Y, AxisId::Z].into_iter().zip(old).enumerate() {
+        let speed = match &homing {
+            Some((values, source)) => values.get(at).map(|value| Figure::new(*value, source.clone())),
+            None => defines.figure(log, old),
+        };
+        place(defines, found, log, id);
+        if let Some(axis) = found.known(id) {
+            axis.reference_speed = speed.filter(|it| it.value > 0.0);
+        }
+    }
+    for (id, axis) in ALL_AXES.into_iter().zip(&mut found.axes) {
+        let Some(axis) = axis else { continue };
+        for figure in [&axis.rapid, &axis.accel] {
+            if let Some(bad) = figure.as_ref().filter(|it| it.value <= 0.0) {
+                let letter = id.letter() as char;
+                let message = format!("a limit of axis {letter} is not above 0: {}", bad.source);
+                log.whole(job_name(defines), message, "a value above 0 is needed");
+            }
+        }
+        if defines.is_on("S_CURVE_ACCELERATION") {
+            let source = defines.all("S_CURVE_ACCELERATION").next().map(Define::source);
+            let source = format!("15/8 at the middle of its curve: {}", source.unwrap_or_default());
+            axis.servo_factor = Some(Figure::new(S_CURVE, source));
+        }
+    }
+}
+
+fn job_name<'d>(defines: &'d Defines<'_>) -> &'d str {
+    defines.list.first().map_or("", |define| define.place.file())
+}
+
+/// Travel, and where homing ends.
+fn place(defines: &Defines<'_>, found: &mut Found, log: &mut Log, id: AxisId) {
+    let letter = id.letter() as char;
+    let [min, max] = ["MIN_POS", "MAX_POS"].map(|end| defines.figure(log, &format!("{letter}_{end}")));
+    let direction = defines.figure(log, &format!("{letter}_HOME_DIR"));
+    let manual = defines.figure(log, &format!("MANUAL_{letter}_HOME_POS"));
+    let probed = id == AxisId::Z
+        && ["USE_PROBE_FOR_Z_HOMING", "Z_MIN_PROBE_USES_Z_MIN_ENDSTOP_PIN", "Z_SAFE_HOMING"]
+            .into_iter()
+            .any(|name| defines.is_on(name));
+    let moved = ["BED_CENTER_AT_0_0", "HOMING_BACKOFF_POST_MM"].into_iter().any(|name| defines.is_on(name));
+    let Some(axis) = found.known(id) else { return };
+    if let (Some(min), Some(max)) = (&min, &max) {
+        axis.comments.push(format!(
+            "Travel: {} to {} mm: {}, {}",
+            shown(min.value),
+            shown(max.value),
+            min.source,
+            max.source
+        ));
+    }
+    let end = direction.and_then(|direction| if direction.value < 0.0 { min } else { max });
+    let home = manual.or(end);
+    if probed || moved {
+        let why = "not if a probe, BED_CENTER_AT_0_0 or HOMING_BACKOFF_POST_MM ends it elsewhere";
+        let home = home.map(|home| entry(format!("reference_mm = {}", shown(home.value)), why));
+        axis.maybe.extend(home);
+    } else {
+        axis.reference = home;
+    }
+}
+
+fn path(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
+    let mut parts = Vec::new();
+    let mut sources = Vec::new();
+    for (name, define) in [
+        ("print", "DEFAULT_ACCELERATION"),
+        ("travel", "DEFAULT_TRAVEL_ACCELERATION"),
+        ("retract", "DEFAULT_RETRACT_ACCELERATION"),
+    ] {
+        if let Some(figure) = defines.figure(log, define).filter(|it| it.value > 0.0) {
+            parts.push(format!("{name} = {}", shown(figure.value)));
+            sources.push(figure.source);
+        }
+    }
+    if !parts.is_empty() {
+        found.path(format!("accel_mm_s2 = {{ {} }}", parts.join(", ")), sources.join(", "));
+    }
+    if defines.off.contains(&"SLOWDOWN") && !defines.is_on("SLOWDOWN") {
+        found.path("shortest_at_feed_s = 0", "SLOWDOWN is off");
+    } else if let Some(time) = defines.figure(log, "DEFAULT_MINSEGMENTTIME") {
+        found.path(format!("shortest_at_feed_s = {}", shown(time.value.max(0.0) * 1e-6)), time.source);
+    }
+}
+
+fn corners(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
+    if let Some(blocks) = defines.figure(log, "BLOCK_BUFFER_SIZE").filter(|it| it.value > 1.0) {
+        found.look_ahead(format!("blocks = {}", shown(blocks.value - 1.0)), blocks.source);
+    }
+    let mut parts = Vec::new();
+    let mut sources = Vec::new();
+    for (field, name) in [
+        ("max_mm", "MAX_ARC_SEGMENT_MM"),
+        ("max_mm", "MM_PER_ARC_SEGMENT"),
+        ("min_mm", "MIN_ARC_SEGMENT_MM"),
+        ("per_circle", "MIN_CIRCLE_SEGMENTS"),
+        ("per_second", "ARC_SEGMENTS_PER_SEC"),
+    ] {
+        let known = parts.iter().any(|part: &String| part.starts_with(field));
+        if let Some(figure) = defines.figure(log, name).filter(|it| it.value > 0.0 && !known) {
+            parts.push(format!("{field} = {}", shown(figure.value)));
+            sources.push(figure.source);
+        }
+    }
+    if !parts.is_empty() {
+        found.look_ahead(format!("chords = {{ {} }}", parts.join(", ")), sources.join(", "));
+    }
+    let deviation = ["JUNCTION_DEVIATION_MM", "JUNCTION_DEVIATION_FACTOR"].map(|name| defines.figure(log, name));
+    let deviation = deviation.into_iter().flatten().next().filter(|it| it.value > 0.0);
+    let names_classic = defines.is_on("CLASSIC_JERK") || defines.off.contains(&"CLASSIC_JERK");
+    let old = !names_classic && !defines.is_on("JUNCTION_DEVIATION");
+    if defines.is_on("CLASSIC_JERK") || old {
+        let mut steps = Vec::new();
+        for id in ALL_AXES {
+            let name = format!("DEFAULT_{}JERK", id.letter() as char);
+            if let Some(step) = defines.figure(log, &name) {
+                steps.push((id, step));
+            }
+        }
+        if !steps.is_empty() {
+            found.corner = Some(("classic_jerk", vec![classic(found, steps)]));
+            return;
+        }
+    }
+    if let Some(deviation) = deviation {
+        let field = format!("deviation_mm = {}", shown(deviation.value));
+        found.corner = Some(("junction_deviation", vec![entry(field, deviation.source)]));
+    }
+}

@@ -1,0 +1,238 @@
+//! RepRapFirmware: `config.g` with the files that M98 calls there.
+//!
+//! Source: Duet documentation, "GCode dictionary": M201, M203, M204, M208, M566, M574, M584,
+//! M595, M667, M669. Speeds are in mm/min there.
+
+use gwatt_machine::AxisId;
+
+use crate::found::{Build, Figure, Found, FoundAxis, entry, shown};
+use crate::kinematics;
+use crate::near::Job;
+use crate::text::Log;
+use crate::words::{Command, Word, commands};
+
+/// Millimetres of an inch.
+const INCH: f64 = 25.4;
+
+/// The file that M98 calls.
+pub(crate) fn include(line: &str) -> Option<&str> {
+    let rest = line.trim_start();
+    let rest = rest.strip_prefix("M98")?.trim_start().strip_prefix(['P', 'p'])?;
+    let name = rest.strip_prefix('"')?.split('"').next()?;
+    let name = name.rsplit(['/', ':']).next()?;
+    (!name.is_empty()).then_some(name)
+}
+
+/// What the last commands say of the machine as a whole.
+#[derive(Default)]
+struct Settings {
+    steps: Vec<(AxisId, Figure)>,
+    all_kinds: Option<Figure>,
+    print: Option<Figure>,
+    travel: Option<Figure>,
+    rotary: Vec<(AxisId, bool)>,
+    ends: Vec<(AxisId, [Option<f64>; 2])>,
+}
+
+/// Reads the configuration.
+pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
+    let mut found = Found::new("reprap", "Printer under RepRapFirmware", Build::Belts);
+    let mut settings = Settings::default();
+    let mut unit = 1.0;
+    for (_, place) in job.places() {
+        for command in commands(&place) {
+            match command.code.as_str() {
+                "G20" => unit = INCH,
+                "G21" => unit = 1.0,
+                _ => take(&mut found, &mut settings, log, &command, unit),
+            }
+        }
+    }
+    finish(&mut found, settings);
+    found
+}
+
+fn take(found: &mut Found, settings: &mut Settings, log: &mut Log, command: &Command<'_>, unit: f64) {
+    match command.code.as_str() {
+        "M203" => axes(found, log, command, unit, |axis| &mut axis.rapid),
+        "M201" => axes(found, log, command, unit, |axis| &mut axis.accel),
+        "M204" => {
+            for (letter, slot) in [('P', &mut settings.print), ('T', &mut settings.travel)] {
+                if let Some(word) = command.word(letter)
+                    && let Some(value) = log.positive(&word.place, word.text, "an acceleration")
+                {
+                    *slot = Some(Figure::new(value * unit, command.source(word)));
+                }
+            }
+        }
+        "M566" => steps(settings, log, command, unit / 60.0),
+        "M205" => steps(settings, log, command, unit),
+        "M208" => limits(settings, log, command, unit),
+        "M574" => endstops(found, settings, command),
+        "M584" => drives(found, settings, command),
+        "M595" => {
+            let queue = command.word('P').filter(|_| command.word('Q').is_none_or(|q| q.text == "0"));
+            if let Some(word) = queue
+                && let Some(value) = log.positive(&word.place, word.text, "a queue")
+                && value >= 2.0
+            {
+                found.look_ahead(format!("blocks = {}", shown(value - 1.0)), command.source(word));
+            }
+        }
+        "M665" => kinematics::refuse(log, &command.place, "delta (M665)"),
+        "M669" | "M667" => kinematics_of(found, log, command),
+        _ => {}
+    }
+}
+
+/// The largest of a list of numbers, as several extruders have.
+fn largest(log: &mut Log, command: &Command<'_>, word: &Word<'_>) -> Option<Figure> {
+    let mut best: Option<f64> = None;
+    for piece in word.text.split(':') {
+        let what = format!("{} of {}", command.code, word.letter);
+        let value = log.positive(&word.place.of(piece), piece, &what)?;
+        best = Some(best.map_or(value, |best| best.max(value)));
+    }
+    best.map(|best| Figure::new(best, command.source(word)))
+}
+
+fn axes(
+    found: &mut Found,
+    log: &mut Log,
+    command: &Command<'_>,
+    factor: f64,
+    slot: fn(&mut FoundAxis) -> &mut Option<Figure>,
+) {
+    for word in &command.words {
+        if let Some(id) = AxisId::from_letter(word.letter as u8)
+            && let Some(figure) = largest(log, command, word)
+        {
+            *slot(found.axis(id)) = Some(figure.times(factor));
+        }
+    }
+}
+
+fn steps(settings: &mut Settings, log: &mut Log, command: &Command<'_>, factor: f64) {
+    for word in &command.words {
+        if word.letter == 'P' && command.code == "M566" {
+            if let Some(value) = log.number(&word.place, word.text) {
+                settings.all_kinds = Some(Figure::new(value, command.source(word)));
+            }
+        } else if let Some(id) = AxisId::from_letter(word.letter as u8)
+            && let Some(figure) = largest(log, command, word)
+        {
+            settings.steps.retain(|(other, _)| *other != id);
+            settings.steps.push((id, figure.times(factor)));
+        }
+    }
+}
+
+/// M208: `S1` minima, else maxima; `X0:200` both.
+fn limits(settings: &mut Settings, log: &mut Log, command: &Command<'_>, unit: f64) {
+    let minima = command.word('S').is_some_and(|word| word.text == "1");
+    for word in &command.words {
+        let Some(id) = AxisId::from_letter(word.letter as u8) else {
+            continue;
+        };
+        let mut values = word.text.split(':').map(|piece| log.number(&word.place.of(piece), piece));
+        let first = values.next().flatten().map(|value| value * unit);
+        let second = values.next().flatten().map(|value| value * unit);
+        let known = settings.ends.iter().position(|(other, _)| *other == id);
+        let at = known.unwrap_or(settings.ends.len());
+        if known.is_none() {
+            settings.ends.push((id, [None; 2]));
+        }
+        let Some((_, ends)) = settings.ends.get_mut(at) else {
+            continue;
+        };
+        match (second, minima) {
+            (Some(second), _) => *ends = [first, Some(second)],
+            (None, true) => ends[0] = first,
+            (None, false) => ends[1] = first,
+        }
+    }
+}
+
+/// Where an endstop is; homing files may go on from there, so it is shown only.
+fn endstops(found: &mut Found, settings: &Settings, command: &Command<'_>) {
+    for word in &command.words {
+        let Some(id) = AxisId::from_letter(word.letter as u8) else {
+            continue;
+        };
+        let end = match word.text {
+            "1" => 0,
+            "2" => 1,
+            _ => continue,
+        };
+        let ends = settings.ends.iter().find(|(other, _)| *other == id);
+        if let (Some(axis), Some(Some(place))) = (found.known(id), ends.map(|(_, ends)| ends[end])) {
+            let why = format!("if the homing file ends there: {}", command.source(word));
+            axis.maybe.push(entry(format!("reference_mm = {}", shown(place)), why));
+        }
+    }
+}
+
+/// M584: drivers of each axis, and which turn.
+fn drives(found: &mut Found, settings: &mut Settings, command: &Command<'_>) {
+    let turns = command.word('R').map(|word| word.text == "1");
+    for word in &command.words {
+        let Some(id) = AxisId::from_letter(word.letter as u8) else {
+            continue;
+        };
+        if id != AxisId::E {
+            found.axis(id).motors = word.text.split(':').count();
+        }
+        if let Some(turns) = turns {
+            settings.rotary.push((id, turns));
+        }
+    }
+}
+
+fn kinematics_of(found: &mut Found, log: &mut Log, command: &Command<'_>) {
+    let word = command.word('K').or_else(|| command.word('S'));
+    let Some(word) = word.filter(|word| command.code == "M669" || word.letter == 'S') else {
+        return;
+    };
+    match (command.code.as_str(), word.letter, word.text) {
+        ("M669", 'K', "0") | ("M667", 'S', "0") | ("M669", 'S', _) => {}
+        ("M669", 'K', "1" | "2" | "5" | "8") | ("M667", 'S', "1" | "2") => {
+            kinematics::core(found, log, &command.place, command.whole);
+        }
+        _ => kinematics::refuse(log, &command.place, command.whole),
+    }
+}
+
+fn finish(found: &mut Found, settings: Settings) {
+    for (id, turns) in settings.rotary {
+        if let Some(axis) = found.known(id) {
+            axis.rotary = turns;
+        }
+    }
+    for (id, ends) in settings.ends {
+        if let (Some(axis), [Some(min), Some(max)]) = (found.known(id), ends) {
+            axis.comments.push(format!("Travel: {} to {} (M208)", shown(min), shown(max)));
+        }
+    }
+    let mut parts = Vec::new();
+    let mut sources = Vec::new();
+    for (name, figure) in [("print", settings.print), ("travel", settings.travel)] {
+        if let Some(figure) = figure {
+            parts.push(format!("{name} = {}", shown(figure.value)));
+            sources.push(figure.source);
+        }
+    }
+    if !parts.is_empty() {
+        found.path(format!("accel_mm_s2 = {{ {} }}", parts.join(", ")), sources.join(", "));
+    }
+    if !settings.steps.is_empty() {
+        let mut fields = vec![crate::marlin::classic(found, settings.steps)];
+        if let Some(policy) = settings.all_kinds {
+            let same = policy.value == 0.0;
+            fields.push(entry(format!("same_kind_only = {same}"), policy.source));
+        }
+        found.corner = Some(("speed_step", fields));
+    }
+    let note = "Homing speeds stand in homeall.g: reference_mm_min of each axis may have the highest of \
+                them; without it homing counts at the full speed of the axes";
+    found.remarks.push(note.to_owned());
+}
