@@ -38,7 +38,10 @@ fn one(part: &MassPart) -> String {
         format!("{count} x ")
     };
     match inertia_kg_m2 {
-        Some(inertia) => format!("{mass} {name} ({times}{} kg m2)", round_to_digits(*inertia, 4)),
+        Some(inertia) => format!(
+            "{mass} {name} ({times}{} kg m2)",
+            round_to_digits(*inertia, 4)
+        ),
         None => format!("{mass} {name}"),
     }
 }

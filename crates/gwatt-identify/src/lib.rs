@@ -19,6 +19,7 @@ pub mod response_table;
 pub mod rigid;
 pub mod tune;
 
+mod parts;
 mod any_delay;
 mod arx;
 mod charge;
@@ -55,6 +56,7 @@ mod polynomial;
 mod power_log;
 mod prepared;
 mod quality;
+
 mod recording;
 mod response_fit;
 mod response_starts;

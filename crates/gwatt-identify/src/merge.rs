@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::parts;
 use super::rigid::Figure;
 use super::trouble::{Outcome, Trouble};
 use gwatt_machine::units::M_PER_MM;
@@ -143,6 +144,7 @@ fn write_axis(
         Some(kind) => kind == "rotary",
         None => matches!(axis, AxisId::A | AxisId::B | AxisId::C),
     };
+    parts::take_out(table, figures.rotary && !is_rotary);
     let gear = number(table, "gear_ratio").unwrap_or(1.0);
     let per_torque = number(table, "lead_mm").map(|lead| force_per_torque(lead, gear));
     if is_rotary {
@@ -364,6 +366,26 @@ lead_mm = 10
         // A smaller margin than the one in force changes nothing.
         let kept = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.05)).unwrap();
         assert!(!kept.contains("margin"));
+    }
+
+    /// What is identified is the sum: its parts go, the lead stays where torque needs it.
+    #[test]
+    fn parts_give_way_to_the_sum() {
+        let parts = "moved_mass_kg = 250\nrotor_kg_m2 = 0.001\nscrew = { diameter_mm = 32, length_mm = 900, lead_mm = 10 }";
+        let machine = MACHINE.replace("mass_kg = 300   # guessed", parts);
+        let merged = into_machine("m.toml", &machine, AxisId::X, &figures(), None).unwrap();
+        assert!(merged.contains("mass_kg = 412.346\n"), "{merged}");
+        for gone in ["moved_mass_kg", "rotor_kg_m2", "screw", "lead_mm = 10.0"] {
+            assert!(!merged.contains(gone), "{gone} in {merged}");
+        }
+        // Of torque: J·k² with k = 2π/0.01 m.
+        let torque = AxisFigures {
+            rotary: true,
+            mass: 0.002,
+            ..figures()
+        };
+        let merged = into_machine("m.toml", &machine, AxisId::X, &torque, None).unwrap();
+        assert!(merged.contains("mass_kg = 789.568\n"), "{merged}");
     }
 
     /// Figures found without losses hold for an efficiency of 1 alone.

@@ -4,7 +4,11 @@
 const STEPS: u32 = 200;
 
 /// The value of an expression; `name` gives that of a name. `None` where it is none.
-pub(crate) fn value(text: &str, name: &dyn Fn(&str, u32) -> Option<f64>, depth: u32) -> Option<f64> {
+pub(crate) fn value(
+    text: &str,
+    name: &dyn Fn(&str, u32) -> Option<f64>,
+    depth: u32,
+) -> Option<f64> {
     let mut reader = Reader {
         rest: text.trim(),
         name,
@@ -68,7 +72,9 @@ impl Reader<'_, '_> {
         let (word, rest) = self.rest.split_at_checked(end)?;
         self.rest = rest.trim_start();
         if word.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
-            word.trim_end_matches(['f', 'F', 'u', 'U', 'l', 'L']).parse().ok()
+            word.trim_end_matches(['f', 'F', 'u', 'U', 'l', 'L'])
+                .parse()
+                .ok()
         } else if word.is_empty() {
             None
         } else {
@@ -78,7 +84,9 @@ impl Reader<'_, '_> {
 
     /// The length of a number or a name.
     fn word(&self) -> usize {
-        let number = self.rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+        let number = self
+            .rest
+            .starts_with(|c: char| c.is_ascii_digit() || c == '.');
         let mut before = ' ';
         for (at, c) in self.rest.char_indices() {
             let exponent = number && matches!(c, '+' | '-') && matches!(before, 'e' | 'E');

@@ -45,14 +45,21 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     profile(&parameters, &mut found);
     path(&parameters, &mut found, log);
     if let Some(decimal) = parameters.bit(3401, 0) {
-        let name = if decimal.on { "calculator" } else { "least-increment" };
+        let name = if decimal.on {
+            "calculator"
+        } else {
+            "least-increment"
+        };
         let why = format!("bit DPI of {}", decimal.source);
         found.language(format!("decimal_point = \"{name}\""), why);
     }
     if let Some(inch) = parameters.bit(0, 2).filter(|bit| bit.on) {
         found.language("units = \"inch\"", format!("bit INI of {}", inch.source));
     }
-    let top = parameters.figures(3772, log).into_iter().filter(|it| it.value > 0.0);
+    let top = parameters
+        .figures(3772, log)
+        .into_iter()
+        .filter(|it| it.value > 0.0);
     let gears = (3741..=3744).flat_map(|number| parameters.figures(number, log));
     found.spindle_rpm = highest(top)
         .or_else(|| highest(gears))
@@ -69,10 +76,15 @@ fn profile(parameters: &Parameters<'_>, found: &mut Found) {
         return;
     }
     let system = |bit| parameters.bit(3401, bit).is_some_and(|bit| bit.on);
-    found.controller = if system(6) { "fanuc-lathe-b" } else { "fanuc-lathe" };
+    found.controller = if system(6) {
+        "fanuc-lathe-b"
+    } else {
+        "fanuc-lathe"
+    };
     "Lathe under Fanuc".clone_into(&mut found.name);
     found.remarks.push(
-        "Without a Y axis this is taken for a lathe; --controller fanuc says that it is none".to_owned(),
+        "Without a Y axis this is taken for a lathe; --controller fanuc says that it is none"
+            .to_owned(),
     );
     if system(7) {
         found
@@ -85,7 +97,10 @@ fn path(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
     let straight = parameters.bits(1401, 1);
     if let Some(bit) = straight.iter().find(|bit| !bit.on).or(straight.first()) {
         let name = if bit.on { "linear" } else { "independent" };
-        found.path(format!("rapid = \"{name}\""), format!("bit LRP of {}", bit.source));
+        found.path(
+            format!("rapid = \"{name}\""),
+            format!("bit LRP of {}", bit.source),
+        );
     }
     let inch = parameters.inch();
     let of_axes: Vec<Figure> = parameters.figures(1430, log);
@@ -95,8 +110,13 @@ fn path(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
     let top = limits.count();
     let all = highest(parameters.figures(1422, log)).filter(|it| it.value > 0.0);
     let feed = if top > 0 && top == of_axes.len() {
-        let source = of_axes.first().map_or(String::new(), |it| it.source.clone());
-        Some(Figure::new(square.sqrt(), format!("all axes of {source} together")))
+        let source = of_axes
+            .first()
+            .map_or(String::new(), |it| it.source.clone());
+        Some(Figure::new(
+            square.sqrt(),
+            format!("all axes of {source} together"),
+        ))
     } else if of_axes.iter().all(|it| it.value == 0.0) {
         all
     } else {
@@ -104,14 +124,19 @@ fn path(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
     };
     if let Some(feed) = feed {
         let feed = feed.times(inch);
-        found.path(format!("max_feed_mm_min = {}", shown(feed.value)), feed.source);
+        found.path(
+            format!("max_feed_mm_min = {}", shown(feed.value)),
+            feed.source,
+        );
     }
 }
 
 fn left_out(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
     let mut named: Vec<String> = Vec::new();
     for (number, what) in LEFT_OUT {
-        let given = parameters.of(number).find(|it| it.text.parse().is_ok_and(|value: f64| value != 0.0));
+        let given = parameters
+            .of(number)
+            .find(|it| it.text.parse().is_ok_and(|value: f64| value != 0.0));
         if let Some(given) = given {
             named.push(format!("{number} ({what})"));
             log.warning(
@@ -123,12 +148,21 @@ fn left_out(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
     }
     if !named.is_empty() {
         let list = named.join(", ");
-        found.remarks.push(format!("Parameters {list}: moves count as without them, which is never slower"));
+        found.remarks.push(format!(
+            "Parameters {list}: moves count as without them, which is never slower"
+        ));
     }
 }
 
 /// Whether a line is one of parameters: a number of at least four digits, and values.
 pub(crate) fn parameter_line(line: &str) -> bool {
-    let digits = line.get(1..).unwrap_or("").bytes().take_while(u8::is_ascii_digit).count();
-    digits >= 4 && parameters::number(line).is_some_and(|(_, rest)| rest.contains('P') || rest.contains('M'))
+    let digits = line
+        .get(1..)
+        .unwrap_or("")
+        .bytes()
+        .take_while(u8::is_ascii_digit)
+        .count();
+    digits >= 4
+        && parameters::number(line)
+            .is_some_and(|(_, rest)| rest.contains('P') || rest.contains('M'))
 }

@@ -26,7 +26,10 @@ fn values(job: &Job) -> BTreeMap<String, Value<'_>> {
     for (_, place) in job.places() {
         let line = place.line();
         let trimmed = line.trim();
-        let Some((key, rest)) = trimmed.split_once(':').filter(|_| !trimmed.starts_with('#')) else {
+        let Some((key, rest)) = trimmed
+            .split_once(':')
+            .filter(|_| !trimmed.starts_with('#'))
+        else {
             continue;
         };
         let depth = line.len() - line.trim_start().len();
@@ -49,7 +52,10 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     let values = values(job);
     let mut found = Found::new("grbl", "Machine under FluidNC", Build::Screws);
     for (path, value) in &values {
-        let Some(name) = path.strip_prefix("kinematics/").filter(|it| !it.contains('/')) else {
+        let Some(name) = path
+            .strip_prefix("kinematics/")
+            .filter(|it| !it.contains('/'))
+        else {
             continue;
         };
         match name {
@@ -116,7 +122,8 @@ fn axis(found: &mut Found, log: &mut Log, values: &BTreeMap<String, Value<'_>>, 
         axis.comments.push(format!("Travel: {}", travel.source));
     }
     if let Some(steps) = steps {
-        axis.drive.push(format!("Steps per unit of travel: {}", steps.source));
+        axis.drive
+            .push(format!("Steps per unit of travel: {}", steps.source));
     }
     if cycle.is_some_and(|cycle| cycle.value > 0.0) {
         axis.reference = home;
@@ -124,7 +131,10 @@ fn axis(found: &mut Found, log: &mut Log, values: &BTreeMap<String, Value<'_>>, 
         let speeds = [seek, feed].into_iter().flatten();
         if let Some(speed) = crate::found::highest(speeds) {
             let field = format!("reference_{unit}_min = {}", shown(speed.value));
-            let why = format!("of $H: {}; G28 is a rapid, and would count as that slow too", speed.source);
+            let why = format!(
+                "of $H: {}; G28 is a rapid, and would count as that slow too",
+                speed.source
+            );
             axis.maybe.push(entry(field, why));
         }
     }

@@ -65,7 +65,9 @@ impl Format {
             }
         }
         let most = marks.iter().copied().max().filter(|most| *most > 0)?;
-        let mut best = FORMATS.iter().filter(|(format, _)| marks.get(*format as usize) == Some(&most));
+        let mut best = FORMATS
+            .iter()
+            .filter(|(format, _)| marks.get(*format as usize) == Some(&most));
         let (found, _) = best.next()?;
         best.next().is_none().then_some(*found)
     }
@@ -85,16 +87,39 @@ fn of_line(line: &str) -> Vec<Format> {
         marks.push(Format::MarlinConfig);
     } else if let Some(section) = trimmed.strip_prefix('[') {
         let section = section.to_ascii_uppercase();
-        let linuxcnc = ["EMC]", "TRAJ]", "KINS]", "HAL]", "EMCMOT]", "EMCIO]", "RS274NGC]", "AXIS_", "JOINT_"];
-        let klipper = ["STEPPER_", "PRINTER]", "EXTRUDER", "MCU", "INCLUDE ", "GCODE_MACRO ", "TMC2"];
+        let linuxcnc = [
+            "EMC]",
+            "TRAJ]",
+            "KINS]",
+            "HAL]",
+            "EMCMOT]",
+            "EMCIO]",
+            "RS274NGC]",
+            "AXIS_",
+            "JOINT_",
+        ];
+        let klipper = [
+            "STEPPER_",
+            "PRINTER]",
+            "EXTRUDER",
+            "MCU",
+            "INCLUDE ",
+            "GCODE_MACRO ",
+            "TMC2",
+        ];
         if linuxcnc.iter().any(|name| section.starts_with(name)) {
             marks.push(Format::LinuxCnc);
         } else if klipper.iter().any(|name| section.starts_with(name)) {
             marks.push(Format::Klipper);
         }
-    } else if ["max_rate_mm_per_min:", "acceleration_mm_per_sec2:", "max_travel_mm:", "junction_deviation_mm:"]
-        .iter()
-        .any(|name| trimmed.starts_with(name))
+    } else if [
+        "max_rate_mm_per_min:",
+        "acceleration_mm_per_sec2:",
+        "max_travel_mm:",
+        "junction_deviation_mm:",
+    ]
+    .iter()
+    .any(|name| trimmed.starts_with(name))
     {
         marks.push(Format::FluidNc);
     } else {
@@ -106,9 +131,14 @@ fn of_line(line: &str) -> Vec<Format> {
 /// Marlin and RepRapFirmware share most commands.
 fn printer(line: &str, marks: &mut Vec<Format>) {
     let command = line.trim_start_matches(|c: char| !matches!(c, 'M' | 'm'));
-    let code: String = command.chars().take_while(char::is_ascii_alphanumeric).collect();
+    let code: String = command
+        .chars()
+        .take_while(char::is_ascii_alphanumeric)
+        .collect();
     let code = code.to_ascii_uppercase();
-    let only_reprap = ["M584", "M566", "M208", "M574", "M669", "M667", "M350", "M569", "M550", "M563"];
+    let only_reprap = [
+        "M584", "M566", "M208", "M574", "M669", "M667", "M350", "M569", "M550", "M563",
+    ];
     if line.contains("echo:") || code == "M205" {
         marks.push(Format::Marlin);
     } else if line.starts_with(['M', 'm']) && only_reprap.contains(&code.as_str()) {

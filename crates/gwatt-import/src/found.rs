@@ -25,7 +25,7 @@ impl Figure {
         }
     }
 
-    /// Moved by this much.
+    /// With words before its source.
     pub(crate) fn named(self, prefix: &str) -> Self {
         Self {
             source: format!("{prefix}{}", self.source),
@@ -104,6 +104,8 @@ pub(crate) struct Found {
     /// What the file has and gwatt does not count, as comments.
     pub(crate) remarks: Vec<String>,
     pub(crate) spindle_rpm: Option<Figure>,
+    /// Two motors move two axes together.
+    pub(crate) core: bool,
 }
 
 impl Found {
@@ -120,6 +122,7 @@ impl Found {
             tables: Vec::new(),
             remarks: Vec::new(),
             spindle_rpm: None,
+            core: false,
         }
     }
 

@@ -36,7 +36,11 @@ pub(crate) fn setting(line: &str) -> Option<(u16, &str, &str)> {
     let rest = line.get(start + 1..)?;
     let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
     let number = rest.get(..digits)?.parse().ok()?;
-    let after = rest.get(digits..)?.trim_start().strip_prefix('=')?.trim_start();
+    let after = rest
+        .get(digits..)?
+        .trim_start()
+        .strip_prefix('=')?
+        .trim_start();
     let end = after
         .find(|c: char| c.is_whitespace() || matches!(c, '(' | ';' | ',' | '|' | '"' | '\''))
         .unwrap_or(after.len());
@@ -99,7 +103,9 @@ fn axis(
     }
     if let Some(steps) = text(100) {
         let note = steps.place.source(steps.whole);
-        axis.drive.push(format!("Steps per unit of travel: {note}; travel of a revolution is the motor's steps by it."));
+        axis.drive.push(format!(
+            "Steps per unit of travel: {note}; travel of a revolution is the motor's steps by it."
+        ));
     }
     homing(found, log, settings, index, id);
 }

@@ -87,7 +87,11 @@ fn comment(value: &str, marks: &[char]) -> usize {
 }
 
 /// The last value of a key.
-pub(crate) fn last<'i, 't>(items: &'i [Item<'t>], section: &str, key: &str) -> Option<&'i Item<'t>> {
+pub(crate) fn last<'i, 't>(
+    items: &'i [Item<'t>],
+    section: &str,
+    key: &str,
+) -> Option<&'i Item<'t>> {
     items.iter().rev().find(|item| {
         item.section.eq_ignore_ascii_case(section) && item.key.eq_ignore_ascii_case(key)
     })

@@ -8,6 +8,7 @@ use crate::text::{Log, Place};
 /// Masses: with motor angles `(x ± y)/r` the rotors have the energy `½·2J/r²·(ẋ² + ẏ²)`, so
 /// that each of the two axes has the rotors of both.
 pub(crate) fn core(found: &mut Found, log: &mut Log, place: &Place<'_>, whole: &str) {
+    found.core = true;
     found.remarks.push(format!(
         "{}: two motors move two axes together. Their energy is that of the axes if each of the two \
          has the rotors of both motors. What each motor draws differs from what each axis draws: with \

@@ -112,26 +112,36 @@ fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, section: &str, log: &m
     let max = config.number(log, section, "position_max");
     if let Some(max) = &max {
         let min = min.map_or("0".to_owned(), |min| shown(min.value));
-        axis.comments
-            .push(format!("Travel: {min} to {} mm: {}", shown(max.value), max.source));
+        axis.comments.push(format!(
+            "Travel: {min} to {} mm: {}",
+            shown(max.value),
+            max.source
+        ));
     }
     let first = config.positive(log, section, "homing_speed");
     let first = first.unwrap_or(Figure::new(5.0, "homing_speed is 5 by default"));
     let second = config.positive(log, section, "second_homing_speed");
-    axis.reference_speed = highest([Some(first), second].into_iter().flatten()).map(|it| it.times(MIN));
-    let probe = last(config.items, section, "endstop_pin").is_some_and(|it| it.value.contains("probe:"));
+    axis.reference_speed =
+        highest([Some(first), second].into_iter().flatten()).map(|it| it.times(MIN));
+    let probe =
+        last(config.items, section, "endstop_pin").is_some_and(|it| it.value.contains("probe:"));
     match config.number(log, section, "position_endstop") {
         Some(_) if probe => {}
         endstop => axis.reference = endstop,
     }
     if probe {
         let note = "where the probe touches: Z after homing is not known";
-        axis.comments.push(format!("Its endstop is a probe, {note}."));
+        axis.comments
+            .push(format!("Its endstop is a probe, {note}."));
     }
     if let Some(turn) = config.positive(log, section, "rotation_distance") {
         let gear = last(config.items, section, "gear_ratio");
         let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
-        axis.drive.push(format!("Travel of a revolution: {} mm, {}{gear}", shown(turn.value), turn.source));
+        axis.drive.push(format!(
+            "Travel of a revolution: {} mm, {}{gear}",
+            shown(turn.value),
+            turn.source
+        ));
     }
     let more = (1..16).filter(|number| config.has(&format!("{section}{number}")));
     axis.motors = 1 + more.count();
@@ -160,12 +170,21 @@ fn extruder(
     let usual = 4.0 * nozzle.value * nozzle.value / area;
     let ratio = section.as_ref().map_or(usual, |it| it.value / area);
     let with_axes = |all: Option<&Figure>, ratio: f64, why: &str| {
-        all.map(|all| Figure::new(all.value * ratio, format!("{why}: {} x {}", all.source, shown(round(ratio)))))
+        all.map(|all| {
+            Figure::new(
+                all.value * ratio,
+                format!("{why}: {} x {}", all.source, shown(round(ratio))),
+            )
+        })
     };
     let mut limit = |key: &str, all: Option<&Figure>| {
         let own = config.positive(log, "extruder", key);
         let own = own.or_else(|| with_axes(all, usual, "by default"));
-        highest([own, with_axes(all, ratio, "next to the axes")].into_iter().flatten())
+        highest(
+            [own, with_axes(all, ratio, "next to the axes")]
+                .into_iter()
+                .flatten(),
+        )
     };
     let rapid = limit("max_extrude_only_velocity", velocity).map(|it| it.times(MIN));
     let accel = limit("max_extrude_only_accel", accel);
@@ -174,7 +193,11 @@ fn extruder(
     if let Some(turn) = config.positive(log, "extruder", "rotation_distance") {
         let gear = last(config.items, "extruder", "gear_ratio");
         let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
-        axis.drive.push(format!("Travel of a revolution: {} mm, {}{gear}", shown(turn.value), turn.source));
+        axis.drive.push(format!(
+            "Travel of a revolution: {} mm, {}{gear}",
+            shown(turn.value),
+            turn.source
+        ));
     }
 }
 
@@ -193,24 +216,36 @@ fn corners(config: &Config<'_, '_>, found: &mut Found, log: &mut Log, accel: Opt
     });
     if let Some(ratio) = ratio {
         if (0.0..1.0).contains(&ratio.value) {
-            found.look_ahead(format!("min_cruise_ratio = {}", shown(ratio.value)), ratio.source);
+            found.look_ahead(
+                format!("min_cruise_ratio = {}", shown(ratio.value)),
+                ratio.source,
+            );
         } else if let Some(item) = last(config.items, "printer", "minimum_cruise_ratio") {
             let message = format!("a cruise ratio of {} is none", ratio.value);
             log.error(&item.place, message, "it is a share from 0 to below 1");
         }
     }
     if let Some(arc) = config.positive(log, "gcode_arcs", "resolution") {
-        found.look_ahead(format!("chords = {{ max_mm = {} }}", shown(arc.value)), arc.source);
+        found.look_ahead(
+            format!("chords = {{ max_mm = {} }}", shown(arc.value)),
+            arc.source,
+        );
     }
     let mut fields = Vec::new();
     if let Some(speed) = config.number(log, "printer", "square_corner_velocity") {
-        fields.push(entry(format!("corner_mm_s = {}", shown(speed.value)), speed.source));
+        fields.push(entry(
+            format!("corner_mm_s = {}", shown(speed.value)),
+            speed.source,
+        ));
     }
     if let Some(step) = config.number(log, "extruder", "instantaneous_corner_velocity") {
         if fields.is_empty() {
             fields.push(entry("corner_mm_s = 5", "as Klipper has it by default"));
         }
-        fields.push(entry(format!("extruder_step_mm_s = {}", shown(step.value)), step.source));
+        fields.push(entry(
+            format!("extruder_step_mm_s = {}", shown(step.value)),
+            step.source,
+        ));
     }
     if !fields.is_empty() {
         found.corner = Some(("square_corner", fields));
@@ -224,7 +259,9 @@ fn retract(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
         return;
     }
     let mut value = |key: &str, otherwise: f64| {
-        config.number(log, section, key).map_or(otherwise, |it| it.value.max(0.0))
+        config
+            .number(log, section, key)
+            .map_or(otherwise, |it| it.value.max(0.0))
     };
     let [length, speed, extra, back] = [
         value("retract_length", 0.0),

@@ -56,7 +56,11 @@ pub struct Wanted<'w> {
 /// # Errors
 /// Files that are no text or of no kind that is known, and every value that gwatt has a field
 /// for and that cannot be read.
-pub fn import(files: &[File], wanted: Wanted<'_>, near: &dyn Near) -> Result<Imported, Vec<Diagnostic>> {
+pub fn import(
+    files: &[File],
+    wanted: Wanted<'_>,
+    near: &dyn Near,
+) -> Result<Imported, Vec<Diagnostic>> {
     let mut log = Log::default();
     let texts: Result<Vec<Text>, Diagnostic> = files.iter().map(Text::new).collect();
     let texts = texts.map_err(|refused| vec![refused])?;
@@ -104,16 +108,28 @@ fn nothing(found: &Found, log: &mut Log, file: &str, format: Format) {
     if axes.any(|axis| axis.rapid.is_some() || axis.accel.is_some()) {
         return;
     }
-    let errors = log.list.iter().any(|finding| finding.severity == Severity::Error);
+    let errors = log
+        .list
+        .iter()
+        .any(|finding| finding.severity == Severity::Error);
     if !errors {
-        let message = format!("no speed and no acceleration of an axis was found, read as {}", format.name());
-        log.whole(file, message, "give the file that holds them, or another --format");
+        let message = format!(
+            "no speed and no acceleration of an axis was found, read as {}",
+            format.name()
+        );
+        log.whole(
+            file,
+            message,
+            "give the file that holds them, or another --format",
+        );
     }
 }
 
 fn unknown(files: &[File]) -> Diagnostic {
     let names: Vec<&str> = FORMATS.iter().map(|(_, name)| *name).collect();
-    let first = files.first().map_or(String::new(), |file| file.name.clone());
+    let first = files
+        .first()
+        .map_or(String::new(), |file| file.name.clone());
     let message = "what kind of settings these are is not seen from them";
     let mut refused = Diagnostic::error("import-file", message);
     refused.file = Some(first);
@@ -130,7 +146,9 @@ fn profile(name: &str) -> Result<&'static str, Vec<Diagnostic>> {
             let names: Vec<&str> = list.iter().map(|it| it.name).collect();
             let message = format!("no controller profile is named \"{name}\"");
             let refused = Diagnostic::error("import-file", message);
-            Err(vec![refused.help(format!("there are {}", names.join(", ")))])
+            Err(vec![
+                refused.help(format!("there are {}", names.join(", "))),
+            ])
         }
     }
 }

@@ -40,10 +40,18 @@ struct Config<'j> {
 
 impl Config<'_> {
     fn item(&self, sections: &[String], key: &str) -> Option<&Item<'_>> {
-        sections.iter().find_map(|section| last(&self.items, section, key))
+        sections
+            .iter()
+            .find_map(|section| last(&self.items, section, key))
     }
 
-    fn positive(&self, log: &mut Log, sections: &[String], key: &str, factor: f64) -> Option<Figure> {
+    fn positive(
+        &self,
+        log: &mut Log,
+        sections: &[String],
+        key: &str,
+        factor: f64,
+    ) -> Option<Figure> {
         let item = self.item(sections, key)?;
         let value = log.positive(&item.place, item.value, key)?;
         Some(Figure::new(value * factor, self.source(item)))
@@ -73,7 +81,9 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
     }
     let files: Vec<File> = items
         .iter()
-        .filter(|it| it.section == "HAL" && matches!(it.key.as_str(), "HALFILE" | "POSTGUI_HALFILE"))
+        .filter(|it| {
+            it.section == "HAL" && matches!(it.key.as_str(), "HALFILE" | "POSTGUI_HALFILE")
+        })
         .filter_map(|it| it.value.split_whitespace().next())
         .filter(|name| !name.starts_with("LIB:") && name.ends_with(".hal"))
         .flat_map(|name| near.files(job.name(), name))
@@ -139,11 +149,16 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
 fn coordinates(config: &Config<'_>) -> Vec<(AxisId, Vec<usize>)> {
     let kins = last(&config.items, "KINS", "KINEMATICS").and_then(|it| {
         let words = it.value.split_whitespace();
-        words.filter_map(|word| word.strip_prefix("coordinates=")).last()
+        words
+            .filter_map(|word| word.strip_prefix("coordinates="))
+            .last()
     });
     let named = kins.or_else(|| last(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
     let mut axes: Vec<(AxisId, Vec<usize>)> = Vec::new();
-    let letters = named.unwrap_or("XYZ").bytes().filter(u8::is_ascii_alphabetic);
+    let letters = named
+        .unwrap_or("XYZ")
+        .bytes()
+        .filter(u8::is_ascii_alphabetic);
     for (joint, letter) in letters.enumerate() {
         let Some(id) = AxisId::from_letter(letter.to_ascii_uppercase()) else {
             continue;
@@ -165,10 +180,16 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
         format!("JOINT_{joint}"),
         format!("AXIS_{}", id as usize),
     ];
-    let kind = config.item(&sections, "TYPE").map(|it| it.value.to_ascii_uppercase());
+    let kind = config
+        .item(&sections, "TYPE")
+        .map(|it| it.value.to_ascii_uppercase());
     let by_letter = matches!(id, AxisId::A | AxisId::B | AxisId::C);
     let rotary = kind.map_or(by_letter, |kind| kind == "ANGULAR");
-    let unit = if rotary { config.angular } else { config.linear };
+    let unit = if rotary {
+        config.angular
+    } else {
+        config.linear
+    };
     let mut rapid = config.positive(log, &sections, "MAX_VELOCITY", unit * MIN);
     let accel = config.positive(log, &sections, "MAX_ACCELERATION", unit);
     // The path is never faster, and so is none of its axes.
@@ -176,28 +197,42 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     if let (Some(own), Some(top)) = (&rapid, top)
         && top.value < own.value
     {
-        rapid = Some(Figure::new(top.value, format!("{}, below {}", top.source, own.source)));
+        rapid = Some(Figure::new(
+            top.value,
+            format!("{}, below {}", top.source, own.source),
+        ));
     }
     let [min, max] = ["MIN_LIMIT", "MAX_LIMIT"].map(|key| config.number(log, &sections, key, unit));
     let home = config.number(log, &sections[1..], "HOME", unit);
     let search = config.number(log, &sections[1..], "HOME_SEARCH_VEL", unit * MIN);
     let scales = ["STEP_SCALE", "SCALE", "INPUT_SCALE", "OUTPUT_SCALE"];
-    let scale = scales.iter().find_map(|key| config.item(&sections, key).map(|it| config.source(it)));
+    let scale = scales
+        .iter()
+        .find_map(|key| config.item(&sections, key).map(|it| config.source(it)));
     let to = found.axis(id);
     to.rotary = rotary;
     (to.rapid, to.accel) = (rapid, accel);
     if let (Some(min), Some(max)) = (min, max) {
-        to.comments.push(format!("Travel: {} to {}: {}, {}", shown(min.value), shown(max.value), min.source, max.source));
+        to.comments.push(format!(
+            "Travel: {} to {}: {}, {}",
+            shown(min.value),
+            shown(max.value),
+            min.source,
+            max.source
+        ));
     }
     if let Some(home) = home {
-        let search = search.map_or(String::new(), |it| format!(", {} per minute", shown(it.value.abs())));
+        let search = search.map_or(String::new(), |it| {
+            format!(", {} per minute", shown(it.value.abs()))
+        });
         to.comments.push(format!(
             "Home: {}{search}. G28 goes to the place in #5161 and on, at the rapid speed.",
             home.source
         ));
     }
     if let Some(scale) = scale {
-        to.drive.push(format!("Steps or counts per unit of travel: {scale}"));
+        to.drive
+            .push(format!("Steps or counts per unit of travel: {scale}"));
     }
     for joint in joints {
         to.drive.extend(config.hal.of(*joint));
@@ -215,8 +250,25 @@ fn traj_velocity(config: &Config<'_>, log: &mut Log) -> Option<Figure> {
 }
 
 fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    if let Some(top) = traj_velocity(config, log) {
-        found.path(format!("max_feed_mm_min = {}", shown(top.value)), top.source);
+    let angular = config.positive(
+        log,
+        &section("TRAJ"),
+        "MAX_ANGULAR_VELOCITY",
+        config.angular * MIN,
+    );
+    // Of moves of rotary axes alone the other limit holds; where it is not known, none is.
+    let turns = found.axes.iter().flatten().any(|axis| axis.rotary);
+    let top = match (traj_velocity(config, log), angular) {
+        (Some(top), None) if !turns => Some(top),
+        (Some(top), Some(angular)) if turns => highest([top, angular]),
+        (Some(top), Some(_)) => Some(top),
+        _ => None,
+    };
+    if let Some(top) = top {
+        found.path(
+            format!("max_feed_mm_min = {}", shown(top.value)),
+            top.source,
+        );
     }
     let left = [
         ("MAX_LINEAR_ACCELERATION", "acceleration along the path"),
@@ -230,21 +282,31 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
         let Some(item) = last(&config.items, "TRAJ", key) else {
             continue;
         };
-        if (key == "ARC_BLEND_ENABLE" && item.value == "1") || (key.ends_with("_ENABLE") && key.contains("FALLBACK") && item.value == "0") {
+        if (key == "ARC_BLEND_ENABLE" && item.value == "1")
+            || (key.ends_with("_ENABLE") && key.contains("FALLBACK") && item.value == "0")
+        {
             continue;
         }
-        found.remarks.push(format!("{} ({what})", config.source(item)));
+        found
+            .remarks
+            .push(format!("{} ({what})", config.source(item)));
         let help = "gwatt plans as LinuxCNC 2.9 does without it; --certificate robust holds for any blending";
-        log.warning(&item.place, format!("{key}, {what}, is not taken over"), help);
+        log.warning(
+            &item.place,
+            format!("{key}, {what}, is not taken over"),
+            help,
+        );
     }
 }
 
 /// `RS274NGC_STARTUP_CODE`: units, centres, tolerance.
 fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    let item = ["RS274NGC_STARTUP_CODE", "STARTUP_CODE"].iter().find_map(|key| {
-        let own = last(&config.items, "RS274NGC", key);
-        own.or_else(|| last(&config.items, "EMC", key))
-    });
+    let item = ["RS274NGC_STARTUP_CODE", "STARTUP_CODE"]
+        .iter()
+        .find_map(|key| {
+            let own = last(&config.items, "RS274NGC", key);
+            own.or_else(|| last(&config.items, "EMC", key))
+        });
     let code = item.map_or(String::new(), |it| it.value.to_ascii_uppercase());
     let words: Vec<&str> = code.split_whitespace().collect();
     let has = |word: &str| words.contains(&word);
@@ -252,19 +314,29 @@ fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let inch = has("G20") || (config.linear == INCH && !has("G21"));
     if inch {
         let units = last(&config.items, "TRAJ", "LINEAR_UNITS").map(|it| config.source(it));
-        let source = if has("G20") { source.clone() } else { units.unwrap_or_default() };
+        let source = if has("G20") {
+            source.clone()
+        } else {
+            units.unwrap_or_default()
+        };
         found.language("units = \"inch\"", source);
     }
     if has("G90.1") {
         found.language("arc_centre = \"absolute\"", source.clone());
     }
     if let Some(at) = words.iter().position(|word| *word == "G64") {
-        let tolerance = words.get(at + 1).and_then(|word| word.strip_prefix('P')).map(str::parse::<f64>);
+        let tolerance = words
+            .get(at + 1)
+            .and_then(|word| word.strip_prefix('P'))
+            .map(str::parse::<f64>);
         let unit = if inch { INCH } else { 1.0 };
         match (tolerance, item) {
             (None, _) => found.language("power_on_tolerance_mm = 0", source),
             (Some(Ok(value)), _) if value >= 0.0 => {
-                found.language(format!("power_on_tolerance_mm = {}", shown(value * unit)), source);
+                found.language(
+                    format!("power_on_tolerance_mm = {}", shown(value * unit)),
+                    source,
+                );
             }
             (_, Some(item)) => log.error(
                 &item.place,
@@ -276,7 +348,9 @@ fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     }
     for word in ["G61", "G61.1"] {
         if has(word) {
-            let note = format!("Start-up code {word}: programs count as in the mode that they select, else in G64");
+            let note = format!(
+                "Start-up code {word}: programs count as in the mode that they select, else in G64"
+            );
             found.remarks.push(note);
         }
     }
@@ -289,13 +363,22 @@ fn corners(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     }
     let mut fields = Vec::new();
     if let Some(period) = config.positive(log, &section("EMCMOT"), "SERVO_PERIOD", 1e-9) {
-        fields.push(entry(format!("servo_period_s = {}", shown(period.value)), period.source));
+        fields.push(entry(
+            format!("servo_period_s = {}", shown(period.value)),
+            period.source,
+        ));
     }
     if let Some(ratio) = config.positive(log, &traj, "ARC_BLEND_KINK_RATIO", 1.0) {
-        fields.push(entry(format!("kink_ratio = {}", shown(ratio.value)), ratio.source));
+        fields.push(entry(
+            format!("kink_ratio = {}", shown(ratio.value)),
+            ratio.source,
+        ));
     }
     if let Some(cycles) = config.positive(log, &traj, "ARC_BLEND_GAP_CYCLES", 1.0) {
-        fields.push(entry(format!("gap_cycles = {}", shown(cycles.value)), cycles.source));
+        fields.push(entry(
+            format!("gap_cycles = {}", shown(cycles.value)),
+            cycles.source,
+        ));
     }
     if !fields.is_empty() {
         found.corner = Some(("linuxcnc", fields));

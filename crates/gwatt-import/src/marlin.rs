@@ -25,6 +25,8 @@ struct Settings {
     steps: Vec<(AxisId, Figure)>,
     segment_s: Option<Figure>,
     fields: [Option<Figure>; 3],
+    /// M204 S: firmware before 1.1.
+    old: bool,
 }
 
 /// Reads the settings.
@@ -41,23 +43,47 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
             }
         }
     }
+    // Firmware of M204 S had no such curve.
+    let may_curve = !settings.old;
     finish(&mut found, settings);
-    s_curve(&mut found, log, job.name());
+    if may_curve {
+        s_curve(&mut found, log, job.name());
+    }
     found
 }
 
-fn take(found: &mut Found, settings: &mut Settings, log: &mut Log, command: &Command<'_>, unit: f64) {
+fn take(
+    found: &mut Found,
+    settings: &mut Settings,
+    log: &mut Log,
+    command: &Command<'_>,
+    unit: f64,
+) {
     match command.code.as_str() {
         "M92" => steps(found, log, command),
         "M203" => axes(found, log, command, unit * MIN, |axis, figure| {
-            axis.rapid = highest(axis.rapid.take().filter(|_| figure.1).into_iter().chain([figure.0]));
+            axis.rapid = highest(
+                axis.rapid
+                    .take()
+                    .filter(|_| figure.1)
+                    .into_iter()
+                    .chain([figure.0]),
+            );
         }),
         "M201" => axes(found, log, command, unit, |axis, figure| {
-            axis.accel = highest(axis.accel.take().filter(|_| figure.1).into_iter().chain([figure.0]));
+            axis.accel = highest(
+                axis.accel
+                    .take()
+                    .filter(|_| figure.1)
+                    .into_iter()
+                    .chain([figure.0]),
+            );
         }),
         "M204" => accelerations(settings, log, command, unit),
         "M205" => corners(settings, log, command, unit),
-        "M210" => axes(found, log, command, unit, |axis, figure| axis.reference_speed = Some(figure.0)),
+        "M210" => axes(found, log, command, unit, |axis, figure| {
+            axis.reference_speed = Some(figure.0)
+        }),
         "M207" => retract(settings, log, command, unit, 0),
         "M208" => retract(settings, log, command, unit, 2),
         _ => {}
@@ -106,6 +132,7 @@ fn accelerations(settings: &mut Settings, log: &mut Log, command: &Command<'_>, 
     };
     let [print, retract, travel, all] = ['P', 'R', 'T', 'S'].map(&mut value);
     if let Some(all) = all {
+        settings.old = true;
         settings.print = Some(all.clone());
         settings.travel = Some(all);
         settings.retract = travel.or(retract);
@@ -169,7 +196,10 @@ fn finish(found: &mut Found, settings: Settings) {
         found.path(field, sources.join(", "));
     }
     if let Some(time) = settings.segment_s {
-        found.path(format!("shortest_at_feed_s = {}", shown(time.value)), time.source);
+        found.path(
+            format!("shortest_at_feed_s = {}", shown(time.value)),
+            time.source,
+        );
     }
     if let Some(deviation) = settings.deviation.filter(|it| it.value > 0.0) {
         let field = format!("deviation_mm = {}", shown(deviation.value));
@@ -208,24 +238,23 @@ pub(crate) fn classic(found: &Found, mut steps: Vec<(AxisId, Figure)>) -> Entry 
             sources.push(step.source.clone());
         }
     }
-    entry(format!("step_mm_s = {{ {} }}", parts.join(", ")), sources.join(", "))
+    entry(
+        format!("step_mm_s = {{ {} }}", parts.join(", ")),
+        sources.join(", "),
+    )
 }
 
-/// M503 does not say it.
+/// M503 does not say whether `S_CURVE_ACCELERATION` is on: the higher counts.
 fn s_curve(found: &mut Found, log: &mut Log, file: &str) {
-    for (id, axis) in ALL_AXES.into_iter().zip(&mut found.axes) {
-        if let Some(axis) = axis.as_mut().filter(|_| id != AxisId::E) {
-            for field in ["servo_factor_motor", "servo_factor_regen"] {
-                let why = "if Configuration.h has S_CURVE_ACCELERATION on";
-                axis.maybe.push(entry(format!("{field} = 1.875"), why));
-            }
-        }
+    let why = "delete it where Configuration.h has S_CURVE_ACCELERATION off";
+    for axis in found.axes.iter_mut().flatten() {
+        axis.servo_factor = Some(Figure::new(1.875, why));
     }
     log.hint(
         file,
         "M503 does not say whether S_CURVE_ACCELERATION is on, which makes peaks of acceleration \
-         1.875 times as high"
+         1.875 times as high: counted as on"
             .to_owned(),
-        "give Configuration.h instead, or put the servo factors of the file in force where it is on",
+        "import Configuration.h instead, or delete the servo factors where it is off",
     );
 }

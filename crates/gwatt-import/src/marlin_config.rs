@@ -8,7 +8,7 @@
 use gwatt_machine::{ALL_AXES, AxisId};
 
 use crate::expression;
-use crate::found::{Build, Figure, Found, FoundAxis, entry, shown};
+use crate::found::{Build, Figure, Found, FoundAxis, entry, highest, shown};
 use crate::kinematics;
 use crate::marlin::classic;
 use crate::near::Job;
@@ -42,7 +42,8 @@ struct Define<'t> {
 
 impl Define<'_> {
     fn source(&self) -> String {
-        self.place.source(self.whole.trim_start_matches("#define").trim())
+        self.place
+            .source(self.whole.trim_start_matches("#define").trim())
     }
 }
 
@@ -63,7 +64,9 @@ impl<'t> Defines<'t> {
             let line = place.line().trim();
             if let Some(rest) = line.strip_prefix("//") {
                 let rest = rest.trim_start().strip_prefix("#define ");
-                found.off.extend(rest.and_then(|rest| rest.split_whitespace().next()));
+                found
+                    .off
+                    .extend(rest.and_then(|rest| rest.split_whitespace().next()));
                 continue;
             }
             let code = line.split("//").next().unwrap_or(line);
@@ -91,7 +94,9 @@ impl<'t> Defines<'t> {
     }
 
     fn is_on(&self, name: &str) -> bool {
-        self.all(name).next().is_some_and(|it| it.value != "false" && it.value != "0")
+        self.all(name)
+            .next()
+            .is_some_and(|it| it.value != "false" && it.value != "0")
     }
 
     /// The value of an expression.
@@ -101,45 +106,53 @@ impl<'t> Defines<'t> {
         }
         let name = |name: &str, depth: u32| {
             let values = self.all(name).filter_map(|it| self.eval(it.value, depth));
-            values.fold(None, |best: Option<f64>, value| Some(best.map_or(value, |best| best.max(value))))
+            values.fold(None, |best: Option<f64>, value| {
+                Some(best.map_or(value, |best| best.max(value)))
+            })
         };
         expression::value(text, &name, depth)
     }
 
     /// The highest value of a name; reports one that cannot be read.
     fn figure(&self, log: &mut Log, name: &str) -> Option<Figure> {
-        let mut best: Option<Figure> = None;
+        let mut list = Vec::new();
         for define in self.all(name) {
-            let Some(value) = self.eval(define.value, 0) else {
-                unreadable(log, define);
-                continue;
-            };
-            if best.as_ref().is_none_or(|best| value > best.value) {
-                best = Some(Figure::new(value, define.source()));
+            match self.eval(define.value, 0) {
+                Some(value) => list.push(Figure::new(value, define.source())),
+                None => unreadable(log, define),
             }
         }
-        best
+        highest(list)
     }
 
-    /// The entries of a list in braces.
-    fn list(&self, log: &mut Log, name: &str) -> Option<(Vec<f64>, String)> {
-        let define = self.all(name).next()?;
-        let inner = define.value.strip_prefix('{').and_then(|it| it.strip_suffix('}'));
+    /// The entries of lists in braces; several where several branches have one.
+    fn lists(&self, log: &mut Log, name: &str) -> Vec<(Vec<f64>, String)> {
         let read = |inner: &str| {
             let entries = inner.split(',').map(|entry| self.eval(entry, 0));
             entries.collect::<Option<Vec<f64>>>()
         };
-        let values = inner.and_then(read);
-        if values.is_none() {
-            unreadable(log, define);
+        let mut lists = Vec::new();
+        for define in self.all(name) {
+            let inner = define
+                .value
+                .strip_prefix('{')
+                .and_then(|it| it.strip_suffix('}'));
+            match inner.and_then(read) {
+                Some(values) => lists.push((values, define.source())),
+                None => unreadable(log, define),
+            }
         }
-        Some((values?, define.source()))
+        lists
     }
 }
 
 fn unreadable(log: &mut Log, define: &Define<'_>) {
     let message = format!("`{}` cannot be read", define.value);
-    log.error(&define.place, message, "write it as a number, or a sum of numbers, and import again");
+    log.error(
+        &define.place,
+        message,
+        "write it as a number, or a sum of numbers, and import again",
+    );
 }
 
 /// Reads the configuration.
@@ -152,7 +165,16 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
             text.clone_into(&mut found.name);
         }
     }
-    for name in ["COREXY", "COREXZ", "COREYZ", "COREYX", "COREZX", "COREZY", "MARKFORGED_XY", "MARKFORGED_YX"] {
+    for name in [
+        "COREXY",
+        "COREXZ",
+        "COREYZ",
+        "COREYX",
+        "COREZX",
+        "COREZY",
+        "MARKFORGED_XY",
+        "MARKFORGED_YX",
+    ] {
         if let Some(define) = defines.all(name).next() {
             kinematics::core(&mut found, log, &define.place, define.whole);
         }
@@ -172,7 +194,10 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
 fn letters(defines: &Defines<'_>, entries: usize) -> Vec<AxisId> {
     let mut list = vec![AxisId::X, AxisId::Y, AxisId::Z];
     for name in ["AXIS4_NAME", "AXIS5_NAME", "AXIS6_NAME"] {
-        let letter = defines.all(name).next().map(|it| it.value.trim_matches('\'').as_bytes());
+        let letter = defines
+            .all(name)
+            .next()
+            .map(|it| it.value.trim_matches('\'').as_bytes());
         let driven = defines.all(match name {
             "AXIS4_NAME" => "I_DRIVER_TYPE",
             "AXIS5_NAME" => "J_DRIVER_TYPE",
@@ -192,23 +217,35 @@ fn letters(defines: &Defines<'_>, entries: usize) -> Vec<AxisId> {
 
 fn axes(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
     let mut put = |name: &str, factor: f64, set: fn(&mut FoundAxis) -> &mut Option<Figure>| {
-        let Some((values, source)) = defines.list(log, name) else {
-            return;
-        };
-        for (id, value) in letters(defines, values.len()).into_iter().zip(values) {
-            let slot = set(found.axis(id));
-            if slot.as_ref().is_none_or(|old| value * factor > old.value) {
-                *slot = Some(Figure::new(value * factor, source.clone()));
+        for (values, source) in defines.lists(log, name) {
+            for (id, value) in letters(defines, values.len()).into_iter().zip(values) {
+                let slot = set(found.axis(id));
+                if slot.as_ref().is_none_or(|old| value * factor > old.value) {
+                    *slot = Some(Figure::new(value * factor, source.clone()));
+                }
             }
         }
     };
     put("DEFAULT_MAX_FEEDRATE", 60.0, |axis| &mut axis.rapid);
     put("DEFAULT_MAX_ACCELERATION", 1.0, |axis| &mut axis.accel);
-    let homing = defines.list(log, "HOMING_FEEDRATE_MM_M");
-    let old = ["HOMING_FEEDRATE_XY", "HOMING_FEEDRATE_XY", "HOMING_FEEDRATE_Z"];
-    for (at, (id, old)) in [AxisId::X, AxisId::Y, AxisId::Z].into_iter().zip(old).enumerate() {
+    let homing = defines
+        .lists(log, "HOMING_FEEDRATE_MM_M")
+        .into_iter()
+        .next();
+    let old = [
+        "HOMING_FEEDRATE_XY",
+        "HOMING_FEEDRATE_XY",
+        "HOMING_FEEDRATE_Z",
+    ];
+    for (at, (id, old)) in [AxisId::X, AxisId::Y, AxisId::Z]
+        .into_iter()
+        .zip(old)
+        .enumerate()
+    {
         let speed = match &homing {
-            Some((values, source)) => values.get(at).map(|value| Figure::new(*value, source.clone())),
+            Some((values, source)) => values
+                .get(at)
+                .map(|value| Figure::new(*value, source.clone())),
             None => defines.figure(log, old),
         };
         place(defines, found, log, id);
@@ -226,28 +263,44 @@ fn axes(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
             }
         }
         if defines.is_on("S_CURVE_ACCELERATION") {
-            let source = defines.all("S_CURVE_ACCELERATION").next().map(Define::source);
-            let source = format!("15/8 at the middle of its curve: {}", source.unwrap_or_default());
+            let source = defines
+                .all("S_CURVE_ACCELERATION")
+                .next()
+                .map(Define::source);
+            let source = format!(
+                "15/8 at the middle of its curve: {}",
+                source.unwrap_or_default()
+            );
             axis.servo_factor = Some(Figure::new(S_CURVE, source));
         }
     }
 }
 
 fn job_name<'d>(defines: &'d Defines<'_>) -> &'d str {
-    defines.list.first().map_or("", |define| define.place.file())
+    defines
+        .list
+        .first()
+        .map_or("", |define| define.place.file())
 }
 
 /// Travel, and where homing ends.
 fn place(defines: &Defines<'_>, found: &mut Found, log: &mut Log, id: AxisId) {
     let letter = id.letter() as char;
-    let [min, max] = ["MIN_POS", "MAX_POS"].map(|end| defines.figure(log, &format!("{letter}_{end}")));
+    let [min, max] =
+        ["MIN_POS", "MAX_POS"].map(|end| defines.figure(log, &format!("{letter}_{end}")));
     let direction = defines.figure(log, &format!("{letter}_HOME_DIR"));
     let manual = defines.figure(log, &format!("MANUAL_{letter}_HOME_POS"));
     let probed = id == AxisId::Z
-        && ["USE_PROBE_FOR_Z_HOMING", "Z_MIN_PROBE_USES_Z_MIN_ENDSTOP_PIN", "Z_SAFE_HOMING"]
-            .into_iter()
-            .any(|name| defines.is_on(name));
-    let moved = ["BED_CENTER_AT_0_0", "HOMING_BACKOFF_POST_MM"].into_iter().any(|name| defines.is_on(name));
+        && [
+            "USE_PROBE_FOR_Z_HOMING",
+            "Z_MIN_PROBE_USES_Z_MIN_ENDSTOP_PIN",
+            "Z_SAFE_HOMING",
+        ]
+        .into_iter()
+        .any(|name| defines.is_on(name));
+    let moved = ["BED_CENTER_AT_0_0", "HOMING_BACKOFF_POST_MM"]
+        .into_iter()
+        .any(|name| defines.is_on(name));
     let Some(axis) = found.known(id) else { return };
     if let (Some(min), Some(max)) = (&min, &max) {
         axis.comments.push(format!(
@@ -283,18 +336,30 @@ fn path(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
         }
     }
     if !parts.is_empty() {
-        found.path(format!("accel_mm_s2 = {{ {} }}", parts.join(", ")), sources.join(", "));
+        found.path(
+            format!("accel_mm_s2 = {{ {} }}", parts.join(", ")),
+            sources.join(", "),
+        );
     }
     if defines.off.contains(&"SLOWDOWN") && !defines.is_on("SLOWDOWN") {
         found.path("shortest_at_feed_s = 0", "SLOWDOWN is off");
     } else if let Some(time) = defines.figure(log, "DEFAULT_MINSEGMENTTIME") {
-        found.path(format!("shortest_at_feed_s = {}", shown(time.value.max(0.0) * 1e-6)), time.source);
+        found.path(
+            format!("shortest_at_feed_s = {}", shown(time.value.max(0.0) * 1e-6)),
+            time.source,
+        );
     }
 }
 
 fn corners(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
-    if let Some(blocks) = defines.figure(log, "BLOCK_BUFFER_SIZE").filter(|it| it.value > 1.0) {
-        found.look_ahead(format!("blocks = {}", shown(blocks.value - 1.0)), blocks.source);
+    if let Some(blocks) = defines
+        .figure(log, "BLOCK_BUFFER_SIZE")
+        .filter(|it| it.value > 1.0)
+    {
+        found.look_ahead(
+            format!("blocks = {}", shown(blocks.value - 1.0)),
+            blocks.source,
+        );
     }
     let mut parts = Vec::new();
     let mut sources = Vec::new();
@@ -306,16 +371,27 @@ fn corners(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
         ("per_second", "ARC_SEGMENTS_PER_SEC"),
     ] {
         let known = parts.iter().any(|part: &String| part.starts_with(field));
-        if let Some(figure) = defines.figure(log, name).filter(|it| it.value > 0.0 && !known) {
+        if let Some(figure) = defines
+            .figure(log, name)
+            .filter(|it| it.value > 0.0 && !known)
+        {
             parts.push(format!("{field} = {}", shown(figure.value)));
             sources.push(figure.source);
         }
     }
     if !parts.is_empty() {
-        found.look_ahead(format!("chords = {{ {} }}", parts.join(", ")), sources.join(", "));
+        found.look_ahead(
+            format!("chords = {{ {} }}", parts.join(", ")),
+            sources.join(", "),
+        );
     }
-    let deviation = ["JUNCTION_DEVIATION_MM", "JUNCTION_DEVIATION_FACTOR"].map(|name| defines.figure(log, name));
-    let deviation = deviation.into_iter().flatten().next().filter(|it| it.value > 0.0);
+    let deviation = ["JUNCTION_DEVIATION_MM", "JUNCTION_DEVIATION_FACTOR"]
+        .map(|name| defines.figure(log, name));
+    let deviation = deviation
+        .into_iter()
+        .flatten()
+        .next()
+        .filter(|it| it.value > 0.0);
     let names_classic = defines.is_on("CLASSIC_JERK") || defines.off.contains(&"CLASSIC_JERK");
     let old = !names_classic && !defines.is_on("JUNCTION_DEVIATION");
     if defines.is_on("CLASSIC_JERK") || old {

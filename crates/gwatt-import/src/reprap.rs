@@ -17,7 +17,10 @@ const INCH: f64 = 25.4;
 /// The file that M98 calls.
 pub(crate) fn include(line: &str) -> Option<&str> {
     let rest = line.trim_start();
-    let rest = rest.strip_prefix("M98")?.trim_start().strip_prefix(['P', 'p'])?;
+    let rest = rest
+        .strip_prefix("M98")?
+        .trim_start()
+        .strip_prefix(['P', 'p'])?;
     let name = rest.strip_prefix('"')?.split('"').next()?;
     let name = name.rsplit(['/', ':']).next()?;
     (!name.is_empty()).then_some(name)
@@ -52,7 +55,13 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     found
 }
 
-fn take(found: &mut Found, settings: &mut Settings, log: &mut Log, command: &Command<'_>, unit: f64) {
+fn take(
+    found: &mut Found,
+    settings: &mut Settings,
+    log: &mut Log,
+    command: &Command<'_>,
+    unit: f64,
+) {
     match command.code.as_str() {
         "M203" => axes(found, log, command, unit, |axis| &mut axis.rapid),
         "M201" => axes(found, log, command, unit, |axis| &mut axis.accel),
@@ -71,12 +80,17 @@ fn take(found: &mut Found, settings: &mut Settings, log: &mut Log, command: &Com
         "M574" => endstops(found, settings, command),
         "M584" => drives(found, settings, command),
         "M595" => {
-            let queue = command.word('P').filter(|_| command.word('Q').is_none_or(|q| q.text == "0"));
+            let queue = command
+                .word('P')
+                .filter(|_| command.word('Q').is_none_or(|q| q.text == "0"));
             if let Some(word) = queue
                 && let Some(value) = log.positive(&word.place, word.text, "a queue")
                 && value >= 2.0
             {
-                found.look_ahead(format!("blocks = {}", shown(value - 1.0)), command.source(word));
+                found.look_ahead(
+                    format!("blocks = {}", shown(value - 1.0)),
+                    command.source(word),
+                );
             }
         }
         "M665" => kinematics::refuse(log, &command.place, "delta (M665)"),
@@ -94,6 +108,17 @@ fn largest(log: &mut Log, command: &Command<'_>, word: &Word<'_>) -> Option<Figu
         best = Some(best.map_or(value, |best| best.max(value)));
     }
     best.map(|best| Figure::new(best, command.source(word)))
+}
+
+/// A step of speed, which may be 0.
+fn step(log: &mut Log, command: &Command<'_>, word: &Word<'_>) -> Option<Figure> {
+    let pieces = word
+        .text
+        .split(':')
+        .map(|piece| log.number(&word.place.of(piece), piece));
+    let values: Option<Vec<f64>> = pieces.collect();
+    let most = values?.into_iter().fold(0.0, f64::max);
+    Some(Figure::new(most, command.source(word)))
 }
 
 fn axes(
@@ -119,7 +144,7 @@ fn steps(settings: &mut Settings, log: &mut Log, command: &Command<'_>, factor: 
                 settings.all_kinds = Some(Figure::new(value, command.source(word)));
             }
         } else if let Some(id) = AxisId::from_letter(word.letter as u8)
-            && let Some(figure) = largest(log, command, word)
+            && let Some(figure) = step(log, command, word)
         {
             settings.steps.retain(|(other, _)| *other != id);
             settings.steps.push((id, figure.times(factor)));
@@ -134,7 +159,10 @@ fn limits(settings: &mut Settings, log: &mut Log, command: &Command<'_>, unit: f
         let Some(id) = AxisId::from_letter(word.letter as u8) else {
             continue;
         };
-        let mut values = word.text.split(':').map(|piece| log.number(&word.place.of(piece), piece));
+        let mut values = word
+            .text
+            .split(':')
+            .map(|piece| log.number(&word.place.of(piece), piece));
         let first = values.next().flatten().map(|value| value * unit);
         let second = values.next().flatten().map(|value| value * unit);
         let known = settings.ends.iter().position(|(other, _)| *other == id);
@@ -165,9 +193,11 @@ fn endstops(found: &mut Found, settings: &Settings, command: &Command<'_>) {
             _ => continue,
         };
         let ends = settings.ends.iter().find(|(other, _)| *other == id);
-        if let (Some(axis), Some(Some(place))) = (found.known(id), ends.map(|(_, ends)| ends[end])) {
+        if let (Some(axis), Some(Some(place))) = (found.known(id), ends.map(|(_, ends)| ends[end]))
+        {
             let why = format!("if the homing file ends there: {}", command.source(word));
-            axis.maybe.push(entry(format!("reference_mm = {}", shown(place)), why));
+            axis.maybe
+                .push(entry(format!("reference_mm = {}", shown(place)), why));
         }
     }
 }
@@ -182,7 +212,9 @@ fn drives(found: &mut Found, settings: &mut Settings, command: &Command<'_>) {
         if id != AxisId::E {
             found.axis(id).motors = word.text.split(':').count();
         }
-        if let Some(turns) = turns {
+        // The axes that the command makes: X, Y and Z are there from the beginning.
+        let made = !matches!(id, AxisId::X | AxisId::Y | AxisId::Z | AxisId::E);
+        if let Some(turns) = turns.filter(|_| made) {
             settings.rotary.push((id, turns));
         }
     }
@@ -210,7 +242,8 @@ fn finish(found: &mut Found, settings: Settings) {
     }
     for (id, ends) in settings.ends {
         if let (Some(axis), [Some(min), Some(max)]) = (found.known(id), ends) {
-            axis.comments.push(format!("Travel: {} to {} (M208)", shown(min), shown(max)));
+            axis.comments
+                .push(format!("Travel: {} to {} (M208)", shown(min), shown(max)));
         }
     }
     let mut parts = Vec::new();
@@ -222,7 +255,10 @@ fn finish(found: &mut Found, settings: Settings) {
         }
     }
     if !parts.is_empty() {
-        found.path(format!("accel_mm_s2 = {{ {} }}", parts.join(", ")), sources.join(", "));
+        found.path(
+            format!("accel_mm_s2 = {{ {} }}", parts.join(", ")),
+            sources.join(", "),
+        );
     }
     if !settings.steps.is_empty() {
         let mut fields = vec![crate::marlin::classic(found, settings.steps)];

@@ -40,7 +40,10 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         && let Some(value) = log.number(&feed.place, feed.text)
         && value > 0.0
     {
-        found.language(format!("power_on_feed_mm_min = {}", shown(value)), feed.source());
+        found.language(
+            format!("power_on_feed_mm_min = {}", shown(value)),
+            feed.source(),
+        );
     }
     let mut named: Vec<String> = Vec::new();
     for (name, what) in LEFT_OUT {
@@ -55,18 +58,30 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     }
     if !named.is_empty() {
         let list = named.join(", ");
-        found.remarks.push(format!("{list}: moves count within the limits of the axes"));
+        found
+            .remarks
+            .push(format!("{list}: moves count within the limits of the axes"));
     }
     found
 }
 
 /// Other units than those of the basic metric system.
 fn refuse_units(data: &Data<'_>, log: &mut Log) {
-    if let Some(system) = data.first("SCALING_SYSTEM_IS_METRIC").filter(|it| matches!(it.text, "0" | "FALSE")) {
+    if let Some(system) = data
+        .first("SCALING_SYSTEM_IS_METRIC")
+        .filter(|it| matches!(it.text, "0" | "FALSE"))
+    {
         let message = "the basic system is inch, whose units are not read".to_owned();
-        log.error(&system.place, message, "write the archive with the basic system metric (MD10240 = 1)");
+        log.error(
+            &system.place,
+            message,
+            "write the archive with the basic system metric (MD10240 = 1)",
+        );
     }
-    if let Some(mask) = data.first("SCALING_USER_DEF_MASK").filter(|it| !matches!(it.text, "0" | "'H0'" | "'B0'")) {
+    if let Some(mask) = data
+        .first("SCALING_USER_DEF_MASK")
+        .filter(|it| !matches!(it.text, "0" | "'H0'" | "'B0'"))
+    {
         let message = "the units of machine data are the user's own".to_owned();
         log.error(&mask.place, message, "write the archive with MD10220 = 0");
     }

@@ -46,7 +46,13 @@ impl Text {
                 "save it as plain text (ASCII or UTF-8)",
             ));
         }
-        let bytes = file.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&file.bytes);
+        let bytes = file
+            .bytes
+            .strip_prefix(b"\xef\xbb\xbf")
+            .unwrap_or(&file.bytes);
+        // Fanuc: parameter 100, bit NCR, ends blocks with LF CR CR.
+        let joined = String::from_utf8_lossy(bytes).replace("\n\r\r", "\n");
+        let bytes = joined.as_bytes();
         let line = |line| String::from_utf8_lossy(split_line_end(line).0).into_owned();
         Ok(Self {
             name: file.name.clone(),
@@ -164,7 +170,11 @@ impl Log {
         let found = text.parse::<f64>().ok().filter(|number| number.is_finite());
         if found.is_none() {
             let message = format!("`{text}` is not a number");
-            self.error(place, message, "write the number that the control has, without a unit");
+            self.error(
+                place,
+                message,
+                "write the number that the control has, without a unit",
+            );
         }
         found
     }
@@ -176,7 +186,11 @@ impl Log {
             return Some(number);
         }
         let message = format!("{what} of {number} is none");
-        self.error(place, message, "a value above 0 is needed: look at the control");
+        self.error(
+            place,
+            message,
+            "a value above 0 is needed: look at the control",
+        );
         None
     }
 }

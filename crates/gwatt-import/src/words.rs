@@ -49,7 +49,10 @@ pub(crate) fn commands<'t>(place: &Place<'t>) -> Vec<Command<'t>> {
         let number = name.get(1..).unwrap_or("").trim_start_matches('0');
         let number = if number.is_empty() { "0" } else { number };
         list.push(Command {
-            code: format!("{}{number}", name.get(..1).unwrap_or("").to_ascii_uppercase()),
+            code: format!(
+                "{}{number}",
+                name.get(..1).unwrap_or("").to_ascii_uppercase()
+            ),
             words: words(rest, place),
             whole,
             place: place.of(whole),
@@ -70,7 +73,10 @@ fn starts(code: &str) -> Vec<usize> {
             b'{' => braces += 1,
             b'}' => braces = braces.saturating_sub(1),
             b'G' | b'M' | b'g' | b'm' if !quoted && braces == 0 => {
-                let free = at == 0 || bytes.get(at - 1).is_none_or(|b| !b.is_ascii_alphanumeric() && *b != b'_');
+                let free = at == 0
+                    || bytes
+                        .get(at - 1)
+                        .is_none_or(|b| !b.is_ascii_alphanumeric() && *b != b'_');
                 if free && bytes.get(at + 1).is_some_and(u8::is_ascii_digit) {
                     found.push(at);
                 }
@@ -82,7 +88,9 @@ fn starts(code: &str) -> Vec<usize> {
 }
 
 fn digits(text: &str) -> usize {
-    text.bytes().take_while(|b| b.is_ascii_digit() || *b == b'.').count()
+    text.bytes()
+        .take_while(|b| b.is_ascii_digit() || *b == b'.')
+        .count()
 }
 
 /// Where a character stands outside quotes.
@@ -105,7 +113,9 @@ fn words<'t>(rest: &'t str, place: &Place<'t>) -> Vec<Word<'t>> {
     while let Some(tail) = rest.get(from..) {
         let skipped = tail.len() - tail.trim_start().len();
         let tail = tail.trim_start();
-        let Some(letter) = tail.chars().next() else { break };
+        let Some(letter) = tail.chars().next() else {
+            break;
+        };
         let body = tail.get(letter.len_utf8()..).unwrap_or("");
         let mut length = end_of_word(body);
         // `X 300`, as some write it.
@@ -119,7 +129,11 @@ fn words<'t>(rest: &'t str, place: &Place<'t>) -> Vec<Word<'t>> {
             list.push(Word {
                 letter: letter.to_ascii_uppercase(),
                 text,
-                place: place.of(if text.is_empty() { tail.get(..1).unwrap_or("") } else { text }),
+                place: place.of(if text.is_empty() {
+                    tail.get(..1).unwrap_or("")
+                } else {
+                    text
+                }),
             });
         }
         from += skipped + letter.len_utf8() + length;
@@ -131,18 +145,21 @@ fn words<'t>(rest: &'t str, place: &Place<'t>) -> Vec<Word<'t>> {
 fn end_of_word(body: &str) -> usize {
     let mut braces = 0_u32;
     let mut quoted = false;
-    let mut number = true;
+    let mut before = ' ';
     for (at, c) in body.char_indices() {
+        let free = !quoted && braces == 0;
         match c {
             '"' => quoted = !quoted,
             '{' if !quoted => braces += 1,
             '}' if !quoted => braces = braces.saturating_sub(1),
-            c if c.is_whitespace() && !quoted && braces == 0 => return at,
+            c if c.is_whitespace() && free => return at,
             // X100Y200
-            c if c.is_ascii_alphabetic() && number && at > 0 && !quoted && braces == 0 => return at,
-            c if !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | ':')) => number = false,
+            c if c.is_ascii_alphabetic() && (before.is_ascii_digit() || before == '.') && free => {
+                return at;
+            }
             _ => {}
         }
+        before = c;
     }
     body.len()
 }

@@ -22,7 +22,7 @@ pub(crate) fn machine_file(found: &Found, files: &[String]) -> String {
     }
     for (id, axis) in ALL_AXES.into_iter().zip(&found.axes) {
         if let Some(axis) = axis {
-            axis_table(&mut out, id, axis, found.build);
+            axis_table(&mut out, id, axis, found);
         }
     }
     for table in &found.tables {
@@ -86,7 +86,11 @@ fn head(out: &mut String, found: &Found, files: &[String]) {
 
 fn converter(out: &mut String, found: &Found) {
     out.push_str("\n[converter]\n");
-    asked(out, "peak_power_w = ", "what the supply of the drives delivers at most, in W");
+    asked(
+        out,
+        "peak_power_w = ",
+        "what the supply of the drives delivers at most, in W",
+    );
     asked(
         out,
         "regen_power_w = ",
@@ -112,7 +116,7 @@ fn table(out: &mut String, name: &str, fields: &[Entry]) {
     }
 }
 
-fn axis_table(out: &mut String, id: AxisId, axis: &FoundAxis, build: Build) {
+fn axis_table(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
     out.push('\n');
     for comment in &axis.comments {
         wrapped(out, "# ", "# ", comment);
@@ -126,7 +130,11 @@ fn axis_table(out: &mut String, id: AxisId, axis: &FoundAxis, build: Build) {
     let _ = writeln!(out, "kind = \"{kind}\"");
     let mut field = |key: String, figure: &Option<Figure>| {
         if let Some(figure) = figure {
-            line(out, &format!("{key} = {}", shown(figure.value)), &figure.source);
+            line(
+                out,
+                &format!("{key} = {}", shown(figure.value)),
+                &figure.source,
+            );
         }
         figure.is_some()
     };
@@ -149,22 +157,41 @@ fn axis_table(out: &mut String, id: AxisId, axis: &FoundAxis, build: Build) {
     for hint in &axis.drive {
         wrapped(out, "# ", "# ", hint);
     }
-    drive(out, id, axis, build);
+    drive(out, id, axis, found);
 }
 
 /// What the file cannot know.
-fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, build: Build) {
-    let rotor = if axis.motors > 1 {
+fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
+    let build = found.build;
+    let rotor = if found.core && matches!(id, AxisId::X | AxisId::Y) {
+        "rotors of both motors, for X as for Y".to_owned()
+    } else if axis.motors > 1 {
         format!("rotors of all {} motors together", axis.motors)
     } else {
         "rotor, with coupling and brake".to_owned()
     };
     if axis.rotary {
-        asked(out, "moved_inertia_kg_m2 = ", "table and workpiece, about the axis");
+        asked(
+            out,
+            "moved_inertia_kg_m2 = ",
+            "table and workpiece, about the axis",
+        );
         asked(out, "rotor_kg_m2 = ", &rotor);
-        asked(out, "gear_ratio = ", "motor revolutions per table revolution");
-        asked(out, "friction_nm = ", "at the motor; without it none counts");
-        asked(out, "efficiency = ", "mechanical by electrical power; without it 1");
+        asked(
+            out,
+            "gear_ratio = ",
+            "motor revolutions per table revolution",
+        );
+        asked(
+            out,
+            "friction_nm = ",
+            "at the motor; without it none counts",
+        );
+        asked(
+            out,
+            "efficiency = ",
+            "mechanical by electrical power; without it 1",
+        );
         return;
     }
     let belt = build == Build::Belts && id != AxisId::Z && id != AxisId::E;
@@ -179,22 +206,36 @@ fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, build: Build) {
     match (belt, id) {
         (_, AxisId::E) => asked(out, "lead_mm = ", "filament per revolution of the motor"),
         (true, _) => asked(out, "pulley = { teeth = , pitch_mm = , width_mm = }", ""),
-        (false, _) => asked(out, "screw = { diameter_mm = , length_mm = , lead_mm = }", ""),
+        (false, _) => asked(
+            out,
+            "screw = { diameter_mm = , length_mm = , lead_mm = }",
+            "or pulley, pinion",
+        ),
     }
     asked(out, "coulomb_n = ", "friction; without it none counts");
     if id == AxisId::Z {
         asked(out, "gravity_n = ", "weight that nothing balances");
     }
-    asked(out, "efficiency = ", "mechanical by electrical power; without it 1");
+    asked(
+        out,
+        "efficiency = ",
+        "mechanical by electrical power; without it 1",
+    );
 }
 
 fn spindle(out: &mut String, found: &Found) {
     let Some(rpm) = &found.spindle_rpm else {
         return;
     };
-    out.push_str("\n# Counts once its inertia is known; without a [spindle] its power counts as none.\n");
+    out.push_str(
+        "\n# Counts once its inertia is known; without a [spindle] its power counts as none.\n",
+    );
     out.push_str("# [spindle]\n");
-    line(out, &format!("# max_rpm = {}", shown(rpm.value)), &rpm.source);
+    line(
+        out,
+        &format!("# max_rpm = {}", shown(rpm.value)),
+        &rpm.source,
+    );
     asked(out, "inertia_kg_m2 = ", "rotor, chuck and tool");
     asked(out, "accel_time_s = ", "from rest to that speed");
 }

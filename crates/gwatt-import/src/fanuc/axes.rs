@@ -27,8 +27,15 @@ pub(super) fn take(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log
             continue;
         };
         if taken.contains(&id) {
-            let message = format!("there is another axis {}: only the first is taken", id.letter() as char);
-            log.warning(&value.place, message, "give each path of the control a file of its own");
+            let message = format!(
+                "there is another axis {}: only the first is taken",
+                id.letter() as char
+            );
+            log.warning(
+                &value.place,
+                message,
+                "give each path of the control a file of its own",
+            );
             continue;
         }
         taken.push(id);
@@ -37,13 +44,21 @@ pub(super) fn take(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log
 }
 
 /// Parameter 1020 has the letter as a character code.
-fn letter(parameters: &Parameters<'_>, index: usize, log: &mut Log, at: &Value<'_>) -> Option<AxisId> {
+fn letter(
+    parameters: &Parameters<'_>,
+    index: usize,
+    log: &mut Log,
+    at: &Value<'_>,
+) -> Option<AxisId> {
     let Some(name) = parameters.axis(1020, index) else {
         let usual = [AxisId::X, AxisId::Y, AxisId::Z];
         let found = usual.get(index - 1).copied();
         let (message, help) = match found {
             Some(id) => (
-                format!("parameter 1020 has no name for axis {index}: taken for {}", id.letter() as char),
+                format!(
+                    "parameter 1020 has no name for axis {index}: taken for {}",
+                    id.letter() as char
+                ),
                 "add parameter 1020 to the file if it is another one",
             ),
             None => (
@@ -55,17 +70,35 @@ fn letter(parameters: &Parameters<'_>, index: usize, log: &mut Log, at: &Value<'
         return found;
     };
     let code = name.text.parse::<u8>().ok();
-    let found = code.and_then(AxisId::from_letter).filter(|id| *id != AxisId::E);
+    let found = code
+        .and_then(AxisId::from_letter)
+        .filter(|id| *id != AxisId::E);
     if found.is_none() {
-        let message = format!("the name of axis {index} ({}) is no axis that gwatt knows", name.text);
-        log.warning(&name.place, message, "it is left out: gwatt knows X Y Z A B C U V W");
+        let message = format!(
+            "the name of axis {index} ({}) is no axis that gwatt knows",
+            name.text
+        );
+        log.warning(
+            &name.place,
+            message,
+            "it is left out: gwatt knows X Y Z A B C U V W",
+        );
     }
     found
 }
 
-fn axis(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log, of: (AxisId, usize), rapid: &Value<'_>) {
+fn axis(
+    parameters: &Parameters<'_>,
+    found: &mut Found,
+    log: &mut Log,
+    of: (AxisId, usize),
+    rapid: &Value<'_>,
+) {
     let (id, index) = of;
-    let turns = parameters.bits(1006, 0).into_iter().find(|bit| bit.index == index);
+    let turns = parameters
+        .bits(1006, 0)
+        .into_iter()
+        .find(|bit| bit.index == index);
     let by_letter = matches!(id, AxisId::A | AxisId::B | AxisId::C);
     let reader = Reader {
         parameters,
@@ -73,14 +106,24 @@ fn axis(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log, of: (Axis
         rotary: turns.map_or(by_letter, |bit| bit.on),
     };
     let letter = id.letter() as char;
-    let Some(first) = log.positive(&rapid.place, rapid.text, &format!("a rapid speed of axis {letter}")) else {
+    let Some(first) = log.positive(
+        &rapid.place,
+        rapid.text,
+        &format!("a rapid speed of axis {letter}"),
+    ) else {
         found.axis(id);
         return;
     };
     let rapid = Figure::new(first * reader.speed_unit(rapid.text), rapid.source.clone());
-    let feed = reader.speed(1430, log);
+    let feed = reader.speed(1430, log).filter(|it| it.value > 0.0);
+    let feed = feed
+        .or_else(|| reader.speed(1422, log))
+        .filter(|it| it.value > 0.0);
     let rapid = match feed.clone().filter(|feed| feed.value > rapid.value) {
-        Some(feed) => Figure::new(feed.value, format!("cutting may be faster than rapids: {}", feed.source)),
+        Some(feed) => Figure::new(
+            feed.value,
+            format!("cutting may be faster than rapids: {}", feed.source),
+        ),
         None => rapid,
     };
     let accel = reader.accel(log, &rapid, feed);
@@ -90,19 +133,35 @@ fn axis(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log, of: (Axis
     axis.rotary = reader.rotary;
     (axis.rapid, axis.accel, axis.reference) = (Some(rapid), accel, reference);
     if let (Some(min), Some(max)) = (min, max) {
-        axis.comments.push(format!("Travel: {} to {}: {}, {}", shown(min.value), shown(max.value), min.source, max.source));
+        axis.comments.push(format!(
+            "Travel: {} to {}: {}, {}",
+            shown(min.value),
+            shown(max.value),
+            min.source,
+            max.source
+        ));
     }
     let unit = if reader.rotary { "deg" } else { "mm" };
     if let Some(speed) = reader.speed(1428, log).filter(|it| it.value > 0.0) {
-        let why = format!("before the reference point is known: {}; after that G28 is a rapid", speed.source);
-        axis.maybe.push(entry(format!("reference_{unit}_min = {}", shown(speed.value)), why));
+        let why = format!(
+            "before the reference point is known: {}; after that G28 is a rapid",
+            speed.source
+        );
+        axis.maybe.push(entry(
+            format!("reference_{unit}_min = {}", shown(speed.value)),
+            why,
+        ));
     }
 }
 
 impl<'t> Reader<'_, 't> {
     fn value(&self, number: u32) -> Option<&Value<'t>> {
         let own = self.parameters.axis(number, self.index);
-        own.or_else(|| self.parameters.of(number).find(|value| value.of != 'A' && value.of != 'S'))
+        own.or_else(|| {
+            self.parameters
+                .of(number)
+                .find(|value| value.of != 'A' && value.of != 'S')
+        })
     }
 
     fn figure(&self, number: u32, log: &mut Log) -> Option<(Figure, &'t str)> {
@@ -112,7 +171,11 @@ impl<'t> Reader<'_, 't> {
     }
 
     fn speed_unit(&self, text: &str) -> f64 {
-        if self.rotary { 1.0 } else { self.parameters.speed_unit(text) }
+        if self.rotary {
+            1.0
+        } else {
+            self.parameters.speed_unit(text)
+        }
     }
 
     fn speed(&self, number: u32, log: &mut Log) -> Option<Figure> {
@@ -129,8 +192,11 @@ impl<'t> Reader<'_, 't> {
     /// after interpolation (1430 or 1422 in 1622), before interpolation (1660, 1671; 1630 in
     /// 1631, 1770 in 1771).
     fn accel(&self, log: &mut Log, rapid: &Figure, feed: Option<Figure>) -> Option<Figure> {
-        let largest = feed.filter(|it| it.value > 0.0).or_else(|| self.speed(1422, log));
-        let largest = largest.filter(|it| it.value > 0.0).unwrap_or_else(|| rapid.clone());
+        let largest = feed.unwrap_or_else(|| rapid.clone());
+        let bits = self.parameters.bits(1610, 1);
+        let bell = bits
+            .iter()
+            .any(|bit| bit.on && (bit.index == self.index || bit.index == 0));
         let pairs = [
             (Some(rapid.clone()), 1620),
             (Some(largest), 1622),
@@ -139,15 +205,28 @@ impl<'t> Reader<'_, 't> {
         ];
         let mut list: Vec<Figure> = Vec::new();
         for (speed, number) in pairs {
-            let time = self.figure(number, log).filter(|(time, _)| time.value > 0.0);
+            let time = self
+                .figure(number, log)
+                .filter(|(time, _)| time.value > 0.0);
             let (Some(speed), Some((time, _))) = (speed.filter(|it| it.value > 0.0), time) else {
                 continue;
             };
-            let accel = speed.value / MIN / (time.value * MS);
-            let source = format!("{}/min in {} ms: {}", shown(speed.value), shown(time.value), time.source);
+            // A bell of that time is twice as steep at its middle.
+            let (steep, shape) = if bell && number == 1622 {
+                (2.0, "twice, as a bell, ")
+            } else {
+                (1.0, "")
+            };
+            let accel = steep * speed.value / MIN / (time.value * MS);
+            let (speed, ms) = (shown(speed.value), shown(time.value));
+            let source = format!("{shape}{speed}/min in {ms} ms: {}", time.source);
             list.push(Figure::new(accel, source));
         }
-        let inch = if self.rotary { 1.0 } else { self.parameters.inch() };
+        let inch = if self.rotary {
+            1.0
+        } else {
+            self.parameters.inch()
+        };
         for number in [1660, 1671] {
             let direct = self.figure(number, log).filter(|(it, _)| it.value > 0.0);
             list.extend(direct.map(|(it, _)| it.times(inch)));

@@ -39,7 +39,11 @@ pub(crate) fn number(line: &str) -> Option<(u32, &str)> {
     let number = rest.get(..digits)?.parse().ok()?;
     let tail = rest.get(digits..)?;
     let first = tail.trim_start().chars().next()?;
-    matches!(first.to_ascii_uppercase(), 'A' | 'L' | 'T' | 'S' | 'K' | 'P' | 'M' | 'I' | 'Q').then_some((number, tail))
+    matches!(
+        first.to_ascii_uppercase(),
+        'A' | 'L' | 'T' | 'S' | 'K' | 'P' | 'M' | 'I' | 'Q'
+    )
+    .then_some((number, tail))
 }
 
 impl<'t> Parameters<'t> {
@@ -63,7 +67,8 @@ impl<'t> Parameters<'t> {
 
     /// The value of an axis.
     pub(crate) fn axis(&self, number: u32, index: usize) -> Option<&Value<'t>> {
-        self.of(number).find(|value| value.of == 'A' && value.index == index)
+        self.of(number)
+            .find(|value| value.of == 'A' && value.index == index)
     }
 
     /// The numbers of a parameter; reports what is none.
@@ -83,7 +88,8 @@ impl<'t> Parameters<'t> {
     /// A bit of all values: the last digit is bit 0.
     pub(crate) fn bits(&self, number: u32, bit: usize) -> Vec<Bit> {
         let read = |value: &Value<'t>| {
-            let bits = value.text.len() == 8 && value.text.bytes().all(|b| matches!(b, b'0' | b'1'));
+            let bits =
+                value.text.len() == 8 && value.text.bytes().all(|b| matches!(b, b'0' | b'1'));
             let digit = value.text.bytes().rev().nth(bit).filter(|_| bits)?;
             Some(Bit {
                 on: digit == b'1',
@@ -119,7 +125,11 @@ impl<'t> Parameters<'t> {
         if text.contains('.') {
             return if is_inch { INCH } else { 1.0 };
         }
-        let set = |bit| [1004, 1013].iter().any(|number| self.bit(*number, bit).is_some_and(|bit| bit.on));
+        let set = |bit| {
+            [1004, 1013]
+                .iter()
+                .any(|number| self.bit(*number, bit).is_some_and(|bit| bit.on))
+        };
         let step = match (set(0), set(1)) {
             (true, false) => 0.01,
             (false, true) => 0.0001,
@@ -129,13 +139,22 @@ impl<'t> Parameters<'t> {
     }
 }
 
-fn values<'t>(number: u32, rest: &'t str, place: &Place<'t>, list: &mut Vec<Value<'t>>, log: &mut Log) {
+/// The values of a line: `A1P36000A2P36000`, `L1P…`, `S1P…`, `P…`.
+fn values<'t>(
+    number: u32,
+    rest: &'t str,
+    place: &Place<'t>,
+    list: &mut Vec<Value<'t>>,
+    log: &mut Log,
+) {
     let (mut of, mut index) = (' ', 0);
     let mut from = 0;
     while let Some(tail) = rest.get(from..) {
         let skipped = tail.len() - tail.trim_start().len();
         let tail = tail.trim_start();
-        let Some(letter) = tail.chars().next() else { break };
+        let Some(letter) = tail.chars().next() else {
+            break;
+        };
         let body = tail.get(letter.len_utf8()..).unwrap_or("");
         let blanks = body.len() - body.trim_start().len();
         let trimmed = body.trim_start();
@@ -147,21 +166,40 @@ fn values<'t>(number: u32, rest: &'t str, place: &Place<'t>, list: &mut Vec<Valu
             selector @ ('A' | 'L' | 'T' | 'S' | 'K') => {
                 let Ok(read) = text.parse() else {
                     let message = format!("`{letter}{text}` names no axis, path or spindle");
-                    log.error(&place.of(tail.get(..1).unwrap_or("")), message, "write it as A1 P…");
+                    log.error(
+                        &place.of(tail.get(..1).unwrap_or("")),
+                        message,
+                        "write it as A1 P…",
+                    );
                     return;
                 };
                 (of, index) = (selector, read);
             }
             'P' | 'M' => {
-                let which = if of == ' ' { String::new() } else { format!(" {of}{index}") };
+                let which = if of == ' ' {
+                    String::new()
+                } else {
+                    format!(" {of}{index}")
+                };
                 list.push(Value {
                     of,
                     index,
                     text,
-                    source: place.source(&format!("N{number:05}{which} P{text}")),
+                    source: place.source(&format!("N{number:05}{which} {letter}{text}")),
                     place: place.of(if text.is_empty() { tail } else { text }),
                 });
             }
+            'I' => {
+                let message = "values in inches (I) are not read".to_owned();
+                log.error(
+                    &place.of(tail),
+                    message,
+                    "write the parameters in metric units",
+                );
+                return;
+            }
+            // What the line holds: Q1 parameters, Q0 compensation of pitch errors.
+            'Q' if text == "1" => {}
             // Words that no parameter of interest has.
             _ => return,
         }

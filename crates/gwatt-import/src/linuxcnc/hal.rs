@@ -9,7 +9,10 @@ const PINS: [(&str, &str); 6] = [
     ("maxvel", "largest speed, units per second"),
     ("maxaccel", "largest acceleration, units per second squared"),
     ("max-vel", "largest speed, units per second"),
-    ("max-accel", "largest acceleration, units per second squared"),
+    (
+        "max-accel",
+        "largest acceleration, units per second squared",
+    ),
 ];
 
 /// Comments by joint.

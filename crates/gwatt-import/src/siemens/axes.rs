@@ -28,25 +28,36 @@ pub(super) fn take(data: &Data<'_>, found: &mut Found, log: &mut Log) {
     let mut levels: Vec<(AxisId, Vec<f64>)> = Vec::new();
     let mut left: Vec<String> = Vec::new();
     for number in 1..=MOST {
-        let name = data.entry("AXCONF_MACHAX_NAME_TAB", number - 1).unwrap_or("");
+        let name = data
+            .entry("AXCONF_MACHAX_NAME_TAB", number - 1)
+            .unwrap_or("");
         let mut axis = Axis {
             data,
             number,
             name,
             rotary: false,
         };
-        let is_known = axis.value("MAX_AX_VELO").is_some() || axis.value("POS_LIMIT_PLUS").is_some();
+        let is_known =
+            axis.value("MAX_AX_VELO").is_some() || axis.value("POS_LIMIT_PLUS").is_some();
         if !is_known && axis.value("MAX_AX_ACCEL").is_none() {
             continue;
         }
-        let is_spindle = axis.value("SPIND_ASSIGN_TO_MACHAX").is_some_and(|it| it.text != "0");
-        axis.rotary = axis.value("IS_ROT_AX").is_some_and(|it| it.text == "1" || it.text.eq_ignore_ascii_case("true"));
+        let is_spindle = axis
+            .value("SPIND_ASSIGN_TO_MACHAX")
+            .is_some_and(|it| it.text != "0");
+        axis.rotary = axis
+            .value("IS_ROT_AX")
+            .is_some_and(|it| it.text == "1" || it.text.eq_ignore_ascii_case("true"));
         if is_spindle {
             spindle(&axis, found, log);
             continue;
         }
         let Some(id) = letter(data, number, name) else {
-            left.push(if name.is_empty() { format!("AX{number}") } else { name.to_owned() });
+            left.push(if name.is_empty() {
+                format!("AX{number}")
+            } else {
+                name.to_owned()
+            });
             continue;
         };
         if found.axes[id as usize].is_some() {
@@ -57,9 +68,11 @@ pub(super) fn take(data: &Data<'_>, found: &mut Found, log: &mut Log) {
     }
     if !left.is_empty() {
         let list = left.join(", ");
-        found.remarks.push(format!("Axes {list}: gwatt has no letter for them, or another axis of it"));
+        found.remarks.push(format!(
+            "Axes {list}: gwatt has no letter for them, or another axis of it"
+        ));
         log.hint(
-            left.first().map_or("", String::as_str),
+            data.file(),
             format!("axes without a letter of their own are left out: {list}"),
             "what moves with other axes (gantries) belongs to the masses of those",
         );
@@ -74,8 +87,16 @@ fn letter(data: &Data<'_>, number: usize, name: &str) -> Option<AxisId> {
         _ => None,
     };
     if data.has("AXCONF_MACHAX_USED") {
-        let channel = (0..MOST).find(|c| data.entry("AXCONF_MACHAX_USED", *c).and_then(|it| it.parse().ok()) == Some(number))?;
-        let geometry = (0..3).find(|g| data.entry("AXCONF_GEOAX_ASSIGN_TAB", *g).and_then(|it| it.parse().ok()) == Some(channel + 1));
+        let channel = (0..MOST).find(|c| {
+            data.entry("AXCONF_MACHAX_USED", *c)
+                .and_then(|it| it.parse().ok())
+                == Some(number)
+        })?;
+        let geometry = (0..3).find(|g| {
+            data.entry("AXCONF_GEOAX_ASSIGN_TAB", *g)
+                .and_then(|it| it.parse().ok())
+                == Some(channel + 1)
+        });
         let named = geometry
             .and_then(|g| data.entry("AXCONF_GEOAX_NAME_TAB", g))
             .or_else(|| data.entry("AXCONF_CHANAX_NAME_TAB", channel));
@@ -84,7 +105,9 @@ fn letter(data: &Data<'_>, number: usize, name: &str) -> Option<AxisId> {
         }
     }
     if name.is_empty() {
-        return (number <= 3).then(|| ALL_AXES.get(number - 1).copied()).flatten();
+        return (number <= 3)
+            .then(|| ALL_AXES.get(number - 1).copied())
+            .flatten();
     }
     // X1 is X where the file has no other name.
     single(name.trim_end_matches(|c: char| c.is_ascii_digit()))
@@ -128,40 +151,75 @@ impl<'t> Axis<'_, 't> {
 fn spindle(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log) {
     let limit = axis.figure("SPIND_VELO_LIMIT", log, 1.0);
     let limit = limit.or_else(|| axis.figure("MAX_AX_VELO", log, 1.0));
-    found.spindle_rpm = highest(found.spindle_rpm.take().into_iter().chain(limit)).filter(|it| it.value > 0.0);
+    found.spindle_rpm =
+        highest(found.spindle_rpm.take().into_iter().chain(limit)).filter(|it| it.value > 0.0);
 }
 
 /// Reads an axis; gives its accelerations by level where they differ.
 fn one(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log, id: AxisId) -> Option<Vec<f64>> {
-    let [length, unit] = if axis.rotary { [TURN, TURN] } else { [1.0, METRE] };
+    let [length, unit] = if axis.rotary {
+        [TURN, TURN]
+    } else {
+        [1.0, METRE]
+    };
     let rapid = axis.positive("MAX_AX_VELO", log, length);
     let accels = axis.figures("MAX_AX_ACCEL", log, unit);
-    let factors = [axis.figures("G0_ACCEL_FACTOR", log, 1.0), axis.figures("SOFT_ACCEL_FACTOR", log, 1.0)];
-    let raised = highest(factors.into_iter().flatten().map(|(_, it)| it)).filter(|it| it.value > 1.0);
+    let factors = [
+        axis.figures("G0_ACCEL_FACTOR", log, 1.0),
+        axis.figures("SOFT_ACCEL_FACTOR", log, 1.0),
+    ];
+    let raised =
+        highest(factors.into_iter().flatten().map(|(_, it)| it)).filter(|it| it.value > 1.0);
     let mut accel = highest(accels.iter().map(|(_, it)| it.clone())).filter(|it| it.value > 0.0);
     if let (Some(accel), Some(raised)) = (&mut accel, &raised) {
         accel.value *= raised.value;
         accel.source = format!("{}, times {}", accel.source, raised.source);
     }
-    let speeds = ["REFP_VELO_SEARCH_CAM", "REFP_VELO_SEARCH_MARKER", "REFP_VELO_POS"];
+    let speeds = [
+        "REFP_VELO_SEARCH_CAM",
+        "REFP_VELO_SEARCH_MARKER",
+        "REFP_VELO_POS",
+    ];
     let speeds = speeds.map(|name| axis.figure(name, log, length));
     let reference_speed = highest(speeds.into_iter().flatten()).filter(|it| it.value > 0.0);
     let reference = axis.figure("REFP_SET_POS", log, 1.0);
     let jerk = axis.figures("MAX_AX_JERK", log, unit);
     let [min, max] = ["POS_LIMIT_MINUS", "POS_LIMIT_PLUS"].map(|name| axis.figure(name, log, 1.0));
-    let drive = ["LEADSCREW_PITCH", "DRIVE_AX_RATIO_NUMERA", "DRIVE_AX_RATIO_DENOM", "POSCTRL_GAIN"];
-    let drive: Vec<String> = drive.iter().filter_map(|name| axis.value(name).map(Datum::source)).collect();
+    let drive = [
+        "LEADSCREW_PITCH",
+        "DRIVE_AX_RATIO_NUMERA",
+        "DRIVE_AX_RATIO_DENOM",
+        "POSCTRL_GAIN",
+    ];
+    let drive: Vec<String> = drive
+        .iter()
+        .filter_map(|name| axis.value(name).map(Datum::source))
+        .collect();
     let to = found.axis(id);
     to.rotary = axis.rotary;
     (to.rapid, to.accel) = (rapid, accel);
     (to.reference_speed, to.reference) = (reference_speed, reference);
     if let (Some(min), Some(max)) = (min, max) {
-        to.comments.push(format!("Travel: {} to {}: {}, {}", shown(min.value), shown(max.value), min.source, max.source));
+        to.comments.push(format!(
+            "Travel: {} to {}: {}, {}",
+            shown(min.value),
+            shown(max.value),
+            min.source,
+            max.source
+        ));
     }
     if let Some(jerk) = highest(jerk.into_iter().map(|(_, it)| it)) {
-        let field = if axis.rotary { "jerk_deg_s3" } else { "jerk_mm_s3" };
-        let why = format!("if every program runs under SOFT: {}; BRISK has no limit", jerk.source);
-        to.maybe.push(entry(format!("{field} = {}", shown(jerk.value)), why));
+        let field = if axis.rotary {
+            "jerk_deg_s3"
+        } else {
+            "jerk_mm_s3"
+        };
+        let why = format!(
+            "if every program runs under SOFT: {}; BRISK has no limit",
+            jerk.source
+        );
+        to.maybe
+            .push(entry(format!("{field} = {}", shown(jerk.value)), why));
     }
     if !drive.is_empty() {
         to.drive.push(format!("Of its drive: {}", drive.join(", ")));
@@ -171,7 +229,12 @@ fn one(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log, id: AxisId) -> Opt
 
 /// The accelerations of the five words, where they differ and nothing raises them.
 fn by_level(accels: &[(usize, Figure)], raised: bool) -> Option<Vec<f64>> {
-    let of = |level: usize| accels.iter().find(|(number, _)| *number == level).map(|(_, it)| it.value);
+    let of = |level: usize| {
+        accels
+            .iter()
+            .find(|(number, _)| *number == level)
+            .map(|(_, it)| it.value)
+    };
     let list: Option<Vec<f64>> = (0..WORDS.len()).map(of).collect();
     let list = list.filter(|list| !raised && list.iter().all(|value| *value > 0.0))?;
     let first = list.first().copied()?;
@@ -193,7 +256,10 @@ fn table(found: &mut Found, levels: &[(AxisId, Vec<f64>)]) {
         };
         let values: Vec<String> = levels.iter().map(value).collect();
         let on = if at == 0 { ", power_on = true" } else { "" };
-        text.push_str(&format!("    {{ word = \"{word}\"{on}, accel_mm_s2 = {{ {} }} }},\n", values.join(", ")));
+        text.push_str(&format!(
+            "    {{ word = \"{word}\"{on}, accel_mm_s2 = {{ {} }} }},\n",
+            values.join(", ")
+        ));
     }
     text.push_str("]\n");
     found.tables.push(text);

@@ -41,7 +41,10 @@ pub(crate) fn line(line: &str) -> Option<(&str, &str, &str, &str)> {
     let prefix = prefixed.iter().find(|prefix| rest.starts_with(**prefix))?;
     let before = line.get(..start)?.trim();
     // A number of the line, or nothing.
-    let plain = before.is_empty() || before.strip_prefix('N').is_some_and(|it| it.bytes().all(|b| b.is_ascii_digit()));
+    let plain = before.is_empty()
+        || before
+            .strip_prefix('N')
+            .is_some_and(|it| it.bytes().all(|b| b.is_ascii_digit()));
     let (left, right) = rest.split_once('=').filter(|_| plain)?;
     let left = left.trim();
     let (name, index) = match left.split_once('[') {
@@ -50,7 +53,12 @@ pub(crate) fn line(line: &str) -> Option<(&str, &str, &str, &str)> {
     };
     let value = value(right.trim_start());
     let end = value.as_ptr() as usize + value.len() - line.as_ptr() as usize;
-    Some((name.get(prefix.len()..)?, index.trim(), value, line.get(..end)?.trim_start()))
+    Some((
+        name.get(prefix.len()..)?,
+        index.trim(),
+        value,
+        line.get(..end)?.trim_start(),
+    ))
 }
 
 /// A value ends before a comment, or before the check sum of an archive (`'5a7e`).
@@ -102,14 +110,22 @@ impl<'t> Data<'t> {
 
     /// The first value of the first channel.
     pub(crate) fn first(&self, name: &str) -> Option<&Datum<'t>> {
-        self.list.iter().find(|datum| datum.name == name && datum.channel == 1)
+        self.list
+            .iter()
+            .find(|datum| datum.name == name && datum.channel == 1)
     }
 
     /// The text of an entry of a table of the first channel, without quotes.
     pub(crate) fn entry(&self, name: &str, index: usize) -> Option<&str> {
         let mut list = self.list.iter();
-        let found = list.find(|it| it.name == name && it.channel == 1 && it.index.parse() == Ok(index));
+        let found =
+            list.find(|it| it.name == name && it.channel == 1 && it.index.parse() == Ok(index));
         found.map(|it| it.text.trim_matches('"'))
+    }
+
+    /// The file of the first value.
+    pub(crate) fn file(&self) -> &str {
+        self.list.first().map_or("", |datum| datum.place.file())
     }
 
     /// Whether the name is there at all.

@@ -190,7 +190,10 @@ impl Builder {
         let mut given = given?;
         given.value += turning;
         if !given.value.is_finite() {
-            let message = format!("the parts of axis {} are too large to compute with", self.letter);
+            let message = format!(
+                "the parts of axis {} are too large to compute with",
+                self.letter
+            );
             findings.error("machine-range", &given.span, message, None);
             return None;
         }

@@ -12,9 +12,9 @@ use std::f64::consts::{PI, TAU};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::findings::Findings;
 use super::axis_table::AxisTable;
-use super::value::{At, AtLeastOne, Num, NotNegative, Positive};
+use super::findings::Findings;
+use super::value::{At, AtLeastOne, NotNegative, Num, Positive};
 use crate::axis::AxisKind;
 use crate::model::MassPart;
 use crate::units::M_PER_MM;
@@ -79,7 +79,10 @@ fn cylinder(diameter_mm: f64, length_mm: f64) -> f64 {
 
 /// Travel per revolution of the screw, pulley or pinion in mm; `None` where nothing says it.
 pub(crate) fn lead_mm(table: &AxisTable) -> Option<f64> {
-    let screw = table.screw.as_ref().and_then(|it| it.value.lead_mm.as_ref());
+    let screw = table
+        .screw
+        .as_ref()
+        .and_then(|it| it.value.lead_mm.as_ref());
     let lead = table.lead_mm.as_ref().or(screw).map(|lead| lead.value);
     let wheel = || table.pulley.as_ref().or(table.pinion.as_ref());
     let around = || wheel()?.value.diameter_mm().map(|diameter| PI * diameter);
@@ -119,7 +122,10 @@ pub(crate) fn list(kind: AxisKind, table: &AxisTable) -> Vec<MassPart> {
     {
         push("screw", cylinder(d.value, l.value), 1.0, 1.0);
     }
-    for (name, wheel, usual) in [("pulley", &table.pulley, 2.0), ("pinion", &table.pinion, 1.0)] {
+    for (name, wheel, usual) in [
+        ("pulley", &table.pulley, 2.0),
+        ("pinion", &table.pinion, 1.0),
+    ] {
         let Some(wheel) = wheel.as_ref().map(|it| &it.value) else {
             continue;
         };
@@ -165,7 +171,11 @@ pub(crate) fn check(findings: &mut Findings<'_>, letter: char, kind: AxisKind, t
     if let Some(lead) = &table.lead_mm {
         leads.push(("lead_mm", lead.span.clone()));
     }
-    if let Some(lead) = table.screw.as_ref().and_then(|it| it.value.lead_mm.as_ref()) {
+    if let Some(lead) = table
+        .screw
+        .as_ref()
+        .and_then(|it| it.value.lead_mm.as_ref())
+    {
         leads.push(("screw.lead_mm", lead.span.clone()));
     }
     for (key, wheel) in [("pulley", &table.pulley), ("pinion", &table.pinion)] {
@@ -174,7 +184,8 @@ pub(crate) fn check(findings: &mut Findings<'_>, letter: char, kind: AxisKind, t
         }
     }
     if let [(first, _), (second, span), ..] = leads.as_slice() {
-        let message = format!("`{first}` and `{second}` both say how far axis {letter} goes in a revolution");
+        let message =
+            format!("`{first}` and `{second}` both say how far axis {letter} goes in a revolution");
         let help = Some("keep one of the two".to_owned());
         findings.error("machine-twice", span, message, help);
     }
@@ -206,10 +217,20 @@ fn needs_rotor(findings: &mut Findings<'_>, letter: char, kind: AxisKind, table:
         findings.error("machine-missing", &moved, message, Some(help.to_owned()));
     }
     let turns = table.screw.is_some() || table.pulley.is_some() || table.pinion.is_some();
-    if let Some(lead) = table.lead_mm.as_ref().filter(|_| !turns && kind == AxisKind::Linear) {
+    if let Some(lead) = table
+        .lead_mm
+        .as_ref()
+        .filter(|_| !turns && kind == AxisKind::Linear)
+    {
         let message = "the inertia of what turns besides the rotor counts as none";
-        let help = "give `screw`, such as screw = { diameter_mm = 32, length_mm = 900 }";
-        findings.warning("machine-missing", &lead.span, message, Some(help.to_owned()));
+        let help = "give `screw`, such as screw = { diameter_mm = 32, length_mm = 900 }, or add it to \
+                    `rotor_kg_m2`";
+        findings.warning(
+            "machine-missing",
+            &lead.span,
+            message,
+            Some(help.to_owned()),
+        );
     }
 }
 

@@ -34,9 +34,17 @@ pub(crate) fn take(
     let value = |number: &Option<super::value::Positive>| {
         number.as_ref().map_or(f64::INFINITY, |number| number.value)
     };
-    let found = [&given.value.print, &given.value.travel, &given.value.retract].map(value);
+    let found = [
+        &given.value.print,
+        &given.value.travel,
+        &given.value.retract,
+    ]
+    .map(value);
     if found[2].is_finite() && !letters.contains(&b'R') {
-        let message = format!("M204 of `{}` has no R: `retract` acts on nothing", controller.name);
+        let message = format!(
+            "M204 of `{}` has no R: `retract` acts on nothing",
+            controller.name
+        );
         findings.error("machine-kind", &given.span, message, None);
     }
     found

@@ -47,6 +47,22 @@ pub(crate) fn form<B>(
     }
 }
 
+/// What to write for a quantity that is missing.
+fn how(keys: &[&str]) -> String {
+    if keys.contains(&"moved_mass_kg") {
+        return "give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it \
+                as `mass_kg` at the load or `inertia_kg_m2` at the motor"
+            .to_owned();
+    }
+    if keys.contains(&"moved_inertia_kg_m2") {
+        return "give `moved_inertia_kg_m2` with `rotor_kg_m2` and `gear_ratio`, or all of it as \
+                `inertia_kg_m2`"
+            .to_owned();
+    }
+    let keys: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+    format!("give {}", keys.join(" or "))
+}
+
 /// Reads the quantities of one axis.
 pub(crate) struct Quantities {
     letter: char,
@@ -137,8 +153,7 @@ impl Quantities {
         let letter = self.letter;
         let refused = |key: &&str| findings.is_refused(&format!("axes.{letter}.{key}"));
         if !keys.iter().any(refused) {
-            let keys: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
-            let help = Some(format!("give {}", keys.join(" or ")));
+            let help = Some(how(keys));
             let message = format!("axis {letter} needs {what}");
             findings.error("machine-missing", &self.header, message, help);
         }

@@ -1,0 +1,133 @@
+//! A machine file as people see it, and as gwatt reads it once it is filled in.
+
+use gwatt_machine::{AxisId, CornerRule, Machine};
+use insta::assert_snapshot;
+
+use super::imported;
+
+const GRBL: &str = "$11=0.020\n$110=8000\n$111=8000\n$112=500\n$120=400\n$121=400\n$122=50\n$100=80.000\n$130=740\n";
+
+#[test]
+fn as_it_is_written() {
+    assert_snapshot!(imported(GRBL).toml, @r#"
+    # Machine under grbl, from settings
+    #
+    # Every value has its source next to it. What that file cannot know is asked for below:
+    # peak power of the supply, masses and friction. `gwatt machine check` names what is
+    # still missing.
+    #
+    # For example an axis that moves 60 kg by a screw of 20 x 800 mm with a lead of 10 mm and
+    # a rotor of 1.2 kg cm2 (data sheet of the motor; 1 kg cm2 is 0.0001 kg m2):
+    #
+    #     moved_mass_kg = 60
+    #     rotor_kg_m2 = 0.00012
+    #     screw = { diameter_mm = 20, length_mm = 800, lead_mm = 10 }
+    #     coulomb_n = 100
+    #     efficiency = 0.85
+    #
+    # That is 60 kg + 47.4 kg of the rotor + 38.9 kg of the screw: 146 kg. At 30000 mm/min
+    # and 3000 mm/s2 it draws 0.5 m/s x (146.3 kg x 3 m/s2 + 100 N) / 0.85 = 317 W.
+    schema = 1
+    name = "Machine under grbl"
+    controller = "grbl"
+
+    [converter]
+    # peak_power_w =             # what the supply of the drives delivers at most, in W
+    # regen_power_w =            # what it takes back; 0 for a plain power supply
+    # base_load_w =              # control, fans, pumps that always run
+
+    [look_ahead.junction_deviation]
+    deviation_mm = 0.02          # $11=0.020 (line 1)
+
+    # Travel: $130=740 (line 9)
+    [axes.X]
+    kind = "linear"
+    rapid_mm_min = 8000          # $110=8000 (line 2)
+    accel_mm_s2 = 400            # $120=400 (line 5)
+    # Steps per unit of travel: $100=80.000 (line 8); travel of a revolution is the motor's steps
+    # by it.
+    # moved_mass_kg =            # what slides: table, workpiece, spindle head
+    # rotor_kg_m2 =              # rotor, with coupling and brake
+    # screw = { diameter_mm = , length_mm = , lead_mm = } # or pulley, pinion
+    # coulomb_n =                # friction; without it none counts
+    # efficiency =               # mechanical by electrical power; without it 1
+
+    [axes.Y]
+    kind = "linear"
+    rapid_mm_min = 8000          # $111=8000 (line 3)
+    accel_mm_s2 = 400            # $121=400 (line 6)
+    # moved_mass_kg =            # what slides: table, workpiece, spindle head
+    # rotor_kg_m2 =              # rotor, with coupling and brake
+    # screw = { diameter_mm = , length_mm = , lead_mm = } # or pulley, pinion
+    # coulomb_n =                # friction; without it none counts
+    # efficiency =               # mechanical by electrical power; without it 1
+
+    [axes.Z]
+    kind = "linear"
+    rapid_mm_min = 500           # $112=500 (line 4)
+    accel_mm_s2 = 50             # $122=50 (line 7)
+    # moved_mass_kg =            # what slides: table, workpiece, spindle head
+    # rotor_kg_m2 =              # rotor, with coupling and brake
+    # screw = { diameter_mm = , length_mm = , lead_mm = } # or pulley, pinion
+    # coulomb_n =                # friction; without it none counts
+    # gravity_n =                # weight that nothing balances
+    # efficiency =               # mechanical by electrical power; without it 1
+
+    [limits]
+    margin = 0.1                 # share of the peak power that is kept free
+    "#);
+}
+
+/// A person fills in what is asked for.
+fn filled(toml: &str) -> String {
+    let answers = [
+        ("# peak_power_w = ", "peak_power_w = 4000 "),
+        ("# moved_mass_kg = ", "moved_mass_kg = 60 "),
+        ("# rotor_kg_m2 = ", "rotor_kg_m2 = 0.00012 "),
+        (
+            "# screw = { diameter_mm = , length_mm = , lead_mm = }",
+            "screw = { diameter_mm = 20, length_mm = 800, lead_mm = 10 }",
+        ),
+    ];
+    answers
+        .into_iter()
+        .fold(toml.to_owned(), |text, (asked, given)| {
+            text.replace(asked, given)
+        })
+}
+
+/// The head's example: 60 kg + 47.4 kg of the rotor + 38.9 kg of the screw.
+#[test]
+fn filled_in_it_is_a_machine() {
+    let (machine, _) = Machine::from_toml("m.toml", &filled(&imported(GRBL).toml)).unwrap();
+    let x = machine.axes[AxisId::X as usize].unwrap();
+    assert!((x.rapid_mm_s - 8000.0 / 60.0).abs() < 1e-9);
+    assert_eq!(x.accel_mm_s2, 400.0);
+    assert!((x.mass_kg - 146.3).abs() < 0.05, "{}", x.mass_kg);
+    let rules = machine.controller.planner.look_ahead.unwrap();
+    let CornerRule::JunctionDeviation {
+        deviation_mm,
+        per_axis,
+        ..
+    } = rules.corner
+    else {
+        panic!("{rules:?}");
+    };
+    assert_eq!((deviation_mm, per_axis), (0.02, true));
+}
+
+/// Nothing is filled in: each field that is missing is named, with what to write.
+#[test]
+fn what_is_missing_is_named() {
+    let errors = Machine::from_toml("m.toml", &imported(GRBL).toml).unwrap_err();
+    let said: Vec<String> = errors
+        .iter()
+        .map(|it| format!("{} / {}", it.message, it.help.as_deref().unwrap_or("")))
+        .collect();
+    assert_snapshot!(said.join("\n"), @r"
+    `peak_power_w` is missing in `converter` / Peak power in W
+    axis X needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
+    axis Y needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
+    axis Z needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
+    ");
+}
