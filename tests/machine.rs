@@ -6,6 +6,8 @@ mod default_machine;
 mod errors;
 mod levels;
 mod load;
+mod own_rules;
+mod parts;
 mod profile_errors;
 mod robust;
 mod schema;

@@ -31,6 +31,68 @@ fn machines_are_listed_shown_and_checked() {
         .refused("no built-in machine");
 }
 
+/// From the settings of a control to a verdict, as a newcomer goes.
+#[test]
+fn settings_become_a_machine() {
+    let shop = Shop::new();
+    shop.put(
+        "printer.cfg",
+        "[include motion*.cfg]\n[stepper_x]\nposition_endstop: 0\n[stepper_y]\n[stepper_z]\n",
+    );
+    shop.put(
+        "motion-1.cfg",
+        "[printer]\nkinematics: cartesian\nmax_velocity: 300\nmax_accel: 3000\n",
+    );
+    let ran = shop.run(&["machine", "import", "printer.cfg", "-o", "printer.toml"]);
+    assert_eq!((ran.code, ran.stdout.as_str()), (0, ""), "{}", ran.stderr);
+    assert!(ran.stderr.contains("read as klipper"), "{}", ran.stderr);
+    let text = shop.get("printer.toml");
+    assert!(text.contains("rapid_mm_min = 18000"), "{text}");
+    shop.run(&["machine", "check", "printer.toml"])
+        .refused("axis X needs a mass or an inertia");
+    let filled = text
+        .replace("# peak_power_w = ", "peak_power_w = 300 ")
+        .replace("# moved_mass_kg = ", "moved_mass_kg = 0.5 ")
+        .replace("# rotor_kg_m2 = ", "rotor_kg_m2 = 0.0000054 ")
+        .replace(
+            "# pulley = { teeth = , pitch_mm = , width_mm = }",
+            "pulley = { teeth = 20, pitch_mm = 2, width_mm = 16 }",
+        )
+        .replace(
+            "# screw = { diameter_mm = , length_mm = , lead_mm = }",
+            "screw = { diameter_mm = 8, length_mm = 400, lead_mm = 8 }",
+        );
+    shop.put("printer.toml", filled);
+    let ran = shop.run(&["machine", "check", "printer.toml"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let sum = "X: 0.6492 kg = 0.5 moved mass + 0.1332 rotor (0.0000054 kg m2) + 0.01599 pulley (2 x 0.0000003241 kg m2)";
+    assert!(ran.stdout.contains(sum), "{}", ran.stdout);
+    shop.put("print.gcode", "G28\nG1 X100 Y50 F12000\nG1 X0\n");
+    let ran = shop.run(&["check", "print.gcode", "-m", "printer.toml"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+}
+
+/// What cannot be read leaves no file, and the one that was there stays.
+#[test]
+fn settings_that_cannot_be_read() {
+    let shop = Shop::new();
+    shop.put("settings.txt", "$110=fast\n");
+    shop.put("kept.toml", "as it was");
+    let args = ["machine", "import", "settings.txt", "-o"];
+    shop.run(&[&args[..], &["new.toml"]].concat())
+        .refused("settings.txt:1:6");
+    assert!(!shop.files().contains(&"new.toml".to_owned()));
+    shop.run(&[&args[..], &["kept.toml"]].concat())
+        .refused("`fast` is not a number");
+    assert_eq!(shop.get("kept.toml"), "as it was");
+    shop.run(&["machine", "import", "none.ini"])
+        .refused("cannot read none.ini");
+    shop.run(&["machine", "import", "-", "-"])
+        .refused("standard input can be read only once");
+    shop.run(&["machine", "import", "settings.txt", "--format", "none"])
+        .refused("possible values: linuxcnc, grbl");
+}
+
 #[test]
 fn tool_tables_and_parameter_files() {
     let shop = Shop::new();

@@ -83,8 +83,10 @@ fn of_line(line: &str) -> Vec<Format> {
         marks.push(Format::Fanuc);
     } else if grbl::setting(trimmed).is_some() {
         marks.push(Format::Grbl);
-    } else if trimmed.starts_with("#define ") || trimmed.starts_with("//#define ") {
+    } else if marlin_define(trimmed) {
         marks.push(Format::MarlinConfig);
+    } else if trimmed.starts_with("#INCLUDE ") {
+        marks.push(Format::LinuxCnc);
     } else if let Some(section) = trimmed.strip_prefix('[') {
         let section = section.to_ascii_uppercase();
         let linuxcnc = [
@@ -126,6 +128,24 @@ fn of_line(line: &str) -> Vec<Format> {
         printer(trimmed, &mut marks);
     }
     marks
+}
+
+/// Names that Marlin defines; other files have such lines in comments.
+fn marlin_define(line: &str) -> bool {
+    let line = line.strip_prefix("//").unwrap_or(line).trim_start();
+    let name = line.strip_prefix("#define ").unwrap_or("").trim_start();
+    let names = [
+        "DEFAULT_",
+        "HOMING_",
+        "BLOCK_BUFFER_",
+        "CONFIGURATION_",
+        "X_",
+        "Y_",
+        "Z_",
+        "MOTHERBOARD",
+        "EXTRUDERS",
+    ];
+    names.iter().any(|start| name.starts_with(start))
 }
 
 /// Marlin and RepRapFirmware share most commands.
