@@ -68,6 +68,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
             response_time_s: 0.01,
         },
         force_curves: Vec::new(),
+        mass_parts: Vec::new(),
         responses: Responses::default(),
         spindle: None,
         tools: Vec::new(),

@@ -167,7 +167,7 @@ fn missing_speed_and_acceleration() {
 #[test]
 fn missing_mass() {
     assert_snapshot!(findings(&edited("mass_kg = 900\n", "")), @r"
-    line 8, error machine-missing: axis X needs a mass or an inertia / give `mass_kg` or `inertia_kg_m2`
+    line 8, error machine-missing: axis X needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
       | [axes.X]
       | ^^^^^^^^
     ");
@@ -176,7 +176,7 @@ fn missing_mass() {
 #[test]
 fn missing_inertia() {
     assert_snapshot!(findings(&edited("inertia_kg_m2 = 12\n", "")), @r"
-    line 14, error machine-missing: axis B needs an inertia / give `inertia_kg_m2`
+    line 14, error machine-missing: axis B needs an inertia / give `moved_inertia_kg_m2` with `rotor_kg_m2` and `gear_ratio`, or all of it as `inertia_kg_m2`
       | [axes.B]
       | ^^^^^^^^
     ");

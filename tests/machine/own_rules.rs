@@ -110,9 +110,29 @@ fn accelerations_along_the_path_act_as_m204() {
 
 #[test]
 fn rules_that_do_not_belong() {
-    assert_snapshot!(findings(&under("iso", "[look_ahead]\nblocks = 20")), @"");
-    assert_snapshot!(findings(&under("grbl", "[look_ahead.junction_deviation]\ndeviation_mm = 0.1\n[look_ahead.classic_jerk]\nstep_mm_s = { X = 1 }")), @"");
-    assert_snapshot!(findings(&under("grbl", "[path]\naccel_mm_s2 = { print = 500 }")), @"");
-    assert_snapshot!(findings(&under("reprap", "[path]\naccel_mm_s2 = { retract = 500 }")), @"");
-    assert_snapshot!(findings(&under("grbl", "[language]\nretract = { length_mm = 1.5 }")), @"");
+    assert_snapshot!(findings(&under("iso", "[look_ahead]\nblocks = 20")), @r"
+    line 19, error machine-kind: how corners are run through is not modelled for this controller / leave [look_ahead] out: the robust bound counts
+      | [look_ahead]
+      | ^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&under("grbl", "[look_ahead.junction_deviation]\ndeviation_mm = 0.1\n[look_ahead.classic_jerk]\nstep_mm_s = { X = 1 }")), @r"
+    line 21, error machine-twice: a planner has one rule for corners
+      | [look_ahead.classic_jerk]
+      | ^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&under("grbl", "[path]\naccel_mm_s2 = { print = 500 }")), @r"
+    line 20, error machine-kind: accelerations along the path belong to printers with M204, not to `grbl` / give those of the axes
+      | accel_mm_s2 = { print = 500 }
+      |               ^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&under("reprap", "[path]\naccel_mm_s2 = { retract = 500 }")), @r"
+    line 20, error machine-kind: M204 of `reprap` has no R: `retract` acts on nothing
+      | accel_mm_s2 = { retract = 500 }
+      |               ^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&under("grbl", "[language]\nretract = { length_mm = 1.5 }")), @r"
+    line 20, error machine-kind: `retract` belongs to the controllers of printers
+      | retract = { length_mm = 1.5 }
+      |           ^^^^^^^^^^^^^^^^^^^
+    ");
 }

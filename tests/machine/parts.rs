@@ -77,7 +77,7 @@ fn a_belt() {
     near(axis(&machine(&text), AxisId::X).mass_kg, 0.524_674_011);
 }
 
-/// Pitch circle 60 mm: k = 1/0.03 m. Rotor behind 5: 0.003·(5·k)² = 83.333333 kg. Pinion:
+/// Pitch circle 60 mm: k = 1/0.03 m. Rotor with a gear of 5: 0.003·(5·k)² = 83.333333 kg. Pinion:
 /// π/32·7850·0.03·0.06⁴ = 2.9963725e-4 kg·m², 0.33293028 kg. 3000 rpm are 600/min of it.
 #[test]
 fn a_rack() {
@@ -118,27 +118,110 @@ fn other_forms_add_up_too() {
 
 #[test]
 fn parts_that_do_not_go_together() {
-    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nlead_mm = 10")), @"");
-    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nmass_kg = 400\nrotor_kg_m2 = 0")), @"");
-    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nrotor_kg_m2 = 0.001")), @"");
-    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nrotor_kg_m2 = 0\nscrew = { diameter_mm = 32, length_mm = 1000 }")), @"");
-    assert_snapshot!(findings(&with_x("mass_kg = 300\nlead_mm = 10\npinion = { diameter_mm = 60, width_mm = 30 }")), @"");
-    assert_snapshot!(findings(&with_x("mass_kg = 300\npulley = { teeth = 20, width_mm = 9 }")), @"");
-    assert_snapshot!(findings(&with_x("mass_kg = 300\npulley = { diameter_mm = 20, teeth = 20, pitch_mm = 2 }")), @"");
-    assert_snapshot!(findings(&with_x("mass_kg = 300\npinion = { diameter_mm = 60, width_mm = 30, inertia_kg_m2 = 1e-4 }")), @"");
-    assert_snapshot!(findings(&with_x("moved_inertia_kg_m2 = 3")), @"");
-    assert_snapshot!(findings(&edited(B, &format!("{B}moved_mass_kg = 5\nscrew = {{ diameter_mm = 32, length_mm = 1000, lead_mm = 10 }}\n"))), @"");
-    assert_snapshot!(findings(&edited(B, "rapid_deg_min = 18000\naccel_deg_s2 = 1150\nmoved_inertia_kg_m2 = 0.5\n")), @"");
-    assert_snapshot!(findings(&with_x("mass_kg = 300\nrotor_kg_m2 = 1e300\nlead_mm = 1e-5")), @"");
-    assert_snapshot!(findings(&with_x("")), @"");
+    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nlead_mm = 10")), @r"
+    line 12, error machine-missing: `moved_mass_kg` is without the drive: `rotor_kg_m2` is missing / the rotor's inertia, from the motor's data sheet, with coupling and brake; 0 for a linear motor. 1 kg·cm² is 1e-4 kg·m²
+      | moved_mass_kg = 300
+      |                 ^^^
+    line 13, warning machine-missing: the inertia of what turns besides the rotor counts as none / give `screw`, such as screw = { diameter_mm = 32, length_mm = 900 }, or add it to `rotor_kg_m2`
+      | lead_mm = 10
+      |           ^^
+    line 13, warning machine-unit: `lead_mm` has no effect: nothing is given at the motor
+      | lead_mm = 10
+      |           ^^
+    ");
+    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nmass_kg = 400\nrotor_kg_m2 = 0")), @r"
+    line 12, error machine-twice: `mass_kg` and `moved_mass_kg` give the same quantity of axis X / keep one of the two
+      | moved_mass_kg = 300
+      |                 ^^^
+    ");
+    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nrotor_kg_m2 = 0.001")), @r"
+    line 13, error machine-missing: `rotor_kg_m2` is at the motor, but axis X has no `lead_mm` / give the screw's `lead_mm`, or the quantity at the load
+      | rotor_kg_m2 = 0.001
+      |               ^^^^^
+    ");
+    assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nrotor_kg_m2 = 0\nscrew = { diameter_mm = 32, length_mm = 1000 }")), @r"
+    line 14, error machine-missing: the screw of axis X has no lead / give its `lead_mm`: travel per revolution
+      | screw = { diameter_mm = 32, length_mm = 1000 }
+      |         ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&with_x("mass_kg = 300\nlead_mm = 10\npinion = { diameter_mm = 60, width_mm = 30 }")), @r"
+    line 13, warning machine-unit: `lead_mm` has no effect: nothing is given at the motor
+      | lead_mm = 10
+      |           ^^
+    line 14, error machine-twice: `lead_mm` and `pinion` both say how far axis X goes in a revolution / keep one of the two
+      | pinion = { diameter_mm = 60, width_mm = 30 }
+      |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&with_x("mass_kg = 300\npulley = { teeth = 20, width_mm = 9 }")), @r"
+    line 13, error machine-missing: `pulley` of axis X needs the diameter of its pitch circle / give `diameter_mm`, or `teeth` and `pitch_mm`
+      | pulley = { teeth = 20, width_mm = 9 }
+      |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&with_x("mass_kg = 300\npulley = { diameter_mm = 20, teeth = 20, pitch_mm = 2 }")), @r"
+    line 13, error machine-twice: `pulley` has its diameter twice / keep `diameter_mm`, or `teeth` and `pitch_mm`
+      | pulley = { diameter_mm = 20, teeth = 20, pitch_mm = 2 }
+      |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    line 13, error machine-missing: `pulley` of axis X needs an inertia / give `width_mm` (it counts as solid steel), or `inertia_kg_m2` of each one
+      | pulley = { diameter_mm = 20, teeth = 20, pitch_mm = 2 }
+      |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&with_x("mass_kg = 300\npinion = { diameter_mm = 60, width_mm = 30, inertia_kg_m2 = 1e-4 }")), @r"
+    line 13, error machine-twice: `pinion` has its inertia twice / keep `width_mm` or `inertia_kg_m2`
+      | pinion = { diameter_mm = 60, width_mm = 30, inertia_kg_m2 = 1e-4 }
+      |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    ");
+    assert_snapshot!(findings(&with_x("moved_inertia_kg_m2 = 3")), @r#"
+    line 12, error machine-kind: `moved_inertia_kg_m2` belongs to a rotary axis, but axis X is linear / give `moved_mass_kg`, or set kind = "rotary"
+      | moved_inertia_kg_m2 = 3
+      |                       ^
+    "#);
+    assert_snapshot!(findings(&edited(B, &format!("{B}moved_mass_kg = 5\nscrew = {{ diameter_mm = 32, length_mm = 1000, lead_mm = 10 }}\n"))), @r#"
+    line 19, error machine-kind: `moved_mass_kg` belongs to a linear axis, but axis B is rotary / give `moved_inertia_kg_m2`, or set kind = "linear"
+      | moved_mass_kg = 5
+      |                 ^
+    line 20, error machine-kind: `screw` belongs to a linear axis, but axis B is rotary / give `gear_ratio`, or set kind = "linear"
+      | screw = { diameter_mm = 32, length_mm = 1000, lead_mm = 10 }
+      |         ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+    "#);
+    assert_snapshot!(findings(&edited(B, "rapid_deg_min = 18000\naccel_deg_s2 = 1150\nmoved_inertia_kg_m2 = 0.5\n")), @r"
+    line 18, error machine-missing: `moved_inertia_kg_m2` is without the drive: `rotor_kg_m2` is missing / the rotor's inertia, from the motor's data sheet, with coupling and brake; 0 for a linear motor. 1 kg·cm² is 1e-4 kg·m²
+      | moved_inertia_kg_m2 = 0.5
+      |                       ^^^
+    ");
+    assert_snapshot!(findings(&with_x("mass_kg = 300\nrotor_kg_m2 = 1e300\nlead_mm = 1e-5")), @r"
+    line 12, error machine-range: the parts of axis X are too large to compute with
+      | mass_kg = 300
+      |           ^^^
+    ");
+    assert_snapshot!(findings(&with_x("")), @r"
+    line 8, error machine-missing: axis X needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
+      | [axes.X]
+      | ^^^^^^^^
+    ");
 }
 
 /// What is absurd once all is known.
 #[test]
 fn absurd_values_are_named() {
-    assert_snapshot!(findings(&with_x("mass_kg = 900\njerk_mm_s3 = 10")), @"");
-    assert_snapshot!(findings(&with_x("mass_kg = 900\ncoulomb_n = 7000")), @"");
+    assert_snapshot!(findings(&with_x("mass_kg = 900\njerk_mm_s3 = 10")), @r"
+    line 13, warning machine-unit: a jerk of 10 mm/s³ takes 600 s to the full acceleration / m/s³ given? 1 m/s³ is 1000 mm/s³; powers would be too low
+      | jerk_mm_s3 = 10
+      |              ^^
+    ");
+    assert_snapshot!(findings(&with_x("mass_kg = 900\ncoulomb_n = 7000")), @r"
+    line 13, warning machine-unit: friction alone takes 4200 W of axis X at its rapid speed, more than the converter's 3500 W / friction in N is meant, speed in mm/min, power in W
+      | coulomb_n = 7000
+      |             ^^^^
+    ");
     let curve = "mass_kg = 900\nforce_curve = [{ speed_mm_min = 0, force_n = 3000 }, { speed_mm_min = 36000, force_n = 1000 }]";
-    assert_snapshot!(findings(&with_x(curve)), @"");
-    assert_snapshot!(findings(&edited(X, "rapid_mm_min = 1\naccel_mm_s2 = 6000\nmass_kg = 900\n")), @"");
+    assert_snapshot!(findings(&with_x(curve)), @r"
+    line 11, warning machine-unit: the acceleration of axis X needs 5400 N, and its drive gives 3000 N at rest: it accelerates as that permits / check mass, acceleration and the curve
+      | accel_mm_s2 = 6000
+      |               ^^^^
+    ");
+    assert_snapshot!(findings(&edited(X, "rapid_mm_min = 1\naccel_mm_s2 = 6000\nmass_kg = 900\n")), @r"
+    line 10, warning machine-unit: `rapid_mm_min`: 1 mm/min is unusually small / mm/s or m/min given?
+      | rapid_mm_min = 1
+      |                ^
+    ");
 }

@@ -303,7 +303,7 @@ fn many_at_once() {
     line 5, error machine-range: `peak_power_w` must be greater than 0, but is -1
       | peak_power_w = -1
       |                ^^
-    line 6, error machine-missing: axis X needs a mass or an inertia / give `mass_kg` or `inertia_kg_m2`
+    line 6, error machine-missing: axis X needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
       | [axes.X]
       | ^^^^^^^^
     line 7, error machine-unknown-key: unknown key `rapid_mm_mim` / did you mean `rapid_mm_min`?
