@@ -62,11 +62,10 @@ pub fn import(
     near: &dyn Near,
 ) -> Result<Imported, Vec<Diagnostic>> {
     let mut log = Log::default();
-    let texts: Result<Vec<Text>, Diagnostic> = files.iter().map(Text::new).collect();
-    let texts = texts.map_err(|refused| vec![refused])?;
-    let format = match wanted.format.or_else(|| Format::find(&texts)) {
-        Some(format) => format,
-        None => return Err(vec![unknown(files)]),
+    let texts: Result<Vec<Text>, Box<Diagnostic>> = files.iter().map(Text::new).collect();
+    let texts = texts.map_err(|refused| vec![*refused])?;
+    let Some(format) = wanted.format.or_else(|| Format::find(&texts)) else {
+        return Err(vec![unknown(files)]);
     };
     let controller = wanted.controller.map(profile).transpose()?;
     let include: fn(&str) -> Option<&str> = match format {
@@ -75,7 +74,7 @@ pub fn import(
         Format::RepRap => reprap::include,
         _ => |_| None,
     };
-    let job = Job::new(files, near, include, &mut log).map_err(|refused| vec![refused])?;
+    let job = Job::new(files, near, include, &mut log).map_err(|refused| vec![*refused])?;
     let mut found = match format {
         Format::LinuxCnc => linuxcnc::read(&job, near, &mut log),
         Format::Grbl => grbl::read(&job, &mut log),
@@ -140,15 +139,13 @@ fn unknown(files: &[File]) -> Diagnostic {
 fn profile(name: &str) -> Result<&'static str, Vec<Diagnostic>> {
     let list = gwatt_machine::builtin::controllers();
     let found = list.iter().find(|it| it.name == name);
-    match found.filter(|_| builtin_controller(name).is_some()) {
-        Some(found) => Ok(found.name),
-        None => {
-            let names: Vec<&str> = list.iter().map(|it| it.name).collect();
-            let message = format!("no controller profile is named \"{name}\"");
-            let refused = Diagnostic::error("import-file", message);
-            Err(vec![
-                refused.help(format!("there are {}", names.join(", "))),
-            ])
-        }
+    if let Some(found) = found.filter(|_| builtin_controller(name).is_some()) {
+        return Ok(found.name);
     }
+    let names: Vec<&str> = list.iter().map(|it| it.name).collect();
+    let message = format!("no controller profile is named \"{name}\"");
+    let refused = Diagnostic::error("import-file", message);
+    Err(vec![
+        refused.help(format!("there are {}", names.join(", "))),
+    ])
 }

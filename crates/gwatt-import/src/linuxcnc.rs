@@ -5,6 +5,8 @@
 
 mod hal;
 
+use std::path::Path;
+
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, entry, highest, shown};
@@ -54,18 +56,19 @@ impl Config<'_> {
     ) -> Option<Figure> {
         let item = self.item(sections, key)?;
         let value = log.positive(&item.place, item.value, key)?;
-        Some(Figure::new(value * factor, self.source(item)))
+        Some(Figure::new(value * factor, named(item)))
     }
 
     fn number(&self, log: &mut Log, sections: &[String], key: &str, factor: f64) -> Option<Figure> {
         let item = self.item(sections, key)?;
         let value = log.number(&item.place, item.value)?;
-        Some(Figure::new(value * factor, self.source(item)))
+        Some(Figure::new(value * factor, named(item)))
     }
+}
 
-    fn source(&self, item: &Item<'_>) -> String {
-        format!("[{}] {}", item.section, item.source())
-    }
+/// A value with its section.
+fn named(item: &Item<'_>) -> String {
+    format!("[{}] {}", item.section, item.source())
 }
 
 fn section(name: &str) -> Vec<String> {
@@ -85,7 +88,7 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
             it.section == "HAL" && matches!(it.key.as_str(), "HALFILE" | "POSTGUI_HALFILE")
         })
         .filter_map(|it| it.value.split_whitespace().next())
-        .filter(|name| !name.starts_with("LIB:") && name.ends_with(".hal"))
+        .filter(|name| !name.starts_with("LIB:") && is_hal(name))
         .flat_map(|name| near.files(job.name(), name))
         .collect();
     let linear = units(&items, log, "LINEAR_UNITS");
@@ -109,6 +112,12 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
         }
     }
     found
+}
+
+/// Scripts in Tcl are no lists of settings.
+fn is_hal(name: &str) -> bool {
+    let extension = Path::new(name).extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("hal"))
 }
 
 /// Millimetres, or degrees, of a unit.
@@ -150,8 +159,8 @@ fn coordinates(config: &Config<'_>) -> Vec<(AxisId, Vec<usize>)> {
     let kins = last(&config.items, "KINS", "KINEMATICS").and_then(|it| {
         let words = it.value.split_whitespace();
         words
-            .filter_map(|word| word.strip_prefix("coordinates="))
-            .last()
+            .rev()
+            .find_map(|word| word.strip_prefix("coordinates="))
     });
     let named = kins.or_else(|| last(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
     let mut axes: Vec<(AxisId, Vec<usize>)> = Vec::new();
@@ -208,7 +217,7 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     let scales = ["STEP_SCALE", "SCALE", "INPUT_SCALE", "OUTPUT_SCALE"];
     let scale = scales
         .iter()
-        .find_map(|key| config.item(&sections, key).map(|it| config.source(it)));
+        .find_map(|key| config.item(&sections, key).map(|it| named(it)));
     let to = found.axis(id);
     to.rotary = rotary;
     (to.rapid, to.accel) = (rapid, accel);
@@ -287,9 +296,7 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
         {
             continue;
         }
-        found
-            .remarks
-            .push(format!("{} ({what})", config.source(item)));
+        found.remarks.push(format!("{} ({what})", named(item)));
         let help = "gwatt plans as LinuxCNC 2.9 does without it; --certificate robust holds for any blending";
         log.warning(
             &item.place,
@@ -310,10 +317,10 @@ fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let code = item.map_or(String::new(), |it| it.value.to_ascii_uppercase());
     let words: Vec<&str> = code.split_whitespace().collect();
     let has = |word: &str| words.contains(&word);
-    let source = item.map_or(String::new(), |it| config.source(it));
+    let source = item.map_or(String::new(), |it| named(it));
     let inch = has("G20") || (config.linear == INCH && !has("G21"));
     if inch {
-        let units = last(&config.items, "TRAJ", "LINEAR_UNITS").map(|it| config.source(it));
+        let units = last(&config.items, "TRAJ", "LINEAR_UNITS").map(|it| named(it));
         let source = if has("G20") {
             source.clone()
         } else {

@@ -82,7 +82,7 @@ fn take(
         "M204" => accelerations(settings, log, command, unit),
         "M205" => corners(settings, log, command, unit),
         "M210" => axes(found, log, command, unit, |axis, figure| {
-            axis.reference_speed = Some(figure.0)
+            axis.reference_speed = Some(figure.0);
         }),
         "M207" => retract(settings, log, command, unit, 0),
         "M208" => retract(settings, log, command, unit, 2),

@@ -44,7 +44,7 @@ impl Job {
         near: &dyn Near,
         include: fn(&str) -> Option<&str>,
         log: &mut Log,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Result<Self, Box<Diagnostic>> {
         let mut job = Self {
             texts: Vec::new(),
             order: Vec::new(),
@@ -62,7 +62,7 @@ impl Job {
         include: fn(&str) -> Option<&str>,
         log: &mut Log,
         depth: usize,
-    ) -> Result<(), Diagnostic> {
+    ) -> Result<(), Box<Diagnostic>> {
         let text = Text::new(file)?;
         let index = self.texts.len();
         let includes: Vec<(usize, String)> = text

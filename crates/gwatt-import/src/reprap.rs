@@ -1,6 +1,6 @@
 //! RepRapFirmware: `config.g` with the files that M98 calls there.
 //!
-//! Source: Duet documentation, "GCode dictionary": M201, M203, M204, M208, M566, M574, M584,
+//! Source: Duet documentation, "`GCode` dictionary": M201, M203, M204, M208, M566, M574, M584,
 //! M595, M667, M669. Speeds are in mm/min there.
 
 use gwatt_machine::AxisId;

@@ -1,7 +1,7 @@
 //! SINUMERIK: machine data of an archive, a `.tea` or an MPF file,
 //! `N32000 $MA_MAX_AX_VELO[AX1]=10000`.
 //!
-//! Source: SINUMERIK 840D sl, "Detailed machine data description" (AMDsl); SINUMERIK ONE,
+//! Source: SINUMERIK 840D sl, "Detailed machine data description"; SINUMERIK ONE,
 //! "Machine and setting data". Units of an archive are those of the basic metric system:
 //! mm/min and rev/min, m/s² and rev/s², m/s³ and rev/s³, mm and degrees.
 

@@ -28,11 +28,11 @@ impl Text {
     ///
     /// # Errors
     /// A file that is too large, or no text.
-    pub(crate) fn new(file: &File) -> Result<Self, Diagnostic> {
+    pub(crate) fn new(file: &File) -> Result<Self, Box<Diagnostic>> {
         let refuse = |message: String, help: &str| {
             let mut refused = Diagnostic::error("import-file", message).help(help);
             refused.file = Some(file.name.clone());
-            refused
+            Box::new(refused)
         };
         if file.bytes.len() > MAX_BYTES {
             return Err(refuse(

@@ -28,7 +28,7 @@ impl Hal {
             let text = match Text::new(file) {
                 Ok(text) => text,
                 Err(refused) => {
-                    log.list.push(refused);
+                    log.list.push(*refused);
                     continue;
                 }
             };

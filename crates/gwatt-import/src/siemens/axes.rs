@@ -1,5 +1,7 @@
 //! Axes and spindles of the machine data.
 
+use std::fmt::Write as _;
+
 use gwatt_machine::{ALL_AXES, AxisId};
 
 use super::data::{Data, Datum};
@@ -256,10 +258,11 @@ fn table(found: &mut Found, levels: &[(AxisId, Vec<f64>)]) {
         };
         let values: Vec<String> = levels.iter().map(value).collect();
         let on = if at == 0 { ", power_on = true" } else { "" };
-        text.push_str(&format!(
-            "    {{ word = \"{word}\"{on}, accel_mm_s2 = {{ {} }} }},\n",
+        let _ = writeln!(
+            text,
+            "    {{ word = \"{word}\"{on}, accel_mm_s2 = {{ {} }} }},",
             values.join(", ")
-        ));
+        );
     }
     text.push_str("]\n");
     found.tables.push(text);

@@ -25,6 +25,7 @@ const STEEL_KG_M3: f64 = 7850.0;
 /// A screw, as a solid cylinder of steel.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[allow(clippy::struct_field_names, reason = "units end the names of files")]
 pub(crate) struct ScrewTable {
     /// Its diameter in mm.
     #[schemars(required)]
@@ -201,12 +202,15 @@ pub(crate) fn check(findings: &mut Findings<'_>, letter: char, kind: AxisKind, t
 
 /// What slides is not all: the rotor often is the larger part.
 fn needs_rotor(findings: &mut Findings<'_>, letter: char, kind: AxisKind, table: &AxisTable) {
-    fn span<B>(number: &Option<Num<B>>) -> Option<std::ops::Range<usize>> {
-        number.as_ref().map(|number| number.span.clone())
+    fn span<B>(number: Option<&Num<B>>) -> Option<std::ops::Range<usize>> {
+        number.map(|number| number.span.clone())
     }
     let (key, moved) = match kind {
-        AxisKind::Linear => ("moved_mass_kg", span(&table.moved_mass_kg)),
-        AxisKind::Rotary => ("moved_inertia_kg_m2", span(&table.moved_inertia_kg_m2)),
+        AxisKind::Linear => ("moved_mass_kg", span(table.moved_mass_kg.as_ref())),
+        AxisKind::Rotary => (
+            "moved_inertia_kg_m2",
+            span(table.moved_inertia_kg_m2.as_ref()),
+        ),
     };
     let Some(moved) = moved else { return };
     let refused = findings.is_refused(&format!("axes.{letter}.rotor_kg_m2"));

@@ -2,6 +2,7 @@
 
 use super::findings::Findings;
 use super::machine_file::PathTable;
+use super::value::Positive;
 use crate::controller::Controller;
 use crate::knob::KnobArgument;
 
@@ -31,13 +32,11 @@ pub(crate) fn take(
         findings.error("machine-kind", &given.span, message, help);
         return none;
     };
-    let value = |number: &Option<super::value::Positive>| {
-        number.as_ref().map_or(f64::INFINITY, |number| number.value)
-    };
+    let value = |number: Option<&Positive>| number.map_or(f64::INFINITY, |number| number.value);
     let found = [
-        &given.value.print,
-        &given.value.travel,
-        &given.value.retract,
+        given.value.print.as_ref(),
+        given.value.travel.as_ref(),
+        given.value.retract.as_ref(),
     ]
     .map(value);
     if found[2].is_finite() && !letters.contains(&b'R') {
