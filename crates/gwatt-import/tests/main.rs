@@ -48,7 +48,7 @@ fn in_force(toml: &str) -> String {
     let lines = toml
         .lines()
         .filter(|line| !line.starts_with('#') && !line.is_empty());
-    lines.skip(2).map(|line| format!("{line}\n")).collect()
+    lines.skip(2).collect::<Vec<_>>().join("\n")
 }
 
 /// The errors of one text.
