@@ -168,5 +168,10 @@ pub(crate) fn entry(field: impl Into<String>, source: impl Into<String>) -> Entr
 pub(crate) fn shown(value: f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
     let rounded = if rounded == 0.0 { 0.0 } else { rounded };
-    format!("{rounded}")
+    // TOML has no whole numbers beyond 64 bits.
+    if rounded.abs() >= 1e15 || (rounded != 0.0 && rounded.abs() < 1e-9) {
+        format!("{rounded:e}")
+    } else {
+        format!("{rounded}")
+    }
 }
