@@ -64,10 +64,10 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     refuse_all_clashes(args, program, &places)?;
     let mut setup = setup(args, terminal)?;
     dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
-    let mut messages = terminal.messages();
-    let verdict = limit_one(args, &setup, program, &places, &mut messages);
-    terminal.show(&messages);
-    Ok(verdict?.unwrap_or(Verdict::Fits))
+    // Before a diff that follows them.
+    let mut messages = terminal.direct();
+    let verdict = limit_one(args, &setup, program, &places, &mut messages)?;
+    Ok(verdict.unwrap_or(Verdict::Fits))
 }
 
 /// Limits several programs, each by itself, into a folder or in place.

@@ -48,7 +48,12 @@ pub fn each_by_itself(
     setup.options.threads = each;
     let jobs: Vec<(Program, Places)> = programs.into_iter().zip(places).collect();
     let one = |(program, places): &(Program, Places)| {
-        let mut messages = terminal.messages();
+        let direct = at_once == 1 && !how.quiet;
+        let mut messages = if direct {
+            terminal.direct()
+        } else {
+            terminal.messages()
+        };
         let done = in_own_dialect(&setup, program, &mut messages, |setup, messages| {
             places.make_folders()?;
             work(OneOf {

@@ -48,10 +48,9 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     let mut setup = setup(args, terminal)?;
     // It is read more than once: what `limit` would do is looked up in it.
     dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
-    let mut messages = terminal.messages();
-    let done = report_one(args, &setup, program, &places, &mut messages);
-    terminal.show(&messages);
-    Ok(match done?.unwrap_or(Verdict::Fits) {
+    let mut messages = terminal.direct();
+    let done = report_one(args, &setup, program, &places, &mut messages)?;
+    Ok(match done.unwrap_or(Verdict::Fits) {
         Verdict::DoesNotFit if !args.fail => Verdict::Fits,
         verdict => verdict,
     })

@@ -1,7 +1,7 @@
 //! Standard error, for people. What cannot be written there is lost: there is
 //! no other place to say so.
 
-use std::fmt::{Display, Write as _};
+use std::fmt::Display;
 use std::io::{self, IsTerminal, Write as _};
 
 use clap::ColorChoice;
@@ -37,7 +37,16 @@ impl Terminal {
     pub fn messages(self) -> Messages {
         Messages {
             colour: self.colour,
+            shown: None,
             text: String::new(),
+        }
+    }
+
+    /// Messages that are shown at once.
+    pub fn direct(self) -> Messages {
+        Messages {
+            shown: Some(self),
+            ..self.messages()
         }
     }
 
@@ -81,10 +90,12 @@ impl Terminal {
     }
 }
 
-/// Messages that are kept until it is their turn.
+/// Messages that are kept until it is their turn, unless they are shown at once.
 #[derive(Debug)]
 pub struct Messages {
     colour: bool,
+    /// Where they are shown.
+    shown: Option<Terminal>,
     text: String,
 }
 
@@ -101,7 +112,10 @@ impl Messages {
 
     /// Text that has its line end.
     pub fn text(&mut self, text: &str) {
-        self.text.push_str(text);
+        match self.shown {
+            Some(terminal) => terminal.text(text),
+            None => self.text.push_str(text),
+        }
     }
 
     /// Findings in `file`, with the lines under them. What is found again and again is shown
@@ -145,8 +159,7 @@ impl Messages {
     }
 
     fn line(&mut self, text: impl Display) {
-        // Memory takes it.
-        let _ = writeln!(self.text, "{text}");
+        self.text(&format!("{text}\n"));
     }
 }
 
