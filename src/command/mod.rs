@@ -18,6 +18,8 @@ pub mod verify;
 
 mod beside;
 mod clash;
+mod designed;
+mod filter_force;
 mod in_order;
 mod input;
 mod interrupt;
@@ -34,6 +36,7 @@ mod rows;
 mod series;
 mod settings;
 mod setup;
+mod signal;
 mod terminal;
 mod together;
 
