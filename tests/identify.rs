@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod commanded;
+mod designed;
 mod joined;
 mod layouts;
 mod positions;

@@ -205,6 +205,50 @@ fn a_pole_besides_a_zero_does_not_hide_the_judgement() {
     assert!((found.zeros[0].omega_rad_s.value / TAU - 40.0).abs() < 0.1);
 }
 
+/// Several zeros in a filter ask for no hundred times the force, however it becomes
+/// digital; the axes are as alike as before.
+#[test]
+fn the_low_pass_keeps_the_gain_of_several_zeros_low() {
+    let zeros = [('X', 25.0), ('Y', 44.0), ('Z', 70.0)];
+    let axes = || -> Vec<AxisResponse> {
+        let each = zeros
+            .iter()
+            .map(|(letter, hz)| axis(*letter, &[(*hz, 0.03)]));
+        each.collect()
+    };
+    let kinds = [
+        (Discretization::Matched, 0.01),
+        (Discretization::Tustin, 0.2),
+        (Discretization::Hold, 1.0),
+    ];
+    for (kind, apart_db) in kinds {
+        let result = tuned(axes(), wish(kind));
+        for index in 0..3 {
+            let effort = result.correction.effort(index, 0.0);
+            assert!(effort.gain <= 20.0, "{kind:?} {effort:?}");
+            assert!(
+                effort.accel >= 1.0 && effort.accel <= 20.0,
+                "{kind:?} {effort:?}"
+            );
+        }
+        for pair in &result.pairs {
+            assert!(pair.after.gain_db < apart_db, "{kind:?} {pair:?}");
+        }
+        assert!(tuned_text(&result).contains("  Z: gain up to "));
+    }
+    // Asked for, a wide one is made, with its gain shown; a hold is refused there.
+    let wide = |kind| Wish {
+        bandwidth_hz: Some(210.0),
+        ..wish(kind)
+    };
+    let result = tuned(axes(), wide(Discretization::Matched));
+    let effort = result.correction.effort(2, 0.0);
+    assert!(effort.gain > 1000.0, "{effort:?}");
+    let (message, help) = refusal(Tuned::new(axes(), wide(Discretization::Hold), 50.0));
+    assert!(message.contains("as zoh makes them"), "{message}");
+    assert!(help.contains("lower --low-pass-hz"), "{help}");
+}
+
 fn refusal<T: std::fmt::Debug>(outcome: gwatt::identify::Outcome<T>) -> (String, String) {
     let trouble = outcome.unwrap_err();
     (trouble.message, trouble.help)

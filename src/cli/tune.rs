@@ -42,7 +42,8 @@ pub struct TuneArgs {
     /// Order of the low-pass [default: the least that is causal]
     #[arg(long, value_name = "N", conflicts_with = "no_low_pass")]
     pub low_pass_order: Option<usize>,
-    /// Bandwidth of the low-pass [default: 3 times the highest zero]
+    /// Bandwidth of the low-pass [default: 3 times the highest zero, or as much lower as
+    /// keeps the largest gain of the filters at 26 dB]
     #[arg(long, value_name = "HZ", conflicts_with = "no_low_pass")]
     pub low_pass_hz: Option<f64>,
     /// No low-pass: for commands without jumps of acceleration
@@ -79,7 +80,8 @@ pub struct TuneArgs {
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
     /// Put zeros and filters into this machine file if the verdict on each recording is
-    /// good, and keep it as MACHINE.bak
+    /// good, and keep it as MACHINE.bak; refused where a filter takes more force than the
+    /// file's force curve has
     #[arg(long, value_name = "MACHINE")]
     pub into: Option<PathBuf>,
     /// Put them there whatever the verdicts

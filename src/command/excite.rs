@@ -1,14 +1,11 @@
 //! `gwatt excite`.
 
-use std::io::{BufWriter, Write};
-use std::path::Path;
-
 use anyhow::{Context, Result, bail, ensure};
 use gwatt::identify::excitation::{Excitation, Shape, make, order_for, reach};
 use gwatt::report::Verdict;
-use gwatt::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
 
-use super::output::Target;
+use super::designed;
+use super::signal::{bounds, deliver, tell, turns};
 use super::terminal::Terminal;
 use crate::cli::{ExciteArgs, ShapeArg, ValueName};
 
@@ -19,18 +16,18 @@ pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
         "--rate-hz {} is not positive",
         args.rate_hz
     );
-    let signal = make(shape(args)?, args.amplitude, args.rate_hz.recip())?;
-    let warnings = warnings(args, &signal)?;
-    let target = match &args.output {
-        Some(path) => Target::new(path)?,
-        None => Target::new(Path::new("-"))?,
-    };
-    let mut spool = BufWriter::new(target.spool()?);
-    write(args, &signal, &mut spool).context("cannot write the signal")?;
-    let spool = spool
-        .into_inner()
-        .map_err(std::io::IntoInnerError::into_error)?;
-    spool.deliver()?;
+    if args.for_recording.is_some() || args.machine.is_some() {
+        return designed::run(args, terminal);
+    }
+    ensure!(
+        args.axis.is_none(),
+        "--axis has no meaning without --for or --machine"
+    );
+    let amplitude = args.amplitude.context("give --amplitude")?;
+    let name = args.name.unwrap_or(ValueName::ExcitationNm);
+    let signal = make(shape(args)?, amplitude, args.rate_hz.recip())?;
+    let warnings = warnings(args, name, &signal)?;
+    deliver(args.output.as_deref(), name, &signal)?;
     tell(&signal, terminal);
     for warning in warnings {
         terminal.text(&format!("gwatt: warning: {warning}\n"));
@@ -82,78 +79,14 @@ fn shape(args: &ExciteArgs) -> Result<Shape> {
     })
 }
 
-fn column(name: ValueName) -> &'static str {
-    match name {
-        ValueName::ExcitationNm => "excitation_nm",
-        ValueName::ExcitationN => "excitation_n",
-        ValueName::TorqueNm => "torque_nm",
-        ValueName::ForceN => "force_n",
-        ValueName::CommandMm => "command_mm",
-        ValueName::CommandDeg => "command_deg",
-    }
-}
-
-fn write(args: &ExciteArgs, signal: &Excitation, out: &mut impl Write) -> std::io::Result<()> {
-    writeln!(out, "time_s,{}", column(args.name))?;
-    for (k, value) in signal.values.iter().enumerate() {
-        // Twelve digits: the rounding of k/rate is no jitter.
-        let time = format!("{:.12}", k as f64 / args.rate_hz);
-        let time = time.trim_end_matches('0').trim_end_matches('.');
-        writeln!(out, "{time},{value}")?;
-    }
-    Ok(())
-}
-
-fn tell(signal: &Excitation, terminal: Terminal) {
-    terminal.note(format_args!(
-        "{} samples, {:.3} s; {:.3} to {:.1} Hz, resolution {:.3} Hz; peak {}, rms {:.4}",
-        signal.values.len(),
-        signal.values.len() as f64 * signal.period_s,
-        signal.band_hz.0,
-        signal.band_hz.1,
-        signal.resolution_hz,
-        signal.peak,
-        signal.rms
-    ));
-}
-
 /// Where the axis would leave what it is given.
-fn warnings(args: &ExciteArgs, signal: &Excitation) -> Result<Vec<String>> {
-    let rotary = matches!(
-        args.name,
-        ValueName::ExcitationNm | ValueName::TorqueNm | ValueName::CommandDeg
-    );
-    let (stroke, speed, unit) = if rotary {
-        ensure!(
-            args.stroke_mm.is_none() && args.speed_mm_min.is_none(),
-            "a torque or an angle turns: give --stroke-deg and --speed-rpm, or another --name"
-        );
-        (
-            args.stroke_deg.map(|s| s * RAD_PER_DEG),
-            args.speed_rpm
-                .map(|n| n * 2.0 * std::f64::consts::PI / SECONDS_PER_MINUTE),
-            (
-                RAD_PER_DEG,
-                "deg",
-                2.0 * std::f64::consts::PI / SECONDS_PER_MINUTE,
-                "rpm",
-            ),
-        )
-    } else {
-        ensure!(
-            args.stroke_deg.is_none() && args.speed_rpm.is_none(),
-            "a force or a distance slides: give --stroke-mm and --speed-mm-min, or another --name"
-        );
-        (
-            args.stroke_mm.map(|s| s * M_PER_MM),
-            args.speed_mm_min.map(|v| v * M_PER_MM / SECONDS_PER_MINUTE),
-            (M_PER_MM, "mm", M_PER_MM / SECONDS_PER_MINUTE, "mm/min"),
-        )
-    };
+fn warnings(args: &ExciteArgs, name: ValueName, signal: &Excitation) -> Result<Vec<String>> {
+    let rotary = turns(name);
+    let (stroke, speed, unit) = bounds(args, rotary)?;
     if stroke.is_none() && speed.is_none() {
         return Ok(Vec::new());
     }
-    let (length, fastest) = if matches!(args.name, ValueName::CommandMm | ValueName::CommandDeg) {
+    let (length, fastest) = if matches!(name, ValueName::CommandMm | ValueName::CommandDeg) {
         let steps = signal.values.iter().zip(signal.values.iter().skip(1));
         let largest = steps.map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
         let low = signal.values.iter().copied().fold(f64::MAX, f64::min);

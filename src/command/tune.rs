@@ -16,10 +16,12 @@ use gwatt::report::{Verdict, sections_csv, tune_page, tuned_json, tuned_text};
 use rayon::prelude::*;
 
 use super::clash::refuse_clashes;
+use super::filter_force;
 use super::input::is_dash;
 use super::into::{Merged, axis_of, written};
 use super::model_choice::method;
 use super::output::{Spool, Target, print};
+use super::setup::load_machine;
 use super::terminal::Terminal;
 use crate::cli::{DiscretizeArg, TuneArgs};
 
@@ -269,6 +271,13 @@ fn deliver(args: &TuneArgs, tuned: &Tuned, terminal: Terminal) -> Result<Verdict
     }
     let is_good = |axis: &AxisResponse| axis.judgement.is_none_or(|it| it == Judgement::Good);
     let is_refused = args.into.is_some() && !args.force && !tuned.axes.iter().all(is_good);
+    let forces = match &args.into {
+        Some(path) if !is_refused => {
+            let machine = load_machine(&path.display().to_string(), terminal)?;
+            filter_force::check(tuned, &machine)?
+        }
+        _ => Vec::new(),
+    };
     let merged = match &args.into {
         Some(path) if !is_refused => Some((path, Merged::responses(path, &figures(tuned)?)?)),
         _ => None,
@@ -279,6 +288,9 @@ fn deliver(args: &TuneArgs, tuned: &Tuned, terminal: Terminal) -> Result<Verdict
     }
     if let Some((path, merged)) = merged {
         merged.deliver(path, terminal)?;
+        for force in forces {
+            terminal.note(force);
+        }
     }
     let files = [&args.json, &args.csv, &args.toml, &args.html];
     if files.into_iter().flatten().any(|path| is_dash(path)) {

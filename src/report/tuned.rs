@@ -10,7 +10,8 @@ use super::identified::{number, shown};
 use crate::identify::Figure;
 use crate::identify::Judgement;
 use crate::identify::tune::{
-    Advice, AxisResponse, Correction, Gain, LowPass, Mismatch, Tuned, delays_agree,
+    Advice, AxisResponse, Correction, DELAY_TOLERANCE_S, Gain, LowPass, Mismatch, Tuned,
+    delays_agree,
 };
 
 /// What a difference of a millisecond makes of a circle at 1 m/min, µm.
@@ -24,6 +25,7 @@ pub fn tuned_text(tuned: &Tuned) -> String {
         axis_text(&mut text, axis);
     }
     filters_text(&mut text, tuned);
+    efforts_text(&mut text, tuned);
     for pair in &tuned.pairs {
         let [a, b] = pair.letters;
         let _ = write!(
@@ -138,6 +140,37 @@ fn filters_text(text: &mut String, tuned: &Tuned) {
     }
 }
 
+/// What the filters ask of the axes.
+fn efforts_text(text: &mut String, tuned: &Tuned) {
+    for (index, axis) in tuned.axes.iter().enumerate() {
+        let effort = tuned.correction.effort(index, 0.0);
+        if effort.accel <= 1.0 && effort.gain <= 1.0 {
+            continue;
+        }
+        let _ = write!(
+            text,
+            "  {}: gain up to {:.1} dB at {:.0} Hz; a jump of the command's acceleration takes {:.2} times as much",
+            axis.letter,
+            20.0 * libm::log10(effort.gain),
+            effort.gain_hz,
+            effort.accel
+        );
+        if let Some(inertia) = axis.inertia {
+            let unit = if axis.rotary {
+                "N·m for each rad/s²"
+            } else {
+                "N for each m/s²"
+            };
+            let force = shown(Figure {
+                value: effort.accel * inertia,
+                std: f64::NAN,
+            });
+            let _ = write!(text, ", {force} {unit}");
+        }
+        text.push('\n');
+    }
+}
+
 fn number_of(value: f64) -> f64 {
     super::figure::round_to_digits(value, 6)
 }
@@ -153,21 +186,36 @@ fn delays_text(text: &mut String, tuned: &Tuned) {
         .axes
         .iter()
         .zip(advice)
-        .map(|(axis, advice)| format!("{} {:.3} ms", axis.letter, 1e3 * advice.delay_s))
+        .map(|(axis, advice)| {
+            let std = if advice.delay_std_s.is_finite() {
+                format!(" ± {:.3}", 1e3 * advice.delay_std_s)
+            } else {
+                String::new()
+            };
+            format!("{} {:.3}{std} ms", axis.letter, 1e3 * advice.delay_s)
+        })
         .collect();
     let delays = delays.join(", ");
     if delays_agree(advice) {
-        let _ = writeln!(text, "delays agree: {delays}");
+        let all = || advice.iter().map(|a| a.delay_s);
+        let apart = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
+        let how = if apart > DELAY_TOLERANCE_S {
+            " as far as they are known"
+        } else {
+            ""
+        };
+        let _ = writeln!(text, "delays agree{how}: {delays}");
         return;
     }
-    let most = advice.iter().map(|a| a.command_delay_s).fold(0.0, f64::max);
+    let earlier = || advice.iter().filter(|axis| axis.is_earlier);
+    let most = earlier().map(|a| a.command_delay_s).fold(0.0, f64::max);
     let _ = writeln!(
         text,
         "delays do not agree: {delays}; circles come {:.1} µm out of round for each m/min of feed",
         1e3 * most * UM_PER_MS_AT_1_M_MIN
     );
     for (axis, advice) in tuned.axes.iter().zip(advice) {
-        if advice.command_delay_s <= 0.0 {
+        if !advice.is_earlier {
             continue;
         }
         let gain = match advice.gain {
@@ -273,6 +321,7 @@ fn axis_json(
         .get(index)
         .map(|f| f.sections.iter().map(|s| json!(s.coefficients())).collect())
         .unwrap_or_default();
+    let effort = correction.effort(index, 0.0);
     let (gain, factor) = match advice.and_then(|advice| advice.gain) {
         Some(Gain::Absolute(gain)) => (Some(gain), None),
         Some(Gain::Factor(factor)) => (None, Some(factor)),
@@ -289,7 +338,11 @@ fn axis_json(
         "accel_rms_mm_s2": number(axis.excited.map(|e| e.rms)),
         "accel_peak_mm_s2": number(axis.excited.map(|e| e.peak)),
         "sections": sections,
+        "largest_gain_db": 20.0 * libm::log10(effort.gain),
+        "largest_gain_hz": effort.gain_hz,
+        "jump_factor": number(Some(effort.accel)),
         "delay_s": number(advice.map(|a| a.delay_s)),
+        "delay_std_s": number(advice.map(|a| a.delay_std_s)),
         "command_delay_s": number(advice.map(|a| a.command_delay_s)),
         "position_gain_1_s": number(gain),
         "position_gain_factor": number(factor),

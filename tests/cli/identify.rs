@@ -129,6 +129,55 @@ fn an_excitation_warns_where_the_axis_would_leave_its_stroke() {
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
 }
 
+/// From a first recording, and from a machine file; what does not go together is refused.
+#[test]
+fn a_signal_is_designed_for_an_axis() {
+    let shop = Shop::new();
+    let machine = shop.run(&["machine", "show", "vmc"]).stdout;
+    shop.put("mill.toml", &machine);
+    let of_file = ["excite", "--machine", "mill.toml", "--axis", "X"];
+    let with = |more: &[&'static str]| shop.run(&[&of_file[..], more].concat());
+    let ran = with(&["--seconds", "2", "--stroke-mm", "20"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(
+        ran.stdout.starts_with("time_s,excitation_n\n0,"),
+        "{}",
+        ran.stdout
+    );
+    for word in [
+        "expected standard errors, if the noise is a twentieth",
+        "written  ",
+        "nothing is known of its resonances",
+    ] {
+        assert!(ran.stderr.contains(word), "{word}: {}", ran.stderr);
+    }
+    with(&["--stroke-deg", "1"]).refused("--stroke-mm");
+    with(&["--name", "torque-nm"]).refused("invalid value");
+    with(&["--name", "torque_nm"]).refused("the axis slides");
+    with(&["--name", "command_mm"]).refused("designed for forces and torques");
+    with(&["--shape", "random"]).refused("cannot be used with");
+    with(&["--seconds", "1e9"]).refused("choose another --seconds");
+    shop.run(&["excite", "--machine", "mill.toml", "--axis", "B"])
+        .refused("has no axis B");
+    shop.run(&["excite", "--axis", "X", "--amplitude", "1"])
+        .refused("no meaning without --for or --machine");
+    shop.put("x.csv", axis_recording());
+    shop.run(&["excite", "--for", "x.csv"])
+        .refused("--amplitude");
+    shop.run(&["excite", "--for", "none.csv", "--amplitude", "1"])
+        .refused("cannot read the recording");
+    shop.run(&[
+        "excite",
+        "--for",
+        "x.csv",
+        "--amplitude",
+        "1",
+        "-o",
+        "x.csv",
+    ])
+    .refused("is read by this run");
+}
+
 /// Torque and angle of a motor whose screw of 10 mm moves 100 kg: what is written
 /// is the mass of the slide.
 #[test]

@@ -130,3 +130,26 @@ fn without_friction_there_is_no_term_of_it() {
     let found = found("accel_rad_s2", &noisy(&accel, 0.05, 5));
     assert_eq!((found.viscous, found.coulomb), (None, None));
 }
+
+/// One way Coulomb friction is an offset: no figure of it is made up.
+#[test]
+fn motion_one_way_determines_no_coulomb_friction() {
+    let torque: Vec<f64> = random(8000, 45.0).iter().map(|u| 0.6 + u).collect();
+    let [speed, _] = axis(&torque, 0.05, 0.1);
+    // Without the run-up, so that all of it is one way.
+    let cut = |x: &[f64]| x[2000..].to_vec();
+    let (torque, speed) = (cut(&torque), cut(&noisy(&speed, 0.002, 1)));
+    let table = table(&["torque_nm", "velocity_rad_s"], &[&torque, &speed]);
+    let found = flexible::identify(&table, &choice(Method::Iv)).unwrap();
+    assert!(found.coulomb.is_none(), "{:?}", found.coulomb);
+    assert!(
+        is_near(found.viscous.unwrap(), 0.05, 0.1),
+        "{:?}",
+        found.viscous
+    );
+    assert!(
+        is_near(found.inertia.unwrap(), 0.024, 0.05),
+        "{:?}",
+        found.inertia
+    );
+}

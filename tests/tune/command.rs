@@ -76,6 +76,10 @@ fn recordings_become_filters_in_the_machine_file() {
         "{text}"
     );
     assert!(said.contains("mill.toml has the new figures"), "{said}");
+    assert!(
+        said.contains("does not say what the axis has (force_curve)"),
+        "{said}"
+    );
     let mill = fs::read_to_string(folder.join("mill.toml")).unwrap();
     for line in [
         "[axes.X] # long\n",
@@ -99,6 +103,25 @@ fn recordings_become_filters_in_the_machine_file() {
         .as_f64()
         .unwrap();
     assert!((hz - 31.0).abs() < 0.3, "{hz}");
+    // What the filters take is shown; more than the drive has is refused.
+    assert!(text.contains("  X: gain up to 24."), "{text}");
+    let weak = MILL.replacen(
+        "mass_kg = 300",
+        "mass_kg = 300\nforce_curve = [{ speed_mm_min = 0, force_n = 4000 }, { speed_mm_min = 24000, force_n = 4000 }]",
+        1,
+    );
+    fs::write(folder.join("weak.toml"), &weak).unwrap();
+    let files = [
+        "tune",
+        "flexible-x.csv",
+        "flexible-y.csv",
+        "--into",
+        "weak.toml",
+    ];
+    let (code, _, said) = gwatt(folder, &files);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("and the axis has 4000.0 N"), "{said}");
+    assert_eq!(fs::read_to_string(folder.join("weak.toml")).unwrap(), weak);
     // The file of parameters gives the same filters.
     let (code, _, said) = gwatt(folder, &["tune", "--from", "t.toml", "--csv", "again.csv"]);
     assert_eq!(code, 0, "{said}");

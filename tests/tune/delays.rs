@@ -1,6 +1,6 @@
 //! Whether the axes answer at the same time.
 
-use gwatt::identify::tune::{Discretization, Gain, delays_agree};
+use gwatt::identify::tune::{AxisResponse, Discretization, Gain, delays_agree};
 use gwatt::report::tuned_text;
 
 use super::{axis, from_command, lag, tuned, wish};
@@ -45,4 +45,38 @@ fn delays_are_told_and_made_to_agree() {
     assert!(delays_agree(
         &tuned(axes, wish(Discretization::Matched)).advice.unwrap()
     ));
+}
+
+/// Delays of recordings have errors: what is within them needs no advice, and an axis whose
+/// delay is not known says nothing about the others.
+#[test]
+fn advice_is_given_where_delays_clearly_differ() {
+    let known = |letter, time_constant_s, lateness_std_s| AxisResponse {
+        lateness_std_s,
+        ..from_command(letter, &[lag(time_constant_s)], 0.0)
+    };
+    let text = |axes| tuned_text(&tuned(axes, wish(Discretization::Matched)));
+    let apart = text(vec![known('X', 0.025, 1e-3), known('Y', 0.021, 1e-3)]);
+    assert!(
+        apart.contains("delays do not agree: X 25.000 ± 1.000 ms, Y 21.000 ± 1.000 ms; circles"),
+        "{apart}"
+    );
+    assert!(apart.contains("delay its command by 4.000 ms"), "{apart}");
+    let alike = text(vec![known('X', 0.025, 2e-3), known('Y', 0.021, 2e-3)]);
+    assert!(
+        alike.contains("delays agree as far as they are known: X 25.000 ± 2.000 ms"),
+        "{alike}"
+    );
+    assert!(!alike.contains("delay its command"), "{alike}");
+    let unknown = text(vec![
+        known('X', 0.025, 1e-3),
+        known('Y', 0.021, 1e-3),
+        known('Z', 92.0, 300.0),
+    ]);
+    assert!(
+        unknown.contains("Y: lower the gain of its position loop to 0.8400"),
+        "{unknown}"
+    );
+    assert!(!unknown.contains("Z: lower"), "{unknown}");
+    assert!(!unknown.contains("X: lower"), "{unknown}");
 }

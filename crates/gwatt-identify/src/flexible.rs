@@ -1,8 +1,10 @@
 //! Flexible axes: from a recording to resonances and anti-resonances.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::arx;
 use super::data::Data;
-use super::disturbance::as_it_is;
+use super::disturbance::{Noise, as_it_is};
 use super::leaky::Leaky;
 use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
 use super::neighbours::FAST;
@@ -15,6 +17,7 @@ use super::rigid::Figure;
 use super::rubbing::{Rubbing, Term};
 use super::search::{LAGS, filtered};
 use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
+use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
 use super::trouble::{Outcome, Trouble};
 
@@ -82,6 +85,62 @@ pub struct Flexible {
     pub seconds: f64,
     /// True where standard errors are known.
     pub has_errors: bool,
+    /// What was measured.
+    pub(crate) measured: Measured,
+    /// What makes the noise white, and its standard deviation then.
+    pub(crate) noise: Noise,
+    pub(crate) noise_std: f64,
+    /// How the parameters of the model vary together, where standard errors are known; the
+    /// delay is one of them where it was fitted.
+    pub(crate) covariance: Option<DMatrix<f64>>,
+}
+
+impl Flexible {
+    /// By how much slow motion is late by delay, poles and zeros, but for zeros that count
+    /// apart, with the standard error of the whole: poles, zeros and a delay that stand
+    /// for one another are known together better than one by one, or not at all.
+    #[must_use]
+    pub fn lateness(&self, apart: &[Factor]) -> Figure {
+        let model = &self.transfer;
+        let mut value = model.delay_s;
+        let mut slopes = vec![0.0];
+        let zeros = model.zeros.iter().map(|zero| {
+            let counts = !apart.contains(zero);
+            (zero, if counts { -1.0 } else { 0.0 })
+        });
+        for (factor, sign) in zeros.chain(model.poles.iter().map(|pole| (pole, 1.0))) {
+            value += sign * factor.lag_s();
+            match *factor {
+                Factor::Pair { omega_rad_s, .. } => {
+                    slopes.extend([-sign * factor.lag_s(), sign * 2.0 / omega_rad_s]);
+                }
+                Factor::Real { .. } => slopes.push(sign),
+            }
+        }
+        let Some(covariance) = &self.covariance else {
+            return Figure {
+                value,
+                std: f64::NAN,
+            };
+        };
+        let is_late = covariance.nrows() > slopes.len();
+        slopes.resize(covariance.nrows().min(slopes.len() + 1), 1.0);
+        let slopes = DVector::from_vec(slopes);
+        let variance = if slopes.len() == covariance.nrows() {
+            (covariance * &slopes).dot(&slopes)
+        } else {
+            f64::NAN
+        };
+        // What other models make of the delay comes on top.
+        let doubt = if is_late { 0.0 } else { self.delay_s.std };
+        Figure {
+            value,
+            std: libm::hypot(
+                variance.max(0.0).sqrt(),
+                if doubt.is_finite() { doubt } else { 0.0 },
+            ),
+        }
+    }
 }
 
 /// Damping from which on a pair of zeros makes no dip, and a pair of poles no
@@ -334,6 +393,10 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         steadiness: Whiteness::of(&squares, LAGS),
         noise_order: found.noise.taps.len(),
         leak: found.noise.leak,
+        measured: prepared.measured,
+        noise_std: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
+        noise: found.noise,
+        covariance: found.has_errors.then(|| estimate.covariance.clone()),
         response: found.response,
         signals: prepared.names.clone(),
         samples: data.len(),

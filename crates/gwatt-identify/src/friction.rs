@@ -210,7 +210,7 @@ fn robust(
 
 /// Whether the axis moves one way only; what few equations it has of the other way are
 /// left out then.
-fn moves_one_way(all: &mut [Equations]) -> bool {
+pub(super) fn moves_one_way(all: &mut [Equations]) -> bool {
     let mut sums = [0_usize; 2];
     for equations in all.iter() {
         for (sum, count) in sums.iter_mut().zip(equations.directions()) {

@@ -6,9 +6,11 @@
 //! friction. [`flexible`] finds the [`TransferFunction`] from force to
 //! acceleration, whose zeros are the axis' anti-resonances. [`power_fit`] fits the
 //! electrical power of an axis. [`tune`] makes the filters that let several axes
-//! answer alike. [`excitation`] makes signals that excite an axis. [`merge`] and
+//! answer alike. [`excitation`] makes signals that excite an axis,
+//! [`design`] the best one for an axis of which something is known. [`merge`] and
 //! [`response_table`] write what was found into machine files.
 
+pub mod design;
 pub mod excitation;
 pub mod flexible;
 pub mod judgement;

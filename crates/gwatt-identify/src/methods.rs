@@ -7,8 +7,8 @@ use super::disturbance::{Noise, as_it_is};
 use super::neighbours::{LAG_MAX, ORDER_MAX};
 use super::output_error::Estimate;
 use super::prepared::Prepared;
-use super::response_fit::{self, ResponseFit};
-use super::search::{response_of, search};
+use super::response_fit;
+use super::search::{CHOSEN, response_of, search};
 use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;
@@ -62,13 +62,10 @@ pub(super) fn by_response(
     // not.
     let grown = lags
         .filter_map(|lag| response_fit::grow(&response, lag, choice.given.order, ORDER_MAX, t))
-        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))
-        .and_then(|best| response_fit::finish(&response, &best.transfer, t));
-    let best: ResponseFit = from_subspace(data, choice)
-        .iter()
-        .filter_map(|start| response_fit::finish(&response, start, t))
-        .chain(grown)
-        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
+        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()));
+    let mut starts = from_subspace(&data.head(CHOSEN), choice);
+    starts.extend(grown.map(|best| best.transfer));
+    let best = response_fit::best_of(&response, &starts, t)?;
     let mut estimate = as_it_is(data, &best.transfer)?;
     estimate.covariance = best.covariance;
     Some(Modelled {

@@ -125,7 +125,7 @@ impl Effort {
 
 /// A signal after the whitening filter, as long as it was; before its first
 /// sample there was nothing.
-fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
+pub fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; x.len()];
     for (index, tap) in taps.iter().enumerate() {
         let later = out.get_mut(index + 1..).unwrap_or_default();

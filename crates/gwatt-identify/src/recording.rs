@@ -129,6 +129,14 @@ impl Recording {
         })
     }
 
+    /// Whether its force is a torque.
+    #[must_use]
+    pub fn is_rotary(&self) -> bool {
+        let force = self.get(Quantity::Force);
+        let force = force.or_else(|| self.get(Quantity::Excitation));
+        force.is_some_and(|force| force.kind == Kind::Rotary)
+    }
+
     /// Refers what was recorded at a motor to the slide that its screw drives:
     /// torques become forces, angles become travel. `force_per_torque` is in N per
     /// N·m, and so in rad of the motor per m of the slide. Signals that are about

@@ -21,6 +21,8 @@ type C = Complex<f64>;
 /// Steps of each fit while the model grows, and of the last one.
 const STEPS: usize = 15;
 const STEPS_LAST: usize = 80;
+/// Frequencies on which models are compared; the last fit takes all.
+const COMPARED: usize = 4_000;
 /// Up to this share of the sampling frequency the response is used.
 const BAND: f64 = 0.47;
 
@@ -57,6 +59,17 @@ struct Points {
 }
 
 impl Points {
+    /// One of so many that there are about `most`; all where there are no more.
+    fn some(response: &FrequencyResponse, period_s: f64, most: usize) -> Option<Self> {
+        let all = Self::new(response, period_s)?;
+        let every = all.z.len().div_ceil(most).max(1);
+        Some(Self {
+            z: all.z.into_iter().step_by(every).collect(),
+            response: all.response.into_iter().step_by(every).collect(),
+            weight: all.weight.into_iter().step_by(every).collect(),
+        })
+    }
+
     fn new(response: &FrequencyResponse, period_s: f64) -> Option<Self> {
         let mut sorted = response.variance.clone();
         sorted.sort_by(f64::total_cmp);
@@ -189,7 +202,7 @@ pub fn grow(
     order_max: usize,
     period_s: f64,
 ) -> Option<ResponseFit> {
-    let points = Points::new(response, period_s)?;
+    let points = Points::some(response, period_s, COMPARED)?;
     let rigid = TransferFunction {
         delay_s: lag as f64 * period_s,
         ..TransferFunction::constant(mean_gain(response))
@@ -219,15 +232,28 @@ pub fn grow(
     Some(best)
 }
 
-/// Fits to the end; with a real zero far above the band, as dampers make it,
-/// where that is worth a parameter.
+/// The best of these models after a fit, of as many frequencies as models are compared
+/// on; with a real zero far above the band, as dampers make it, where that is worth a
+/// parameter. Then it is fitted to all frequencies.
 #[must_use]
-pub fn finish(
+pub fn best_of(
     response: &FrequencyResponse,
-    start: &TransferFunction,
+    starts: &[TransferFunction],
     period_s: f64,
 ) -> Option<ResponseFit> {
-    let points = Points::new(response, period_s)?;
+    let some = Points::some(response, period_s, COMPARED)?;
+    let best = starts
+        .iter()
+        .filter_map(|start| with_zero(&some, start, period_s))
+        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
+    let all = Points::new(response, period_s)?;
+    if all.z.len() == some.z.len() {
+        return Some(best);
+    }
+    all.refine(&best.transfer, STEPS_LAST, period_s)
+}
+
+fn with_zero(points: &Points, start: &TransferFunction, period_s: f64) -> Option<ResponseFit> {
     let as_it_is = points.refine(start, STEPS_LAST, period_s)?;
     if start.zero_count() >= start.order() {
         return Some(as_it_is);

@@ -10,7 +10,7 @@
 use super::column::{Kind, Quantity};
 use super::equations::Equations;
 use super::filter::{derivative, low_pass};
-use super::friction::{Solved, Terms, solve};
+use super::friction::{Solved, Terms, moves_one_way, solve};
 use super::recording::{Recording, Signal};
 
 /// Band in which friction is looked for, Hz.
@@ -113,7 +113,10 @@ impl Rubbing {
             let std = solved.covariance[(index, index)].sqrt();
             (value, sureness(value, std))
         };
-        let found = [(Term::Viscous, figure(1)), (Term::Coulomb, figure(2))];
+        let mut found = vec![(Term::Viscous, figure(1))];
+        if solved.terms == Terms::Symmetric {
+            found.push((Term::Coulomb, figure(2)));
+        }
         if found.iter().all(|(_, (_, sure))| *sure < FOUND) {
             return None;
         }
@@ -169,7 +172,16 @@ fn slow(recording: &Recording, speed: &[f64]) -> Option<Solved> {
         });
     }
     let equations = Equations::of(&slow, SLOW_HZ.min(SMOOTH / recording.period_s)).ok()?;
-    solve(&[equations], Terms::Symmetric)
+    let mut all = [equations];
+    // One way Coulomb friction is as good as an offset. Sums of accelerations do not show
+    // which way.
+    let is_one_way = !are_sums(recording) && moves_one_way(&mut all);
+    let terms = if is_one_way {
+        Terms::OneWay
+    } else {
+        Terms::Symmetric
+    };
+    solve(&all, terms)
 }
 
 impl Term {

@@ -309,7 +309,8 @@ pub fn numbered(columns: &[Vec<f64>]) -> Vec<(usize, &[f64])> {
 }
 
 /// Size of the whitening filter's response.
-fn response(taps: &[f64], theta: f64) -> f64 {
+#[must_use]
+pub fn response(taps: &[f64], theta: f64) -> f64 {
     let mut sum = C::new(1.0, 0.0);
     for (index, tap) in taps.iter().enumerate() {
         sum += on_circle(-theta * (index + 1) as f64) * *tap;
@@ -318,7 +319,8 @@ fn response(taps: &[f64], theta: f64) -> f64 {
 }
 
 /// Size of the response of leaky integrators; 1 without them.
-fn integrators(leak: f64, times: usize, theta: f64) -> f64 {
+#[must_use]
+pub fn integrators(leak: f64, times: usize, theta: f64) -> f64 {
     if leak == 0.0 {
         return 1.0;
     }

@@ -227,6 +227,9 @@ fn over_stretches(
     out
 }
 
+/// Values of which the noise at a line is the mean, on either side.
+const NOISE_VALUES: usize = 16;
+
 /// Averages whole periods; the first is left out if there are three or more,
 /// because the axis still swings in.
 fn over_periods(
@@ -286,21 +289,44 @@ fn over_periods(
         ..FrequencyResponse::default()
     };
     let k = used as f64;
+    // Noise changes little from line to line, and few periods show little of it at each.
+    let smooth = averaged(&rest, NOISE_VALUES.div_ceil(used.saturating_sub(1).max(1)));
     for bin in 1..bins.saturating_sub(usize::from(period.is_multiple_of(2))) {
         let (u, y) = (*u.get(bin)?, *y.get(bin)?);
         if *strength.get(bin)? <= 1e-4 * largest || u.norm_sqr() == 0.0 {
             continue;
         }
-        let (rest, total) = (*rest.get(bin)?, *total.get(bin)?);
+        let (left, total) = (*rest.get(bin)?, *total.get(bin)?);
         out.frequency_hz
             .push(bin as f64 / (period as f64 * period_s));
         out.response.push(y / u);
-        out.coherence.push((1.0 - rest / total).clamp(0.0, 1.0));
+        out.coherence.push((1.0 - left / total).clamp(0.0, 1.0));
         out.variance
-            .push(rest / (k - 1.0).max(1.0) * k / u.norm_sqr());
+            .push(smooth.get(bin)? / (k - 1.0).max(1.0) * k / u.norm_sqr());
         out.power.push(total);
     }
     Some(out)
+}
+
+/// Means over so many neighbours on either side, fewer at the ends; the line at 0 is left
+/// out.
+fn averaged(x: &[f64], half: usize) -> Vec<f64> {
+    let mut sums = vec![0.0];
+    let mut sum = 0.0;
+    for (index, x) in x.iter().enumerate() {
+        sum += if index == 0 { 0.0 } else { *x };
+        sums.push(sum);
+    }
+    (0..x.len())
+        .map(|index| {
+            let half = half.min(index.saturating_sub(1)).min(x.len() - 1 - index);
+            let (from, to) = (index - half.min(index), index + half + 1);
+            match (sums.get(from), sums.get(to)) {
+                (Some(a), Some(b)) => (b - a) / (to - from) as f64,
+                _ => 0.0,
+            }
+        })
+        .collect()
 }
 
 /// After how many samples a signal repeats itself, if it does.

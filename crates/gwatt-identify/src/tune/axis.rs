@@ -89,6 +89,9 @@ pub struct AxisResponse {
     pub poles: Vec<Factor>,
     /// Delay, s.
     pub delay_s: f64,
+    /// Standard error of how late the axis is by delay and poles, s; not finite where it
+    /// has none.
+    pub lateness_std_s: f64,
     /// Gain of the position loop in 1/s, where it is known.
     pub position_gain_1_s: Option<f64>,
     /// The measured response, if there is a recording.
@@ -190,6 +193,8 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
         }
     }
     let early_s = found.fitted_delay_s - found.transfer.delay_s;
+    let evened: Vec<Factor> = zeros.iter().map(Zero::factor).collect();
+    let lateness_std_s = found.lateness(&evened).std;
     let further_zeros = found
         .transfer
         .zeros
@@ -209,6 +214,7 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
         further_zeros,
         poles: found.transfer.poles.clone(),
         delay_s: found.transfer.delay_s,
+        lateness_std_s,
         position_gain_1_s: None,
         measured: Some(found.response),
         hold_s: 0.5 * found.seconds / found.samples as f64 + early_s,

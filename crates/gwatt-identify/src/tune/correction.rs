@@ -12,6 +12,7 @@ use nalgebra::Complex;
 
 use super::biquad::{Biquad, response};
 use super::discretize::{Discretization, discretize};
+use super::effort::Effort;
 use crate::transfer::{Factor, TransferFunction};
 use crate::trouble::{Outcome, Trouble};
 
@@ -22,6 +23,11 @@ const SHARE_MAX: f64 = 0.4;
 /// delay is then short, and what it lets through of noise and of corners is no
 /// more than the square of this for each zero.
 const ABOVE_ZEROS: f64 = 3.0;
+/// With several zeros in a filter it lies lower: as long as that helps, the largest gain
+/// is at most this (26 dB), but it stays above this share of what it would be.
+const GAIN_MAX: f64 = 20.0;
+const LOWEST: f64 = 0.1;
+const HALVINGS: usize = 20;
 /// Orders that can be asked for.
 const ORDER_MAX: usize = 24;
 
@@ -134,38 +140,96 @@ pub fn design(zeros: &[(char, Vec<Factor>)], wish: &Wish) -> Outcome<Correction>
     let numerators: Vec<Vec<Factor>> = (0..zeros.len()).map(others).collect();
     let degree = |p: &[Factor]| p.iter().map(|zero| zero.degree()).sum::<usize>();
     let needed = numerators.iter().map(|p| degree(p)).max().unwrap_or(0);
-    let low_pass = low_pass(zeros, wish, needed)?;
-    let mut filters = Vec::new();
-    for (numerator, (letter, _)) in numerators.into_iter().zip(zeros) {
-        let sections = if needed == 0 {
-            Vec::new()
-        } else {
-            discretize(
-                &numerator,
-                needed,
-                low_pass,
-                wish.discretization,
-                wish.period_s,
-            )
-            .filter(|sections| sections.iter().all(Biquad::is_stable))
-            .ok_or_else(|| {
-                Trouble::new(
-                    format!("the filter of axis {letter} would not be stable"),
-                    "lower --low-pass-hz, or shorten --period-ms",
-                )
-            })?
-        };
-        filters.push(Filter {
-            numerator,
-            sections,
-        });
+    let widest = low_pass(zeros, wish, needed)?;
+    let with = |low_pass: LowPass| -> Outcome<Correction> {
+        let filters = numerators
+            .iter()
+            .zip(zeros)
+            .map(|(numerator, (letter, _))| filter(numerator, needed, low_pass, wish, *letter));
+        Ok(Correction {
+            low_pass,
+            discretization: wish.discretization,
+            period_s: wish.period_s,
+            filters: filters.collect::<Outcome<Vec<_>>>()?,
+        })
+    };
+    let found = with(widest);
+    match widest {
+        LowPass::Butterworth {
+            order,
+            bandwidth_hz,
+        } if wish.bandwidth_hz.is_none() => Ok(calmer(found?, order, bandwidth_hz, with)),
+        _ => found,
     }
-    Ok(Correction {
-        low_pass,
-        discretization: wish.discretization,
-        period_s: wish.period_s,
-        filters,
+}
+
+fn filter(
+    numerator: &[Factor],
+    needed: usize,
+    low_pass: LowPass,
+    wish: &Wish,
+    letter: char,
+) -> Outcome<Filter> {
+    let sections = if needed == 0 {
+        Vec::new()
+    } else {
+        discretize(
+            numerator,
+            needed,
+            low_pass,
+            wish.discretization,
+            wish.period_s,
+        )
+        .filter(|sections| sections.iter().all(Biquad::is_stable))
+        .ok_or_else(|| {
+            Trouble::new(
+                format!("the filter of axis {letter} would not be stable"),
+                "lower --low-pass-hz, or shorten --period-ms",
+            )
+        })?
+    };
+    Ok(Filter {
+        numerator: numerator.to_vec(),
+        sections,
     })
+}
+
+/// Filters whose low-pass is as low as their largest gain asks: what is common to all axes
+/// leaves them as alike as they are.
+fn calmer(
+    widest: Correction,
+    order: usize,
+    widest_hz: f64,
+    with: impl Fn(LowPass) -> Outcome<Correction>,
+) -> Correction {
+    let gain = |found: &Correction| {
+        let efforts = found.filters.iter();
+        let gains = efforts.map(|f| Effort::of(&f.sections, found.period_s, 0.0).gain);
+        gains.fold(1.0, f64::max)
+    };
+    if gain(&widest) <= GAIN_MAX {
+        return widest;
+    }
+    let mut best = widest;
+    let (mut low, mut high) = (LOWEST * widest_hz, widest_hz);
+    for _ in 0..HALVINGS {
+        let bandwidth_hz = (low * high).sqrt();
+        let low_pass = LowPass::Butterworth {
+            order,
+            bandwidth_hz,
+        };
+        let found = with(low_pass).ok();
+        let gained = found.as_ref().map_or(f64::INFINITY, gain);
+        if let Some(found) = found.filter(|_| gained < gain(&best) || gained <= GAIN_MAX) {
+            best = found;
+        }
+        if gained <= GAIN_MAX {
+            low = bandwidth_hz;
+        } else {
+            high = bandwidth_hz;
+        }
+    }
+    best
 }
 
 fn sound_zero(letter: char, zero: Factor, rate_hz: f64) -> Outcome<()> {
@@ -259,6 +323,14 @@ impl Correction {
         self.filters.get(axis).map_or(Complex::new(1.0, 0.0), |f| {
             response(&f.sections, frequency_hz, self.period_s)
         })
+    }
+
+    /// What the filter of an axis asks for, where the command's acceleration rises in
+    /// `rise_s`.
+    #[must_use]
+    pub fn effort(&self, axis: usize, rise_s: f64) -> Effort {
+        let sections = self.filters.get(axis).map(|f| f.sections.as_slice());
+        Effort::of(sections.unwrap_or_default(), self.period_s, rise_s)
     }
 
     /// The filter of an axis in continuous time; not proper without a low-pass.

@@ -58,6 +58,7 @@ struct AxisTable {
     inertia_kg_m2: Option<f64>,
     #[serde(default)]
     delay_ms: f64,
+    lateness_std_ms: Option<f64>,
     position_gain_1_s: Option<f64>,
     #[serde(default)]
     zeros: Vec<FactorTable>,
@@ -213,6 +214,14 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
     };
     positive(key, inertia)?;
     positive("position_gain_1_s", table.position_gain_1_s)?;
+    if table
+        .lateness_std_ms
+        .is_some_and(|std| std.is_nan() || std < 0.0)
+    {
+        return Err(refused(format!(
+            "axis {letter}: lateness_std_ms is not 0 or more"
+        )));
+    }
     if other.is_some() || inertia.is_none() != from_command {
         return Err(refused(format!(
             "axis {letter}: from a {} there is {}",
@@ -235,22 +244,7 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
             "axis {letter}: more than {FACTORS_MAX} zeros and poles"
         )));
     }
-    let mut zeros = Vec::new();
-    for entry in &table.zeros {
-        let Factor::Pair {
-            omega_rad_s,
-            damping,
-        } = factor(letter, entry)?
-        else {
-            return Err(refused(format!(
-                "axis {letter}: a zero with a time constant belongs to further_zeros"
-            )));
-        };
-        let mut zero = Zero::exact(omega_rad_s, damping);
-        zero.omega_rad_s.std = entry.frequency_std_hz.map_or(f64::NAN, |std| std * TAU);
-        zero.damping.std = entry.damping_std.unwrap_or(f64::NAN);
-        zeros.push(zero);
-    }
+    let zeros = evened(letter, &table.zeros)?;
     let list = |entries: &[FactorTable]| -> Outcome<Vec<Factor>> {
         entries.iter().map(|entry| factor(letter, entry)).collect()
     };
@@ -266,6 +260,7 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
         further_zeros,
         poles,
         delay_s: table.delay_ms * 1e-3,
+        lateness_std_s: table.lateness_std_ms.map_or(f64::NAN, |ms| ms * 1e-3),
         position_gain_1_s: table.position_gain_1_s,
         measured: None,
         hold_s: 0.0,
@@ -280,6 +275,27 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
         ));
     }
     Ok(axis)
+}
+
+/// The zeros that are evened out.
+fn evened(letter: char, entries: &[FactorTable]) -> Outcome<Vec<Zero>> {
+    let mut zeros = Vec::new();
+    for entry in entries {
+        let Factor::Pair {
+            omega_rad_s,
+            damping,
+        } = factor(letter, entry)?
+        else {
+            return Err(refused(format!(
+                "axis {letter}: a zero with a time constant belongs to further_zeros"
+            )));
+        };
+        let mut zero = Zero::exact(omega_rad_s, damping);
+        zero.omega_rad_s.std = entry.frequency_std_hz.map_or(f64::NAN, |std| std * TAU);
+        zero.damping.std = entry.damping_std.unwrap_or(f64::NAN);
+        zeros.push(zero);
+    }
+    Ok(zeros)
 }
 
 fn factor(letter: char, entry: &FactorTable) -> Outcome<Factor> {
@@ -313,6 +329,9 @@ fn write_axis(text: &mut String, axis: &AxisResponse) {
         let _ = writeln!(text, "{key} = {inertia:?}");
     }
     let _ = writeln!(text, "delay_ms = {:?}", 1e3 * axis.delay_s);
+    if axis.lateness_std_s.is_finite() {
+        let _ = writeln!(text, "lateness_std_ms = {:?}", 1e3 * axis.lateness_std_s);
+    }
     if let Some(gain) = axis.position_gain_1_s {
         let _ = writeln!(text, "position_gain_1_s = {gain:?}");
     }

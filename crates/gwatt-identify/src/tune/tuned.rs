@@ -3,6 +3,7 @@
 use super::axis::AxisResponse;
 use super::correction::{Correction, Wish, design};
 use super::delay::{Advice, advice};
+use super::discretize::Discretization;
 use super::mismatch::{Pair, mismatch};
 use crate::trouble::{Outcome, Trouble};
 
@@ -69,6 +70,7 @@ impl Tuned {
         }
         let zeros: Vec<_> = axes.iter().map(|a| (a.letter, a.zero_factors())).collect();
         let correction = design(&zeros, &wish)?;
+        refuse_distorted(&correction, band_hz)?;
         let pairs = mismatch(&axes, &correction, band_hz);
         let advice = advice(&axes);
         Ok(Self {
@@ -81,3 +83,38 @@ impl Tuned {
         })
     }
 }
+
+/// How far filters may be from what they stand for, dB between two axes.
+const DISTORTED_DB: f64 = 1.0;
+
+/// A hold represents a wide low-pass over several zeros badly: the axes would be less alike
+/// with such filters than without.
+fn refuse_distorted(correction: &Correction, band_hz: f64) -> Outcome<()> {
+    if correction.discretization != Discretization::Hold {
+        return Ok(());
+    }
+    let mut most = 0.0_f64;
+    for k in 1..=POINTS {
+        let hz = band_hz * f64::from(k) / f64::from(POINTS);
+        let errors = (0..correction.filters.len()).map(|axis| {
+            let exact = correction.continuous(axis).at_hz(hz).norm();
+            20.0 * libm::log10(correction.at_hz(axis, hz).norm() / exact)
+        });
+        let errors: Vec<f64> = errors.filter(|db| db.is_finite()).collect();
+        let highest = errors.iter().copied().fold(f64::MIN, f64::max);
+        let lowest = errors.iter().copied().fold(f64::MAX, f64::min);
+        most = most.max(highest - lowest);
+    }
+    if most <= DISTORTED_DB {
+        return Ok(());
+    }
+    Err(Trouble::new(
+        format!(
+            "as zoh makes them, the filters are up to {most:.1} dB from what they stand for, up to {band_hz} Hz"
+        ),
+        "lower --low-pass-hz, shorten --period-ms, or leave --discretize at matched",
+    ))
+}
+
+/// Frequencies that are looked at.
+const POINTS: u32 = 200;
