@@ -1,6 +1,119 @@
-//! The examples of README.md show what gwatt prints.
+//! What README.md and the pages in docs/ show is true, and their links lead somewhere.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 #[test]
 fn examples_are_true() {
-    trycmd::TestCases::new().case("README.md");
+    trycmd::TestCases::new().case("README.md").case("docs/*.md");
+}
+
+fn pages() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = fs::read_dir(root.join("docs")).expect("a folder");
+    let mut pages: Vec<PathBuf> = docs.map(|entry| entry.expect("an entry").path()).collect();
+    pages.push(root.join("README.md"));
+    pages.retain(|page| page.extension().is_some_and(|it| it == "md"));
+    pages.sort();
+    pages
+}
+
+/// The anchor of a heading, as GitHub makes it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim().chars().filter_map(|sign| match sign {
+        ' ' => Some('-'),
+        '-' | '_' => Some(sign),
+        _ if sign.is_alphanumeric() => Some(sign),
+        _ => None,
+    });
+    kept.collect::<String>().to_lowercase()
+}
+
+fn anchors(text: &str) -> Vec<String> {
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    headings
+        .map(|line| anchor(line.trim_start_matches('#')))
+        .collect()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    for page in pages() {
+        let text = fs::read_to_string(&page).expect("a page");
+        for target in text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
+            if target.starts_with("http") {
+                continue;
+            }
+            let (file, wanted) = target.split_once('#').unwrap_or((target, ""));
+            let other = match file {
+                "" => page.clone(),
+                file => page.with_file_name("").join(file),
+            };
+            assert!(other.exists(), "{}: {target}", page.display());
+            if !wanted.is_empty() {
+                let text = fs::read_to_string(&other).expect("a page");
+                let has = anchors(&text).iter().any(|it| it == wanted);
+                assert!(has, "{}: {target}", page.display());
+            }
+        }
+    }
+}
+
+/// README.md is for somebody who sees gwatt for the first time.
+#[test]
+fn the_front_page_is_short() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("README.md")).expect("a page");
+    assert!(text.lines().count() <= 150, "{}", text.lines().count());
+    let index = fs::read_to_string(root.join("docs/README.md")).expect("a page");
+    for page in pages() {
+        let name = page
+            .file_name()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        let listed = name == "README.md" || index.contains(&format!("({name})"));
+        assert!(listed, "docs/README.md does not list {name}");
+    }
+}
+
+/// The picture on it is the one that gwatt draws.
+#[test]
+fn the_picture_is_true() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = folder.path().join("pocket.svg");
+    let ran = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+        .current_dir(root)
+        .args([
+            "limit",
+            "examples/pocket.ngc",
+            "-m",
+            "vmc",
+            "--allow",
+            "feed",
+            "-o",
+        ])
+        .arg(folder.path().join("fit.ngc"))
+        .arg("--svg")
+        .arg(&picture)
+        .output()
+        .expect("gwatt");
+    assert!(
+        ran.status.success(),
+        "{}",
+        String::from_utf8_lossy(&ran.stderr)
+    );
+    let [drawn, shown] = [picture, root.join("docs/pocket.svg")]
+        .map(|path| fs::read_to_string(path).expect("a picture"));
+    // No assert_eq: the pictures are long.
+    assert!(
+        drawn == shown,
+        "gwatt draws another picture: put it into docs/pocket.svg"
+    );
 }

@@ -130,6 +130,23 @@ fn the_speed_of_the_return() {
     assert!((peak_w - 143.75).abs() < 1e-6, "{row:?}");
 }
 
+/// On LinuxCNC and grbl G28 is a rapid: the speed of homing says nothing of it.
+#[test]
+fn the_speed_of_homing_is_not_that_of_a_rapid() {
+    for controller in ["linuxcnc", "grbl"] {
+        let rows = |axis: &str| {
+            let shop = shop(controller, "", axis);
+            shop.put("a.nc", "G21 G90\nG0 X400 Y300 Z100\nG28 Z50\nM2\n");
+            let (code, csv, errors) = shop.run("report a.nc");
+            assert_eq!(code, 0, "{errors}");
+            csv
+        };
+        let rapid = rows("reference_mm = 0");
+        assert!(rapid.lines().count() >= 4, "{rapid}");
+        assert_eq!(rows("reference_mm = 0\nreference_mm_min = 600"), rapid);
+    }
+}
+
 /// RS274/NGC takes G53 with G1.
 #[test]
 fn machine_coordinates_with_a_feed() {

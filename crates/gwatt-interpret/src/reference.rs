@@ -56,7 +56,9 @@ impl Control<'_> {
         }
         let unknown = AxisSet(named.0 & self.position.unknown.0);
         let rapid_factor = self.knobs.rapid_factor;
-        if second == 0 {
+        // On LinuxCNC and grbl G28 is a rapid; only homing has speeds of its own.
+        let is_rapid = self.machine.controller.language.family == Family::Rs274;
+        if second == 0 && !is_rapid {
             self.knobs.rapid_factor *= self.return_factor(&home, named, unknown);
         }
         self.go(run, MoveKind::Rapid, &home, unknown, None);
