@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gwatt::pipeline::{self, Allowed, RapidMark, RapidMarkError};
+use gwatt::pipeline::{self, Allowed, LimitOptions, RapidMark, RapidMarkError};
 use serde::Deserialize;
 
 use super::{MachineArgs, ProgramArgs, ProgramsArgs};
@@ -101,6 +101,19 @@ pub struct LimitArgs {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: ProgramArgs,
+}
+
+impl LimitArgs {
+    /// What is to be done.
+    pub fn options(&self) -> LimitOptions {
+        LimitOptions {
+            strategy: self.strategy.into(),
+            law: self.law.into(),
+            allowed: allowed(&self.allow),
+            always: self.always,
+            preset_else: self.preset_else.map_or_else(Default::default, Into::into),
+        }
+    }
 }
 
 fn mark(text: &str) -> Result<RapidMark, RapidMarkError> {

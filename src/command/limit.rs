@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::slice;
 
 use anyhow::{Context, Result, bail, ensure};
-use gwatt::pipeline::{self, Failure, LimitOptions, LimitSummary};
+use gwatt::pipeline::{self, Failure, LimitSummary};
 use gwatt::report::{Found, Verdict, limit_json, limit_text, partial_text, unified_diff};
 
 use super::clash::refuse_clashes;
@@ -22,7 +22,7 @@ use super::rows::Rows;
 use super::settings::Settings;
 use super::setup::{Setup, machine_file};
 use super::terminal::{Messages, Terminal};
-use crate::cli::{LimitArgs, Strategy, allowed};
+use crate::cli::{LimitArgs, Strategy};
 
 /// Bytes that go to the spool at once.
 const SPOOL_BYTES: usize = 1 << 16;
@@ -167,23 +167,13 @@ fn limited(
     spool: &mut BufWriter<Spool>,
     rows: &mut Rows,
 ) -> Result<LimitSummary, Failure> {
-    let how = options(args);
+    let how = args.options();
     let options = setup.options_for(program);
     let machine = &setup.machine;
     let mut summary = pipeline::limit(program.open()?, machine, &options, how, spool, rows.sink())?;
     pipeline::price(program.open()?, machine, &options, how, &mut summary)?;
     summary.ideal = pipeline::ideal(program.open()?, machine, &options, how, &summary)?;
     Ok(summary)
-}
-
-pub(super) fn options(args: &LimitArgs) -> LimitOptions {
-    LimitOptions {
-        strategy: args.strategy.into(),
-        law: args.law.into(),
-        allowed: allowed(&args.allow),
-        always: args.always,
-        preset_else: args.preset_else.map_or_else(Default::default, Into::into),
-    }
 }
 
 fn refuse_all_clashes(args: &LimitArgs, program: &Program, places: &Places) -> Result<()> {

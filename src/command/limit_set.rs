@@ -13,7 +13,6 @@ use gwatt::report::{Verdict, limit_text, partial_text, set_json, set_text, unifi
 use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::{Program, is_dash};
-use super::limit::options;
 use super::listing::Listing;
 use super::output::{Target, print};
 use super::rows::Rows;
@@ -42,7 +41,7 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
     }
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
-    let limited = limit_set(&set, &setup.machine, options(args), rows.sink());
+    let limited = limit_set(&set, &setup.machine, args.options(), rows.sink());
     let limited = match limited {
         Ok(limited) => limited,
         Err(SetFailure { program, failure }) => {

@@ -1,6 +1,5 @@
 //! Judged moves as rows, with what was done about them.
 
-use super::tally::axes;
 use super::{Route, Row};
 use crate::interpret::{Move, MoveKind};
 use crate::limit::{Change, Split};
@@ -192,4 +191,9 @@ pub(super) fn knob_name(machine: &Machine, index: usize) -> String {
     knob.map_or_else(String::new, |knob| {
         knob.name.trim_end_matches('=').to_owned()
     })
+}
+
+/// Axes that really move, or may.
+pub(super) fn axes(mv: &Move) -> AxisSet {
+    AxisSet(mv.moving.0 | mv.unknown_start.0)
 }

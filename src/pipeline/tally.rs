@@ -3,12 +3,12 @@
 use std::io;
 
 use super::by_line::ByLine;
-use super::describe::row;
+use super::describe::{axes, row};
 use super::over_time::OverTime;
 use super::row::Detail;
 use super::{Certificate, Failure, Options, Row, RowSink, Summary, Unfit};
 use crate::interpret::{Move, MoveKind};
-use crate::machine::{AxisSet, Machine};
+use crate::machine::Machine;
 use crate::power::{Assessment, PowerModel, Rating, Want};
 use crate::source::split_line_end;
 
@@ -284,11 +284,6 @@ impl<'m, 'r> Tally<'m, 'r> {
         summary.certificate = summary.certificate.or(Some(Certificate::Planned));
         summary
     }
-}
-
-/// Axes that really move, or may.
-pub(super) fn axes(mv: &Move) -> AxisSet {
-    AxisSet(mv.moving.0 | mv.unknown_start.0)
 }
 
 fn unfit(

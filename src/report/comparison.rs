@@ -5,10 +5,10 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use super::aligned::aligned;
 use super::checked::Verdict;
 use super::figure::Figure;
 use super::quantity::{duration, energy, power};
-use super::text::aligned;
 use crate::pipeline::{Failure, OverTime, Summary};
 
 /// Changes that are listed a program.

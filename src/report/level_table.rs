@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::text::{aligned, rounded};
+use super::aligned::aligned;
+use super::text::rounded;
 use crate::machine::{ALL_AXES, AxisKind, Knob, KnobTarget, Level, Levels, Machine};
 
 /// One level a line: its words, the moves that it acts on, and what it makes of the axes.

@@ -1,5 +1,6 @@
 //! Results for people and for other programs: one writer for each format.
 
+mod aligned;
 mod chart;
 mod checked;
 mod comparison;

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use super::aligned::aligned;
 use super::figure::Figure;
 use super::quantity::{duration, energy, percent, power, three_digits};
-use super::text::aligned;
 use crate::pipeline::{OverTime, Summary};
 use crate::power::{Measure, Rating};
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::aligned::aligned;
 use super::checked::{Checked, chain};
 use super::figure::round_to_digits;
 use super::finding::{LINE_CHARS, is_regenerative};
@@ -121,26 +122,6 @@ fn unfit_row(unfit: &Unfit) -> [String; 5] {
         percent(unfit.overload),
         shown,
     ]
-}
-
-/// Rows as a table: columns as wide as their widest cell, two blanks apart.
-pub(super) fn aligned<const N: usize>(rows: &[[String; N]], indent: &str) -> String {
-    let mut widths = [0; N];
-    for row in rows {
-        for (width, cell) in widths.iter_mut().zip(row) {
-            *width = (*width).max(cell.chars().count());
-        }
-    }
-    let mut text = String::new();
-    for row in rows {
-        let mut line = String::from(indent);
-        for (width, cell) in widths.iter().zip(row) {
-            let _ = write!(line, "{cell:<width$}  ");
-        }
-        text.push_str(line.trim_end());
-        text.push('\n');
-    }
-    text
 }
 
 /// What `limit` did to a program; its reasons, if it could not, are shown

@@ -4,7 +4,7 @@
 //! Drives export commas, semicolons or tabs, decimal points or commas, lines about the
 //! recording before the names, and units on a line of their own.
 
-use super::rows::text_of;
+use std::borrow::Cow;
 
 /// What may separate columns; where several would do, that which makes most of them, and
 /// of such the first.
@@ -21,6 +21,15 @@ pub struct Layout {
     pub start: usize,
     /// Lines before the numbers.
     pub lines: u64,
+}
+
+/// Text of bytes: UTF-8, else Latin-1, as older programs write it.
+#[must_use]
+pub fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect()),
+    }
 }
 
 /// The cells of a line, quotes taken off.

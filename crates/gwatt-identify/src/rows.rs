@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::io::{Chain, Cursor, Read};
 
-use super::layout::{Layout, number};
+use super::layout::{Layout, number, text_of};
 use super::trouble::{Outcome, Trouble};
 
 /// Bytes at the beginning that tell what a file is.
@@ -21,15 +21,6 @@ pub struct Rows<R> {
     separator: u8,
     /// Lines before those that the reader counts.
     lines_before: u64,
-}
-
-/// Text of bytes: UTF-8, else Latin-1, as older programs write it.
-#[must_use]
-pub fn text_of(bytes: &[u8]) -> Cow<'_, str> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Cow::Borrowed(text),
-        Err(_) => Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect()),
-    }
 }
 
 impl<R: Read> Rows<R> {

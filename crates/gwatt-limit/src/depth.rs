@@ -10,10 +10,8 @@
 use std::collections::HashMap;
 
 use super::pace::{Paced, Paces};
+use super::place::Place;
 use gwatt_motion::Move;
-
-/// Where a line stands: which text, and its number there from 1.
-pub type Place = (u16, u64);
 
 /// Lines that are remembered one by one; with more, all lines count.
 const LINES_MAX: usize = 1 << 17;
@@ -142,7 +140,8 @@ impl Depths {
 
 #[cfg(test)]
 mod tests {
-    use super::{Deeper, Depths, Place};
+    use super::super::place::Place;
+    use super::{Deeper, Depths};
 
     fn lines(places: &[Place]) -> Vec<Deeper> {
         let line = |place: &Place| Deeper {

@@ -7,7 +7,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::depth::Place;
+use super::place::Place;
 use gwatt_machine::AXES;
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::SpeedBound;

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::block::Block;
+use super::cell::Cell;
 use super::columns::{column, drawn, figure, known, share, time, words};
 use super::figures;
 use super::page::Page;
-use super::path::Cell;
 use super::shares::{Moment, PageSeries};
 use crate::machine::{ALL_AXES, AXES, RapidPath};
 use crate::pipeline::Certificate;

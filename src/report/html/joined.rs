@@ -1,6 +1,6 @@
 //! Lines that follow each other as one.
 
-use super::path::{Cell, Line};
+use super::cell::{Cell, Line};
 use crate::interpret::MoveKind;
 
 /// Lines that become one at most.

@@ -6,6 +6,7 @@
 
 mod bars;
 mod block;
+mod cell;
 mod columns;
 mod data;
 mod door;

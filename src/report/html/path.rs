@@ -10,6 +10,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use super::block::{Block, load};
+use super::cell::{Cell, Line};
 use super::joined::joined;
 use crate::interpret::Arc;
 use crate::pipeline::{Route, Row};
@@ -28,19 +29,6 @@ const SAGITTA_MM: f64 = 5e-3;
 const SAGITTA: f64 = 0.25;
 /// Half the diagonal of a cell, by its side.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_6;
-
-/// A cell of the grid.
-pub(super) type Cell = [i64; 3];
-
-/// A line between two cells.
-#[derive(Debug, Clone)]
-pub(super) struct Line {
-    pub ends: [Cell; 2],
-    /// How far it may be from the middles of the cells that it passed, mm.
-    pub apart_mm: f64,
-    /// The row that takes most of its limits, of all that run here.
-    pub lead: Block,
-}
 
 /// The lines of a way.
 #[derive(Debug)]

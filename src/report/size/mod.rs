@@ -10,10 +10,10 @@ pub use chart::size_chart;
 pub use json::size_json;
 pub use table::size_csv;
 
+use super::aligned::aligned;
 use super::checked::Verdict;
 use super::figure::round_to_digits;
 use super::quantity::{duration, power};
-use super::text::aligned;
 use crate::diagnostic::Diagnostic;
 use crate::machine::Machine;
 use crate::pipeline::Certificate;

@@ -1,6 +1,6 @@
 //! A place in the text of a block, which moves on as the text is understood.
 
-use super::Ident;
+use super::ident::Ident;
 use crate::expression::Fault;
 use gwatt_syntax::diagnostic::excerpt;
 use gwatt_syntax::source::Span;

@@ -3,7 +3,7 @@
 //! ISG: TF5200 "Arithmetic expressions", "Overview of all available calculation
 //! operations". OSP: "Arithmetic Operation Function" (User Task 2).
 
-use super::Style;
+use super::style::Style;
 
 /// A function by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

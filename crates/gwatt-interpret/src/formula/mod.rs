@@ -5,10 +5,12 @@ mod cursor;
 mod function;
 mod ident;
 mod operator;
+mod style;
 mod variables;
 
 pub(super) use cursor::{Cursor, Lexis, Outcome};
 pub(super) use ident::Ident;
+pub(super) use style::Style;
 pub(super) use variables::{Kept, Uses, keep};
 
 use self::function::Function;
@@ -16,13 +18,6 @@ use self::operator::{RULES, operator, priority};
 
 /// Brackets and signs inside one another.
 const DEPTH_MAX: u32 = 64;
-
-/// The language of an expression.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Style {
-    Isg,
-    Osp,
-}
 
 /// What a language keeps under names.
 pub(super) trait Names {

@@ -4,7 +4,8 @@
 //! IF - ELSE branch"). OSP: programming manual, "User Task", "Arithmetic
 //! Operation Function": comparisons as `EQ`, logic on bits as `AND`.
 
-use super::{Cursor, Style};
+use super::cursor::Cursor;
+use super::style::Style;
 use crate::operator::{Operator, Rules};
 
 /// The largest number that logic on bits takes.

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{Cursor, Ident, Outcome};
+use super::cursor::{Cursor, Outcome};
+use super::ident::Ident;
 use crate::expression::Fault;
 
 /// Variables that a program may keep.

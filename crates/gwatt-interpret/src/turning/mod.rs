@@ -7,6 +7,7 @@
 mod contour;
 mod drill;
 mod groove;
+mod piece;
 mod pockets;
 mod rough;
 mod single;

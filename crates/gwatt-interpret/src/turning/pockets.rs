@@ -7,7 +7,7 @@
 //! parameters: here it rises at rapid by the escape above the level before, goes
 //! along, and feeds down.
 
-use super::rough::{Piece, TOLERANCE_MM, contour_wrong};
+use super::piece::{Piece, TOLERANCE_MM, contour_wrong};
 use super::{Control, Run, X, Z};
 use gwatt_machine::AxisValues;
 use gwatt_motion::MoveKind;

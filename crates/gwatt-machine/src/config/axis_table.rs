@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::parts::{ScrewTable, WheelTable};
+use super::part_tables::{ScrewTable, WheelTable};
 use super::value::{
     At, AtLeastOne, Fraction, NotNegative, Number, Part, Positive, ResponseTime, Share,
 };

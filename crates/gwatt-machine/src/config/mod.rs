@@ -23,6 +23,7 @@ mod named_knob;
 mod offsets;
 mod outputs;
 mod own_language;
+mod part_tables;
 mod parts;
 mod path_accel;
 mod plausible;
