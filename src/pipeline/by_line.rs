@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::table::LineKey;
+use super::line_key::LineKey;
 use crate::interpret::Move;
 use crate::power::Assessment;
 

@@ -1,8 +1,8 @@
 //! A block that waits to be written, and what may be changed about it.
 
+use super::ends::Places;
 use super::front::Line;
-use super::split::Places;
-use super::table::{IN_A_FILE, LineKey};
+use super::line_key::{IN_A_FILE, LineKey};
 use crate::interpret::{Facts, FeedMode, KnobState, Motion, Move, MoveKind, Stance, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};

@@ -7,7 +7,7 @@
 use std::io::{Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
-use super::table::LineKey;
+use super::line_key::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step};

@@ -4,8 +4,9 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+use super::decision::Decision;
 use super::entry::Entry;
-use super::table::{Decision, LineKey};
+use super::line_key::LineKey;
 use crate::interpret::{FeedMode, MoveKind};
 use crate::limit::Change;
 use crate::rewrite::{FeedAround, Mark};

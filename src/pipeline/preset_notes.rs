@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::table::LineKey;
+use super::line_key::LineKey;
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Move;
 use crate::limit::{Limiter, Outcome};

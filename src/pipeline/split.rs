@@ -7,6 +7,7 @@
 //! The block itself is the last piece, with all its own words, so that the line ends where
 //! it ended. The certifier takes the pieces for one move if they lie on its line.
 
+use super::ends::Places;
 use super::entry::Entry;
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{FeedMode, Interpreter, Move, MoveKind, Step};
@@ -29,17 +30,6 @@ pub(super) const SEVERAL_RUNS: &str =
     "the program has calls or loops, or there are several ways through it";
 /// What is left of a place by rounding alone, as a share.
 const ROUNDING: f64 = 1e-9;
-
-/// Where the only move of a block begins and ends, in coordinates and units of the program.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Places {
-    start: AxisValues,
-    end: AxisValues,
-    /// G90, and M82.
-    absolute: bool,
-    extruder_absolute: bool,
-    inch: bool,
-}
 
 impl Entry {
     /// Whether axes move in it, or it only turns a knob.

@@ -3,21 +3,14 @@
 
 use std::collections::{BTreeSet, HashMap};
 
+use super::decision::Decision;
 use super::entry::Entry;
 use super::left_feed::LeftFeeds;
-use crate::interpret::{Corner, Facts, FeedMode, KnobState, MoveKind};
+use super::line_key::{IN_A_FILE, LineKey};
+use crate::interpret::{Corner, FeedMode, KnobState, MoveKind};
 use crate::limit::{Change, FirstFeed};
 use crate::machine::Machine;
 use crate::rewrite::{FeedAround, FeedValue, Mark};
-use crate::syntax::Block;
-
-/// Why a line of a subprogram's file is not changed.
-pub(super) const IN_A_FILE: &str =
-    "it stands in a file of subprograms, which other programs may call";
-
-/// A line: which text it stands in (0 is the program itself, others are files of
-/// subprograms), and its number from 1.
-pub(super) type LineKey = (u16, u64);
 
 /// The lines that move, by number.
 #[derive(Debug, Default)]
@@ -74,22 +67,6 @@ struct Sight {
     mm_per_unit_before: f64,
     fixed: Option<&'static str>,
     no_motion_word: bool,
-}
-
-/// What a line gets.
-#[derive(Debug, Clone)]
-pub(super) struct Decision {
-    pub(super) change: Change,
-    pub(super) block: Block,
-    pub(super) facts: Facts,
-    pub(super) before: Mark,
-    pub(super) after: Mark,
-    pub(super) around: FeedAround,
-    pub(super) knobs: Option<KnobState>,
-    pub(super) rapids: bool,
-    pub(super) feeds: bool,
-    /// See [`BlockView::stops`](crate::rewrite::BlockView).
-    pub(super) stops: bool,
 }
 
 impl Table {

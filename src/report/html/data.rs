@@ -8,8 +8,8 @@ use super::block::Block;
 use super::cell::Cell;
 use super::columns::{column, drawn, figure, known, share, time, words};
 use super::figures;
-use super::page::Page;
 use super::shares::{Moment, PageSeries};
+use super::shown::Page;
 use crate::machine::{ALL_AXES, AXES, RapidPath};
 use crate::pipeline::Certificate;
 

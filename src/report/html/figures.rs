@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::columns::{figure, known};
-use super::page::{Found, Page};
+use super::shown::{Found, Page};
 use crate::pipeline::{Certificate, LimitSummary, OverTime, Summary, Unfit};
 use crate::power::{Measure, PowerModel};
 use crate::report::over_time;

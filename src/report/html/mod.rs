@@ -19,8 +19,9 @@ mod peaks;
 mod picture;
 mod rows;
 mod shares;
+mod shown;
 
 pub use lines::LineTexts;
-pub use page::{Found, Page};
 pub use rows::PageRows;
 pub use shares::{PageSeries, Side};
+pub use shown::{Found, Page};

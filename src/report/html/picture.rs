@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use super::data::{channel_places, channels};
-use super::page::Page;
 use super::shares::PageSeries;
+use super::shown::Page;
 use crate::power::PowerModel;
 use crate::report::chart::{Frame, Scale, grid};
 use crate::report::quantity::{duration, power};

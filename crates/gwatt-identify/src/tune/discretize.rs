@@ -14,8 +14,8 @@
 //! serves without a low-pass too.
 
 use super::biquad::Biquad;
-use super::correction::LowPass;
 use super::held::held;
+use super::low_pass::LowPass;
 use crate::transfer::Factor;
 
 /// How a filter becomes digital.

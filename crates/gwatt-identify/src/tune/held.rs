@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use super::biquad::Biquad;
-use super::correction::LowPass;
+use super::low_pass::LowPass;
 use crate::discrete::Discrete;
 use crate::transfer::{Factor, TransferFunction};
 

@@ -8,8 +8,9 @@ use std::fmt::Write as _;
 use serde::Deserialize;
 
 use super::axis::{AxisResponse, Zero};
-use super::correction::{Correction, LowPass, Wish};
+use super::correction::{Correction, Wish};
 use super::discretize::Discretization;
+use super::low_pass::LowPass;
 use crate::transfer::Factor;
 use crate::trouble::{Outcome, Trouble};
 

@@ -29,6 +29,7 @@
 //! limit. A move from an unknown start may last for ever.
 
 mod beside;
+mod bounded;
 mod bounds;
 mod continuous;
 mod kept;

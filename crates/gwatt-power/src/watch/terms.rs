@@ -24,9 +24,6 @@
 //!   the largest powers of all together; with σ what each draws after t at the largest
 //!   it draws between t and t/σ, see `trace/shifted`.
 
-use super::limits::Limits;
-use super::rating::Place;
-use super::span::Late;
 use crate::axis::AxisPower;
 use crate::model::PowerModel;
 use crate::trace::Apart;
@@ -91,68 +88,5 @@ impl Models {
     /// That of what is fed back.
     pub fn fed_back<'a>(&'a self, model: &'a PowerModel) -> &'a PowerModel {
         self.0.as_deref().unwrap_or(model)
-    }
-}
-
-/// How the limits take the move that is at hand, where they are bounds.
-impl Limits {
-    /// A move begins.
-    pub fn begin(&mut self, terms: &Terms, time_s: f64, place: Place) {
-        for (overload, ..) in &mut self.overload {
-            overload.begin(terms, time_s, place);
-        }
-        if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.begin(terms, time_s, place);
-        }
-        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
-        let brake = self.brake.iter_mut().map(|(store, ..)| store);
-        for store in bus.chain(brake) {
-            store.begin(terms, time_s, place);
-        }
-    }
-
-    /// It ends.
-    pub fn end(&mut self, terms: &Terms, time_s: f64, place: Place) {
-        for (overload, ..) in &mut self.overload {
-            overload.end(terms, time_s, place);
-        }
-        if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.end(terms, time_s, place);
-        }
-        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
-        let brake = self.brake.iter_mut().map(|(store, ..)| store);
-        for store in bus.chain(brake) {
-            store.end(terms, time_s, place);
-        }
-    }
-
-    /// At the end of a move what may come when it is over at the largest overrides.
-    pub fn late(&mut self, late: &Late, time_s: f64, place: Place) {
-        for (overload, ..) in &mut self.overload {
-            overload.late(late, time_s, place);
-        }
-        if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.late(late, time_s, place);
-        }
-        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
-        let brake = self.brake.iter_mut().map(|(store, ..)| store);
-        for store in bus.chain(brake) {
-            store.late(&late.slice, time_s, place);
-        }
-    }
-
-    /// A move whose axes run for themselves, after [`Self::begin`].
-    pub fn apart(&mut self, apart: &Apart, rest_w: f64, time_s: f64, place: Place) {
-        for (overload, ..) in &mut self.overload {
-            overload.apart(apart, rest_w, time_s, place);
-        }
-        if let Some((continuous, ..)) = &mut self.continuous {
-            continuous.apart(apart, rest_w, time_s, place);
-        }
-        let bus = self.bus.iter_mut().map(|bus| &mut bus.store);
-        let brake = self.brake.iter_mut().map(|(store, ..)| store);
-        for store in bus.chain(brake) {
-            store.apart(apart, rest_w, time_s, place);
-        }
     }
 }
