@@ -8,7 +8,7 @@ const LINES_MAX: usize = 500;
 
 /// The crates in their order, each with those that it imports; all but the last
 /// stand in `crates`.
-const CRATES: [(&str, &[&str]); 10] = [
+pub(crate) const CRATES: [(&str, &[&str]); 10] = [
     ("gwatt-syntax", &[]),
     ("gwatt-machine", &["gwatt-syntax"]),
     ("gwatt-motion", &["gwatt-machine"]),
@@ -44,7 +44,7 @@ const CRATES: [(&str, &[&str]); 10] = [
 ];
 
 /// The folder of a crate.
-fn folder_of(name: &str) -> PathBuf {
+pub(crate) fn folder_of(name: &str) -> PathBuf {
     if name == "gwatt" {
         root().to_owned()
     } else {
@@ -83,7 +83,7 @@ fn root() -> &'static Path {
 }
 
 /// All Rust files below a folder, in a fixed order.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut entries: Vec<PathBuf> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())

@@ -52,6 +52,7 @@ mod fanuc;
 mod turning;
 mod pocket;
 mod borrowed;
+mod circles;
 mod html;
 mod lathe_cycles;
 mod repeated;

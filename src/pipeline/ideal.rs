@@ -8,6 +8,7 @@ mod trial;
 
 use std::io::{Read, Seek};
 
+use super::outcome::Ideal;
 use super::split::impossible;
 use super::summary::AT_LENGTH_MAX;
 use super::ways::has_ways;
@@ -20,19 +21,6 @@ const WORTH: f64 = 0.01;
 const WORTH_S: f64 = 0.1;
 /// Moves that do not fit of which each is looked into: that takes as long as to lower it.
 const UNFIT_MAX: u64 = 2_000;
-
-/// How long a program takes with an ideal word for acceleration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ideal {
-    /// With the best pair of speed and acceleration in each block, s.
-    pub duration_s: f64,
-    /// The same with long blocks in pieces, each with its acceleration, where that is sooner
-    /// and the control's planner runs pieces on into each other, s.
-    pub in_pieces_s: Option<f64>,
-    /// What would give the control such a word, where its profile knows: options, and
-    /// settings of the machine file.
-    pub settings: Vec<String>,
-}
 
 /// What an ideal word for acceleration would bring; `None` where that is not worth a line,
 /// where the program has so many moves that to try would take too long, or where it would

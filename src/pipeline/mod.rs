@@ -25,6 +25,7 @@ mod left_feed;
 mod lower;
 mod motion;
 mod options;
+mod outcome;
 mod over_time;
 mod pace;
 mod pause;
@@ -58,16 +59,16 @@ pub use assumptions::assumptions;
 pub use by_line::LineSummary;
 pub use each_move::Moves;
 pub use hints::take_hints;
-pub use ideal::{Ideal, ideal};
+pub use ideal::ideal;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};
 pub use options::{
     Allowed, Law, LimitOptions, Limits, Options, PresetElse, RapidMark, RapidMarkError, Reading,
     Start, Strategy,
 };
+pub use outcome::{Ideal, Pause, Price};
 pub use over_time::OverTime;
-pub use pause::Pause;
-pub use price::{Price, price};
+pub use price::price;
 pub use restart::{Restart, RestartRows};
 pub use row::{Certificate, Route, Row, RowSink};
 pub use schedule::{Command, Schedule};

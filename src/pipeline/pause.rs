@@ -26,15 +26,6 @@ const STEP: f64 = 4.0;
 /// Halvings between that one and the one before.
 const HALVINGS: u32 = 5;
 
-/// A dwell that the original does not have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pause {
-    /// The line before which the program waits, from 1.
-    pub line: u64,
-    /// How long, s.
-    pub seconds: f64,
-}
-
 /// Limits the program once: the machine whose limits are aimed at, where it waits, and
 /// whether something was written before.
 type Attempt<'a> = dyn FnMut(&Machine, Option<Plan>, bool) -> Result<LimitSummary, Failure> + 'a;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Seek};
 
 use super::limiting::limit;
+use super::outcome::Price;
 use super::pause;
 use super::summary::AT_LENGTH_MAX;
 use super::{
@@ -13,15 +14,6 @@ use super::{
 use crate::diagnostic::Diagnostic;
 use crate::limit::FEED_NOT_ALLOWED;
 use crate::machine::Machine;
-
-/// What it takes to make a program fit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Price {
-    /// What has to be allowed, with what is allowed already.
-    pub allowed: Allowed,
-    /// How long the program takes as it came, and as it would be written, s.
-    pub duration_s: [f64; 2],
-}
 
 /// Limits a program that could not be made to fit with further permissions, until one is
 /// enough: that, and the feeds which it takes, are added to `refused`, what came of it as it

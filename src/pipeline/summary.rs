@@ -7,10 +7,8 @@ use crate::power::Rating;
 
 use super::by_line::LineSummary;
 use super::front::ONLY_SUBPROGRAMS;
-use super::ideal::Ideal;
+use super::outcome::{Ideal, Pause, Price};
 use super::over_time::OverTime;
-use super::pause::Pause;
-use super::price::Price;
 use super::row::Certificate;
 
 /// Moves of a program that does not fit of which all is looked into that takes many times as

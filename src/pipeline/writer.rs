@@ -16,7 +16,7 @@ use super::certify::Reasons;
 use super::entry::{Entry, knobs, rests};
 use super::front::Front;
 use super::judge::{Flight, Judge, Queue};
-use super::pause::Pause;
+use super::outcome::Pause;
 use super::preset_notes::PresetNotes;
 use super::row::Detail;
 use super::spindle_rows::SpindleRows;

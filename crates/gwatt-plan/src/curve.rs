@@ -8,8 +8,9 @@
 //! the curve to the top, a cruise if the top is the limit, and down the other
 //! curve.
 
+use super::phase::{Phase, PhaseKind};
 use super::power_law::PowerLaw;
-use super::profile::{Phase, PhaseKind, Phases, Profile};
+use super::profile::{Phases, Profile};
 use super::slope;
 use smallvec::SmallVec;
 use thiserror::Error;

@@ -19,7 +19,8 @@
 //! The minimum is taken where u is v, a kink, an end, or a place where the curve
 //! itself is as steep as the jerk permits, `|a·da/dv| = J`.
 
-use super::profile::{Phase, PhaseKind, Phases, Profile};
+use super::phase::{Phase, PhaseKind};
+use super::profile::{Phases, Profile};
 use super::slope;
 use smallvec::SmallVec;
 

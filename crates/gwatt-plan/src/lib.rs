@@ -18,6 +18,7 @@ mod limits;
 pub mod lookahead;
 pub mod period;
 mod power_law;
+mod phase;
 mod profile;
 #[cfg(test)]
 mod random;
@@ -30,7 +31,8 @@ mod trajectory;
 
 pub use bound::{PathShares, SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
-pub use profile::{Phase, PhaseKind, Phases, Profile, State};
+pub use phase::{Phase, PhaseKind, State};
+pub use profile::{Phases, Profile};
 pub use section::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};

@@ -10,7 +10,7 @@
 //! approaches p/d, where nothing is left to accelerate with. The series serve
 //! where z is small, since the closed forms lose their digits there.
 
-use super::profile::{Phase, State};
+use super::phase::{Phase, State};
 
 /// Up to this |z| the series are used.
 const SERIES: f64 = 0.25;

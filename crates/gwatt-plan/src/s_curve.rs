@@ -10,7 +10,8 @@
 //!
 //! The jerk may be infinite: then the ramps are those of a trapezoid.
 
-use super::profile::{Phase, PhaseKind, Profile};
+use super::phase::{Phase, PhaseKind};
+use super::profile::Profile;
 
 /// Steps of a search at most.
 const STEPS: u32 = 100;

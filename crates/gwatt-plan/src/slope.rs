@@ -7,7 +7,7 @@
 //! v = v₀ + a₀·t·φ₁(s·t),   a = a₀·e^(s·t),   x = v₀·t + a₀·t²·φ₂(s·t)
 //! ```
 
-use super::profile::{Phase, State};
+use super::phase::{Phase, State};
 
 /// The state `t` seconds into a phase.
 pub(super) fn state(phase: &Phase, slope: f64, t: f64) -> State {

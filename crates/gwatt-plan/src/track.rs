@@ -5,7 +5,8 @@
 //! X, Y and Z.
 
 use super::lookahead::Blend;
-use super::profile::{Profile, State};
+use super::phase::State;
+use super::profile::Profile;
 use gwatt_machine::{AXES, AxisValues};
 use gwatt_motion::Move;
 

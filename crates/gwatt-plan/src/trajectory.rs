@@ -7,7 +7,8 @@
 use super::bound::{SpeedBound, speed_bound};
 use super::drive;
 use super::limits::{self, PathLimits};
-use super::profile::{Outline, Phase, PhaseKind, Profile};
+use super::phase::{Phase, PhaseKind};
+use super::profile::{Outline, Profile};
 use super::s_curve::{SCurve, Steepness};
 use gwatt_machine::{AxisSet, AxisValues, Machine, OverrideAt, RapidPath};
 use gwatt_motion::{Move, MoveKind, path_length};

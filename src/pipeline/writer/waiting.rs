@@ -7,7 +7,7 @@ use crate::interpret::{ActionKind, Motion, Move, MoveKind, Step};
 use crate::machine::AxisSet;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::expected::{Expected, ExpectedMove};
-use crate::pipeline::pause::Pause;
+use crate::pipeline::outcome::Pause;
 use crate::pipeline::row::{Certificate, Row};
 
 /// Places that are kept.

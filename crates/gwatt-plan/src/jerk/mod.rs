@@ -21,7 +21,7 @@ mod profile;
 mod root;
 mod speed;
 
-pub use super::profile::State;
+pub use super::phase::State;
 pub use limits::{JerkError, JerkLimits};
 pub use position::position_target;
 pub use profile::JerkProfile;

@@ -1,6 +1,7 @@
 //! The profile between two states as phases of constant jerk.
 
-use super::super::profile::{Phase, PhaseKind, Profile, State};
+use super::super::phase::{Phase, PhaseKind, State};
+use super::super::profile::Profile;
 use arrayvec::ArrayVec;
 
 /// Phases at most: three that bring a start inside the limits, and seven.

@@ -1,6 +1,7 @@
 //! Profiles between two speeds: at most three phases of constant acceleration.
 
-use super::super::profile::{Phase, PhaseKind, Profile};
+use super::super::phase::{Phase, PhaseKind};
+use super::super::profile::Profile;
 
 /// What the sums of a long path leave of rounding in a speed, as a share. A ramp
 /// of that height would take no time, and still have the power of a ramp.
