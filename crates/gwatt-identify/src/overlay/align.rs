@@ -219,7 +219,8 @@ pub(super) fn align(curve: &Curve, log: &PowerTrace) -> Option<Place> {
             (a.start_s - b.start_s).abs() < width_s / 2.0
                 && (a.end_s - b.end_s).abs() < width_s / 2.0
         });
-        if width_s <= step_s {
+        // Samples may be as good as all at one end of the log.
+        if width_s <= step_s || count >= 2 * log.time_s.len() {
             break;
         }
         count *= 2;
@@ -452,6 +453,18 @@ mod tests {
         let worst = worst.unwrap();
         assert_eq!((worst.block, worst.runs), (17, 1));
         assert!((worst.ratio() - 1.3).abs() < 0.05, "{worst:?}");
+    }
+
+    /// After dense samples one that is a year later: there is no memory for windows as narrow as
+    /// their steps.
+    #[test]
+    fn samples_may_lie_unevenly() {
+        let curve = program(10, 12);
+        let mut log = log(&curve, 0.01, (1.0, 1.0, 1.0), 1.0);
+        log.time_s.push(3e7);
+        log.power_w.push(150.0);
+        // Nothing of a few seconds can be seen in windows of hours.
+        assert!(overlay(&curve, &log).is_err());
     }
 
     #[test]
