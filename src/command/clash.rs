@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::is_dash;
 
-/// What tells one file from another.
+/// Path and inode of a file.
 #[derive(Debug)]
 struct Identity {
     path: PathBuf,
@@ -76,7 +76,7 @@ pub fn refuse_clashes(inputs: &[&Path], outputs: &[&Path]) -> anyhow::Result<()>
     Ok(())
 }
 
-/// Files that are known, by what tells them apart: there may be very many.
+/// Files that are known, by path and inode: there may be very many.
 #[derive(Default)]
 struct Known {
     paths: HashSet<PathBuf>,

@@ -15,7 +15,7 @@ const RIGHT: f64 = 1080.0;
 const TOP: f64 = 70.0;
 const PANEL: f64 = 260.0;
 const GAP: f64 = 70.0;
-/// Parts of a panel that can be told apart; each shows its least and its largest value.
+/// Parts of a panel, of which more would not be seen; each shows its least and its largest value.
 const PARTS: usize = 1000;
 /// Seconds before and after the worst block that are shown.
 const AROUND_S: f64 = 0.5;

@@ -73,6 +73,18 @@ pub(crate) struct FoundAxis {
     pub(crate) motors: usize,
 }
 
+impl FoundAxis {
+    /// Says how far the axis goes; `unit` stands after the numbers.
+    pub(crate) fn travel(&mut self, min: &Figure, max: &Figure, unit: &str) {
+        let [from, to] = [min, max].map(|it| shown(it.value));
+        let travel = format!(
+            "Travel: {from} to {to}{unit}: {}, {}",
+            min.source, max.source
+        );
+        self.comments.push(travel);
+    }
+}
+
 /// A field as it is written, with its source.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Entry {

@@ -5,23 +5,11 @@
 
 use std::collections::BTreeMap;
 
-use gwatt_machine::AxisId;
+use gwatt_machine::{ALL_AXES, AxisId};
 
 use crate::found::{Build, Figure, Found, entry, shown};
 use crate::near::Job;
 use crate::text::{Log, Place};
-
-/// Axes in the order of their numbers.
-const AXES: [AxisId; 8] = [
-    AxisId::X,
-    AxisId::Y,
-    AxisId::Z,
-    AxisId::A,
-    AxisId::B,
-    AxisId::C,
-    AxisId::U,
-    AxisId::V,
-];
 
 /// A setting: its text, and where that stands.
 struct Setting<'t> {
@@ -63,7 +51,8 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
             settings.insert(number, found);
         }
     }
-    for (index, id) in (0u16..).zip(AXES) {
+    // X Y Z A B C U V, in the order of their numbers.
+    for (index, id) in (0u16..8).zip(ALL_AXES) {
         axis(&mut found, log, &settings, index, id);
     }
     corners(&mut found, log, &settings);

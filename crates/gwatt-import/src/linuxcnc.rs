@@ -222,13 +222,7 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     to.rotary = rotary;
     (to.rapid, to.accel) = (rapid, accel);
     if let (Some(min), Some(max)) = (min, max) {
-        to.comments.push(format!(
-            "Travel: {} to {}: {}, {}",
-            shown(min.value),
-            shown(max.value),
-            min.source,
-            max.source
-        ));
+        to.travel(&min, &max, "");
     }
     if let Some(home) = home {
         let search = search.map_or(String::new(), |it| {

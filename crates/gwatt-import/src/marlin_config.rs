@@ -303,13 +303,7 @@ fn place(defines: &Defines<'_>, found: &mut Found, log: &mut Log, id: AxisId) {
         .any(|name| defines.is_on(name));
     let Some(axis) = found.known(id) else { return };
     if let (Some(min), Some(max)) = (&min, &max) {
-        axis.comments.push(format!(
-            "Travel: {} to {} mm: {}, {}",
-            shown(min.value),
-            shown(max.value),
-            min.source,
-            max.source
-        ));
+        axis.travel(min, max, " mm");
     }
     let end = direction.and_then(|direction| if direction.value < 0.0 { min } else { max });
     let home = manual.or(end);

@@ -1,7 +1,8 @@
 //! Settings of controls to machine files, from the outside.
 
+mod controls;
 mod errors;
-mod formats;
+mod firmware;
 mod robust;
 mod whole;
 

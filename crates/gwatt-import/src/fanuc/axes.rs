@@ -133,13 +133,7 @@ fn axis(
     axis.rotary = reader.rotary;
     (axis.rapid, axis.accel, axis.reference) = (Some(rapid), accel, reference);
     if let (Some(min), Some(max)) = (min, max) {
-        axis.comments.push(format!(
-            "Travel: {} to {}: {}, {}",
-            shown(min.value),
-            shown(max.value),
-            min.source,
-            max.source
-        ));
+        axis.travel(&min, &max, "");
     }
     let unit = if reader.rotary { "deg" } else { "mm" };
     if let Some(speed) = reader.speed(1428, log).filter(|it| it.value > 0.0) {

@@ -202,13 +202,7 @@ fn one(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log, id: AxisId) -> Opt
     (to.rapid, to.accel) = (rapid, accel);
     (to.reference_speed, to.reference) = (reference_speed, reference);
     if let (Some(min), Some(max)) = (min, max) {
-        to.comments.push(format!(
-            "Travel: {} to {}: {}, {}",
-            shown(min.value),
-            shown(max.value),
-            min.source,
-            max.source
-        ));
+        to.travel(&min, &max, "");
     }
     if let Some(jerk) = highest(jerk.into_iter().map(|(_, it)| it)) {
         let field = if axis.rotary {
