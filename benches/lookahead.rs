@@ -71,6 +71,7 @@ fn moves() -> Vec<Move> {
             feed_mode: FeedMode::PerMinute,
             accel_mm_s2: [2000.0; AXES],
             path_accel_mm_s2: f64::INFINITY,
+            jerk_factor: 1.0,
             rapid_factor: 1.0,
             pace: 1.0,
             dwell_s: 0.0,

@@ -45,6 +45,7 @@ fn feed() -> Move {
         feed_mode: FeedMode::PerMinute,
         accel_mm_s2: [6000.0; 10],
         path_accel_mm_s2: f64::INFINITY,
+        jerk_factor: 1.0,
         rapid_factor: 1.0,
         pace: 1.0,
         dwell_s: 0.0,

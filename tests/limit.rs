@@ -10,6 +10,7 @@ mod flow_through;
 mod halts;
 mod ideal;
 mod knobs;
+mod jerk;
 mod klipper;
 mod lathe;
 mod left_feed;

@@ -64,6 +64,7 @@ pub(crate) fn line(to: [f64; 3], feed_mm_s: f64, accel_mm_s2: f64, joint: Joint)
         drive_accel_mm_s2: f64::INFINITY,
         path_accel_mm_s2: f64::INFINITY,
         jerk_mm_s3: f64::INFINITY,
+        jerk_factor: 1.0,
         curve_speed_mm_s: f64::INFINITY,
         axis_accel_mm_s2: [accel_mm_s2; AXES],
         start,

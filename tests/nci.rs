@@ -90,16 +90,37 @@ fn the_dynamic_override_is_followed() {
         ("G0 X0\nDynOvr=0.4\nX400", 500.0, 1.05),
         ("DynOvr=0.4\nDynOvr=1\nG0 X400", 1250.0, 0.9),
         ("DynOvr=0.4\nDynOvr=0.8\nG0 X400", 1000.0, 0.925),
-        // What is below the machine file's counts as not there.
         (
             "#set paramPathDynamics( 700; 700; 3000 )#\nG0 X400",
+            175.0,
+            0.8 + 0.5 / 0.7,
+        ),
+        (
+            "#set paramGroupDynamics( 1, 700, 700, 3000 )#\nG0 X400",
+            175.0,
+            0.8 + 0.5 / 0.7,
+        ),
+        // The higher of both counts.
+        (
+            "#set paramAxisDynamics( 0; 1500; 1400; 30000 )#\nG0 X400",
+            375.0,
+            0.8 + 0.5 / 1.5,
+        ),
+        (
+            "#set paramAxisDynamics( 1; 1500; 1400; 30000 )#\nG0 X400",
             1250.0,
             0.9,
         ),
+        // Together: the machine's own values, or what was set last.
         (
-            "#set paramAxisDynamics( 0; 1500; 1400; 30000 )#\nG0 X400",
-            1250.0,
-            0.9,
+            "#set paramPathDynamics( 700; 700; 3000 )#\nDynOvr=0.4\nG0 X400",
+            500.0,
+            1.05,
+        ),
+        (
+            "DynOvr=0.4\n#set paramPathDynamics( 4000; 4000; 3000 )#\nG0 X400",
+            1000.0,
+            0.925,
         ),
         (
             "#set paramAxisDynamics( 4; 90000; 90000; 1 )#\nG0 X400",
@@ -109,6 +130,40 @@ fn the_dynamic_override_is_followed() {
     ];
     for (program, peak_w, duration_s) in cases {
         let found = summary(&NCI, program);
+        assert!(
+            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
+            "{program}: {}",
+            found.peak_w
+        );
+        assert!(
+            (found.duration_s - duration_s).abs() < 1e-9,
+            "{program}: {}",
+            found.duration_s
+        );
+    }
+}
+
+/// Jerk of 50 m/s³, lowered with the acceleration or by itself: the acceleration begins to fall
+/// at 0.375 m/s, or is below 5 m/s² and has its most power at a third of a metre per second.
+#[test]
+fn the_jerk_is_lowered_too() {
+    let rig = Rig {
+        axis: "jerk_mm_s3 = 50000",
+        ..NCI
+    };
+    let own_w = 500.0 / 3.0 * f64::sqrt(50.0 / 3.0);
+    let half_w = 500.0 / 3.0 * f64::sqrt(25.0 / 3.0);
+    let half_s = 0.8 + 2.0 * f64::sqrt(0.5 / 25.0);
+    let set = |values: &str| format!("#set paramAxisDynamics( {values} )#\nG0 X400");
+    let cases = [
+        ("G0 X400".to_owned(), own_w, 1.0),
+        ("DynOvr=0.5\nG0 X400".to_owned(), 468.75, 1.1),
+        (set("0; 2500; 2500; 25000"), 468.75, 1.1),
+        (set("0; 5000; 5000; 25000"), half_w, half_s),
+        (set("1; 5000; 5000; 25000"), own_w, 1.0),
+    ];
+    for (program, peak_w, duration_s) in cases {
+        let found = summary(&rig, &program);
         assert!(
             (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
             "{program}: {}",
@@ -204,6 +259,18 @@ fn what_is_not_followed_is_refused() {
         (
             "#set paramPathDynamics( 0; 700; 3000 )#",
             "a limit of motion that is not above 0",
+        ),
+        (
+            "#set paramAxisDynamics( 0.5; 700; 700; 3000 )#",
+            "the number of an axis is a whole number from 0 to 7",
+        ),
+        (
+            "#set paramAxisDynamics( -1; 700; 700; 3000 )#",
+            "the number of an axis is a whole number from 0 to 7",
+        ),
+        (
+            "#set paramGroupDynamics( 2, 700, 700, 3000 )#",
+            "the group of NC I's path axes is 1",
         ),
         (
             "#set paramVeloJump( 1.45; 1; 1 )#",

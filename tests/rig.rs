@@ -169,6 +169,7 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
         feed_mode: FeedMode::PerMinute,
         accel_mm_s2: std::array::from_fn(|i| machine.axes[i].map_or(0.0, |a| a.accel_mm_s2)),
         path_accel_mm_s2: f64::INFINITY,
+        jerk_factor: 1.0,
         rapid_factor: 1.0,
         pace: 1.0,
         dwell_s: 0.0,

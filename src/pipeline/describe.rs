@@ -64,9 +64,12 @@ pub(super) fn describe(
     let knobs = &machine.controller.knobs;
     let level = change.accel.and_then(|(knob, _)| knobs.get(knob));
     let rapid_level = level.is_some_and(|knob| knob.target == KnobTarget::RapidSpeed);
+    let jerk = level.is_some_and(|knob| knob.target == KnobTarget::Jerk);
     let speed = change.feed.is_some() || change.rapid_percent.is_some() || change.speed.is_some();
     row.action = match (speed, change.accel.is_some()) {
         (false, true) if rapid_level => "lower rapid speed",
+        (true, true) if jerk => "lower speed and jerk",
+        (false, true) if jerk => "lower jerk",
         (true, true) => "lower speed and acceleration",
         (true, false) if change.as_feed => "rapid as feed",
         (true, false) if change.rapid_percent.is_some() => "lower rapid speed",
@@ -119,7 +122,11 @@ pub(super) fn describe(
                 Some(KnobUnit::Share) => 1.0 / own,
                 _ => 1.0,
             };
-            row.value_before = Some(before * scale);
+            row.value_before = Some(if jerk {
+                mv.jerk_factor * 100.0
+            } else {
+                before * scale
+            });
             row.value_after = Some(values[axis]);
         }
     }

@@ -28,6 +28,7 @@ pub(super) struct Asked {
     kind: MoveKind,
     feed_mode: FeedMode,
     feed_mm_s: f64,
+    jerk_factor: f64,
     rapid_factor: f64,
     pace: f64,
     path_accel_mm_s2: f64,
@@ -40,6 +41,7 @@ impl Asked {
             kind: mv.kind,
             feed_mode: mv.feed_mode,
             feed_mm_s: mv.feed_mm_s,
+            jerk_factor: mv.jerk_factor,
             rapid_factor: mv.rapid_factor,
             pace: mv.pace,
             path_accel_mm_s2: mv.path_accel_mm_s2,
@@ -53,12 +55,13 @@ impl Asked {
     }
 
     /// What is asked for along the path here and by a move, pair by pair.
-    fn along(&self, mv: &Move) -> [(f64, f64); 4] {
+    fn along(&self, mv: &Move) -> [(f64, f64); 5] {
         [
             (self.feed_mm_s, mv.feed_mm_s),
             (self.rapid_factor, mv.rapid_factor),
             (self.pace, mv.pace),
             (self.path_accel_mm_s2, mv.path_accel_mm_s2),
+            (self.jerk_factor, mv.jerk_factor),
         ]
     }
 
@@ -77,15 +80,16 @@ impl Asked {
 
     /// Whether a move like it asks for a higher speed; `rounding` is a share.
     pub(super) fn is_faster(&self, mv: &Move, rounding: f64) -> bool {
-        let [feed, rapid, pace, _] = self.along(mv);
+        let [feed, rapid, pace, ..] = self.along(mv);
         let mut speeds = [feed, rapid, pace].into_iter();
         self.is_like(mv) && speeds.any(|(before, after)| after > before * (1.0 + rounding))
     }
 
-    /// Whether a move gives an axis more acceleration; `rounding` is a share.
+    /// Whether a move gives an axis more acceleration or jerk; `rounding` is a share.
     pub(super) fn is_harder(&self, mv: &Move, rounding: f64) -> bool {
-        let mut axes = self.by_axis(mv);
-        axes.any(|(before, after)| after > before * (1.0 + rounding))
+        let jerk = std::iter::once((self.jerk_factor, mv.jerk_factor));
+        let mut limits = self.by_axis(mv).chain(jerk);
+        limits.any(|(before, after)| after > before * (1.0 + rounding))
     }
 }
 

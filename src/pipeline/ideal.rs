@@ -101,6 +101,7 @@ fn with_word(machine: &Machine) -> Machine {
         min: 0.0,
         verified: true,
         between_moves: true,
+        with_jerk: false,
         wait: None,
         change_s: 0.0,
         levels: None,
@@ -110,7 +111,7 @@ fn with_word(machine: &Machine) -> Machine {
     let others = own.filter(|knob| {
         let other = matches!(
             knob.target,
-            KnobTarget::Speed | KnobTarget::SpeedShare | KnobTarget::CruiseRatio
+            KnobTarget::Jerk | KnobTarget::Speed | KnobTarget::SpeedShare | KnobTarget::CruiseRatio
         );
         // What the program selects itself counts on.
         other || knob.levels.is_some()

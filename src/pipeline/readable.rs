@@ -71,7 +71,7 @@ fn tried(machine: &Machine, index: usize) -> Option<AxisValues> {
             continue;
         };
         let value = match knob.target {
-            KnobTarget::RapidSpeed => 100.0 * TRIED,
+            KnobTarget::Jerk | KnobTarget::RapidSpeed => 100.0 * TRIED,
             KnobTarget::CruiseRatio => 0.0,
             KnobTarget::Speed => knob.unit.speed_value(data, TRIED * data.rapid_mm_s, 1.0),
             _ => knob.unit.value(data, TRIED * data.accel_mm_s2, 1.0),

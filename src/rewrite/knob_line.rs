@@ -1,7 +1,7 @@
 //! Lines that turn a knob, such as `G131 = 70` or `M201 X500 Y500`.
 
 use super::number::decimal;
-use crate::machine::{ALL_AXES, AxisValues, KnobArgument, Machine};
+use crate::machine::{ALL_AXES, Axis, AxisValues, KnobArgument, Machine};
 
 /// The words that give a knob these values for the machine's axes; `None` when
 /// its form cannot say it.
@@ -47,16 +47,33 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
             let level = knob.levels.as_ref()?.list.get(first as usize)?;
             Some(level.text().to_owned())
         }
-        KnobArgument::Output(_) | KnobArgument::Path(_) => None,
+        KnobArgument::Dynamics | KnobArgument::Output(_) | KnobArgument::Path(_) => None,
         KnobArgument::Value => Some(format!("{}{}", knob.name, decimal(first, false))),
     }
 }
 
 /// The lines that do so: one, or two where the axes wait until it acts.
 pub(crate) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
+    let knob = machine.controller.knobs.get(index)?;
+    if knob.argument == KnobArgument::Dynamics {
+        return Some(dynamics(machine, &knob.name, values));
+    }
     let mut lines = vec![words(machine, index, values)?];
-    lines.extend(machine.controller.knobs.get(index)?.wait.clone());
+    lines.extend(knob.wait.clone());
     Some(lines)
+}
+
+/// A line for each of NC I's path axes that has a limit of jerk, of which `percent` are taken:
+/// with the machine's own accelerations, since the command gives all three.
+fn dynamics(machine: &Machine, name: &str, percent: &AxisValues) -> Vec<String> {
+    let path_axes = machine.axes.iter().zip(percent).take(3).enumerate();
+    let line = |(number, (axis, percent)): (usize, (&Option<Axis>, &f64))| {
+        let own = axis.as_ref().filter(|own| own.jerk_mm_s3 > 0.0)?;
+        let accel = decimal(own.accel_mm_s2, false);
+        let jerk = decimal(own.jerk_mm_s3 * percent / 100.0, false);
+        Some(format!("{name}( {number}; {accel}; {accel}; {jerk} )#"))
+    };
+    path_axes.filter_map(line).collect()
 }
 
 /// The line that sets an analog output of `LinuxCNC` as soon as the axes stand.

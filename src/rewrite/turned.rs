@@ -65,17 +65,7 @@ impl<'m> Turned<'m> {
         if wanted == [None; 4] && self.knobs.is_empty() {
             return lines;
         }
-        for (knob, values) in wanted.into_iter().flatten() {
-            if self.knobs.contains(&(knob, values)) {
-                continue;
-            }
-            if let Some(words) = knob_line::lines(self.machine, knob, &values) {
-                lines.extend(self.switch_on(knob, in_force));
-                lines.extend(words);
-                self.knobs.retain(|(turned, _)| *turned != knob);
-                self.knobs.push((knob, values));
-            }
-        }
+        // What is no longer needed is put back first: some words take the place of others.
         let needed = |knob: usize| wanted.iter().flatten().any(|(wanted, _)| *wanted == knob);
         let superfluous: Vec<usize> = self
             .knobs
@@ -89,6 +79,17 @@ impl<'m> Turned<'m> {
                 .filter_map(|knob| self.restore_one(knob, in_force))
                 .flatten(),
         );
+        for (knob, values) in wanted.into_iter().flatten() {
+            if self.knobs.contains(&(knob, values)) {
+                continue;
+            }
+            if let Some(words) = knob_line::lines(self.machine, knob, &values) {
+                lines.extend(self.switch_on(knob, in_force));
+                lines.extend(words);
+                self.knobs.retain(|(turned, _)| *turned != knob);
+                self.knobs.push((knob, values));
+            }
+        }
         lines
     }
 
@@ -137,6 +138,7 @@ impl<'m> Turned<'m> {
             KnobTarget::FeedAccel => acted.feeds,
             KnobTarget::RapidAccel | KnobTarget::RapidSpeed => acted.rapids,
             KnobTarget::Accel
+            | KnobTarget::Jerk
             | KnobTarget::Speed
             | KnobTarget::SpeedShare
             | KnobTarget::CruiseRatio => true,
@@ -187,6 +189,7 @@ impl<'m> Turned<'m> {
             };
             values[axis] = tidy(match data.target {
                 KnobTarget::RapidSpeed => state.rapid_factor * 100.0,
+                KnobTarget::Jerk => state.jerk_factor[axis] * 100.0,
                 KnobTarget::Speed => {
                     let speed_mm_s = state.speed_mm_s[axis];
                     let own = axis_data.rapid_mm_s;

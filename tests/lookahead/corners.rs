@@ -182,6 +182,7 @@ fn chords_of_a_helix_end_where_it_ends() {
         feed_mode: FeedMode::PerMinute,
         accel_mm_s2: [1000.0; AXES],
         path_accel_mm_s2: f64::INFINITY,
+        jerk_factor: 1.0,
         rapid_factor: 1.0,
         pace: 1.0,
         dwell_s: 0.0,

@@ -285,8 +285,17 @@ fn knobs_with_names() {
         findings(&knob("OVRRAP", "rapid-speed", "assign", "percent")),
         ""
     );
+    for (word, target, argument) in [
+        ("VELOLIM", "speed", "index"),
+        ("JERKLIM", "jerk", "index"),
+        ("#set paramAxisDynamics", "jerk", "dynamics"),
+    ] {
+        assert_eq!(findings(&knob(word, target, argument, "percent")), "");
+    }
     for (word, target, argument, unit) in [
-        ("VELOLIM", "speed", "index", "percent"),
+        ("VELOLIM", "speed", "index", "per-minute"),
+        ("JERKLIM", "accel", "index", "percent"),
+        ("#set paramPathDynamics", "jerk", "dynamics", "percent"),
         ("ACC", "feed-accel", "index", "percent"),
         ("ACC", "accel", "index", "per-second-squared"),
         ("DynOvr", "accel", "index", "percent"),
@@ -299,6 +308,13 @@ fn knobs_with_names() {
     }
     let found = findings(&knob("ACC", "accel", "assign", "percent"));
     assert!(found.contains("\"ACC\" is not a program word"), "{found}");
+    let with_jerk = |word: &str, argument: &str, unit: &str| {
+        let table = knob(word, "accel", argument, unit);
+        findings(&format!("{table}with_jerk = true\n"))
+    };
+    assert_eq!(with_jerk("DynOvr", "assign", "share"), "");
+    let found = with_jerk("G131", "assign", "per-second-squared");
+    assert!(found.contains("`with_jerk` goes with"), "{found}");
 }
 
 #[test]

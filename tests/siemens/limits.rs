@@ -146,10 +146,85 @@ fn limits_are_refused() {
     for (line, expected) in cases {
         assert_eq!(super::refusal(line), expected, "{line}");
     }
-    let rig = Rig {
-        axis: "jerk_mm_s3 = 100000",
+}
+
+/// Jerk of 50 m/s³: 0.8 s + 0.1 s + 0.1 s, and the most power where the acceleration falls, at
+/// a third of a metre per second: 500 kg · 1/3 m/s · √(2 · 50 m/s³ · 1/6 m/s). At 25 m/s³ the
+/// acceleration stays below 5 m/s²; at 100 m/s³ it begins to fall at 0.375 m/s.
+#[test]
+fn percentages_of_the_jerk_count() {
+    let jerky = Rig {
+        axis: "jerk_mm_s3 = 50000",
         ..RIG_840D
     };
-    let refused = rig.refusal("JERKLIM[X]=150\nG0 X400\nM30\n");
-    assert_eq!(refused[0].message, "JERKLIM of 150 %");
+    let own_w = 500.0 / 3.0 * f64::sqrt(50.0 / 3.0);
+    let half_w = 500.0 / 3.0 * f64::sqrt(25.0 / 3.0);
+    let half_s = 0.8 + 2.0 * f64::sqrt(0.5 / 25.0);
+    let machine = |vouched: bool| {
+        let mut machine = jerky.machine();
+        for knob in &mut machine.controller.knobs {
+            knob.verified |= vouched;
+        }
+        machine
+    };
+    let cases = [
+        (false, "", own_w, 1.0),
+        (false, "JERKLIM[X]=50", own_w, 1.0),
+        (true, "JERKLIM[X]=50", half_w, half_s),
+        (true, "JERKLIM[Y]=50", own_w, 1.0),
+        (true, "JERKLIM[X]=50\nJERKLIM[X]=100", own_w, 1.0),
+        (false, "JERKLIM[X]=200", 937.5, 0.95),
+        // Whether it acts in its own block is not known.
+        (true, "G0 JERKLIM[X]=50", half_w, half_s),
+        (false, "VELOLIM[X]=50", own_w, 1.0),
+    ];
+    for (vouched, lines, peak_w, duration_s) in cases {
+        let program = Cursor::new(format!("{lines}\nG0 X400\nM30\n"));
+        let found = analyze(program, &machine(vouched), &options(RIG.options), None);
+        let found = found.expect("a program");
+        assert!(
+            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
+            "{lines}: {}",
+            found.peak_w
+        );
+        assert!(
+            (found.duration_s - duration_s).abs() < 1e-9,
+            "{lines}: {}",
+            found.duration_s
+        );
+    }
+}
+
+/// Where the profile vouches for it, an axis is no faster than its share: 0.25 m/s · 500 kg ·
+/// 5 m/s² = 625 W, and 1.6 s + 0.05 s. Threads follow the spindle.
+#[test]
+fn percentages_of_the_speed_count_where_they_are_confirmed() {
+    let mut machine = RIG_840D.machine();
+    for knob in &mut machine.controller.knobs {
+        knob.verified = true;
+    }
+    let cases = [
+        ("VELOLIM[X]=50\nG0 X400", 625.0, 1.65),
+        ("VELOLIM[X]=50\nG1 X400 F30000", 625.0, 1.65),
+        ("VELOLIM[X]=50\nG1 X400 F12000", 500.0, 2.04),
+        ("VELOLIM[X]=50\nVELOLIM[X]=100\nG0 X400", 1250.0, 0.9),
+        ("VELOLIM[Y]=50\nG0 X400", 1250.0, 0.9),
+        ("G0 X400 VELOLIM[X]=50", 1250.0, 0.9),
+        ("VELOLIM[X]=50\nG0 X400\nG74 X1=0", 1250.0, 2.55),
+        ("VELOLIM[X]=50\nS1500 M3\nG33 X400 I20", 1250.0, 0.9),
+    ];
+    for (program, peak_w, duration_s) in cases {
+        let text = Cursor::new(format!("{program}\nM30\n"));
+        let found = analyze(text, &machine, &options(RIG.options), None).expect("a program");
+        assert!(
+            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
+            "{program}: {}",
+            found.peak_w
+        );
+        assert!(
+            (found.duration_s - duration_s).abs() < 1e-9,
+            "{program}: {}",
+            found.duration_s
+        );
+    }
 }

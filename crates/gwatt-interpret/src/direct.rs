@@ -103,6 +103,7 @@ impl Control<'_> {
             feed_mode: FeedMode::PerMinute,
             accel_mm_s2: *self.knobs.accel(kind),
             path_accel_mm_s2: self.path_accel(*moving),
+            jerk_factor: self.knobs.jerk_of(*moving),
             rapid_factor: self.knobs.rapid_factor,
             pace: 1.0,
             dwell_s: 0.0,

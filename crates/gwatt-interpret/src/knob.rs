@@ -1,6 +1,6 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
-use gwatt_machine::{AXES, AxisValues, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine};
 use gwatt_motion::{MoveKind, Square, own_path_accel, own_path_speed, raise_to_path};
 
 /// Limits in force after the knobs that a program has turned.
@@ -13,6 +13,8 @@ pub struct KnobState {
     /// Limits along the path of moves that extrude, of others, and of those
     /// that M204's P and T spare (Marlin's M204 P, T and R); infinite without one.
     pub path_accel_mm_s2: [f64; 3],
+    /// Share of each axis' own limit of jerk.
+    pub jerk_factor: AxisValues,
     /// Share of the rapid speed.
     pub rapid_factor: f64,
     /// Share of the speed of all moves that an output sets, where it acts.
@@ -52,6 +54,7 @@ impl KnobState {
             feed_accel_mm_s2: accel,
             rapid_accel_mm_s2: accel,
             path_accel_mm_s2: path_accel(machine),
+            jerk_factor: [1.0; AXES],
             rapid_factor: 1.0,
             speed_share: 1.0,
             speed_share_next: None,
@@ -171,6 +174,13 @@ impl KnobState {
         self.path_speed_mm_s.is_finite() || self.speed_mm_s.iter().any(|cap| cap.is_finite())
     }
 
+    /// Share of the limits of jerk during a move of these axes: the largest.
+    #[inline]
+    pub(super) fn jerk_of(&self, moving: AxisSet) -> f64 {
+        let shares = moving.iter().filter_map(|axis| self.jerk_factor.get(axis));
+        shares.copied().reduce(f64::max).unwrap_or(1.0)
+    }
+
     /// Acceleration limits of moves of this kind, mm/s².
     pub(super) fn accel(&self, kind: MoveKind) -> &AxisValues {
         if kind == MoveKind::Rapid {
@@ -222,6 +232,12 @@ impl KnobState {
             }
             return;
         }
+        if knob.target == KnobTarget::Jerk {
+            for axis in which {
+                self.jerk_factor[axis] = value / 100.0;
+            }
+            return;
+        }
         for axis in which {
             let Some(data) = &machine.axes[axis] else {
                 continue;
@@ -236,6 +252,9 @@ impl KnobState {
                 }
             };
             let [feed, rapid] = self.base_accel_mm_s2.each_ref().map(share);
+            if knob.with_jerk {
+                self.jerk_factor[axis] = accel / data.accel_mm_s2;
+            }
             if knob.target != KnobTarget::RapidAccel {
                 self.feed_accel_mm_s2[axis] = accel * feed;
             }

@@ -101,6 +101,7 @@ impl Control<'_> {
             feed_mode: self.modal.feed_mode,
             accel_mm_s2: self.knobs.feed_accel_mm_s2,
             path_accel_mm_s2: f64::INFINITY,
+            jerk_factor: 1.0,
             rapid_factor: self.knobs.rapid_factor,
             pace: 1.0,
             dwell_s,
@@ -252,7 +253,8 @@ impl Control<'_> {
             }
         }
         let mut rapid_factor = self.knobs.rapid_factor;
-        if self.printer.adjusts {
+        // Threads follow the spindle.
+        if self.printer.adjusts && !matches!(kind, MoveKind::Thread | MoveKind::Tap) {
             let course = Course {
                 end,
                 commanded: AxisSet(moving.0 | unknown_start.0),
@@ -295,6 +297,7 @@ impl Control<'_> {
             feed_mode: self.modal.feed_mode,
             accel_mm_s2,
             path_accel_mm_s2,
+            jerk_factor: self.knobs.jerk_of(AxisSet(moving.0 | unknown_start.0)),
             rapid_factor,
             pace: 1.0,
             dwell_s: 0.0,

@@ -77,8 +77,8 @@ pub struct Change {
     pub stop: bool,
     /// The knob for rapid speed (index in `controller.knobs`), and percent.
     pub rapid_percent: Option<(usize, f64)>,
-    /// The knob for acceleration, and its value for each axis, in its unit; of one with
-    /// levels, which may be those of the rapid speed, the index of the level.
+    /// The knob for acceleration or for jerk, and its value for each axis, in its unit; of one
+    /// with levels, which may be those of the rapid speed, the index of the level.
     pub accel: Option<(usize, AxisValues)>,
     /// The same for the largest speed.
     pub speed: Option<(usize, AxisValues)>,
@@ -213,6 +213,10 @@ impl Change {
         } else if let Some((knob, values)) = self.accel
             && let Some(knob) = machine.controller.knobs.get(knob)
         {
+            if knob.target == KnobTarget::Jerk {
+                changed.jerk_factor = values[0] / 100.0;
+                return under_cap(machine, changed, self.speed, permit);
+            }
             if knob.argument == KnobArgument::Value {
                 limit_path_accel(machine, &mut changed, values[0]);
                 return under_cap(machine, changed, self.speed, permit);
@@ -224,9 +228,23 @@ impl Change {
                             .accel_mm_s2(data, values[axis], permit.knob_mm_per_unit);
                 }
             }
+            if knob.with_jerk {
+                changed.jerk_factor = jerk_share(machine, &changed);
+            }
         }
         under_cap(machine, changed, self.speed, permit)
     }
+}
+
+/// The share of the jerk limits that a word for accelerations which acts on them too leaves:
+/// the largest of the axes.
+fn jerk_share(machine: &Machine, mv: &Move) -> f64 {
+    let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
+    let shares = axes.iter().filter_map(|axis| {
+        let own_mm_s2 = machine.axes[axis]?.accel_mm_s2;
+        Some(mv.accel_mm_s2[axis] / own_mm_s2)
+    });
+    shares.reduce(f64::max).unwrap_or(1.0)
 }
 
 /// Sets a rapid's share of the rapid speed, in %, by a knob.

@@ -42,7 +42,10 @@ pub(super) fn groups(machine: &Machine, permit: &Permit, as_feed: bool) -> Group
             KnobTarget::FeedAccel => as_feed,
             KnobTarget::RapidAccel | KnobTarget::RapidSpeed => !as_feed,
             KnobTarget::Accel => true,
-            KnobTarget::Speed | KnobTarget::SpeedShare | KnobTarget::CruiseRatio => false,
+            KnobTarget::Jerk
+            | KnobTarget::Speed
+            | KnobTarget::SpeedShare
+            | KnobTarget::CruiseRatio => false,
         };
         let may = knob.verified && (knob.between_moves || permit.rests);
         if knob.argument == KnobArgument::Level && acts && may {

@@ -6,6 +6,9 @@ use super::options::LimitOptions;
 use gwatt_machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
 use gwatt_motion::{Move, MoveKind, own_path_speed};
 
+/// What shares may differ by from rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// The rule of a refusal for a block that may not be changed.
 pub const UNTOUCHABLE: &str = "untouchable";
 
@@ -34,6 +37,8 @@ pub(super) struct Levers {
     pub(super) speed: Option<SpeedLever>,
     /// Index of the knob for acceleration, of those without levels.
     pub(super) accel: Option<usize>,
+    /// Index of the knob for jerk.
+    pub(super) jerk: Option<usize>,
     /// Knobs with levels for the move as it is.
     pub(super) levels: Groups,
     /// The same for a rapid that is written as a feed.
@@ -125,9 +130,9 @@ pub(super) fn speed_knob(machine: &Machine, mv: &Move) -> Option<usize> {
                 (mv.moving.0 | mv.unknown_start.0) & !spares.0 != 0
                     && own_path_speed(machine).is_some()
             }
-            KnobArgument::Axes => mv.arc.is_none(),
+            KnobArgument::Axes | KnobArgument::Index => mv.arc.is_none(),
             KnobArgument::Assign
-            | KnobArgument::Index
+            | KnobArgument::Dynamics
             | KnobArgument::Path(_)
             | KnobArgument::Output(_)
             | KnobArgument::Level => false,
@@ -146,9 +151,36 @@ fn accel_lever(machine: &Machine, mv: &Move, target: KnobTarget) -> Option<usize
     accel_knob(machine, target).filter(|index| {
         let knob = machine.controller.knobs.get(*index);
         knob.is_some_and(|knob| {
-            knob.argument != KnobArgument::Value || mv.path_accel_mm_s2.is_finite()
+            let along = knob.argument != KnobArgument::Value || mv.path_accel_mm_s2.is_finite();
+            along && (!knob.with_jerk || is_scaled_evenly(machine, mv))
         })
     })
+}
+
+/// Whether accelerations and jerk of a move are one share of the machine's own, for which a
+/// word that acts on both can stand.
+fn is_scaled_evenly(machine: &Machine, mv: &Move) -> bool {
+    mv.moving.iter().all(|axis| {
+        let own_mm_s2 = machine.axes[axis].map_or(0.0, |data| data.accel_mm_s2);
+        (mv.accel_mm_s2[axis] - mv.jerk_factor * own_mm_s2).abs() <= ROUNDING * own_mm_s2
+    })
+}
+
+/// The knob for the jerk of a move, where axes that move have such a limit.
+fn jerk_lever(machine: &Machine, mv: &Move) -> Option<usize> {
+    let limited = |axis: usize| machine.axes[axis].is_some_and(|data| data.jerk_mm_s3 > 0.0);
+    let follows = matches!(mv.kind, MoveKind::Rapid | MoveKind::Feed | MoveKind::Arc);
+    if !follows || !mv.unknown_start.is_empty() || !mv.moving.iter().any(limited) {
+        return None;
+    }
+    // Where the command gives accelerations as well, those are the machine's own.
+    let own = mv.jerk_factor == 1.0 && is_scaled_evenly(machine, mv);
+    let suits = |knob: &Knob| {
+        knob.verified
+            && knob.target == KnobTarget::Jerk
+            && (own || knob.argument != KnobArgument::Dynamics)
+    };
+    machine.controller.knobs.iter().position(suits)
 }
 
 /// What may be used to bring `mv` down.
@@ -169,6 +201,7 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         return Levers {
             speed: speed.filter(|_| how.allowed.feed || permit.positions),
             accel: accel_lever(machine, mv, KnobTarget::FeedAccel).filter(acts),
+            jerk: jerk_lever(machine, mv).filter(acts),
             levels: groups(machine, permit, true),
             feed_levels: Groups::new(),
         };
@@ -192,6 +225,7 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     Levers {
         speed,
         accel: accel.filter(|index| speed != Some(SpeedLever::AsFeed) || both(index)),
+        jerk: jerk_lever(machine, mv).filter(acts),
         levels: groups(machine, permit, false),
         feed_levels: groups(machine, permit, true),
     }

@@ -17,6 +17,7 @@ mod depth;
 mod first_feed;
 mod halt;
 mod held;
+mod jerk;
 mod joints;
 mod law;
 mod level;

@@ -421,11 +421,17 @@ impl<'m> Solver<'m> {
             }
             Levers {
                 speed: Some(speed),
-                accel: Some(accel),
+                accel,
+                jerk,
                 ..
-            } => optimum::best_pair(self, case, speed, accel).ok_or_else(|| too_much(case)),
+            } if accel.or(jerk).is_some() => {
+                optimum::best_pair(self, case, speed, levers).ok_or_else(|| too_much(case))
+            }
             Levers { speed: Some(_), .. } => self.by_speed(case, levers),
             Levers { accel: Some(_), .. } => self.by_accel_word(case, levers),
+            Levers {
+                jerk: Some(knob), ..
+            } => self.jerk_alone(case, knob).ok_or_else(|| too_much(case)),
             _ => Err(self.no_speed_lever(case)),
         }
     }

@@ -26,6 +26,8 @@ pub struct Knob {
     pub verified: bool,
     /// It acts between two moves that run into each other, without a stop.
     pub between_moves: bool,
+    /// It acts on the limits of jerk too, in the same share.
+    pub with_jerk: bool,
     /// The line after it, for which the axes stand; before that it does not act.
     pub wait: Option<String>,
     /// How long the axes stand for a change of it, s.
@@ -106,6 +108,8 @@ pub enum KnobTarget {
     RapidAccel,
     /// Acceleration of all moves.
     Accel,
+    /// Jerk of all moves.
+    Jerk,
     /// Speed of rapids.
     RapidSpeed,
     /// Speed of all moves.
@@ -129,6 +133,9 @@ pub enum KnobArgument {
     Output(u16),
     /// A value for each axis, with the axis in brackets after the word (`ACC[X]=70`).
     Index,
+    /// Acceleration, braking and jerk of an axis, with the number of the axis before them
+    /// (`#set paramAxisDynamics( 0; 5000; 5000; 25000 )#`).
+    Dynamics,
     /// One value right after the word, the limit along the path of all moves that the
     /// extruder does not make alone (`SET_VELOCITY_LIMIT ACCEL=500`).
     Value,

@@ -129,6 +129,8 @@ pub struct Move {
     pub accel_mm_s2: AxisValues,
     /// Acceleration limit along the path in force; infinite without one.
     pub path_accel_mm_s2: f64,
+    /// Share of the axes' jerk limits in force, the largest of the axes that move.
+    pub jerk_factor: f64,
     /// Share of the rapid speed in force, (0, 1]; above 1 where a printer's
     /// program raised the speed limits of the axes that move.
     pub rapid_factor: f64,

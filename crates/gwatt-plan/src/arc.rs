@@ -149,7 +149,7 @@ pub(super) fn limits(machine: &Machine, mv: &Move, arc: &Arc, caps: &Caps) -> Pa
         if limit.kind == AxisKind::Linear {
             linear_accel = linear_accel.min(accel);
         }
-        let jerk = limits::jerk(limit);
+        let jerk = limits::jerk(limit, mv);
         if let Some(i) = arc.plane.iter().position(|&plane| plane == axis) {
             plane_accel = plane_accel.min(accel);
             plane_jerk = plane_jerk.min(jerk);

@@ -63,7 +63,7 @@ impl PathLimits {
         Self {
             speed_mm_s: rapid.min(capped),
             accel_mm_s2: accel(mv, axis, caps).min(f64::MAX),
-            jerk_mm_s3: own.map_or(f64::INFINITY, jerk),
+            jerk_mm_s3: own.map_or(f64::INFINITY, |limit| jerk(limit, mv)),
         }
     }
 
@@ -87,9 +87,15 @@ pub(super) fn accel(mv: &Move, axis: usize, caps: &Caps) -> f64 {
     caps.accel_mm_s2.as_ref().unwrap_or(&mv.accel_mm_s2)[axis] * caps.accel_factor
 }
 
-/// Jerk limit of an axis in mm/s³; infinite where it has none.
+/// Jerk limit of an axis during a move, in mm/s³; infinite where it has none.
 #[inline]
-pub(super) fn jerk(axis: &Axis) -> f64 {
+pub(super) fn jerk(axis: &Axis, mv: &Move) -> f64 {
+    own_jerk(axis) * mv.jerk_factor
+}
+
+/// The machine's own.
+#[inline]
+pub(super) fn own_jerk(axis: &Axis) -> f64 {
     if axis.jerk_mm_s3 > 0.0 {
         axis.jerk_mm_s3
     } else {
@@ -130,7 +136,7 @@ pub(super) fn straight(
     let mut limits = PathLimits::NONE;
     for (axis, limit) in moving(machine, mv) {
         let accel = accel(mv, axis, caps);
-        limits.take(mv, axis, limit.rapid_mm_s * factor, accel, jerk(limit));
+        limits.take(mv, axis, limit.rapid_mm_s * factor, accel, jerk(limit, mv));
     }
     limits
 }

@@ -109,6 +109,7 @@ fn same_move(a: &Move, b: &Move) -> bool {
         && a.accel_mm_s2 == b.accel_mm_s2
         && a.path_accel_mm_s2 == b.path_accel_mm_s2
         && a.rapid_factor == b.rapid_factor
+        && a.jerk_factor == b.jerk_factor
         && a.loads == b.loads
 }
 

@@ -1,32 +1,22 @@
-//! Commands that change accelerations: `DynOvr=0.4`, `#set paramPathDynamics( … )#`.
+//! Commands that change accelerations and jerk: `DynOvr=0.4`, `#set paramPathDynamics( … )#`.
 
+use super::dynamics::PATH_AXES;
 use crate::execute::Control;
 use crate::expression::Fault;
-use crate::report::Report;
 use gwatt_machine::AxisKind;
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;
 
-const NOT_LOWERED: &str =
-    "#set param…Dynamics below the machine's own accelerations is counted as not there";
-
-const JERK: &str = "DynOvr lowers the jerk too: counted as not lowered";
-
 impl Control<'_> {
     /// A block that is more than plain words.
-    pub(super) fn nci_command(
-        &mut self,
-        text: &[u8],
-        block: &mut Block,
-        report: &mut Report<'_, '_>,
-    ) -> Result<(), Fault> {
+    pub(super) fn nci_command(&mut self, text: &[u8], block: &mut Block) -> Result<(), Fault> {
         let start = front(text);
         let rest = text.get(start..).unwrap_or_default();
         let whole = Span::new(start, start + rest.trim_ascii_end().len());
         if let Some(value) = after(rest, b"DynOvr") {
-            self.dynamic_override(value, whole, report)?;
+            self.dynamic_override(value, whole)?;
         } else if let Some(values) = after(rest, b"#set") {
-            self.dynamics(values.trim_ascii_start(), whole, report)?;
+            self.dynamics(values.trim_ascii_start(), whole)?;
         } else if after(rest, b"#MSG").is_none() {
             let shown = gwatt_syntax::diagnostic::excerpt(rest.trim_ascii_end(), 40);
             let message =
@@ -41,14 +31,9 @@ impl Control<'_> {
         Ok(())
     }
 
-    /// "Dynamic Override": the accelerations of all axes from the next block on, without a
-    /// stop; the block before still brakes with the values that it had.
-    fn dynamic_override(
-        &mut self,
-        value: &[u8],
-        span: Span,
-        report: &mut Report<'_, '_>,
-    ) -> Result<(), Fault> {
+    /// "Dynamic Override": accelerations and jerk of all axes from the next block on, without
+    /// a stop; the block before still brakes with the values that it had.
+    fn dynamic_override(&mut self, value: &[u8], span: Span) -> Result<(), Fault> {
         let number = value.trim_ascii_start().strip_prefix(b"=");
         let number = number.map(|number| without_comment(number).trim_ascii());
         let share = number.and_then(parse);
@@ -57,61 +42,65 @@ impl Control<'_> {
             let help = "write DynOvr=0.5; R parameters are not followed";
             return Err(Fault::new("knob-value", message, help, span));
         };
-        if share < 1.0 && self.has_jerk() {
-            report.note_once("limit-not-lowered", JERK, span);
-        }
         if let Some(nci) = &mut self.nci {
-            nci.turned = Some(share);
+            nci.dynamics.turn(share);
         }
         Ok(())
     }
 
-    /// "Altering the Motion Dynamics": `paramPathDynamics( acc; dec; jerk )#` for X, Y and Z,
-    /// `paramAxisDynamics( axis; acc; dec; jerk )#` for one, in mm/s² and mm/s³. What is
-    /// above the machine's own values is refused, what is below counts as not there.
-    fn dynamics(&self, text: &[u8], span: Span, report: &mut Report<'_, '_>) -> Result<(), Fault> {
+    /// "Altering the Motion Dynamics": `paramPathDynamics( acc; dec; jerk )#` and the older
+    /// `paramGroupDynamics( 1, acc, dec, jerk )#` for X, Y and Z, `paramAxisDynamics( axis; acc;
+    /// dec; jerk )#` for one, in mm/s² and mm/s³. What is above the machine's own values is
+    /// refused.
+    fn dynamics(&mut self, text: &[u8], span: Span) -> Result<(), Fault> {
         let help = "write #set paramPathDynamics( acc; dec; jerk )# or #set paramAxisDynamics( axis; \
                     acc; dec; jerk )#, with numbers";
         let fault = |message: &str| Err(Fault::new("knob-value", message, help, span));
-        let of_axis = after(text, b"paramAxisDynamics");
-        let Some(values) = of_axis.or_else(|| after(text, b"paramPathDynamics")) else {
+        let named = |name: &[u8]| after(text, name).map(numbers);
+        let all = 0..PATH_AXES;
+        let (axes, limits) = if let Some(values) = named(b"paramPathDynamics") {
+            (all, values)
+        } else if let Some(values) = named(b"paramAxisDynamics") {
+            let number = values.as_ref().and_then(|values| values.first());
+            let Some(axis) = number.map_or(Some(0), |number| axis_number(*number)) else {
+                return fault("the number of an axis is a whole number from 0 to 7");
+            };
+            (axis..axis + 1, values.map(without_first))
+        } else if let Some(values) = named(b"paramGroupDynamics") {
+            if values.as_ref().is_some_and(|it| it.first() != Some(&1.0)) {
+                return fault("the group of NC I's path axes is 1");
+            }
+            (all, values.map(without_first))
+        } else {
             return fault("a parameter of the control that gwatt does not follow");
         };
-        let Some(values) = numbers(values) else {
+        let Some(limits) = limits else {
             return fault("the values of this command are not plain numbers");
         };
-        let (axes, limits) = match values.as_slice() {
-            [axis, limits @ ..] if of_axis.is_some() => {
-                (*axis as usize..*axis as usize + 1, limits)
-            }
-            limits => (0..3, limits),
-        };
-        let [accel, brake, jerk] = limits else {
+        let [accel, brake, jerk] = limits[..] else {
             return fault("this command has another number of values");
         };
         // Auxiliary axes, from 3 on, are not those of the machine file.
-        for data in axes
-            .filter(|axis| *axis < 3)
-            .filter_map(|axis| self.machine.axes[axis])
-        {
-            let higher = accel.max(*brake) > data.accel_mm_s2
-                || data.jerk_mm_s3 > 0.0 && *jerk > data.jerk_mm_s3;
+        for axis in axes.filter(|axis| *axis < PATH_AXES) {
+            let Some(data) = self.machine.axes[axis] else {
+                continue;
+            };
+            let higher = accel.max(brake) > data.accel_mm_s2
+                || data.jerk_mm_s3 > 0.0 && jerk > data.jerk_mm_s3;
             if higher || data.kind == AxisKind::Rotary {
                 let help = "give the machine file the higher values, or take the command out";
                 let message = "accelerations or a jerk above those of the machine file";
                 return Err(Fault::new("knob-value", message, help, span));
             }
+            if limits.iter().any(|limit| *limit <= 0.0) {
+                return fault("a limit of motion that is not above 0");
+            }
+            if let Some(nci) = &mut self.nci {
+                // One acceleration is planned with: the higher counts.
+                nci.dynamics.set(axis, &data, accel.max(brake), jerk);
+            }
         }
-        if limits.iter().any(|limit| *limit <= 0.0) {
-            return fault("a limit of motion that is not above 0");
-        }
-        report.note_once("limit-not-lowered", NOT_LOWERED, span);
         Ok(())
-    }
-
-    fn has_jerk(&self) -> bool {
-        let mut axes = self.machine.axes.iter().flatten();
-        axes.any(|axis| axis.jerk_mm_s3 > 0.0)
     }
 }
 
@@ -167,6 +156,20 @@ fn numbers(text: &[u8]) -> Option<Vec<f64>> {
     if !without_comment(rest).trim_ascii().is_empty() {
         return None;
     }
-    let values = inside.split(|byte| *byte == b';');
+    let values = inside.split(|byte| matches!(byte, b';' | b','));
     values.map(|value| parse(value.trim_ascii())).collect()
+}
+
+/// X is 0, Q5 is 7.
+fn axis_number(number: f64) -> Option<usize> {
+    (0..8_u8)
+        .find(|axis| f64::from(*axis) == number)
+        .map(usize::from)
+}
+
+fn without_first(mut values: Vec<f64>) -> Vec<f64> {
+    if !values.is_empty() {
+        values.remove(0);
+    }
+    values
 }

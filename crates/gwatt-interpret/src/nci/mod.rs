@@ -5,25 +5,26 @@
 //! R parameters, jumps, subprograms and auxiliary axes are refused.
 
 mod command;
+mod dynamics;
 
 use super::code::{GCode, Motion};
 use super::execute::{Control, Run};
 use super::expression::Fault;
 use super::report::Report;
+use dynamics::Dynamics;
 use gwatt_machine::PathMode;
 use gwatt_syntax::{Block, Word};
 
 /// What a control of this language keeps besides the modal state.
 #[derive(Debug, Default)]
 pub(super) struct Nci {
-    /// What `DynOvr` has just set, as a share of all accelerations.
-    turned: Option<f64>,
+    dynamics: Dynamics,
 }
 
 impl Nci {
     /// Whether the block must be executed though it has no words.
     pub(super) fn is_active(&self) -> bool {
-        self.turned.is_some()
+        self.dynamics.due
     }
 }
 
@@ -35,7 +36,7 @@ impl Control<'_> {
         let read = if block.issues.is_empty() {
             self.nci_plain(block)
         } else {
-            self.nci_command(text, block, report)
+            self.nci_command(text, block)
         };
         if let Err(fault) = read {
             report
@@ -80,17 +81,13 @@ impl Control<'_> {
         Ok(())
     }
 
-    /// Before a block is executed: what `DynOvr` says.
+    /// Before a block is executed: what commands for accelerations have changed.
     pub(super) fn take_dynamics(&mut self, run: &mut Run<'_, '_>) {
-        let Some(share) = self.nci.as_mut().and_then(|nci| nci.turned.take()) else {
+        let Some(nci) = self.nci.as_mut().filter(|nci| nci.is_active()) else {
             return;
         };
         run.facts.turns_knob = true;
-        for (axis, data) in self.machine.axes.iter().enumerate() {
-            let accel_mm_s2 = data.map_or(0.0, |data| data.accel_mm_s2 * share);
-            self.knobs.feed_accel_mm_s2[axis] = accel_mm_s2;
-            self.knobs.rapid_accel_mm_s2[axis] = accel_mm_s2;
-        }
+        nci.dynamics.act(self.machine, &mut self.knobs);
     }
 }
 

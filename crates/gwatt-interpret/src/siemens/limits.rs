@@ -3,28 +3,45 @@
 //! Source for ACC: SINUMERIK 828D Function Manual "Basic Functions" (09/2011), "Percentage
 //! acceleration override (ACC)": 0 to 200 % of the largest acceleration of an axis
 //! (MD32300), in part programs; MD32320 says what holds after RESET and M30. Of the others
-//! no manual was at hand: what they lower is not counted, but for OVRRAP where its user
-//! vouches for it.
+//! no manual was at hand: what is above 100 % counts, what is below where its user vouches
+//! for the word.
 
 use super::reading::Reading;
 use super::value::Val;
 use crate::execute::Control;
 use crate::formula::Outcome;
-use gwatt_machine::{AXES, AxisValues};
+use gwatt_machine::{AXES, AxisValues, Machine};
 
 /// Largest percentage of ACC, OVRRAP and JERKLIM.
 const PERCENT_MAX: f64 = 200.0;
 
 const NOT_LOWERED: &str = "a limit that the program lowers by a percentage is counted at 100 %";
 
-const NOT_VOUCHED_FOR: &str =
-    "OVRRAP below 100 % is counted at 100 %, unless the profile has it with `verified = true`";
+/// Words that count below 100 % where the profile vouches for them, and the note where it does
+/// not.
+const VOUCHED: [(&str, &str); 3] = [
+    (
+        "OVRRAP",
+        "OVRRAP below 100 % is counted at 100 %, unless the profile has it with `verified = true`",
+    ),
+    (
+        "VELOLIM",
+        "VELOLIM below 100 % is counted at 100 %, unless the profile has it with `verified = true`",
+    ),
+    (
+        "JERKLIM",
+        "JERKLIM below 100 % is counted at 100 %, unless the profile has it with `verified = true`",
+    ),
+];
 
 /// What a program has set.
 #[derive(Debug)]
 pub(super) struct Limits {
     /// ACC, in percent.
     accel: AxisValues,
+    /// VELOLIM and JERKLIM, in percent.
+    speed: AxisValues,
+    jerk: AxisValues,
     /// OVRRAP, in percent.
     rapid: f64,
     /// Something lower does not act yet, since blocks before it are held back.
@@ -35,6 +52,8 @@ impl Limits {
     pub(super) fn new() -> Self {
         Self {
             accel: [100.0; AXES],
+            speed: [100.0; AXES],
+            jerk: [100.0; AXES],
             rapid: 100.0,
             due: false,
         }
@@ -56,8 +75,7 @@ impl Reading<'_, '_, '_> {
         let percent = self.value_behind(name, start)?;
         let most = match name {
             "ACC" if axis.is_some() => PERCENT_MAX,
-            "OVRRAP" => PERCENT_MAX,
-            "JERKLIM" if !self.has_jerk() => PERCENT_MAX,
+            "OVRRAP" | "JERKLIM" => PERCENT_MAX,
             _ => 100.0,
         };
         if !(percent > 0.0 && percent <= most) {
@@ -69,31 +87,28 @@ impl Reading<'_, '_, '_> {
             };
             return Err(self.cursor.fault("override", message, help, start));
         }
-        match (name, axis) {
-            ("ACC", Some(axis)) => {
-                self.state.limits.accel[axis] = percent;
-                self.extra().turns_limit = true;
-            }
-            ("OVRRAP", _) => {
-                let least = if self.is_vouched_for(name) {
-                    0.0
-                } else {
-                    100.0
-                };
-                self.state.limits.rapid = percent.max(least);
-                self.extra().turns_limit = true;
-            }
-            _ => {}
-        }
-        let counts = match name {
-            "ACC" => axis.is_some(),
-            _ => self.is_vouched_for(name),
+        let unvouched = VOUCHED.iter().find(|(word, _)| *word == name);
+        let unvouched = unvouched.filter(|_| !self.is_vouched_for(name));
+        let counted = if unvouched.is_some() {
+            percent.max(100.0)
+        } else {
+            percent
         };
-        if percent < 100.0 && !counts {
-            let message = match name {
-                "OVRRAP" => NOT_VOUCHED_FOR,
-                _ => NOT_LOWERED,
-            };
+        let limits = &mut self.state.limits;
+        let limit = match (name, axis) {
+            ("ACC", Some(axis)) => Some(&mut limits.accel[axis]),
+            ("VELOLIM", Some(axis)) => Some(&mut limits.speed[axis]),
+            ("JERKLIM", Some(axis)) => Some(&mut limits.jerk[axis]),
+            ("OVRRAP", _) => Some(&mut limits.rapid),
+            _ => None,
+        };
+        let acts = limit.is_some();
+        if let Some(limit) = limit {
+            *limit = counted;
+            self.extra().turns_limit = true;
+        }
+        if percent < 100.0 && (!acts || unvouched.is_some()) {
+            let message = unvouched.map_or(NOT_LOWERED, |(_, message)| message);
             self.note("limit-not-lowered", message, start);
         }
         Ok(())
@@ -103,11 +118,6 @@ impl Reading<'_, '_, '_> {
     fn is_vouched_for(&self, name: &str) -> bool {
         let mut knobs = self.control.machine.controller.knobs.iter();
         knobs.any(|knob| knob.name == name && knob.verified)
-    }
-
-    fn has_jerk(&self) -> bool {
-        let mut axes = self.control.machine.axes.iter().flatten();
-        axes.any(|axis| axis.jerk_mm_s3 > 0.0)
     }
 
     /// The axis in brackets; `None` for a spindle or another axis that the machine file
@@ -147,8 +157,14 @@ impl Control<'_> {
             knobs.feed_accel_mm_s2[axis] = knobs.feed_accel_mm_s2[axis].max(feed[axis]);
             knobs.rapid_accel_mm_s2[axis] = knobs.rapid_accel_mm_s2[axis].max(rapid[axis]);
         }
+        for axis in 0..AXES {
+            knobs.jerk_factor[axis] = knobs.jerk_factor[axis].max(limits.jerk[axis] / 100.0);
+            let speed_mm_s = speed_mm_s(self.machine, axis, limits.speed[axis]);
+            knobs.speed_mm_s[axis] = knobs.speed_mm_s[axis].max(speed_mm_s);
+        }
         let factor = knobs.base_rapid_factor * limits.rapid / 100.0;
         knobs.rapid_factor = knobs.rapid_factor.max(factor);
+        self.settle();
     }
 
     /// After the motion. Under compensation moves are held back: what is lower waits for
@@ -163,11 +179,15 @@ impl Control<'_> {
         let knobs = &mut self.knobs;
         knobs.feed_accel_mm_s2 = feed;
         knobs.rapid_accel_mm_s2 = rapid;
+        knobs.jerk_factor = limits.jerk.map(|percent| percent / 100.0);
+        knobs.speed_mm_s =
+            std::array::from_fn(|axis| speed_mm_s(self.machine, axis, limits.speed[axis]));
         knobs.rapid_factor = knobs.base_rapid_factor * limits.rapid / 100.0;
+        self.settle();
     }
 
-    /// On the way to the reference point the machine's own acceleration counts: whether
-    /// ACC acts there is not known.
+    /// On the way to the reference point the machine's own limits count: whether
+    /// percentages act there is not known.
     pub(super) fn unlimited_return(&mut self) {
         let [_, level] = self.knobs.base_accel_mm_s2;
         for axis in self.machine.axis_set.iter() {
@@ -175,6 +195,11 @@ impl Control<'_> {
             let limit = &mut self.knobs.rapid_accel_mm_s2[axis];
             *limit = limit.max(level[axis]).max(own);
         }
+        let knobs = &mut self.knobs;
+        knobs.rapid_factor = knobs.rapid_factor.max(knobs.base_rapid_factor);
+        knobs.jerk_factor = knobs.jerk_factor.map(|share| share.max(1.0));
+        knobs.speed_mm_s = [f64::INFINITY; AXES];
+        self.settle();
     }
 
     /// Of feeds and of rapids: ACC's share of what the level in force gives.
@@ -182,5 +207,13 @@ impl Control<'_> {
         let of =
             |base: AxisValues| std::array::from_fn(|axis| base[axis] * limits.accel[axis] / 100.0);
         self.knobs.base_accel_mm_s2.map(of)
+    }
+}
+
+/// The largest speed of an axis at a percentage, mm/s; infinite at its own.
+fn speed_mm_s(machine: &Machine, axis: usize, percent: f64) -> f64 {
+    match machine.axes[axis] {
+        Some(data) if percent < 100.0 => data.rapid_mm_s * percent / 100.0,
+        _ => f64::INFINITY,
     }
 }

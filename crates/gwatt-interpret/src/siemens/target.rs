@@ -300,15 +300,14 @@ impl Control<'_> {
         }
         target.named = named;
         target.unknown = AxisSet(named.0 & self.position.unknown.0);
-        let rapid_factor = self.knobs.rapid_factor;
-        let rapid_accel_mm_s2 = self.knobs.rapid_accel_mm_s2;
+        let knobs = self.knobs.clone();
         if number == 740 {
-            self.knobs.rapid_factor *= self.return_factor(&target.machine, named, target.unknown);
             self.unlimited_return();
+            self.knobs.rapid_factor *= self.return_factor(&target.machine, named, target.unknown);
         }
         self.siemens_go(state, run, MoveKind::Rapid, &target, None);
-        self.knobs.rapid_factor = rapid_factor;
-        self.knobs.rapid_accel_mm_s2 = rapid_accel_mm_s2;
+        self.knobs = knobs;
+        self.settle();
     }
 }
 

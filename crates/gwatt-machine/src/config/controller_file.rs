@@ -338,6 +338,8 @@ pub(crate) struct KnobTable {
     /// Whether it acts between two moves that run into each other, without a stop, so
     /// that a block may be written as several of one line; default false.
     pub(crate) between_moves: Option<bool>,
+    /// Whether it acts on the limits of jerk too, in the same share; default false.
+    pub(crate) with_jerk: Option<At<bool>>,
     /// A line after the word, for which the axes stand and before which it does not act;
     /// default: it acts by itself.
     pub(crate) wait: Option<String>,
@@ -350,6 +352,7 @@ pub(crate) enum TargetName {
     FeedAccel,
     RapidAccel,
     Accel,
+    Jerk,
     RapidSpeed,
     Speed,
     SpeedShare,
@@ -363,6 +366,7 @@ pub(crate) enum ArgumentName {
     Assign,
     Axes,
     Index,
+    Dynamics,
     Path,
     Output,
     Value,

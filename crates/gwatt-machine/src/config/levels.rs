@@ -195,6 +195,7 @@ fn knob(
         min: 0.0,
         verified: verified.unwrap_or(documented),
         between_moves: between.is_some(),
+        with_jerk: false,
         wait: None,
         change_s,
         levels: Some(Levels {

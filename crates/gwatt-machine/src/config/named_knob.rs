@@ -8,7 +8,7 @@ use crate::knob::{KnobArgument, KnobTarget, KnobUnit};
 /// Whether a knob is one of them.
 pub(super) fn is_named(text: &At<String>, argument: &KnobArgument) -> bool {
     match argument {
-        KnobArgument::Index => true,
+        KnobArgument::Index | KnobArgument::Dynamics => true,
         KnobArgument::Assign => matches!(text.value.as_str(), "DynOvr" | "OVRRAP"),
         _ => false,
     }
@@ -23,7 +23,12 @@ pub(super) fn is_read_back(
 ) -> bool {
     let read = match (text.value.as_str(), argument) {
         ("ACC", KnobArgument::Index) => Some((KnobTarget::Accel, KnobUnit::Percent)),
+        ("VELOLIM", KnobArgument::Index) => Some((KnobTarget::Speed, KnobUnit::Percent)),
+        ("JERKLIM", KnobArgument::Index) => Some((KnobTarget::Jerk, KnobUnit::Percent)),
         ("OVRRAP", KnobArgument::Assign) => Some((KnobTarget::RapidSpeed, KnobUnit::Percent)),
+        ("#set paramAxisDynamics", KnobArgument::Dynamics) => {
+            Some((KnobTarget::Jerk, KnobUnit::Percent))
+        }
         ("DynOvr", KnobArgument::Assign) => Some((KnobTarget::Accel, KnobUnit::Share)),
         _ => None,
     };
@@ -42,10 +47,12 @@ pub(super) fn check(
         return Some(());
     }
     let message = format!("\"{}\" is not read back in this form", text.value);
-    let help = "\"ACC\" with target = \"accel\", argument = \"index\" and unit = \"percent\" \
-                or \"OVRRAP\" with target = \"rapid-speed\", argument = \"assign\" and unit = \
-                \"percent\" (SINUMERIK), or \"DynOvr\" with target = \"accel\", argument = \"assign\" and unit \
-                = \"share\" (TwinCAT NC I)";
+    let help = "\"ACC\" with target = \"accel\", \"VELOLIM\" with \"speed\" or \"JERKLIM\" with \
+                \"jerk\", all with argument = \"index\" and unit = \"percent\", or \"OVRRAP\" with \
+                target = \"rapid-speed\", argument = \"assign\" and unit = \"percent\" \
+                (SINUMERIK); \"DynOvr\" with target = \"accel\", argument = \"assign\" and unit = \
+                \"share\", or \"#set paramAxisDynamics\" with target = \"jerk\", argument = \
+                \"dynamics\" and unit = \"percent\" (TwinCAT NC I)";
     findings.error("machine-word", &text.span, message, Some(help.to_owned()));
     None
 }
@@ -63,6 +70,7 @@ pub(super) fn check_value(
         KnobTarget::CruiseRatio => Some("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO="),
         KnobTarget::FeedAccel
         | KnobTarget::RapidAccel
+        | KnobTarget::Jerk
         | KnobTarget::RapidSpeed
         | KnobTarget::SpeedShare => None,
     };

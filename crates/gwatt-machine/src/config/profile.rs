@@ -305,6 +305,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         TargetName::FeedAccel => KnobTarget::FeedAccel,
         TargetName::RapidAccel => KnobTarget::RapidAccel,
         TargetName::Accel => KnobTarget::Accel,
+        TargetName::Jerk => KnobTarget::Jerk,
         TargetName::RapidSpeed => KnobTarget::RapidSpeed,
         TargetName::Speed => KnobTarget::Speed,
         TargetName::SpeedShare => KnobTarget::SpeedShare,
@@ -322,7 +323,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     let read_back = named_knob::is_read_back(knob.word.as_ref()?, &argument, target, unit);
     if !read_back && !goes_with(target, unit, output) {
         let message = "`unit` does not go with `target`";
-        let help = "accelerations are in \"percent\" or \"per-second-squared\", rapid-speed in \
+        let help = "accelerations are in \"percent\" or \"per-second-squared\", jerk and rapid-speed in \
                     \"percent\", speed in \"percent\", \"per-second\" or \"per-minute\", and \
                     cruise-ratio is a \"share\", as are accel and speed-share with argument = \"output\"";
         findings.error("machine-kind", &table.span, message, Some(help.to_owned()));
@@ -374,10 +375,29 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         min: knob.min.as_ref()?.value,
         verified: knob.verified.unwrap_or(false),
         between_moves: knob.between_moves.unwrap_or(false),
+        with_jerk: with_jerk(findings, knob, target, unit),
         wait: knob.wait.clone(),
         change_s: 0.0,
         levels: None,
     })
+}
+
+/// Whether a word for accelerations acts on the jerk too, for which it has to be a share.
+fn with_jerk(
+    findings: &mut Findings<'_>,
+    table: &KnobTable,
+    target: KnobTarget,
+    unit: KnobUnit,
+) -> bool {
+    let Some(asked) = &table.with_jerk else {
+        return false;
+    };
+    let shares = matches!(unit, KnobUnit::Percent | KnobUnit::Share);
+    if asked.value && !(target == KnobTarget::Accel && shares) {
+        let message = "`with_jerk` goes with target = \"accel\" in \"percent\" or as a \"share\"";
+        findings.error("machine-kind", &asked.span, message, None);
+    }
+    asked.value
 }
 
 /// Whether values in a unit can act so; `output`: set by an analog output.
@@ -389,7 +409,7 @@ fn goes_with(target: KnobTarget, unit: KnobUnit, output: bool) -> bool {
         KnobTarget::Accel | KnobTarget::FeedAccel | KnobTarget::RapidAccel => {
             matches!(unit, KnobUnit::Percent | KnobUnit::PerSecondSquared)
         }
-        KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
+        KnobTarget::Jerk | KnobTarget::RapidSpeed => unit == KnobUnit::Percent,
         KnobTarget::Speed => {
             matches!(
                 unit,
@@ -412,6 +432,7 @@ fn argument(findings: &mut Findings<'_>, knob: &KnobTable) -> Option<KnobArgumen
         ArgumentName::Assign => KnobArgument::Assign,
         ArgumentName::Axes => KnobArgument::Axes,
         ArgumentName::Index => KnobArgument::Index,
+        ArgumentName::Dynamics => KnobArgument::Dynamics,
         // Which one, the machine file says.
         ArgumentName::Output => KnobArgument::Output(0),
         ArgumentName::Value => KnobArgument::Value,

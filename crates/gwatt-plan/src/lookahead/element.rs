@@ -75,6 +75,8 @@ pub struct Element<T> {
     /// Jerk along the path that the axes permit, mm/s³; infinite: no limit. Of
     /// an arc by the rule that shares it.
     pub jerk_mm_s3: f64,
+    /// Share of the axes' own jerk limits in force.
+    pub jerk_factor: f64,
     /// Speed that curvature permits, mm/s; infinite on a straight path.
     pub curve_speed_mm_s: f64,
     /// Acceleration limits of the axes, mm/s².
@@ -121,6 +123,7 @@ impl<T> Element<T> {
             drive_accel_mm_s2: f64::INFINITY,
             path_accel_mm_s2: f64::INFINITY,
             jerk_mm_s3: f64::INFINITY,
+            jerk_factor: 1.0,
             curve_speed_mm_s: f64::INFINITY,
             axis_accel_mm_s2: [0.0; AXES],
             start: [0.0; AXES],
@@ -183,6 +186,7 @@ impl<T> Element<T> {
         }
         self.accel_mm_s2 = limits.accel_mm_s2.min(mv.path_accel_mm_s2);
         self.jerk_mm_s3 = limits.jerk_mm_s3;
+        self.jerk_factor = mv.jerk_factor;
         if let Some(arc) = &mv.arc {
             self.bend(machine, mv, arc);
         }

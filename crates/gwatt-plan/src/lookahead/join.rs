@@ -161,7 +161,7 @@ fn straight<T: Copy>(
             let per = 1.0 / change.abs();
             element.speed_mm_s = element.speed_mm_s.min(axes.speeds[i] * per);
             element.accel_mm_s2 = element.accel_mm_s2.min(of.axis_accel_mm_s2[i] * per);
-            element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerks[i] * per);
+            element.jerk_mm_s3 = element.jerk_mm_s3.min(axes.jerks[i] * of.jerk_factor * per);
         }
     }
     element.end = element.start;

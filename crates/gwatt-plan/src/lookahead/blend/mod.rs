@@ -46,7 +46,7 @@ impl Axes {
             speed: speeds.map(Option::unwrap_or_default),
             least_speed: speeds.into_iter().flatten().fold(f64::INFINITY, f64::min),
             speeds: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, |axis| axis.rapid_mm_s)),
-            jerks: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, limits::jerk)),
+            jerks: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, limits::own_jerk)),
         }
     }
 
