@@ -179,7 +179,6 @@ fn the_jerk_is_lowered_too() {
 
 #[test]
 fn what_is_not_followed_is_refused() {
-    let found = |line: &str| refusals(&format!("G1 F100\n{line}\n"), &machine("twincat-nci"));
     let cases = [
         (
             "R4=3000",
@@ -224,6 +223,21 @@ fn what_is_not_followed_is_refused() {
             "!R1:=5;",
             "`!R1:=5;` is more than plain words, which gwatt does not follow",
         ),
+    ];
+    for (line, message) in cases {
+        assert_refused(line, message);
+    }
+}
+
+#[track_caller]
+fn assert_refused(line: &str, message: &str) {
+    let found = refusals(&format!("G1 F100\n{line}\n"), &machine("twincat-nci"));
+    assert!(found.ends_with(&format!(": {message}")), "{line}: {found}");
+}
+
+#[test]
+fn accelerations_that_are_not_followed_are_refused() {
+    let cases = [
         (
             "DynOvr=1.5",
             "DynOvr is a number from above 0 to 1, alone in its block",
@@ -278,8 +292,7 @@ fn what_is_not_followed_is_refused() {
         ),
     ];
     for (line, message) in cases {
-        let found = found(line);
-        assert!(found.ends_with(&format!(": {message}")), "{line}: {found}");
+        assert_refused(line, message);
     }
 }
 
