@@ -1,13 +1,14 @@
 //! Which blocks count on the F that another one leaves in force. A line that runs under feeds
 //! that differ cannot put back the F that was in force before it was changed; where all
-//! blocks that count on it can have theirs written, it need not.
+//! blocks that count on it can have theirs written, it need not. An F that differs from run to
+//! run is written as what it was worked out from, where that still has the same value.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::decision::Decision;
 use super::entry::Entry;
 use super::line_key::LineKey;
-use crate::interpret::{FeedMode, MoveKind};
+use crate::interpret::{FeedMode, MoveKind, NumberText};
 use crate::limit::Change;
 use crate::rewrite::{FeedAround, Mark};
 
@@ -37,6 +38,8 @@ struct User {
     restored: Box<Decision>,
     /// It counts on the same F in each of its runs.
     one_feed: bool,
+    /// What the F is worked out from is the same in each of them.
+    one_expression: bool,
 }
 
 /// What a block does with the F in force.
@@ -70,8 +73,10 @@ impl LeftFeeds {
                         ..Decision::of(entry, Change::NONE, false)
                     }),
                     one_feed: true,
+                    one_expression: true,
                 });
                 user.one_feed &= user.restored.before.feed_value() == feed;
+                user.one_expression &= expression(&user.restored.before) == expression(before);
             }
         }
         if may_change && self.is_open.insert(line) {
@@ -94,20 +99,46 @@ impl LeftFeeds {
     /// Whether a line may leave another F: all that count on it can have theirs; `writable`
     /// says of a line whether it stands in a text that is written.
     pub(super) fn may_differ(&self, line: LineKey, writable: impl Fn(LineKey) -> bool) -> bool {
-        let known = |user: &LineKey| {
-            let one_feed = self.users.get(user).is_some_and(|user| user.one_feed);
-            one_feed && writable(*user)
+        let known = |line: &LineKey| {
+            let user = self.users.get(line);
+            user.is_some_and(User::can_have_its_feed) && writable(*line)
         };
         let left = self.lines.get(&line);
         left.is_some_and(|left| !left.lost && left.users.iter().all(known))
     }
 
     /// The lines that count on the F that a line leaves, each with its F.
-    pub(super) fn users(&self, line: LineKey) -> impl Iterator<Item = (LineKey, &Decision)> {
+    pub(super) fn users(&self, line: LineKey) -> impl Iterator<Item = (LineKey, Decision)> {
         let users = self.lines.get(&line).into_iter();
         let users = users.flat_map(|left| left.users.iter());
-        users.filter_map(|user| Some((*user, &*self.users.get(user)?.restored)))
+        users.filter_map(|user| Some((*user, self.users.get(user)?.with_its_feed())))
     }
+}
+
+impl User {
+    fn can_have_its_feed(&self) -> bool {
+        self.one_feed || self.one_expression && expression(&self.restored.before).is_some()
+    }
+
+    /// The block with its F, as a number or as what it is worked out from.
+    fn with_its_feed(&self) -> Decision {
+        let mut restored = (*self.restored).clone();
+        if !self.one_feed {
+            for mark in [&mut restored.before, &mut restored.after] {
+                if let Some(feed) = &mut mark.feed {
+                    feed.text = feed.expression;
+                }
+            }
+        }
+        restored
+    }
+}
+
+/// What the F in force was worked out from, with the unit of length that it was meant in.
+fn expression(mark: &Mark) -> Option<(NumberText, u64)> {
+    let feed = mark.feed.as_ref()?;
+    let known = !feed.expression.as_bytes().is_empty();
+    known.then(|| (feed.expression, feed.mm_per_unit.to_bits()))
 }
 
 /// What a block does with the F in force.

@@ -319,9 +319,7 @@ impl Table {
                     decision.around = FeedAround::NotKnownBefore;
                 }
                 None => {
-                    self.restored
-                        .entry(line)
-                        .or_insert_with(|| restored.clone());
+                    self.restored.entry(line).or_insert(restored);
                 }
             }
         }

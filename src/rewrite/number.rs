@@ -199,6 +199,7 @@ mod tests {
             value: 1000.0,
             mm_per_unit: 1.0,
             text: NumberText::new(b"1000."),
+            expression: NumberText::default(),
         };
         assert_eq!(feed_again(&feed, 1.0), "1000.");
         assert_eq!(feed_again(&feed, 25.4), "39.3700787401");

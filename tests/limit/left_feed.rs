@@ -60,15 +60,47 @@ fn what_counts_on_the_feed_gets_it() {
     }
 }
 
-/// Nothing can be written where the feeds differ that are counted on.
+/// A feed that differs from run to run is written as what it was worked out from, as long as
+/// that has the same value.
 #[test]
-fn feeds_that_differ_cannot_be_put_back() {
-    let counted_on = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\nG0 X1000. Y800.\nG1 Z0.\n\
-                      #1=#1+100\nEND1\nM30\n";
-    refused("iso", counted_on, DIFFER);
+fn feeds_that_differ_are_worked_out_again() {
+    for (controller, word, counter) in [
+        ("iso", "F#1", "#2=#1"),
+        ("linuxcnc", "F[#1+1]", "#2=[#1]"),
+        ("iso", "F[#1*2]", "M98 P9"),
+    ] {
+        let (head, end) = match controller {
+            "linuxcnc" => (
+                "G61 G0 X0\n#1=100\no1 while [#1 LT 400]\n",
+                "o1 endwhile\nM2\n",
+            ),
+            _ => (
+                "#1=100\nWHILE [#1 LT 400] DO1\n",
+                "END1\nM30\nO9\n#4=1\nM99\n",
+            ),
+        };
+        let program = format!(
+            "{head}G1 Z-10. {word}\n{counter}\nG0 X1000. Y800.\nG0 X0.\nG1 Z0.\n#1=[#1+100]\n{end}"
+        );
+        let written = limited(controller, 600.0, &program);
+        assert!(written.contains(&format!("G1 Z0. {word}\n")), "{written}");
+    }
+    // A block that reads the F in force finds it.
     let read = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\nG0 X1000. Y800.\n#2=#4109\nG1 Z0. F1\n\
                 #1=#1+100\nEND1\nM30\n";
-    refused("iso", read, DIFFER);
+    assert!(limited("iso", 600.0, read).contains("\nF#1\n#2=#4109\n"));
+}
+
+/// Nothing can be written where the feeds differ that are counted on, and what they were worked
+/// out from has another value by then.
+#[test]
+fn feeds_that_differ_cannot_be_put_back() {
+    let set_anew = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\nG0 X1000. Y800.\n#1=#1+100\n\
+                    G1 Z0.\nEND1\nM30\n";
+    refused("iso", set_anew, DIFFER);
+    let by_hand = "#1=100\nG1 F100.\nWHILE [#1 LT 400] DO1\nG0 X1000. Y800.\nG1 Z0.\n#1=#1+100\n\
+                   G1 F#1\nZ5.\nEND1\nM30\n";
+    refused("iso", by_hand, DIFFER);
     let at_the_end = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\n#1=#1+100\nG0 X1000. Y800.\n\
                       END1\n";
     refused("iso", at_the_end, DIFFER);

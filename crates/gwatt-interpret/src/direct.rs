@@ -219,6 +219,7 @@ fn plain_feed(word: &Word, text: &[u8], mm_per_unit: f64) -> Option<Feed> {
         value: word.value,
         mm_per_unit,
         text: NumberText::new(text),
+        expression: NumberText::default(),
     })
 }
 

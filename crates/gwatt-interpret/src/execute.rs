@@ -233,10 +233,12 @@ impl<'m> Interpreter<'m> {
             && let Some(()) = self.control.direct(line, text, block, steps, facts)
         {
             facts.plain &= !noted;
+            self.control.check_expression();
             return;
         }
         *facts = Facts::default();
         self.execute_any(line, text, block, steps, facts, diagnostics);
+        self.control.check_expression();
         // It may have gone the short way with values that were worked out.
         facts.plain = false;
     }

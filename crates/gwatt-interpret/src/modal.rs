@@ -14,6 +14,9 @@ pub struct Feed {
     pub mm_per_unit: f64,
     /// The number as it was written, to be written again.
     pub text: NumberText,
+    /// What it was worked out from, where it was and as long as that has the same value: an
+    /// expression of RS274/NGC or of Fanuc's macros, empty for others.
+    pub expression: NumberText,
 }
 
 /// A number as it was written, so small that it is copied with its value;

@@ -3,6 +3,7 @@
 
 use super::code::{GCode, Motion, path_mode};
 use super::execute::{Control, Run};
+use super::expression::Reader;
 use super::modal::{Feed, NumberText};
 use gwatt_machine::{Family, PathMode};
 use gwatt_motion::{ActionKind, Corner, FeedMode};
@@ -51,18 +52,19 @@ impl Control<'_> {
         let plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'+' | b'-' | b' ' | b'\t');
         run.facts.computed_feed = !text.iter().all(plain);
         let shown;
-        let text = if run.facts.computed_feed {
+        let (text, expression) = if run.facts.computed_feed {
             // Put back elsewhere, the expression might have another value.
             shown = word.value.to_string();
-            shown.as_bytes()
+            (shown.as_bytes(), NumberText::new(text))
         } else {
-            text
+            (text, NumberText::default())
         };
         run.facts.feed_word = Some(word);
         let feed = Feed {
             value: word.value,
             mm_per_unit,
             text: NumberText::new(text),
+            expression,
         };
         let before = self.modal.feed.as_ref();
         let same = before.is_some_and(|before| before.value == feed.value);
@@ -70,6 +72,31 @@ impl Control<'_> {
             self.note_feed(0.0, run);
         }
         self.modal.feed = Some(feed);
+    }
+
+    /// After a block: what the F in force was worked out from is kept as long as it has the
+    /// value of that F.
+    #[inline]
+    pub(super) fn check_expression(&mut self) {
+        let Some(feed) = self.modal.feed.as_ref() else {
+            return;
+        };
+        if !feed.expression.as_bytes().is_empty() && !self.has_value(feed) {
+            self.forget_expression();
+        }
+    }
+
+    #[cold]
+    fn has_value(&self, feed: &Feed) -> bool {
+        let found = Reader::new(feed.expression.as_bytes(), 0).value(self);
+        found == Ok(Some(feed.value))
+    }
+
+    #[cold]
+    fn forget_expression(&mut self) {
+        if let Some(feed) = &mut self.modal.feed {
+            feed.expression = NumberText::default();
+        }
     }
 
     /// Plane, units, compensation, offsets, path and distance mode.

@@ -267,6 +267,7 @@ impl Control<'_> {
                 value: text.parse().unwrap_or(value),
                 mm_per_unit: unit,
                 text: NumberText::new(text.as_bytes()),
+                expression: NumberText::default(),
             });
         }
         if saved.modal.spindle_rpm == now.spindle_rpm {

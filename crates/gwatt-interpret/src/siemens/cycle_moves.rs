@@ -60,11 +60,11 @@ impl Control<'_> {
             return self.plunge(state, MoveKind::Feed, levels, to, run);
         };
         let mm_per_unit = self.modal.mm_per_unit;
-        let text = NumberText::default();
         let feed = Feed {
             value,
             mm_per_unit,
-            text,
+            text: NumberText::default(),
+            expression: NumberText::default(),
         };
         let before = self.modal.feed.replace(feed);
         self.plunge(state, MoveKind::Feed, levels, to, run);
