@@ -63,6 +63,7 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Size(args) => command::size::run(args, terminal),
         Command::Moves(args) => command::moves::run(args, terminal),
         Command::Spindle(args) => command::spindle::run(args, terminal),
+        Command::Plan(args) => command::plan::run(args, terminal),
         Command::Machine { command } => command::machine::run(command, terminal),
         Command::Excite(args) => command::excite::run(args, terminal),
         Command::Identify(args) => command::identify::run(args, terminal),

@@ -18,6 +18,7 @@ mod siemens;
 mod spindle;
 mod syntax;
 mod period;
+mod schedules;
 mod plain_moves;
 mod plan;
 mod jerk;

@@ -325,6 +325,15 @@ fn a_position_is_reached_under_constant_power() {
     assert!(travel(100.0, 300.0, 1e-4, &limits) <= time + 1e-9);
 }
 
+/// Without a limit of jerk the period puts out what it ends with, not the stop that may follow.
+#[test]
+fn without_a_limit_of_jerk_the_acceleration_is_that_of_the_period() {
+    let limits = Limits::constant(6000.0, f64::INFINITY).unwrap();
+    let mut planner = PositionPlanner::default();
+    let step = planner.step(400.0, 500.0, 1e-3, &limits).unwrap();
+    assert_eq!((step.motion.speed, step.motion.accel), (6.0, 6000.0));
+}
+
 fn travel(way: f64, top: f64, period_s: f64, limits: &Limits) -> f64 {
     let mut planner = PositionPlanner::default();
     for count in 1..1_000_000_u32 {

@@ -10,6 +10,7 @@ mod limit;
 mod machine;
 mod moves;
 mod override_arg;
+mod plan;
 mod power_fit;
 mod program;
 mod programs;
@@ -32,6 +33,7 @@ pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy, allowed};
 pub use machine::{ImportArgs, MachineCommand};
 pub use moves::MovesArgs;
 pub use override_arg::OverrideArg;
+pub use plan::PlanArgs;
 pub use power_fit::PowerFitArgs;
 pub use program::{DeleteLevels, MachineArgs, ProgramArgs, StartArg};
 pub use programs::{ProgramsArgs, Shard};
@@ -88,6 +90,8 @@ pub enum Command {
     Moves(MovesArgs),
     /// Plan a spindle's speed period by period, and what it draws
     Spindle(SpindleArgs),
+    /// Plan axes and spindle together on one supply, period by period
+    Plan(PlanArgs),
     /// List, show, check and import machine descriptions
     Machine {
         /// What to do with them.

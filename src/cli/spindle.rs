@@ -38,7 +38,7 @@ pub struct SpindleArgs {
     pub svg: Option<PathBuf>,
 }
 
-fn period_ms(text: &str) -> Result<f64, String> {
+pub(super) fn period_ms(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(ms) if (1e-3..=1e5).contains(&ms) => Ok(ms),
         _ => Err("a number from 0.001 to 100000 is needed".into()),

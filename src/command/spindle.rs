@@ -1,11 +1,11 @@
 //! `gwatt spindle`.
 
-use std::io::{self, BufWriter, Read};
+use std::io::{self, BufWriter};
 use std::path::Path;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
 use gwatt::machine::Spindle;
-use gwatt::pipeline::{Failure, Schedule, run_schedule};
+use gwatt::pipeline::{Schedule, run_schedule};
 use gwatt::plan::SpindleDrive;
 use gwatt::power::SpindlePower;
 use gwatt::report::{SpindleChart, SpindleRows, Verdict, spindle_text};
@@ -13,12 +13,10 @@ use gwatt::report::{SpindleChart, SpindleRows, Verdict, spindle_text};
 use super::clash::refuse_clashes;
 use super::input::Program;
 use super::output::Target;
+use super::schedule_file::read_schedule;
 use super::setup::{load_machine, machine_file, machine_name};
 use super::terminal::Terminal;
 use crate::cli::SpindleArgs;
-
-/// Largest schedule that is read.
-const SCHEDULE_BYTES_MAX: u64 = 64 << 20;
 
 /// Runs a spindle through a schedule.
 pub fn run(args: &SpindleArgs, terminal: Terminal) -> Result<Verdict> {
@@ -42,7 +40,7 @@ pub fn run(args: &SpindleArgs, terminal: Terminal) -> Result<Verdict> {
     let drive = SpindleDrive::new(spindle).with_context(|| format!("{name}: [spindle]"))?;
     follow(spindle, &drive, name, terminal);
 
-    let schedule = match Schedule::parse(&read(&input, terminal)?, &drive) {
+    let schedule = match Schedule::parse(&read_schedule(&input, terminal)?, &drive) {
         Ok(schedule) => schedule,
         Err(errors) => {
             terminal.diagnostics(&input.name, &errors);
@@ -104,22 +102,4 @@ fn follow(spindle: &Spindle, drive: &SpindleDrive, name: &str, terminal: Termina
             spindle.jerk_time_s
         ));
     }
-}
-
-fn read(input: &Program, terminal: Terminal) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let read = input.open().and_then(|file| {
-        let mut file = file.take(SCHEDULE_BYTES_MAX + 1);
-        file.read_to_end(&mut bytes).map_err(Failure::Input)
-    });
-    if let Err(failure) = read {
-        terminal.failure(&input.name, &failure);
-        bail!(super::Shown);
-    }
-    ensure!(
-        bytes.len() as u64 <= SCHEDULE_BYTES_MAX,
-        "{} is larger than a schedule can be",
-        input.name
-    );
-    Ok(bytes)
 }

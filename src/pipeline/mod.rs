@@ -10,6 +10,7 @@ mod conclusion;
 mod conditions;
 mod decision;
 mod describe;
+mod drives;
 mod each_move;
 mod ends;
 mod entry;
@@ -57,6 +58,10 @@ mod writer;
 pub use analyze::{analyze, moves};
 pub use assumptions::assumptions;
 pub use by_line::LineSummary;
+pub use drives::{
+    Done, DriveCommand, DriveId, DriveSample, DriveSchedule, DrivesSample, DrivesSummary, For,
+    run_drives,
+};
 pub use each_move::Moves;
 pub use hints::take_hints;
 pub use ideal::ideal;

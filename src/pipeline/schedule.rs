@@ -53,7 +53,7 @@ pub struct Schedule {
 }
 
 /// A value and where it stands.
-type Field<'a> = (&'a str, Span);
+pub(super) type Field<'a> = (&'a str, Span);
 
 struct Reader<'a> {
     drive: &'a SpindleDrive,
@@ -285,7 +285,7 @@ impl Reader<'_> {
 
 /// The values of a line, split at commas, semicolons or tabs, without blanks
 /// and quotes around them.
-fn fields(text: &str) -> Vec<Field<'_>> {
+pub(super) fn fields(text: &str) -> Vec<Field<'_>> {
     let mut start = 0;
     let mut fields = Vec::new();
     for part in text.split([',', ';', '\t']) {

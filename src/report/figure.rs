@@ -32,6 +32,21 @@ impl Serialize for Position {
     }
 }
 
+/// A number with all its digits; 0 has no sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Exact(pub(super) f64);
+
+impl Serialize for Exact {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let value = self.0 + 0.0;
+        if value.fract() == 0.0 && value.abs() < WHOLE_MAX {
+            serializer.serialize_i64(value as i64)
+        } else {
+            serializer.serialize_f64(value)
+        }
+    }
+}
+
 fn print<S: Serializer>(value: f64, digits: i32, serializer: S) -> Result<S::Ok, S::Error> {
     if !value.is_finite() {
         return serializer.serialize_none();

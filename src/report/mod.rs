@@ -7,6 +7,7 @@ mod comparison;
 mod contour_chart;
 mod contoured;
 mod csv;
+mod drives;
 mod figure;
 mod finding;
 mod github;
@@ -39,6 +40,7 @@ pub use contoured::{
     ArcList, CONTOUR_COLUMNS, contour_csv_row, contour_json, contour_json_row, contour_text,
 };
 pub use csv::CsvRows;
+pub use drives::{DriveRows, drives_text};
 pub use github::github;
 pub use html::{Found, LineTexts, Page, PageRows, PageSeries, Side};
 pub use identified::{

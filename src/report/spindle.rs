@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::figure::{Figure, round_to_digits};
+use super::figure::{Exact, Figure, round_to_digits};
 use super::quantity::{duration, energy, power};
 use crate::pipeline::{Sample, SpindleSummary};
 
@@ -69,20 +69,6 @@ impl<W: Write> SpindleRows<W> {
         self.out
             .into_inner()
             .map_err(csv::IntoInnerError::into_error)
-    }
-}
-
-/// A number with all its digits; 0 has no sign.
-struct Exact(f64);
-
-impl serde::Serialize for Exact {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let value = self.0 + 0.0;
-        if value.fract() == 0.0 && value.abs() < 1e15 {
-            serializer.serialize_i64(value as i64)
-        } else {
-            serializer.serialize_f64(value)
-        }
     }
 }
 

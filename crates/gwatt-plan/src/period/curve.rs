@@ -170,16 +170,30 @@ impl Curve {
         friction: f64,
         inertia: f64,
     ) -> Result<Self, LimitError> {
+        self.limited_by_power_and_drag(power, [friction, 0.0], inertia)
+    }
+
+    /// The same with a friction that grows with the speed: the lower of this curve and
+    /// `(power/v − friction − drag·v)/inertia`.
+    ///
+    /// # Errors
+    /// A value is not finite, the drag negative, or power or inertia is not positive.
+    pub fn limited_by_power_and_drag(
+        &self,
+        power: f64,
+        [friction, drag]: [f64; 2],
+        inertia: f64,
+    ) -> Result<Self, LimitError> {
         positive(power, "the power")?;
         positive(inertia, "the inertia")?;
-        if !friction.is_finite() {
+        if !friction.is_finite() || !drag.is_finite() || drag < 0.0 {
             return Err(LimitError::NotFinite("the friction"));
         }
         Ok(self.lowest(&Self::of(Piece {
             from: 0.0,
             hyperbola: positive(power / inertia, "power by inertia")?,
             constant: -friction / inertia,
-            slope: 0.0,
+            slope: -drag / inertia,
         })))
     }
 

@@ -97,7 +97,12 @@ impl PositionPlanner {
             let runs = last(0.0, period_s);
             let (motion, ran) = run.at(runs);
             let stop = Ramp::new(motion, 0.0, planned);
-            let (motion, stopped) = stop.at(period_s - runs);
+            // Without a limit of jerk the stop begins with another acceleration.
+            let (motion, stopped) = if runs < period_s {
+                stop.at(period_s - runs)
+            } else {
+                (motion, 0.0)
+            };
             // The whole way to the rest, where it may turn after the target.
             let mut passing = 0.0;
             let brakes = start.speed * start.accel < 0.0 || side * start.speed < 0.0;
