@@ -25,6 +25,7 @@ pub use gwatt_power as power;
 pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
+pub mod rules;
 pub mod rewrite;
 pub mod pipeline;
 pub mod dialect;

@@ -71,6 +71,7 @@ fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
         Command::Contour(args) => command::contour::run(args, terminal),
         Command::PowerFit(args) => command::power_fit::run(args, terminal),
         Command::Verify(args) => command::verify::run(args, terminal),
+        Command::Explain(args) => command::explain::run(args),
         Command::Completions { shell } => completions(*shell),
         Command::Man => manual(),
     }

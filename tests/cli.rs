@@ -1,6 +1,8 @@
 //! The binary from outside: exit codes, messages, and what is left on the disk.
 
 mod advice;
+mod baselines;
+mod ci;
 mod dialects;
 mod identify;
 #[cfg(unix)]

@@ -60,4 +60,5 @@ mod repeated;
 mod strayed;
 mod effort;
 mod evidence;
+mod rules;
 mod oracle;

@@ -5,6 +5,7 @@ mod contour;
 mod dialect;
 mod diff;
 mod excite;
+mod explain;
 mod identify;
 mod limit;
 mod machine;
@@ -28,6 +29,7 @@ pub use contour::ContourArgs;
 pub use dialect::DialectArgs;
 pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
+pub use explain::ExplainArgs;
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
 pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy, allowed};
 pub use machine::{ImportArgs, MachineCommand};
@@ -110,6 +112,8 @@ pub enum Command {
     PowerFit(PowerFitArgs),
     /// Lay a recording of the power over the prediction of a program
     Verify(VerifyArgs),
+    /// Explain the rule that a message names
+    Explain(ExplainArgs),
     /// Print a completion script for a shell
     #[command(
         after_help = "Example:\n  gwatt completions bash > ~/.local/share/bash-completion/completions/gwatt"

@@ -4,12 +4,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::{Result, ensure};
-use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Row, RowSink};
-use gwatt::report::{self, Checked, PageRows, Totals, Verdict};
+use gwatt::report::{self, Checked, Totals, Verdict};
 
+use super::baselines::Baselines;
 use super::clash::refuse_clashes;
-use super::dialect;
+use super::found::{Found, Wanted, check_program};
 use super::in_order::in_order;
 use super::input::Program;
 use super::listing::Listing;
@@ -28,6 +27,7 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     Settings::of(&programs, terminal)?.fill(&mut args.machine, &mut args.reading)?;
     let args = &args;
     let pictures = pictures(args, &programs)?;
+    let mut baselines = Baselines::new(args, &programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     if let Some(overrides) = args.overrides {
         overrides.apply(&mut setup.machine.limits);
@@ -45,6 +45,7 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     let wanted = Wanted {
         page: pictures.is_any(),
         energy: args.format == Format::Jsonl,
+        changes: args.format == Format::Sarif,
     };
     let check = |program: &Program| check_program(program, &setup, wanted);
 
@@ -52,10 +53,11 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     let mut kept = Vec::new();
     in_order(&programs, at_once, check, |result| {
         let Found {
-            checked,
+            mut checked,
             note,
             drawn,
         } = result;
+        baselines.take(&mut checked);
         if let (Some((rows, machine)), Ok(summary)) = (drawn, &checked.outcome)
             && let [program] = programs.as_slice()
         {
@@ -86,11 +88,11 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     if args.format == Format::Text && listing.is_many {
         print(|out| writeln!(out, "{totals}"))?;
     }
-    print(|out| write_all(&kept, args.format, &setup, out))?;
+    print(|out| write_all(&kept, args, &setup, out))?;
     if totals.worst() != Verdict::Refused {
         frames.deliver()?;
     }
-    Ok(totals.worst())
+    baselines.finish(totals.worst(), terminal)
 }
 
 /// The page that is asked for: it shows one program.
@@ -118,78 +120,6 @@ fn pictures<'a>(args: &'a CheckArgs, programs: &[Program]) -> Result<Pictures<'a
     Ok(pictures)
 }
 
-/// What came of a program.
-struct Found {
-    checked: Checked,
-    /// What is to be said before it: as which dialect it was read, or which would read it.
-    note: Option<String>,
-    /// What a page shows of it, and the machine with the dialect that it was read as.
-    drawn: Option<(PageRows, Machine)>,
-}
-
-/// What is wanted of a program besides the verdict.
-#[derive(Debug, Clone, Copy)]
-struct Wanted {
-    /// What a page shows of it.
-    page: bool,
-    /// The energy that it takes.
-    energy: bool,
-}
-
-/// Rows of which only the sum counts.
-struct Summed;
-
-impl RowSink for Summed {
-    fn row(&mut self, _: &Row) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Checks a program.
-fn check_program(program: &Program, setup: &Setup, wanted: Wanted) -> Found {
-    let found = |outcome, note, drawn| Found {
-        checked: Checked {
-            program: program.name.clone(),
-            outcome,
-        },
-        note,
-        drawn,
-    };
-    let mut rows = wanted.page.then(PageRows::default);
-    let mut summed = wanted.energy.then_some(Summed);
-    let mut analyze = |machine: &Machine| {
-        let options = setup.options_for(program);
-        let mut input = program.open()?;
-        let summed = summed.as_mut().map(|rows| rows as &mut dyn RowSink);
-        let sink = rows
-            .as_mut()
-            .map(|rows| rows as &mut dyn RowSink)
-            .or(summed);
-        let mut summary = pipeline::analyze(&mut input, machine, &options, sink)?;
-        pipeline::take_hints(input, machine, &options, &mut summary)?;
-        Ok(summary)
-    };
-    if setup.auto {
-        let (language, note) = match dialect::choose(setup, program) {
-            Ok(chosen) => chosen,
-            Err(failure) => return found(Err(failure), None, None),
-        };
-        let mut machine = setup.machine.clone();
-        machine.controller.language = language;
-        let outcome = analyze(&machine);
-        let drawn = rows.map(|rows| (rows, machine));
-        return found(outcome, Some(note), drawn);
-    }
-    let outcome = analyze(&setup.machine);
-    let hint = outcome.as_ref().err();
-    let hint = hint.and_then(|failure| dialect::hint(setup, program, failure));
-    found(
-        outcome,
-        hint,
-        rows.map(|rows| (rows, setup.machine.clone())),
-    )
-}
-
 /// Warnings and refusals, with the lines under them.
 fn tell(checked: &Checked, terminal: Terminal) {
     match &checked.outcome {
@@ -200,14 +130,14 @@ fn tell(checked: &Checked, terminal: Terminal) {
 
 fn write_all(
     checked: &[Checked],
-    format: Format,
+    args: &CheckArgs,
     setup: &Setup,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    match format {
+    match args.format {
         Format::Text | Format::Jsonl => Ok(()),
         Format::Json => report::check_json(checked, &setup.machine.name, out),
-        Format::Sarif => report::sarif(checked, out),
+        Format::Sarif => report::sarif(checked, args.rules_url.as_deref(), out),
         Format::Junit => report::junit(checked, &setup.machine, out),
         Format::Github => report::github(checked, out),
     }

@@ -164,6 +164,8 @@ fn report_one(
     let checked = Checked {
         program: program.name.clone(),
         outcome: Ok(summary),
+        changes: None,
+        held: None,
     };
     messages.text(&check_text(&checked, &setup.machine));
     Ok(checked.counted())

@@ -47,16 +47,7 @@ pub fn take_hints<R: Read + Seek + Send>(
                        rows: Option<&mut dyn RestartRows>|
      -> Result<BTreeMap<u64, Diagnostic>, Failure> {
         input.rewind().map_err(Failure::Input)?;
-        let how = LimitOptions {
-            strategy: Strategy::Optimal,
-            law: Law::Exact,
-            allowed: Allowed {
-                feed: true,
-                expand: allow_expand,
-                ..Allowed::NOTHING
-            },
-            ..LimitOptions::USUAL
-        };
+        let how = advised(allow_expand);
         let limited = limit(&mut input, machine, options, how, io::sink(), rows)?;
         let mut reasons = BTreeMap::new();
         for reason in limited.reasons {
@@ -110,6 +101,41 @@ pub fn take_hints<R: Read + Seek + Send>(
         };
     }
     Ok(())
+}
+
+/// How the limiter is asked for advice.
+fn advised(expand: bool) -> LimitOptions {
+    LimitOptions {
+        strategy: Strategy::Optimal,
+        law: Law::Exact,
+        allowed: Allowed {
+            feed: true,
+            expand,
+            ..Allowed::NOTHING
+        },
+        ..LimitOptions::USUAL
+    }
+}
+
+/// The program that the advice of [`take_hints`] comes to, and whether canned cycles are
+/// written out in it; `None` where none can be certified. It is held in memory.
+///
+/// # Errors
+/// See [`Failure`].
+pub fn as_advised<R: Read + Seek + Send>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+) -> Result<Option<(Vec<u8>, bool)>, Failure> {
+    for expand in [false, true] {
+        input.rewind().map_err(Failure::Input)?;
+        let mut text = Vec::new();
+        let how = advised(expand);
+        if limit(&mut input, machine, options, how, &mut text, None)?.certified {
+            return Ok(Some((text, expand)));
+        }
+    }
+    Ok(None)
 }
 
 /// What becomes of each line.

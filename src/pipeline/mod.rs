@@ -63,7 +63,7 @@ pub use drives::{
     run_drives,
 };
 pub use each_move::Moves;
-pub use hints::take_hints;
+pub use hints::{as_advised, take_hints};
 pub use ideal::ideal;
 pub use limiting::limit;
 pub use motion::{MotionNotes, Stretch, motion};

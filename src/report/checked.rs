@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
+use super::held::Held;
+use super::line_edits::LineEdit;
 use crate::pipeline::{Failure, Summary};
 
 /// The verdict on a program; the worst of several is the largest.
@@ -31,13 +33,27 @@ pub struct Checked {
     pub program: String,
     /// What came out.
     pub outcome: Result<Summary, Failure>,
+    /// What makes it fit, where that was asked for and is known.
+    pub changes: Option<Changes>,
+    /// What a baseline makes of its findings, where there is one.
+    pub held: Option<Held>,
+}
+
+/// Changes of a program that are certified together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Changes {
+    /// The command that writes them.
+    pub command: &'static str,
+    /// What it writes, in the order of the lines.
+    pub edits: Vec<LineEdit>,
 }
 
 impl Checked {
-    /// The verdict on it.
+    /// The verdict on it: findings that a baseline has count as none.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match &self.outcome {
+            Ok(_) if self.held.as_ref().is_some_and(Held::covers_all) => Verdict::Fits,
             Ok(summary) => Verdict::of(summary.fits()),
             Err(_) => Verdict::Refused,
         }

@@ -10,6 +10,11 @@ use crate::pipeline::Unfit;
 /// Characters of a program line that reports repeat.
 pub(super) const LINE_CHARS: usize = 80;
 
+/// Rules of moves that do not fit.
+pub(super) const PEAK_POWER: &str = "peak-power";
+/// See [`PEAK_POWER`].
+pub(super) const REGEN_POWER: &str = "regen-power";
+
 /// A diagnostic as JSON.
 #[derive(Debug, Serialize)]
 pub(super) struct Finding<'a> {

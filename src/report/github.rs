@@ -4,7 +4,8 @@
 use std::io::{self, Write};
 
 use super::checked::{Checked, Verdict, chain};
-use super::finding::is_regenerative;
+use super::finding::{PEAK_POWER, REGEN_POWER, is_regenerative};
+use super::held::Held;
 use super::over_time::message;
 use super::quantity::{percent, power};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -42,12 +43,15 @@ pub fn github(checked: &[Checked], mut out: impl Write) -> io::Result<()> {
 /// The annotations of one program with their weights; refusals come first.
 fn annotations(checked: &Checked) -> Vec<(f64, String)> {
     let program = &checked.program;
+    // What a baseline has is no news.
+    let held = checked.held.as_ref();
     match &checked.outcome {
         Ok(summary) => summary
             .worst
             .iter()
+            .filter(|unfit| held.is_none_or(|held| !held.has_move(unfit)))
             .map(|unfit| (unfit.overload, unfit_command(program, unfit)))
-            .chain(missed(program, summary))
+            .chain(missed(program, summary, held))
             .collect(),
         Err(Failure::Refused { diagnostics, .. }) => diagnostics
             .iter()
@@ -59,8 +63,13 @@ fn annotations(checked: &Checked) -> Vec<(f64, String)> {
 }
 
 /// Limits over time that are not kept.
-fn missed<'a>(program: &'a str, summary: &'a Summary) -> impl Iterator<Item = (f64, String)> + 'a {
+fn missed<'a>(
+    program: &'a str,
+    summary: &'a Summary,
+    held: Option<&'a Held>,
+) -> impl Iterator<Item = (f64, String)> + 'a {
     let missed = summary.over_time.iter().filter(|it| it.rating.is_missed());
+    let missed = missed.filter(move |it| held.is_none_or(|held| !held.has_limit(it)));
     missed.map(move |found| {
         let program = if found.file.is_empty() {
             program
@@ -84,9 +93,9 @@ fn unfit_command(program: &str, unfit: &Unfit) -> String {
     };
     let (title, what, power_w, limit_w) = if is_regenerative(unfit) {
         let limit_w = unfit.regen_limit_w.unwrap_or_default();
-        ("regen-power", "feeds back", unfit.regen_w, limit_w)
+        (REGEN_POWER, "feeds back", unfit.regen_w, limit_w)
     } else {
-        ("peak-power", "draws", unfit.peak_w, unfit.limit_w)
+        (PEAK_POWER, "draws", unfit.peak_w, unfit.limit_w)
     };
     let mut message = format!(
         "{} {} {what} {} of {} ({})",
@@ -148,6 +157,8 @@ mod tests {
         let checked = Checked {
             program: "a,b:c\n.ngc".into(),
             outcome: Err(Failure::Unsuitable("100 % wrong".into())),
+            changes: None,
+            held: None,
         };
         let mut out = Vec::new();
         assert!(github(&[checked], &mut out).is_ok());

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::checked::{Checked, chain};
 use super::figure::Figure;
 use super::finding::{Finding, UnfitMove};
+use super::held::Held;
 use super::over_time::OverTimeRecord;
 use super::record::Record;
 use crate::pipeline::{
@@ -363,6 +364,8 @@ struct CheckedProgram<'a> {
     certificate: Option<&'static str>,
     error: Option<String>,
     diagnostics: Vec<Finding<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    baseline: Option<&'a Held>,
 }
 
 impl<'a> CheckedProgram<'a> {
@@ -390,6 +393,7 @@ impl<'a> CheckedProgram<'a> {
                 .map(Certificate::name),
             error: checked.outcome.as_ref().err().map(|error| chain(error)),
             diagnostics: diagnostics.iter().map(Finding::from).collect(),
+            baseline: checked.held.as_ref(),
         }
     }
 }

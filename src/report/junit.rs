@@ -1,11 +1,13 @@
 //! Results as `JUnit` XML: one test case a program. Without times of day or
-//! random identifiers, so that the same programs give the same file.
+//! random identifiers, so that the same programs give the same file. The time of a case is
+//! how long the program runs on the machine.
 
 use std::io::{self, Write};
+use std::time::Duration;
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use super::checked::Checked;
+use super::checked::{Checked, Verdict};
 use super::text::check_text;
 use crate::machine::Machine;
 use crate::pipeline::Failure;
@@ -32,7 +34,7 @@ fn test_case(checked: &Checked, machine: &Machine) -> TestCase {
             status.set_message(title);
             status
         }
-        Ok(summary) if summary.fits() => TestCaseStatus::success(),
+        Ok(_) if checked.verdict() == Verdict::Fits => TestCaseStatus::success(),
         Ok(_) => {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
             status.set_message(title).set_type("power");
@@ -48,6 +50,11 @@ fn test_case(checked: &Checked, machine: &Machine) -> TestCase {
     };
     let mut case = TestCase::new(checked.program.as_str(), status);
     case.set_classname("gwatt");
+    if let Ok(summary) = &checked.outcome
+        && let Ok(time) = Duration::try_from_secs_f64(summary.duration_s)
+    {
+        case.set_time(time);
+    }
     case
 }
 

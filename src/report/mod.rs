@@ -1,6 +1,7 @@
 //! Results for people and for other programs: one writer for each format.
 
 mod aligned;
+mod baseline;
 mod chart;
 mod checked;
 mod comparison;
@@ -11,11 +12,13 @@ mod drives;
 mod figure;
 mod finding;
 mod github;
+mod held;
 mod html;
 mod identified;
 mod json;
 mod junit;
 mod level_table;
+mod line_edits;
 mod mass_table;
 mod moves;
 mod over_time;
@@ -32,8 +35,9 @@ mod tune_page;
 mod tuned;
 mod verified;
 
+pub use baseline::{Baseline, BaselineError};
 pub use chart::SpindleChart;
-pub use checked::{Checked, Totals, Verdict, chain};
+pub use checked::{Changes, Checked, Totals, Verdict, chain};
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
 pub use contour_chart::{ContourChart, circle_chart};
 pub use contoured::{
@@ -42,6 +46,7 @@ pub use contoured::{
 pub use csv::CsvRows;
 pub use drives::{DriveRows, drives_text};
 pub use github::github;
+pub use held::Held;
 pub use html::{Found, LineTexts, Page, PageRows, PageSeries, Side};
 pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
@@ -50,6 +55,7 @@ pub use identified::{
 pub use json::{JsonRows, check_json, check_json_line, limit_json, report_json, set_json};
 pub use junit::junit;
 pub use level_table::level_table;
+pub use line_edits::{LineEdit, line_edits};
 pub use mass_table::mass_table;
 pub use moves::write_move;
 pub use overlay_chart::OverlayChart;

@@ -37,7 +37,7 @@ pub fn unified_diff(
         whole(&names, old, new, &mut out)?;
     } else {
         let mut hunks = Hunks::new(names, out);
-        compare(&mut Lines::new(old), &mut Lines::new(new), &mut hunks)?;
+        compare_texts(old, new, &mut hunks)?;
         out = hunks.finish()?;
     }
     out.flush()
@@ -95,10 +95,28 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-fn compare<W: Write>(
+/// What takes the lines of two texts as they are compared.
+pub(super) trait Differences {
+    /// Takes a line that both texts have.
+    fn keep(&mut self, line: Vec<u8>) -> io::Result<()>;
+
+    /// Takes a line that only the old (`-`) or the new (`+`) text has.
+    fn change(&mut self, sign: u8, line: Vec<u8>) -> io::Result<()>;
+}
+
+/// Compares two texts in one pass.
+pub(super) fn compare_texts(
+    old: impl BufRead,
+    new: impl BufRead,
+    differences: &mut impl Differences,
+) -> io::Result<()> {
+    compare(&mut Lines::new(old), &mut Lines::new(new), differences)
+}
+
+fn compare(
     old: &mut Lines<impl BufRead>,
     new: &mut Lines<impl BufRead>,
-    hunks: &mut Hunks<W>,
+    hunks: &mut impl Differences,
 ) -> io::Result<()> {
     loop {
         match (old.peek(0)?, new.peek(0)?) {
@@ -171,44 +189,6 @@ impl<W: Write> Hunks<W> {
         }
     }
 
-    /// Takes a line that both texts have.
-    fn keep(&mut self, line: Vec<u8>) -> io::Result<()> {
-        self.old_line += 1;
-        self.new_line += 1;
-        if self.body.is_empty() {
-            self.before.push_back(line);
-            if self.before.len() > CONTEXT {
-                self.before.pop_front();
-            }
-            return Ok(());
-        }
-        self.body.push((b' ', line));
-        self.kept += 1;
-        // Twice the context: what belongs to this hunk, and to the next one.
-        if self.kept > 2 * CONTEXT {
-            self.close(CONTEXT)?;
-        }
-        Ok(())
-    }
-
-    /// Takes a line that only one text has.
-    fn change(&mut self, sign: u8, line: Vec<u8>) -> io::Result<()> {
-        if self.body.len() >= HUNK_LINES_MAX {
-            self.close(0)?;
-        }
-        if self.body.is_empty() {
-            self.body
-                .extend(self.before.drain(..).map(|line| (b' ', line)));
-        }
-        match sign {
-            b'-' => self.old_line += 1,
-            _ => self.new_line += 1,
-        }
-        self.kept = 0;
-        self.body.push((sign, line));
-        Ok(())
-    }
-
     /// Writes the hunk with at most `context` unchanged lines at its end; what
     /// is left of them leads the next one.
     fn close(&mut self, context: usize) -> io::Result<()> {
@@ -247,6 +227,44 @@ impl<W: Write> Hunks<W> {
             self.close(CONTEXT)?;
         }
         Ok(self.out)
+    }
+}
+
+impl<W: Write> Differences for Hunks<W> {
+    fn keep(&mut self, line: Vec<u8>) -> io::Result<()> {
+        self.old_line += 1;
+        self.new_line += 1;
+        if self.body.is_empty() {
+            self.before.push_back(line);
+            if self.before.len() > CONTEXT {
+                self.before.pop_front();
+            }
+            return Ok(());
+        }
+        self.body.push((b' ', line));
+        self.kept += 1;
+        // Twice the context: what belongs to this hunk, and to the next one.
+        if self.kept > 2 * CONTEXT {
+            self.close(CONTEXT)?;
+        }
+        Ok(())
+    }
+
+    fn change(&mut self, sign: u8, line: Vec<u8>) -> io::Result<()> {
+        if self.body.len() >= HUNK_LINES_MAX {
+            self.close(0)?;
+        }
+        if self.body.is_empty() {
+            self.body
+                .extend(self.before.drain(..).map(|line| (b' ', line)));
+        }
+        match sign {
+            b'-' => self.old_line += 1,
+            _ => self.new_line += 1,
+        }
+        self.kept = 0;
+        self.body.push((sign, line));
+        Ok(())
     }
 }
 

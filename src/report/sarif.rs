@@ -1,37 +1,36 @@
 //! Results as SARIF 2.1.0, for code scanning.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use serde_sarif::sarif::{
-    ArtifactLocation, Location, Message, MultiformatMessageString, PhysicalLocation, Region,
-    ReportingDescriptor, Result as Finding, ResultLevel, Run, SCHEMA_URL, Sarif, Tool,
-    ToolComponent, Version,
+    ArtifactChange, ArtifactContent, ArtifactLocation, Fix, Location, Message,
+    MultiformatMessageString, PhysicalLocation, Region, Replacement, ReportingDescriptor,
+    Result as Finding, ResultLevel, Run, SCHEMA_URL, Sarif, Tool, ToolComponent, Version,
 };
 
-use super::checked::{Checked, chain};
-use super::finding::is_regenerative;
+use super::checked::{Changes, Checked, chain};
+use super::finding::{PEAK_POWER, REGEN_POWER, is_regenerative};
 use super::over_time::message;
 use super::quantity::power;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::pipeline::{Failure, OverTime, Unfit};
+use crate::rules;
 
-const PEAK_POWER: &str = "peak-power";
-const REGEN_POWER: &str = "regen-power";
 const UNREADABLE: &str = "unreadable";
 
 /// Writes one run with a result for each move that does not fit and for each
-/// diagnostic.
+/// diagnostic. `rules_url` is where the pages of `docs/rules` can be read, if anywhere.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn sarif(checked: &[Checked], mut out: impl Write) -> io::Result<()> {
+pub fn sarif(checked: &[Checked], rules_url: Option<&str>, mut out: impl Write) -> io::Result<()> {
     let results: Vec<Finding> = checked.iter().flat_map(findings).collect();
     let driver = ToolComponent::builder()
         .name("gwatt")
         .version(env!("CARGO_PKG_VERSION").to_owned())
-        .rules(rules(&results))
+        .rules(described(&results, rules_url))
         .build();
     let run = Run::builder()
         .tool(Tool::builder().driver(driver).build())
@@ -47,31 +46,32 @@ pub fn sarif(checked: &[Checked], mut out: impl Write) -> io::Result<()> {
     writeln!(out)
 }
 
-/// The rules that the results name, in alphabetical order.
-fn rules(results: &[Finding]) -> Vec<ReportingDescriptor> {
-    let mut texts = BTreeMap::new();
-    for rule in results.iter().filter_map(|result| result.rule_id.clone()) {
-        let text = match rule.as_str() {
-            PEAK_POWER => "A move draws more power than the converter gives.",
-            REGEN_POWER => "A move feeds back more power than the converter takes.",
-            "overload" => "More power is drawn, for longer, than the converter bears.",
-            "continuous-power" => "More power is drawn on average than the converter delivers.",
-            "bus-voltage-low" => "The voltage of the DC bus falls too low.",
-            "bus-voltage-high" => "The voltage of the DC bus rises too high.",
-            "brake-energy" => "More energy is fed back than the braking resistor takes.",
-            UNREADABLE => "A program cannot be read.",
-            _ => "gwatt cannot judge what the program asks for, or doubts it.",
+/// The rules that the results name, in alphabetical order, with the texts of `gwatt explain`.
+fn described(results: &[Finding], rules_url: Option<&str>) -> Vec<ReportingDescriptor> {
+    let names = results.iter().filter_map(|result| result.rule_id.clone());
+    let names: BTreeSet<String> = names.collect();
+    let text = |text: String| MultiformatMessageString::builder().text(text).build();
+    let describe = |name: String| {
+        let Some(rule) = rules::find(&name) else {
+            return ReportingDescriptor::builder().id(name).build();
         };
-        texts.insert(rule, text);
-    }
-    let describe = |(rule, text): (String, &str)| {
-        let text = MultiformatMessageString::builder().text(text).build();
-        ReportingDescriptor::builder()
-            .id(rule)
-            .short_description(text)
-            .build()
+        let help = MultiformatMessageString::builder()
+            .text(rule.text)
+            .markdown(rule.text)
+            .build();
+        let mut described = ReportingDescriptor::builder()
+            .id(name)
+            .short_description(text(rule.summary()))
+            .full_description(text(rule.meaning()))
+            .help(help)
+            .build();
+        described.help_uri = rules_url.map(|url| {
+            let url = url.trim_end_matches('/');
+            format!("{url}/{}#{}", rule.page, rule.name)
+        });
+        described
     };
-    texts.into_iter().map(describe).collect()
+    names.into_iter().map(describe).collect()
 }
 
 fn findings(checked: &Checked) -> Vec<Finding> {
@@ -81,13 +81,26 @@ fn findings(checked: &Checked) -> Vec<Finding> {
             let notes = summary.notes.iter();
             let unfit = summary.unfit.iter();
             let over_time = summary.over_time.iter();
+            let held = checked.held.as_ref();
+            let mut fixes = checked.changes.as_ref().map(|it| vec![fix(program, it)]);
+            let unfit = unfit.map(|unfit| {
+                let mut found = unfit_finding(program, unfit);
+                // All changes belong together: they stand at the first move.
+                found.fixes = fixes.take();
+                found.baseline_state = state(held.map(|held| held.has_move(unfit)));
+                found
+            });
             notes
                 .map(|note| diagnostic_finding(program, note))
-                .chain(unfit.map(|unfit| unfit_finding(program, unfit)))
+                .chain(unfit)
                 .chain(
                     over_time
                         .filter(|found| found.rating.is_missed())
-                        .map(|found| over_time_finding(program, found)),
+                        .map(|found| {
+                            let mut result = over_time_finding(program, found);
+                            result.baseline_state = state(held.map(|held| held.has_limit(found)));
+                            result
+                        }),
                 )
                 .collect()
         }
@@ -165,6 +178,47 @@ fn diagnostic_finding(program: &str, diagnostic: &Diagnostic) -> Finding {
     });
     let place = location(program, region);
     finding(diagnostic.rule, level, message, place)
+}
+
+/// What a baseline says of a result, where there is one.
+fn state(known: Option<bool>) -> Option<serde_json::Value> {
+    known.map(|known| serde_json::Value::from(if known { "unchanged" } else { "new" }))
+}
+
+/// The changes that make a program fit. They were certified together: one fix has them all.
+fn fix(program: &str, changes: &Changes) -> Fix {
+    let replacements = changes.edits.iter().map(|edit| {
+        let first = edit.first.cast_signed();
+        let (end_line, end_column) = if edit.count == 0 {
+            (first, 1)
+        } else {
+            let last = first + edit.count.cast_signed() - 1;
+            (last, edit.last_chars.cast_signed() + 1)
+        };
+        let region = Region::builder()
+            .start_line(first)
+            .start_column(1)
+            .end_line(end_line)
+            .end_column(end_column)
+            .build();
+        let text = ArtifactContent::builder().text(edit.text.clone()).build();
+        Replacement::builder()
+            .deleted_region(region)
+            .inserted_content(text)
+            .build()
+    });
+    let message = format!(
+        "what `{}` writes: certified together, so take all changes of the program or none",
+        changes.command
+    );
+    let change = ArtifactChange::builder()
+        .artifact_location(ArtifactLocation::builder().uri(uri(program)).build())
+        .replacements(replacements.collect::<Vec<_>>())
+        .build();
+    Fix::builder()
+        .description(Message::builder().text(message).build())
+        .artifact_changes(vec![change])
+        .build()
 }
 
 fn finding(rule: &str, level: ResultLevel, message: String, place: Location) -> Finding {

@@ -19,6 +19,14 @@ const PAUSES_SHOWN: usize = 20;
 /// What `check` says of one program: one line where it fits.
 #[must_use]
 pub fn check_text(checked: &Checked, machine: &Machine) -> String {
+    let mut text = verdict_text(checked, machine);
+    if let Some(held) = &checked.held {
+        text.push_str(&held.text());
+    }
+    text
+}
+
+fn verdict_text(checked: &Checked, machine: &Machine) -> String {
     let program = &checked.program;
     match &checked.outcome {
         Ok(summary) if summary.only_subprograms() => {
