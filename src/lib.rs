@@ -26,6 +26,7 @@ pub use gwatt_syntax as syntax;
 pub use gwatt_syntax::{diagnostic, edit, source};
 
 pub mod rules;
+pub mod draft;
 pub mod rewrite;
 pub mod pipeline;
 pub mod dialect;

@@ -4,6 +4,7 @@ mod advice;
 mod baselines;
 mod ci;
 mod dialects;
+mod drafts;
 mod identify;
 #[cfg(unix)]
 mod interrupts;

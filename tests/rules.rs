@@ -12,7 +12,7 @@ use gwatt::report::{Checked, sarif};
 use gwatt::rules::{find, index, rules};
 
 /// Texts of the code in kebab case that are no rules.
-const NO_RULES: [&str; 19] = [
+const NO_RULES: [&str; 20] = [
     "anti-resonance",
     "fanuc-lathe",
     "fanuc-lathe-b",
@@ -21,6 +21,7 @@ const NO_RULES: [&str; 19] = [
     "kebab-case",
     "least-increment",
     "linear-gantry",
+    "linear-motor",
     "linuxcnc-mill",
     "marlin-config",
     "max-accel",

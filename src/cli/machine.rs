@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use gwatt::import::FORMATS;
 
+use super::machine_new::{NEW, NewArgs};
+
 /// What to do with machine descriptions.
 #[derive(Debug, Subcommand)]
 pub enum MachineCommand {
@@ -23,6 +25,9 @@ pub enum MachineCommand {
         /// The file, or the name of a built-in machine.
         file: String,
     },
+    /// Make a machine file of what you know of the machine: it asks, or takes options
+    #[command(after_help = NEW)]
+    New(NewArgs),
     /// Make a machine file of the settings that a control has already
     #[command(after_help = IMPORT)]
     Import(ImportArgs),

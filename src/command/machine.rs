@@ -11,13 +11,14 @@ use super::setup::load_machine;
 use super::terminal::Terminal;
 use crate::cli::MachineCommand;
 
-/// Lists, shows, checks and imports machine descriptions.
+/// Lists, shows, checks, makes and imports machine descriptions.
 pub fn run(command: &MachineCommand, terminal: Terminal) -> Result<Verdict> {
     match command {
         MachineCommand::List => list()?,
         MachineCommand::Show { name } => show(name)?,
         MachineCommand::Check { file } => check(file, terminal)?,
         MachineCommand::Import(args) => super::machine_import::run(args, terminal)?,
+        MachineCommand::New(args) => super::machine_new::run(args, terminal)?,
         MachineCommand::Schema => print(|out| {
             serde_json::to_writer_pretty(&mut *out, &schema())?;
             writeln!(out)

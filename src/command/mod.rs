@@ -31,6 +31,8 @@ mod into;
 mod limit_set;
 mod listing;
 mod machine_import;
+mod machine_new;
+mod machine_questions;
 mod many;
 mod model_choice;
 mod output;

@@ -1,0 +1,83 @@
+//! Arguments of `machine new`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use gwatt::draft;
+
+/// What is said below the options.
+pub const NEW: &str = "\
+An axis is its letter, a colon, and what is known of it, with commas between:
+
+  rapid_mm_min      rapid speed                       accel_mm_s2   acceleration
+  table_kg          what slides: table, slide, head   workpiece_kg  the heaviest on it
+  screw=20x800x10   diameter, length and lead in mm   pinion=40x20  pitch diameter, width in mm
+  belt=20x2x9       teeth of its pulleys, pitch and width in mm     drive=linear-motor
+  rotor_kg_m2       with coupling and brake           gear_ratio    motor by screw or wheel
+  coulomb_n         friction; or guide_friction, the coefficient of its guides
+  counterweight_kg  what balances a vertical axis     efficiency    mechanical by electrical power
+  jerk_mm_s3        jerk
+
+Speed, acceleration, table_kg and one drive are needed. What else is left out is said once, with
+how it counts. On a terminal, without --axis, all is asked for.
+
+Examples:
+  gwatt machine new -o mine.toml
+  gwatt machine new --kind router --supply 400 -o router.toml \\
+    --axis X:rapid_mm_min=12000,accel_mm_s2=1500,table_kg=20,screw=16x900x10,rotor_kg_m2=0.00003 \\
+    --axis Y:rapid_mm_min=12000,accel_mm_s2=1500,table_kg=35,screw=16x900x10,rotor_kg_m2=0.00003 \\
+    --axis Z:rapid_mm_min=4000,accel_mm_s2=800,table_kg=6,screw=16x250x5,rotor_kg_m2=0.00002";
+
+/// Arguments of `machine new`.
+#[derive(Debug, Clone, Args)]
+pub struct NewArgs {
+    /// What kind of machine
+    #[arg(long, value_enum)]
+    pub kind: Option<Kind>,
+    /// The controller profile [default: iso for a mill, fanuc-lathe, grbl for a router, marlin
+    /// for a printer]
+    #[arg(short, long, value_name = "NAME")]
+    pub controller: Option<String>,
+    /// Its name
+    #[arg(long)]
+    pub name: Option<String>,
+    /// What the supply of the drives delivers at most, in W
+    #[arg(long, value_name = "W")]
+    pub supply: Option<f64>,
+    /// What it takes back, in W [default: not checked]
+    #[arg(long, value_name = "W")]
+    pub feeds_back: Option<f64>,
+    /// What always runs on it, in W [default: 0]
+    #[arg(long, value_name = "W")]
+    pub base_load: Option<f64>,
+    /// An axis; may be given several times
+    #[arg(long = "axis", value_name = "AXIS")]
+    pub axes: Vec<String>,
+    /// Where the machine file goes [default: standard output]
+    #[arg(short, long, value_name = "TOML")]
+    pub output: Option<PathBuf>,
+}
+
+/// Kinds of machines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// Its Z is vertical
+    Mill,
+    /// X and Z
+    Lathe,
+    /// Its Z is vertical
+    Router,
+    /// Its Z is vertical
+    Printer,
+}
+
+impl From<Kind> for draft::MachineKind {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Mill => Self::Mill,
+            Kind::Lathe => Self::Lathe,
+            Kind::Router => Self::Router,
+            Kind::Printer => Self::Printer,
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! An axis as it is given: `X:rapid_mm_min=30000,table_kg=60,screw=20x800x10,…`.
+
+use std::collections::BTreeMap;
+
+use super::key::{KEYS, Key};
+use super::{DraftError, MachineKind};
+
+/// What drives an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// A screw of this diameter, length and lead, mm.
+    Screw([f64; 3]),
+    /// A pinion on a rack: diameter of its pitch circle and width, mm.
+    Pinion([f64; 2]),
+    /// A toothed belt: teeth of its pulleys, from tooth to tooth and width, mm.
+    Belt([f64; 3]),
+    /// A linear motor.
+    Direct,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DraftAxis {
+    /// Its letter.
+    pub letter: char,
+    /// What drives it.
+    pub drive: Drive,
+    figures: BTreeMap<&'static str, f64>,
+}
+
+/// Letters of axes that slide.
+const LETTERS: &str = "XYZUVW";
+
+impl DraftAxis {
+    /// Reads an axis: its letter, a colon, and `key=value` with commas between.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub fn parse(text: &str, kind: MachineKind) -> Result<Self, DraftError> {
+        let (name, rest) = text.split_once(':').unwrap_or((text, ""));
+        let fault = |wrong: String| DraftError::Axis {
+            axis: name.to_owned(),
+            wrong,
+        };
+        let mut letters = name.trim().chars();
+        let letter = match (letters.next(), letters.next()) {
+            (Some(letter), None) if LETTERS.contains(letter) => letter,
+            _ => {
+                return Err(fault(format!(
+                    "its letter is one of {LETTERS}; machine files describe axes that turn, and \
+                     extruders, by hand (docs/machine-file.md)"
+                )));
+            }
+        };
+        let mut axis = Self {
+            letter,
+            drive: Drive::Direct,
+            figures: BTreeMap::new(),
+        };
+        let mut drive = None;
+        for part in rest
+            .split(',')
+            .map(str::trim)
+            .filter(|part| !part.is_empty())
+        {
+            let (key, value) = part
+                .split_once('=')
+                .ok_or_else(|| fault(format!("`{part}` has no value: write {part}=…")))?;
+            match drive_of(key, value) {
+                Some(found) => {
+                    let found = found.map_err(fault)?;
+                    if drive.replace(found).is_some() {
+                        return Err(fault("it has two drives: keep one".to_owned()));
+                    }
+                }
+                None => axis.take(key, value).map_err(fault)?,
+            }
+        }
+        let wanted = "it needs what drives it: screw=DIAMETERxLENGTHxLEAD, pinion=DIAMETERxWIDTH, \
+                      belt=TEETHxPITCHxWIDTH (all in mm), or drive=linear-motor";
+        axis.drive = drive.ok_or_else(|| fault(wanted.to_owned()))?;
+        axis.check(kind).map_err(fault)?;
+        Ok(axis)
+    }
+
+    fn take(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let key = KEYS.iter().find(|key| key.name == name).ok_or_else(|| {
+            let names: Vec<&str> = KEYS.iter().map(|key| key.name).collect();
+            format!(
+                "`{name}` is not known; there are {}, screw, pinion, belt and drive",
+                names.join(", ")
+            )
+        })?;
+        let number = number_of(key, value)?;
+        if self.figures.insert(key.name, number).is_some() {
+            return Err(format!("`{name}` is given twice: keep one of the two"));
+        }
+        Ok(())
+    }
+
+    fn check(&self, kind: MachineKind) -> Result<(), String> {
+        for name in ["rapid_mm_min", "accel_mm_s2", "table_kg"] {
+            if self.get(name).is_none() {
+                return Err(format!("it needs `{name}`"));
+            }
+        }
+        let vertical = kind.is_vertical(self.letter);
+        let guide = self.get("guide_friction").is_some();
+        if guide && self.get("coulomb_n").is_some() {
+            return Err("`guide_friction` and `coulomb_n` both say its friction: keep one".into());
+        }
+        if guide && vertical {
+            return Err("its guides carry no weight, as it is vertical: give `coulomb_n`".into());
+        }
+        if self.get("counterweight_kg").is_some() && !vertical {
+            return Err("a counterweight balances vertical axes alone".into());
+        }
+        if self.drive == Drive::Direct && self.get("gear_ratio").is_some() {
+            return Err("a linear motor has no gear: leave `gear_ratio` out".into());
+        }
+        if self.drive == Drive::Direct && self.get("rotor_kg_m2").is_some_and(|it| it > 0.0) {
+            return Err("a linear motor has no rotor: add its mass to `table_kg`".into());
+        }
+        Ok(())
+    }
+
+    /// A figure, in the unit of its name.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.figures.get(name).copied()
+    }
+
+    /// What slides, kg.
+    #[must_use]
+    pub fn moved_kg(&self) -> f64 {
+        self.get("table_kg").unwrap_or(0.0) + self.get("workpiece_kg").unwrap_or(0.0)
+    }
+
+    /// Whether something that may be left out was, and matters for it.
+    pub(super) fn lacks(&self, field: &str, kind: MachineKind) -> bool {
+        match field {
+            "rotor inertia" => self.drive != Drive::Direct && self.get("rotor_kg_m2").is_none(),
+            "friction" => self.get("guide_friction").is_none() && self.get("coulomb_n").is_none(),
+            "counterweight" => {
+                kind.is_vertical(self.letter) && self.get("counterweight_kg").is_none()
+            }
+            _ => self.get(field).is_none(),
+        }
+    }
+}
+
+/// A number that this figure can have.
+fn number_of(key: &Key, value: &str) -> Result<f64, String> {
+    let number: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{}={value}`: this is no number", key.name))?;
+    let most = match key.name {
+        "efficiency" | "guide_friction" => 1.0,
+        _ => 1e9,
+    };
+    let fits =
+        number.is_finite() && number <= most && (number > 0.0 || key.may_be_zero && number == 0.0);
+    if fits {
+        return Ok(number);
+    }
+    let least = if key.may_be_zero { "from 0" } else { "above 0" };
+    Err(format!(
+        "`{}={value}`: the {} is {least} to {most}",
+        key.name, key.what
+    ))
+}
+
+/// What drives an axis, if the key says that.
+fn drive_of(key: &str, value: &str) -> Option<Result<Drive, String>> {
+    fn sizes<const N: usize>(key: &str, value: &str, form: &str) -> Result<[f64; N], String> {
+        let wrong = || format!("`{key}={value}`: write {key}={form}, each above 0");
+        let numbers: Vec<f64> = value
+            .split('x')
+            .map(|part| part.trim().parse().ok())
+            .collect::<Option<_>>()
+            .ok_or_else(wrong)?;
+        let fits = numbers.iter().all(|it| *it > 0.0 && *it <= 1e6);
+        numbers.try_into().ok().filter(|_| fits).ok_or_else(wrong)
+    }
+    Some(match key.trim() {
+        "screw" => sizes(key, value, "DIAMETERxLENGTHxLEAD in mm").map(Drive::Screw),
+        "pinion" => sizes(key, value, "DIAMETERxWIDTH in mm").map(Drive::Pinion),
+        "belt" => sizes(key, value, "TEETHxPITCHxWIDTH, the last two in mm").map(Drive::Belt),
+        "drive" if value.trim() == "linear-motor" => Ok(Drive::Direct),
+        "drive" => Err(format!("`drive={value}`: there is drive=linear-motor")),
+        _ => return None,
+    })
+}

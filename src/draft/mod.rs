@@ -1,0 +1,189 @@
+//! A machine file out of what people know of their machine: the supply, and for each axis its
+//! speed, its masses, and what drives it.
+//!
+//! Nothing is guessed: what has to be known is asked for, what may be left out counts as the file
+//! says then, and [`Draft::left_out`] says so once.
+
+mod axis;
+mod key;
+mod write;
+
+use std::fmt;
+
+use thiserror::Error;
+
+pub use axis::{DraftAxis, Drive};
+pub use key::KEYS;
+
+/// Kinds of machines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MachineKind {
+    /// A mill: its Z is vertical.
+    Mill,
+    /// A lathe: the axes X and Z.
+    Lathe,
+    /// A router or an engraver: its Z is vertical.
+    Router,
+    /// A printer: its Z is vertical.
+    Printer,
+}
+
+impl MachineKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Mill, Self::Lathe, Self::Router, Self::Printer];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mill => "mill",
+            Self::Lathe => "lathe",
+            Self::Router => "router",
+            Self::Printer => "printer",
+        }
+    }
+
+    /// The controller profile that is taken where none is given.
+    #[must_use]
+    pub fn usual_controller(self) -> &'static str {
+        match self {
+            Self::Mill => "iso",
+            Self::Lathe => "fanuc-lathe",
+            Self::Router => "grbl",
+            Self::Printer => "marlin",
+        }
+    }
+
+    /// Whether an axis goes up and down.
+    #[must_use]
+    pub fn is_vertical(self, letter: char) -> bool {
+        letter == 'Z' && self != Self::Lathe
+    }
+}
+
+impl fmt::Display for MachineKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What is known of a machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    /// Its kind.
+    pub kind: MachineKind,
+    /// Its name.
+    pub name: String,
+    /// The controller profile; `None`: the usual one.
+    pub controller: Option<String>,
+    /// What the supply of the drives delivers at most, W.
+    pub supply_w: f64,
+    /// What it takes back, W.
+    pub feeds_back_w: Option<f64>,
+    /// What always runs, W.
+    pub base_load_w: Option<f64>,
+    /// The axes.
+    pub axes: Vec<DraftAxis>,
+}
+
+/// Why there is no machine file.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DraftError {
+    /// An axis is not described as it should be.
+    #[error("axis `{axis}`: {wrong}")]
+    Axis {
+        /// As it was given, up to the first colon.
+        axis: String,
+        /// What is wrong, and what to do.
+        wrong: String,
+    },
+    /// An axis is described twice.
+    #[error("axis {0} is described twice: keep one of the two")]
+    Twice(char),
+    /// There is none.
+    #[error("a machine needs an axis: --axis X:rapid_mm_min=…,accel_mm_s2=…,table_kg=…")]
+    NoAxes,
+    /// A power that is none.
+    #[error("{0} must be {1}, in W")]
+    Power(&'static str, &'static str),
+}
+
+impl Draft {
+    /// Checks what does not concern one axis alone.
+    ///
+    /// # Errors
+    /// See [`DraftError`].
+    pub fn check(&self) -> Result<(), DraftError> {
+        let positive = |watts: f64| watts.is_finite() && watts > 0.0;
+        let not_negative = |watts: Option<f64>| watts.is_none_or(|it| it.is_finite() && it >= 0.0);
+        if !positive(self.supply_w) {
+            return Err(DraftError::Power("the supply", "above 0"));
+        }
+        if !not_negative(self.feeds_back_w) {
+            return Err(DraftError::Power("what it takes back", "0 or more"));
+        }
+        if !not_negative(self.base_load_w) {
+            return Err(DraftError::Power("the base load", "0 or more"));
+        }
+        if self.axes.is_empty() {
+            return Err(DraftError::NoAxes);
+        }
+        for (index, axis) in self.axes.iter().enumerate() {
+            let mut others = self.axes.iter().skip(index + 1);
+            if others.any(|other| other.letter == axis.letter) {
+                return Err(DraftError::Twice(axis.letter));
+            }
+        }
+        Ok(())
+    }
+
+    /// What was not given, and how it counts: one sentence each.
+    #[must_use]
+    pub fn left_out(&self) -> Vec<String> {
+        let mut said = Vec::new();
+        if self.controller.is_none() {
+            let usual = self.kind.usual_controller();
+            said.push(format!(
+                "no controller given: programs are read as {usual} (`gwatt machine list` has all)"
+            ));
+        }
+        if self.feeds_back_w.is_none() {
+            let text = "nothing given of what the supply takes back: what braking axes feed back \
+                        is not checked";
+            said.push(text.to_owned());
+        }
+        if self.base_load_w.is_none() {
+            said.push("no base load given: counted as 0 W".to_owned());
+        }
+        for (field, counted) in [
+            (
+                "rotor inertia",
+                "counted as 0 kg m2, which is right for linear motors alone",
+            ),
+            (
+                "friction",
+                "counted as 0 N; real axes have some, which `gwatt identify` finds",
+            ),
+            ("efficiency", "counted as 1; the drive's losses come on top"),
+            ("counterweight", "the whole weight counts"),
+        ] {
+            let axes: String = self
+                .axes
+                .iter()
+                .filter(|axis| axis.lacks(field, self.kind))
+                .map(|axis| axis.letter)
+                .collect();
+            if !axes.is_empty() {
+                said.push(format!("{axes}: no {field} given: {counted}"));
+            }
+        }
+        said
+    }
+
+    /// The text of the machine file. `sums` are lines that say what the axes come to, from an
+    /// earlier text that was read back.
+    #[must_use]
+    pub fn machine_file(&self, sums: &str) -> String {
+        write::machine_file(self, sums)
+    }
+}

@@ -1,0 +1,189 @@
+//! The machine file of a draft.
+
+use std::fmt::Write as _;
+
+use super::axis::{DraftAxis, Drive};
+use super::{Draft, MachineKind};
+
+/// Acceleration of gravity, m/s² (standard gravity, CGPM 1901).
+const GRAVITY_M_S2: f64 = 9.80665;
+/// Where comments next to fields begin.
+const COLUMN: usize = 29;
+
+pub(super) fn machine_file(draft: &Draft, sums: &str) -> String {
+    let mut out = String::new();
+    let name = one_line(&draft.name);
+    let _ = writeln!(out, "# {name}, made by `gwatt machine new`");
+    if !sums.is_empty() {
+        out.push_str("#\n# What the axes come to:\n#\n");
+        for line in sums.lines() {
+            let _ = writeln!(out, "# {line}");
+        }
+    }
+    let left_out = draft.left_out();
+    if !left_out.is_empty() {
+        out.push_str("#\n# Not given:\n");
+        for sentence in &left_out {
+            wrapped(&mut out, sentence);
+        }
+    }
+    let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
+    let _ = writeln!(out, "schema = 1\nname = \"{quoted}\"");
+    let controller = draft.controller.as_deref();
+    let controller = controller.unwrap_or(draft.kind.usual_controller());
+    let _ = writeln!(out, "controller = \"{controller}\"");
+
+    out.push_str("\n[converter]\n");
+    line(
+        &mut out,
+        "peak_power_w",
+        draft.supply_w,
+        "what it delivers at most",
+    );
+    if let Some(watts) = draft.feeds_back_w {
+        line(&mut out, "regen_power_w", watts, "what it takes back");
+    }
+    if let Some(watts) = draft.base_load_w {
+        line(&mut out, "base_load_w", watts, "what always runs");
+    }
+    for axis in &draft.axes {
+        axis_table(&mut out, axis, draft.kind);
+    }
+    out.push_str("\n[limits]\n");
+    line(
+        &mut out,
+        "margin",
+        0.1,
+        "share of the peak power that is kept free",
+    );
+    out
+}
+
+fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
+    let _ = writeln!(out, "\n[axes.{}]\nkind = \"linear\"", axis.letter);
+    let mut field = |name: &str, value: Option<f64>, comment: &str| {
+        if let Some(value) = value {
+            line(out, name, value, comment);
+        }
+    };
+    field("rapid_mm_min", axis.get("rapid_mm_min"), "");
+    field("accel_mm_s2", axis.get("accel_mm_s2"), "");
+    field("jerk_mm_s3", axis.get("jerk_mm_s3"), "");
+    let moved = rounded(axis.moved_kg());
+    let table = shown(axis.get("table_kg").unwrap_or(0.0));
+    let comment = match axis.get("workpiece_kg") {
+        Some(workpiece) => format!("table {table} + workpiece {}", shown(workpiece)),
+        None => String::new(),
+    };
+    field("moved_mass_kg", Some(moved), &comment);
+    let rotor = axis.get("rotor_kg_m2").unwrap_or(0.0);
+    let comment = match (axis.drive, axis.get("rotor_kg_m2")) {
+        (Drive::Direct, _) => "a linear motor has no rotor",
+        (_, None) => "not given",
+        _ => "",
+    };
+    field("rotor_kg_m2", Some(rotor), comment);
+    field("gear_ratio", axis.get("gear_ratio"), "");
+    let drive = match axis.drive.map_numbers(shown) {
+        Shown::Screw([diameter, length, lead]) => format!(
+            "screw = {{ diameter_mm = {diameter}, length_mm = {length}, lead_mm = {lead} }}\n"
+        ),
+        Shown::Pinion([diameter, width]) => {
+            format!("pinion = {{ diameter_mm = {diameter}, width_mm = {width} }}\n")
+        }
+        Shown::Belt([teeth, pitch, width]) => {
+            format!("pulley = {{ teeth = {teeth}, pitch_mm = {pitch}, width_mm = {width} }}\n")
+        }
+        Shown::Direct => String::new(),
+    };
+    out.push_str(&drive);
+    let mut field = |name: &str, value: Option<f64>, comment: &str| {
+        if let Some(value) = value {
+            line(out, name, value, comment);
+        }
+    };
+    field("coulomb_n", axis.get("coulomb_n"), "");
+    if let Some(share) = axis.get("guide_friction") {
+        let force = share * moved * GRAVITY_M_S2;
+        let comment = format!(
+            "{} x {} kg x {GRAVITY_M_S2} m/s2",
+            shown(share),
+            shown(moved)
+        );
+        field("coulomb_n", Some(rounded(force)), &comment);
+    }
+    if kind.is_vertical(axis.letter) {
+        let balanced = axis.get("counterweight_kg");
+        let weight = (moved - balanced.unwrap_or(0.0)) * GRAVITY_M_S2;
+        let comment = match balanced {
+            Some(balanced) => format!(
+                "({} kg - {} kg) x {GRAVITY_M_S2} m/s2",
+                shown(moved),
+                shown(balanced)
+            ),
+            None => format!("{} kg x {GRAVITY_M_S2} m/s2", shown(moved)),
+        };
+        field("gravity_n", Some(rounded(weight)), &comment);
+    }
+    field("efficiency", axis.get("efficiency"), "");
+}
+
+/// The numbers of a drive as they are written.
+enum Shown {
+    Screw([String; 3]),
+    Pinion([String; 2]),
+    Belt([String; 3]),
+    Direct,
+}
+
+impl Drive {
+    fn map_numbers(self, show: impl Fn(f64) -> String) -> Shown {
+        match self {
+            Self::Screw(sizes) => Shown::Screw(sizes.map(show)),
+            Self::Pinion(sizes) => Shown::Pinion(sizes.map(show)),
+            Self::Belt(sizes) => Shown::Belt(sizes.map(show)),
+            Self::Direct => Shown::Direct,
+        }
+    }
+}
+
+/// A number as TOML has it.
+fn shown(value: f64) -> String {
+    format!("{value}")
+}
+
+/// A figure that was worked out, to six digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A field with a comment next to it.
+fn line(out: &mut String, name: &str, value: f64, comment: &str) {
+    let field = format!("{name} = {}", shown(value));
+    if comment.is_empty() {
+        let _ = writeln!(out, "{field}");
+    } else {
+        let _ = writeln!(out, "{field:COLUMN$}# {comment}");
+    }
+}
+
+/// Without line ends and control characters, which no comment may hold.
+fn one_line(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
+}
+
+/// An entry of a list in comments.
+fn wrapped(out: &mut String, text: &str) {
+    let mut row = String::from("# *");
+    for word in text.split_whitespace() {
+        if row.len() + word.len() > 96 {
+            let _ = writeln!(out, "{row}");
+            row = "#  ".to_owned();
+        }
+        row.push(' ');
+        row.push_str(word);
+    }
+    let _ = writeln!(out, "{row}");
+}
