@@ -65,10 +65,10 @@ impl Baselines {
             let known = self.known.as_ref().map(|(_, known)| known);
             let held = Held::new(known.unwrap_or(&nothing), &checked.program, summary);
             self.not_listed += held.not_listed();
+            if let Some((_, _, written)) = &mut self.written {
+                written.add(&checked.program, summary);
+            }
             checked.held = known.map(|_| held);
-        }
-        if let Some((_, _, written)) = &mut self.written {
-            written.add(checked);
         }
         self.checked.push(checked.program.clone());
     }

@@ -7,7 +7,6 @@ use std::io::{self, Write};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::checked::Checked;
 use super::figure::round_to_digits;
 use super::finding::{PEAK_POWER, REGEN_POWER, is_regenerative};
 use crate::diagnostic::excerpt;
@@ -135,13 +134,9 @@ fn name_of(program: &str) -> String {
 }
 
 impl Baseline {
-    /// Takes what a run has found of a program; nothing of one that is not read. One that
-    /// fits is named without findings.
-    pub fn add(&mut self, checked: &Checked) {
-        if let Ok(summary) = &checked.outcome {
-            let name = name_of(&checked.program);
-            self.programs.insert(name, Known::of(summary));
-        }
+    /// Takes what a run has found of a program. One that fits is named without findings.
+    pub fn add(&mut self, program: &str, summary: &Summary) {
+        self.programs.insert(name_of(program), Known::of(summary));
     }
 
     /// Reads what [`write`](Self::write) has written.

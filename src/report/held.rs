@@ -177,7 +177,7 @@ mod tests {
     use crate::interpret::MoveKind;
     use crate::machine::AxisSet;
     use crate::pipeline::{Summary, Unfit};
-    use crate::report::{Baseline, Checked};
+    use crate::report::Baseline;
 
     fn unfit(line: u64, text: &str, peak_w: f64) -> Unfit {
         Unfit {
@@ -205,16 +205,10 @@ mod tests {
         }
     }
 
-    fn baseline(summary: Summary) -> Baseline {
-        let checked = Checked {
-            program: "./a.nc".into(),
-            outcome: Ok(summary),
-            changes: None,
-            held: None,
-        };
+    fn baseline(summary: &Summary) -> Baseline {
         let mut text = Vec::new();
         let mut written = Baseline::default();
-        written.add(&checked);
+        written.add("./a.nc", summary);
         written.write(&mut text).unwrap();
         let read = Baseline::read(str::from_utf8(&text).unwrap()).unwrap();
         assert_eq!(read, written);
@@ -228,7 +222,7 @@ mod tests {
             (5, "G0 X1", 1500.0),
             (9, "G0 Y1", 1200.0),
         ];
-        let then = baseline(summary(&then));
+        let then = baseline(&summary(&then));
         let held = |now: &[(u64, &str, f64)]| Held::new(&then, "a.nc", &summary(now));
         let moved = [
             (13, "G0 X1", 1500.0),
@@ -256,7 +250,7 @@ mod tests {
     /// A smaller converter makes the same peak worse.
     #[test]
     fn limits_may_not_shrink() {
-        let then = baseline(summary(&[(3, "G0 X1", 2000.0)]));
+        let then = baseline(&summary(&[(3, "G0 X1", 2000.0)]));
         let mut now = summary(&[(3, "G0 X1", 2000.0)]);
         now.unfit[0].limit_w = 900.0;
         assert!(!Held::new(&then, "a.nc", &now).covers_all());
@@ -267,7 +261,7 @@ mod tests {
     fn what_no_list_names_is_new() {
         let mut many = summary(&[(3, "G0 X1", 2000.0)]);
         many.unfit_count = 7;
-        let held = Held::new(&baseline(many.clone()), "a.nc", &many);
+        let held = Held::new(&baseline(&many), "a.nc", &many);
         assert!(!held.covers_all());
         let text = "  baseline: 1 known, 0 new, 6 more that no baseline lists, and so new\n";
         assert_eq!(held.text(), text);
@@ -296,7 +290,7 @@ mod tests {
                 let moves: Vec<_> = peaks.iter().map(|it| (1, "G0", f64::from(*it))).collect();
                 summary(&moves)
             };
-            let held = Held::new(&baseline(of(&then)), "a.nc", &of(&now));
+            let held = Held::new(&baseline(&of(&then)), "a.nc", &of(&now));
             let above = |list: &[u32], least: u32| list.iter().filter(|it| **it >= least).count();
             let fits = (1001..1020).all(|it| above(&now, it) <= above(&then, it));
             prop_assert_eq!(held.covers_all(), fits);
