@@ -180,7 +180,8 @@ fn wrapped(out: &mut String, text: &str) {
     for word in text.split_whitespace() {
         if row.len() + word.len() > 96 {
             let _ = writeln!(out, "{row}");
-            row = "#  ".to_owned();
+            row.clear();
+            row.push_str("#  ");
         }
         row.push(' ');
         row.push_str(word);

@@ -43,7 +43,12 @@ impl Rule {
         }
         let after = self.text.split_once("`:\n\n")?.1;
         let lines = after.lines().map_while(|line| line.strip_prefix("    "));
-        Some((dialect, lines.map(|line| format!("{line}\n")).collect()))
+        let mut program = String::new();
+        for line in lines {
+            program.push_str(line);
+            program.push('\n');
+        }
+        Some((dialect, program))
     }
 }
 
