@@ -213,6 +213,11 @@ mod tests {
     }
 
     impl Script {
+        fn say(&mut self, line: &str) {
+            self.shown.push_str(line);
+            self.shown.push('\n');
+        }
+
         fn next(&mut self) -> Result<&'static str> {
             self.answers.pop_front().context("no answer is left")
         }
@@ -226,17 +231,17 @@ mod tests {
         ) -> Result<String> {
             loop {
                 let answer = self.next()?;
-                self.shown += &format!("{question}: {answer}\n");
+                self.say(&format!("{question}: {answer}"));
                 match check(answer) {
                     Ok(()) => return Ok(answer.to_owned()),
-                    Err(wrong) => self.shown += &format!("  {wrong}\n"),
+                    Err(wrong) => self.say(&format!("  {wrong}")),
                 }
             }
         }
 
         fn choice(&mut self, question: &str, answers: &[&str]) -> Result<usize> {
             let answer = self.next()?;
-            self.shown += &format!("{question}: {answer}\n");
+            self.say(&format!("{question}: {answer}"));
             let found = answers.iter().position(|it| *it == answer);
             found.context("no such answer")
         }

@@ -149,11 +149,7 @@ mod tests {
         assert_eq!(line_edits(b"G0 (\xe4)\n", b"G1 (\xe4)\n"), None);
         assert_eq!(line_edits(b"A\n", b"A\nB\n"), None);
         assert_eq!(line_edits(b"A\nB\n", b"A\n"), None);
-        let many = |text: &str| {
-            (0..1001)
-                .map(|_| format!("{text}\nkept\n"))
-                .collect::<String>()
-        };
+        let many = |text: &str| format!("{text}\nkept\n").repeat(1001);
         assert_eq!(line_edits(many("a").as_bytes(), many("b").as_bytes()), None);
     }
 
@@ -180,12 +176,13 @@ mod tests {
             for (number, kind) in kinds.iter().enumerate() {
                 let line = format!("X{number} ü\n");
                 old += &line;
-                new += &match kind {
+                let changed = match kind {
                     0 => format!("G1 {line}"),
                     1 => format!("G4\n{line}"),
                     2 => format!("G1 {line}G0 F{number}\n"),
                     _ => line,
                 };
+                new.push_str(&changed);
             }
             old += "M30\n";
             new += "M30\n";

@@ -182,8 +182,17 @@ fn every_message() {
         &["--axis", X, "-o", "."],
         "cannot write .: it is a directory",
     );
+}
 
-    let axis = |text: &str, message: &str| with(&["--axis", text], message);
+#[test]
+fn every_message_about_an_axis() {
+    let shop = Shop::new();
+    let on = [
+        "machine", "new", "--kind", "mill", "--supply", "900", "--axis",
+    ];
+    let axis = |text: &str, message: &str| {
+        shop.run(&[&on[..], &[text]].concat()).refused(message);
+    };
     axis(
         "A:rapid_mm_min=1",
         "axis `A`: its letter is one of XYZUVW; machine files describe axes",
