@@ -176,6 +176,11 @@ fn add(sum: &mut [C], p: &[C], factor: C) {
     }
 }
 
+/// Values that are worked on at a time.
+pub const LANES: usize = 8;
+/// So many of them.
+pub type Lanes = [f64; LANES];
+
 /// The response at sampling instants to a held input, ready for many
 /// frequencies.
 #[derive(Debug, Clone)]
@@ -227,6 +232,33 @@ impl SampledResponse {
         let below: C = self.poles.iter().map(|pole| z - pole).product();
         polynomial::value(&self.numerator, z) / below
     }
+
+    /// The same at several z at once, real and imaginary parts.
+    #[must_use]
+    pub fn at_each(&self, z: &[Lanes; 2]) -> [Lanes; 2] {
+        let [x, y] = z;
+        let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
+        for c in self.numerator.iter().rev() {
+            for k in 0..LANES {
+                (re[k], im[k]) = (re[k] * x[k] - im[k] * y[k] + c, re[k] * y[k] + im[k] * x[k]);
+            }
+        }
+        let (mut p, mut q) = ([1.0; LANES], [0.0; LANES]);
+        for pole in &self.poles {
+            for k in 0..LANES {
+                let (a, b) = (x[k] - pole.re, y[k] - pole.im);
+                (p[k], q[k]) = (p[k] * a - q[k] * b, p[k] * b + q[k] * a);
+            }
+        }
+        for k in 0..LANES {
+            let norm = p[k] * p[k] + q[k] * q[k];
+            (re[k], im[k]) = (
+                (re[k] * p[k] + im[k] * q[k]) / norm,
+                (im[k] * p[k] - re[k] * q[k]) / norm,
+            );
+        }
+        [re, im]
+    }
 }
 
 fn exponential(z: C) -> C {
@@ -252,4 +284,33 @@ pub fn backward_coefficients(roots: &[C]) -> Vec<f64> {
     let mut p: Vec<f64> = monic(roots).iter().map(|c| c.re).collect();
     p.reverse();
     p
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::transfer::Factor;
+    use super::*;
+
+    /// Several at once are what each is alone.
+    #[test]
+    fn values_of_many_places_are_those_of_each() {
+        let pair = |omega_rad_s| Factor::Pair {
+            omega_rad_s,
+            damping: 0.05,
+        };
+        let transfer = TransferFunction {
+            gain: 3.0,
+            zeros: vec![pair(200.0)],
+            poles: vec![pair(300.0), pair(700.0)],
+            delay_s: 0.0,
+        };
+        let sampled = SampledResponse::new(&transfer, 1e-3).unwrap();
+        let theta: Lanes = std::array::from_fn(|k| 0.05 + 0.4 * k as f64);
+        let [re, im] = sampled.at_each(&[theta.map(libm::cos), theta.map(libm::sin)]);
+        for ((theta, re), im) in theta.iter().zip(re).zip(im) {
+            let (sin, cos) = libm::sincos(*theta);
+            let apart = sampled.at(C::new(cos, sin)) - C::new(re, im);
+            assert!(apart.norm() < 1e-12, "{theta}: {apart}");
+        }
+    }
 }

@@ -46,8 +46,8 @@ pub(super) struct Equations {
     /// Up to the band's end.
     pub(super) inside: Band,
     /// From the band's end to twice as far: where noise is as strong as within, and what
-    /// the model is to explain is not.
-    pub(super) above: Band,
+    /// the model is to explain is not. Absent where nobody asks for it.
+    pub(super) above: Option<Band>,
     /// Which equations count: those where the axis moves.
     pub(super) counts: Vec<bool>,
     /// Distance of samples, s.
@@ -156,6 +156,19 @@ impl Raw {
     }
 }
 
+/// One of how many samples counts, and how many at either end do not.
+fn thinning(samples: usize, bandwidth_hz: f64, t: f64) -> (usize, usize) {
+    // The filter leaves nothing above its corner: 2.5 samples a period there.
+    let step = ((0.4 / (bandwidth_hz * t)) as usize).max(1);
+    let edge = ((1.0 / (bandwidth_hz * t)) as usize).min(samples / 10);
+    (step, edge)
+}
+
+fn thin(x: Vec<f64>, step: usize, edge: usize) -> Vec<f64> {
+    let inner = x.len().saturating_sub(2 * edge);
+    x.into_iter().skip(edge).take(inner).step_by(step).collect()
+}
+
 impl Equations {
     /// Those of a recording in a band from 0 Hz on.
     ///
@@ -165,22 +178,42 @@ impl Equations {
     pub(super) fn of(recording: &Recording, bandwidth_hz: f64) -> Outcome<Self> {
         let t = recording.period_s;
         let raw = raw(recording, bandwidth_hz)?;
-        let samples = raw.force.len();
-        // The filter leaves nothing above its corner: 2.5 samples a period there.
-        let step = ((0.4 / (bandwidth_hz * t)) as usize).max(1);
-        let edge = ((1.0 / (bandwidth_hz * t)) as usize).min(samples / 10);
-        let thin = |x: Vec<f64>| -> Vec<f64> {
-            let inner = x.len().saturating_sub(2 * edge);
-            x.into_iter().skip(edge).take(inner).step_by(step).collect()
-        };
-        let inside = raw.filtered(|x| thin(low_pass(x, bandwidth_hz, t)));
-        let above = raw.filtered(|x| {
+        let mut out = Self::within(&raw, bandwidth_hz, t);
+        let (step, edge) = thinning(raw.force.len(), bandwidth_hz, t);
+        out.above = Some(raw.filtered(|x| {
             let (wide, narrow) = (
                 low_pass(x, 2.0 * bandwidth_hz, t),
                 low_pass(x, bandwidth_hz, t),
             );
-            thin(wide.iter().zip(&narrow).map(|(w, n)| w - n).collect())
-        });
+            let apart = wide.iter().zip(&narrow).map(|(w, n)| w - n);
+            thin(apart.collect(), step, edge)
+        }));
+        Ok(out)
+    }
+
+    /// Those of a recording with this speed, where it has none of its own: within the
+    /// band alone.
+    ///
+    /// # Errors
+    ///
+    /// As of [`Self::of`].
+    pub(super) fn with_speed(
+        recording: &Recording,
+        speed: &[f64],
+        bandwidth_hz: f64,
+    ) -> Outcome<Self> {
+        let mut raw = raw(recording, bandwidth_hz)?;
+        let t = recording.period_s;
+        if raw.velocity.is_none() {
+            let smooth_hz = (SMOOTH * bandwidth_hz).min(0.4 / t);
+            raw.velocity = Some(low_pass(speed, smooth_hz, t));
+        }
+        Ok(Self::within(&raw, bandwidth_hz, t))
+    }
+
+    fn within(raw: &Raw, bandwidth_hz: f64, t: f64) -> Self {
+        let (step, edge) = thinning(raw.force.len(), bandwidth_hz, t);
+        let inside = raw.filtered(|x| thin(low_pass(x, bandwidth_hz, t), step, edge));
         let fastest = raw
             .velocity
             .iter()
@@ -196,12 +229,12 @@ impl Equations {
             }
             None => vec![true; inside.force.len()],
         };
-        Ok(Self {
+        Self {
             inside,
-            above,
+            above: None,
             counts,
             step_s: step as f64 * t,
-        })
+        }
     }
 
     /// How many equations count in which the axis moves forward, and backward.

@@ -122,13 +122,16 @@ pub(super) fn left_of(equations: &Equations, terms: Terms, theta: &[f64]) -> [f6
 /// Sum of squares of what a model leaves above the band, where the axis moves.
 pub(super) fn left_above(equations: &Equations, terms: Terms, theta: &[f64]) -> f64 {
     let mut row = Vec::new();
-    let forces = equations.above.force.iter().zip(&equations.counts);
+    let Some(above) = &equations.above else {
+        return 0.0;
+    };
+    let forces = above.force.iter().zip(&equations.counts);
     forces
         .enumerate()
         .filter(|(_, (_, counts))| **counts)
         .map(|(k, (force, _))| {
             // A constant has nothing above 0 Hz.
-            terms.row(&equations.above, k, 0.0, &mut row);
+            terms.row(above, k, 0.0, &mut row);
             let left = force - product(&row, theta);
             left * left
         })
@@ -324,7 +327,7 @@ mod tests {
             }),
         };
         Equations {
-            above: band.clone(),
+            above: Some(band.clone()),
             inside: band,
             counts: vec![true; 80],
             step_s: 0.01,

@@ -13,6 +13,9 @@ use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;
 
+/// Models of other delays that are compared on more frequencies.
+const GROWN: usize = 3;
+
 /// A model with what is known of it.
 pub(super) struct Modelled {
     pub(super) estimate: Estimate,
@@ -60,11 +63,12 @@ pub(super) fn by_response(
     };
     // Growing by modes may stop short where there is little noise; subspaces do
     // not.
-    let grown = lags
+    let mut grown: Vec<_> = lags
         .filter_map(|lag| response_fit::grow(&response, lag, choice.given.order, ORDER_MAX, t))
-        .min_by(|a, b| a.criterion().total_cmp(&b.criterion()));
+        .collect();
+    grown.sort_by(|a, b| a.criterion().total_cmp(&b.criterion()));
     let mut starts = from_subspace(&data.head(CHOSEN), choice);
-    starts.extend(grown.map(|best| best.transfer));
+    starts.extend(grown.into_iter().take(GROWN).map(|best| best.transfer));
     let best = response_fit::best_of(&response, &starts, t)?;
     let mut estimate = as_it_is(data, &best.transfer)?;
     estimate.covariance = best.covariance;

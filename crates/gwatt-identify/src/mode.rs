@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use nalgebra::Complex;
 
 use super::polynomial::{product, roots};
+use super::spectral_lines::thinned;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction, factors};
 
@@ -18,6 +19,8 @@ type C = Complex<f64>;
 /// Dampings that are tried: of modes that ring, and of those that do not.
 const RINGING: &[f64] = &[0.01, 0.04, 0.15];
 const DAMPED: &[f64] = &[0.6];
+/// Frequencies on which a place for a mode is looked for, about.
+const SPARSE: usize = 1_500;
 /// Up to this share of the sampling frequency.
 const BAND: f64 = 0.45;
 
@@ -47,13 +50,12 @@ fn best_of(
     let rounding = 1e-16 * strongest.fold(f64::MIN_POSITIVE, f64::max);
     let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(rounding);
     let mut points = Points::default();
-    for ((f, g), variance) in response
+    let in_band = response
         .frequency_hz
-        .iter()
-        .zip(&response.response)
-        .zip(&response.variance)
-        .filter(|((f, _), _)| **f * period_s < BAND)
-    {
+        .partition_point(|f| f * period_s < BAND);
+    for at in thinned(in_band, SPARSE) {
+        let f = response.frequency_hz.get(at)?;
+        let (g, variance) = (response.response.get(at)?, response.variance.get(at)?);
         let theta = 2.0 * PI * f * period_s;
         // The hold delays by half a period and the delay by the rest.
         let phase = theta * (transfer.delay_s / period_s + 0.5);

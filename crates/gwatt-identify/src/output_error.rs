@@ -166,8 +166,8 @@ pub fn refine(
 pub struct Fitting<'a> {
     raw: Data<'a>,
     /// What is filtered before and after a model is the same: the signals are
-    /// filtered once.
-    signals: Signals,
+    /// filtered once. Without taps they are what was recorded.
+    signals: Option<Signals>,
     taps: &'a [f64],
     /// Sum of squares of the output.
     power: f64,
@@ -178,7 +178,7 @@ impl<'a> Fitting<'a> {
     #[must_use]
     pub fn new(raw: Data<'a>, taps: &'a [f64]) -> Self {
         Self {
-            signals: Signals::behind(&raw, |x| whitened(x, taps)),
+            signals: (!taps.is_empty()).then(|| Signals::behind(&raw, |x| whitened(x, taps))),
             power: raw.output.iter().map(|y| y * y).sum(),
             raw,
             taps,
@@ -197,7 +197,8 @@ impl<'a> Fitting<'a> {
         effort: Effort,
     ) -> Option<Estimate> {
         let raw = &self.raw;
-        let data = &self.signals.data(raw);
+        let filtered = self.signals.as_ref().map(|signals| signals.data(raw));
+        let data = filtered.as_ref().unwrap_or(raw);
         let left_out = self.taps.len() + data.skip();
         // The search goes down on squares; instruments come at its end.
         let open = Data {

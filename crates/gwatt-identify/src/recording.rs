@@ -107,7 +107,7 @@ impl Recording {
             .position(|(_, _, meaning)| meaning.quantity == Quantity::Time);
         let (period_s, notes) = match (at, how.rate_hz) {
             (Some(at), _) => {
-                let time = values.get(at).cloned().unwrap_or_default();
+                let time = values.get_mut(at).map(std::mem::take).unwrap_or_default();
                 even(&time, &mut values, &lines)?
             }
             (None, rate_hz) => (1.0 / rate_hz.unwrap_or(1.0), Vec::new()),

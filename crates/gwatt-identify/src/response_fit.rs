@@ -9,10 +9,11 @@ use std::f64::consts::PI;
 
 use nalgebra::{Complex, DMatrix};
 
-use super::discrete::SampledResponse;
+use super::discrete::{LANES, Lanes, SampledResponse};
 use super::mode::with_mode;
 use super::normal::Normal;
 use super::parameters::{is_admissible, parameters, probes, with};
+use super::spectral_lines::numbered;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
 
@@ -21,8 +22,12 @@ type C = Complex<f64>;
 /// Steps of each fit while the model grows, and of the last one.
 const STEPS: usize = 15;
 const STEPS_LAST: usize = 80;
-/// Frequencies on which models are compared; the last fit takes all.
+/// Frequencies on which a model grows, and on which what has grown is compared; the last
+/// fit takes all.
+const GROWN: usize = 1_000;
 const COMPARED: usize = 4_000;
+/// Blocks of frequencies that are worked on at a time.
+const STRETCH: usize = 32;
 /// Up to this share of the sampling frequency the response is used.
 const BAND: f64 = 0.47;
 
@@ -51,106 +56,138 @@ impl ResponseFit {
     }
 }
 
+/// Some frequencies with their responses and weights. Where there are fewer, the last
+/// one fills up, without any weight.
+#[derive(Debug, Clone, Default)]
+struct Block {
+    z: [Lanes; 2],
+    response: [Lanes; 2],
+    weight: Lanes,
+}
+
 /// Frequencies, responses and weights within the band.
+#[derive(Debug, Clone, Default)]
 struct Points {
-    z: Vec<C>,
-    response: Vec<C>,
-    weight: Vec<f64>,
+    blocks: Vec<Block>,
+    count: usize,
 }
 
 impl Points {
     /// One of so many that there are about `most`; all where there are no more.
     fn some(response: &FrequencyResponse, period_s: f64, most: usize) -> Option<Self> {
-        let all = Self::new(response, period_s)?;
-        let every = all.z.len().div_ceil(most).max(1);
-        Some(Self {
-            z: all.z.into_iter().step_by(every).collect(),
-            response: all.response.into_iter().step_by(every).collect(),
-            weight: all.weight.into_iter().step_by(every).collect(),
-        })
+        let all = Self::used(response, period_s)?;
+        let every = all.len().div_ceil(most).max(1);
+        Some(Self::of(all.into_iter().step_by(every)))
     }
 
     fn new(response: &FrequencyResponse, period_s: f64) -> Option<Self> {
+        Self::some(response, period_s, usize::MAX)
+    }
+
+    fn of(points: impl Iterator<Item = (C, C, f64)>) -> Self {
+        let mut out = Self::default();
+        for (z, g, weight) in points {
+            let at = out.count % LANES;
+            if at == 0 {
+                out.blocks.push(Block::default());
+            }
+            out.count += 1;
+            let Some(block) = out.blocks.last_mut() else {
+                continue;
+            };
+            // Those after it are filled up by it until they come.
+            let fill = |list: &mut Lanes, value: f64| {
+                for slot in list.iter_mut().skip(at) {
+                    *slot = value;
+                }
+            };
+            let [re, im] = &mut block.z;
+            fill(re, z.re);
+            fill(im, z.im);
+            let [re, im] = &mut block.response;
+            fill(re, g.re);
+            fill(im, g.im);
+            if let Some(slot) = block.weight.get_mut(at) {
+                *slot = weight;
+            }
+        }
+        out
+    }
+
+    /// What of a response counts: z, value and weight.
+    fn used(response: &FrequencyResponse, period_s: f64) -> Option<Vec<(C, C, f64)>> {
         let mut sorted = response.variance.clone();
         sorted.sort_by(f64::total_cmp);
         let strongest = response.response.iter().map(C::norm_sqr);
         let rounding = 1e-16 * strongest.fold(f64::MIN_POSITIVE, f64::max);
         // A few lucky frequencies must not rule.
         let floor = (0.01 * sorted.get(sorted.len() / 2)?).max(rounding);
-        let mut points = Self {
-            z: Vec::new(),
-            response: Vec::new(),
-            weight: Vec::new(),
-        };
-        for ((f, g), variance) in response
-            .frequency_hz
-            .iter()
-            .zip(&response.response)
-            .zip(&response.variance)
-        {
+        let values = response.response.iter().zip(&response.variance);
+        let points = response.frequency_hz.iter().zip(values);
+        let used = points.filter_map(|(f, (g, variance))| {
             let weight = 1.0 / variance.max(floor);
-            if f * period_s <= BAND && weight.is_finite() && g.re.is_finite() && g.im.is_finite() {
-                let (sin, cos) = libm::sincos(2.0 * PI * f * period_s);
-                points.z.push(C::new(cos, sin));
-                points.response.push(*g);
-                points.weight.push(weight.sqrt());
+            let counts =
+                f * period_s <= BAND && weight.is_finite() && g.re.is_finite() && g.im.is_finite();
+            let (sin, cos) = libm::sincos(2.0 * PI * f * period_s);
+            counts.then(|| (C::new(cos, sin), *g, weight.sqrt()))
+        });
+        Some(used.collect())
+    }
+
+    /// The responses so many periods earlier.
+    fn earlier(&self, lag: i32) -> Self {
+        let mut out = self.clone();
+        for block in &mut out.blocks {
+            let [re, im] = &mut block.response;
+            let [x, y] = &block.z;
+            for ((re, im), (x, y)) in re.iter_mut().zip(im).zip(x.iter().zip(y)) {
+                let turned = C::new(*re, *im) * C::new(*x, *y).powi(lag);
+                (*re, *im) = (turned.re, turned.im);
             }
         }
-        Some(points)
+        out
     }
 
-    /// The model's samples at these frequencies.
-    fn model(&self, transfer: &TransferFunction, period_s: f64) -> Option<Vec<C>> {
-        let sampled = SampledResponse::new(transfer, period_s)?;
-        let lag = libm::round(transfer.delay_s / period_s) as i32;
-        Some(
-            self.z
-                .iter()
-                .map(|z| sampled.at(*z) * z.powi(-lag))
-                .collect(),
-        )
-    }
-
+    /// Normal equations of a step from a model, its delay left out.
     fn gather(&self, transfer: &TransferFunction, period_s: f64) -> Option<Normal> {
         let theta = parameters(transfer, false);
-        let base = self.model(transfer, period_s)?;
-        let mut columns = Vec::with_capacity(theta.len());
-        for (index, probe) in probes(transfer, false, period_s).iter().enumerate() {
+        let base = SampledResponse::new(transfer, period_s)?;
+        let probes = probes(transfer, false, period_s);
+        let moved = probes.iter().enumerate().map(|(index, probe)| {
             let mut theta = theta.clone();
             *theta.get_mut(index)? += probe;
-            let moved = self.model(&with(transfer, &theta), period_s)?;
-            let column: Vec<C> = moved
-                .iter()
-                .zip(&base)
-                .map(|(moved, base)| (moved - base) / *probe)
-                .collect();
-            columns.push(column);
-        }
+            SampledResponse::new(&with(transfer, &theta), period_s)
+        });
+        let moved = moved.collect::<Option<Vec<_>>>()?;
         let mut normal = Normal::new(theta.len());
-        let mut rows = [vec![0.0; theta.len()], vec![0.0; theta.len()]];
-        for (k, ((g, base), weight)) in self
-            .response
-            .iter()
-            .zip(&base)
-            .zip(&self.weight)
-            .enumerate()
-        {
-            let [re, im] = &mut rows;
-            for ((re, im), column) in re.iter_mut().zip(im.iter_mut()).zip(&columns) {
-                let x = column.get(k)? * *weight;
-                *re = x.re;
-                *im = x.im;
+        let mut columns = vec![Vec::with_capacity(2 * LANES * STRETCH); theta.len()];
+        let mut gaps = Vec::with_capacity(2 * LANES * STRETCH);
+        for stretch in self.blocks.chunks(STRETCH) {
+            columns.iter_mut().for_each(Vec::clear);
+            gaps.clear();
+            for block in stretch {
+                let here = base.at_each(&block.z);
+                let scaled = |from: &[Lanes; 2], to: &[Lanes; 2], by: f64, out: &mut Vec<f64>| {
+                    for (from, to) in from.iter().zip(to) {
+                        let apart = from.iter().zip(to).zip(&block.weight);
+                        out.extend(apart.map(|((from, to), w)| (to - from) / by * w));
+                    }
+                };
+                for ((moved, probe), column) in moved.iter().zip(&probes).zip(&mut columns) {
+                    scaled(&here, &moved.at_each(&block.z), *probe, column);
+                }
+                scaled(&here, &block.response, 1.0, &mut gaps);
             }
-            let gap = (g - base) * *weight;
-            normal.add(re, gap.re);
-            normal.add(im, gap.im);
+            normal.add_columns(&numbered(&columns), &gaps);
         }
+        normal.rows = 2 * self.count;
         normal.total.is_finite().then_some(normal)
     }
 
     fn refine(&self, start: &TransferFunction, steps: usize, period_s: f64) -> Option<ResponseFit> {
         let mut transfer = start.clone();
-        let mut normal = self.gather(&transfer, period_s)?;
+        let points = self.earlier(libm::round(start.delay_s / period_s) as i32);
+        let mut normal = points.gather(&transfer, period_s)?;
         let mut damping = 1e-3;
         for _ in 0..steps {
             let moved = normal.solve_from(0, damping).map(|step| {
@@ -162,7 +199,7 @@ impl Points {
             });
             let tried = moved
                 .filter(|next| is_admissible(next, period_s))
-                .and_then(|next| Some((self.gather(&next, period_s)?, next)));
+                .and_then(|next| Some((points.gather(&next, period_s)?, next)));
             match tried {
                 Some((found, next)) if found.total <= normal.total => {
                     let gained = normal.total - found.total;
@@ -202,7 +239,7 @@ pub fn grow(
     order_max: usize,
     period_s: f64,
 ) -> Option<ResponseFit> {
-    let points = Points::some(response, period_s, COMPARED)?;
+    let points = Points::some(response, period_s, GROWN)?;
     let rigid = TransferFunction {
         delay_s: lag as f64 * period_s,
         ..TransferFunction::constant(mean_gain(response))
@@ -247,7 +284,7 @@ pub fn best_of(
         .filter_map(|start| with_zero(&some, start, period_s))
         .min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
     let all = Points::new(response, period_s)?;
-    if all.z.len() == some.z.len() {
+    if all.count == some.count {
         return Some(best);
     }
     all.refine(&best.transfer, STEPS_LAST, period_s)
@@ -283,5 +320,53 @@ fn mean_gain(response: &FrequencyResponse) -> f64 {
         mean
     } else {
         1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A response of eleven frequencies, a period late, is fitted to its last digits, and
+    /// what fills up the second block counts nothing.
+    #[test]
+    fn what_fills_up_counts_nothing() {
+        let truth = TransferFunction {
+            poles: vec![Factor::Pair {
+                omega_rad_s: 400.0,
+                damping: 0.1,
+            }],
+            delay_s: 1e-3,
+            ..TransferFunction::constant(2.0)
+        };
+        let sampled = SampledResponse::new(&truth, 1e-3).unwrap();
+        let frequency_hz: Vec<f64> = (1..12).map(|k| 15.0 * f64::from(k)).collect();
+        let at = |hz: &f64| {
+            let (sin, cos) = libm::sincos(2e-3 * PI * hz);
+            let z = C::new(cos, sin);
+            sampled.at(z) * z.powi(-1)
+        };
+        let response = FrequencyResponse {
+            response: frequency_hz.iter().map(at).collect(),
+            variance: vec![1e-4; 11],
+            coherence: vec![1.0; 11],
+            power: vec![1.0; 11],
+            periodic: true,
+            frequency_hz,
+        };
+        let points = Points::new(&response, 1e-3).unwrap();
+        assert_eq!((points.blocks.len(), points.count), (2, 11));
+        assert!(points.blocks[1].weight[3..].iter().all(|w| *w == 0.0));
+        assert!(points.earlier(1).gather(&truth, 1e-3).unwrap().total < 1e-18);
+        let mut start = truth.clone();
+        start.gain = 1.7;
+        start.poles = vec![Factor::Pair {
+            omega_rad_s: 430.0,
+            damping: 0.2,
+        }];
+        let found = points.refine(&start, STEPS_LAST, 1e-3).unwrap();
+        assert_eq!(found.rows, 22);
+        assert!((found.transfer.gain - 2.0).abs() < 1e-6, "{found:?}");
+        assert!((found.transfer.poles[0].corner_rad_s() - 400.0).abs() < 1e-3);
     }
 }

@@ -7,11 +7,11 @@
 //! that is estimated next to the model. Whether there is any shows where motion is slow
 //! and the axis as good as rigid.
 
-use super::column::{Kind, Quantity};
+use super::column::Quantity;
 use super::equations::Equations;
 use super::filter::{derivative, low_pass};
 use super::friction::{Solved, Terms, moves_one_way, solve};
-use super::recording::{Recording, Signal};
+use super::recording::Recording;
 
 /// Band in which friction is looked for, Hz.
 const SLOW_HZ: f64 = 5.0;
@@ -162,16 +162,8 @@ impl Rubbing {
 
 /// Mass and friction where motion is slow.
 fn slow(recording: &Recording, speed: &[f64]) -> Option<Solved> {
-    let mut slow = recording.clone();
-    if are_sums(recording) {
-        slow.signals.push(Signal {
-            name: "speed".to_owned(),
-            quantity: Quantity::Velocity,
-            kind: Kind::Neither,
-            values: speed.to_vec(),
-        });
-    }
-    let equations = Equations::of(&slow, SLOW_HZ.min(SMOOTH / recording.period_s)).ok()?;
+    let band_hz = SLOW_HZ.min(SMOOTH / recording.period_s);
+    let equations = Equations::with_speed(recording, speed, band_hz).ok()?;
     let mut all = [equations];
     // One way Coulomb friction is as good as an offset. Sums of accelerations do not show
     // which way.

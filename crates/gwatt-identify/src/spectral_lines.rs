@@ -7,6 +7,7 @@
 //! say, mostly far fewer than samples.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use nalgebra::Complex;
 
@@ -66,21 +67,15 @@ impl Lines {
             return None;
         }
         let from = data.len() - count;
-        let output = transform_of(data.output.get(from..from + count)?);
-        let late: Vec<Vec<C>> = (0..LATE + TAPS)
-            .map(|late| {
-                let first = from.saturating_sub(late);
-                let mut part = vec![0.0; (first + late) - from];
-                part.extend(data.input.iter().skip(first).take(count - part.len()));
-                transform_of(&part)
-            })
-            .collect();
         let turn = 2.0 * PI / count as f64;
         let edge = (BEYOND * band_rad_s * data.period_s + FREE) / turn;
         let lines = (edge as usize).min(count / 2 - 1);
         let used: Vec<usize> = thinned(lines, most).iter().map(|line| line + 1).collect();
         let pick = |x: &[C]| -> Vec<C> { used.iter().map(|line| at(x, *line)).collect() };
         let theta: Vec<f64> = used.iter().map(|line| *line as f64 * turn).collect();
+        let z: Vec<C> = theta.iter().map(|theta| on_circle(*theta)).collect();
+        let output = pick(&transform_of(data.output.get(from..from + count)?));
+        let input = pick(&transform_of(data.input.get(from..from + count)?));
         let times = data.measured.integrators();
         let held = |theta: f64| integrators(noise.leak, times, theta);
         // Parseval: a line and its image, each a sum over all samples.
@@ -90,20 +85,20 @@ impl Lines {
                 .iter()
                 .map(|theta| share * response(&noise.taps, *theta) * held(*theta))
                 .collect(),
-            inputs: late.iter().map(|x| pick(x)).collect(),
+            inputs: by_lateness(input, &z, data.input, from..from + count),
             output: Vec::new(),
             measured: data.measured,
             edge: BEYOND * band_rad_s * data.period_s,
             period_s: data.period_s,
             power: 0.0,
-            z: theta.iter().map(|theta| on_circle(*theta)).collect(),
+            z,
             theta,
             samples: count,
             from_command: data.from_command,
             early_s: data.early_s,
             ends: if noise.leak > 0.0 { times } else { 0 },
         };
-        out.output = out.column(&pick(&output));
+        out.output = out.column(&output);
         out.power = out.output.iter().map(|x| x * x).sum();
         Some(out)
     }
@@ -248,6 +243,22 @@ impl Lines {
     }
 }
 
+/// Lines of a stretch of a signal by how many samples it is late; before its first sample
+/// there was nothing. A sample later, the last one is out and one before the first is in,
+/// and both stand where the stretch begins.
+fn by_lateness(lines: Vec<C>, z: &[C], signal: &[f64], stretch: Range<usize>) -> Vec<Vec<C>> {
+    let mut out = vec![lines];
+    for late in 1..LATE + TAPS {
+        let sample = |at: Option<usize>| at.and_then(|at| signal.get(at)).copied();
+        let comes = sample(stretch.start.checked_sub(late)).unwrap_or_default();
+        let goes = sample(stretch.end.checked_sub(late)).unwrap_or_default();
+        let before = out.last().map_or(&[][..], Vec::as_slice);
+        let next = before.iter().zip(z);
+        out.push(next.map(|(x, z)| x * z.conj() + (comes - goes)).collect());
+    }
+    out
+}
+
 /// Of so many, evenly up to a third of `most`, then by factors: about `most`, and a
 /// little more where there are many.
 #[must_use]
@@ -326,4 +337,32 @@ pub fn integrators(leak: f64, times: usize, theta: f64) -> f64 {
     }
     let each = (C::new(1.0, 0.0) - on_circle(-theta) * (1.0 - leak)).norm_sqr();
     libm::pow(each, -0.5 * times as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of what is late are those of the transform of what is late.
+    #[test]
+    fn what_is_late_has_the_lines_of_a_late_signal() {
+        let signal: Vec<f64> = (0..47).map(|k| f64::from(k * k % 13) - 5.0).collect();
+        let turn = 2.0 * PI / 40.0;
+        let z: Vec<C> = (0..21)
+            .map(|line| on_circle(turn * f64::from(line)))
+            .collect();
+        for from in [7, 2] {
+            let lines = transform_of(&signal[from..from + 40]);
+            let late = by_lateness(lines, &z, &signal, from..from + 40);
+            assert_eq!(late.len(), LATE + TAPS);
+            for (late, lines) in late.iter().enumerate() {
+                let shifted: Vec<f64> = (0..40)
+                    .map(|k| (from + k).checked_sub(late).map_or(0.0, |at| signal[at]))
+                    .collect();
+                for (found, expected) in lines.iter().zip(transform_of(&shifted)) {
+                    assert!((found - expected).norm() < 1e-10, "{from} {late}");
+                }
+            }
+        }
+    }
 }

@@ -341,25 +341,30 @@ pub fn repetition(x: &[f64]) -> Option<usize> {
     }
     let mean = x.iter().sum::<f64>() / n as f64;
     let length = (2 * n).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let forward = planner.plan_fft_forward(length);
-    let backward = planner.plan_fft_inverse(length);
+    let fft = plan(length);
     let mut data: Vec<f64> = x.iter().map(|x| x - mean).collect();
     data.resize(length, 0.0);
-    let mut spectrum = forward.make_output_vec();
-    forward.process(&mut data, &mut spectrum).ok()?;
-    for bin in &mut spectrum {
-        *bin = C::new(bin.norm_sqr(), 0.0);
+    let mut spectrum = fft.make_output_vec();
+    fft.process(&mut data, &mut spectrum).ok()?;
+    // Powers are real and the same on both sides: there and back are one transform.
+    for (at, bin) in spectrum.iter().enumerate() {
+        for at in [at, (length - at) % length] {
+            if let Some(slot) = data.get_mut(at) {
+                *slot = bin.norm_sqr();
+            }
+        }
     }
-    backward.process(&mut spectrum, &mut data).ok()?;
-    let power = *data.first()?;
+    fft.process(&mut data, &mut spectrum).ok()?;
+    drop(data);
+    let power = spectrum.first()?.re;
     if power <= 0.0 {
         return None;
     }
     let close = (SHORTEST..=n / 2).filter(|lag| {
         let overlap = (n - lag) as f64 / n as f64;
-        data.get(*lag)
-            .is_some_and(|c| c / power > 0.99 * overlap - 1e-3)
+        spectrum
+            .get(*lag)
+            .is_some_and(|c| c.re / power > 0.99 * overlap - 1e-3)
     });
     // Of neighbouring lags the best is the period; the list is short.
     for lag in close.take(64) {
