@@ -54,6 +54,7 @@ mod output_error;
 mod parallel;
 mod parameters;
 mod peak_factor;
+mod places;
 mod polynomial;
 mod power_log;
 mod prepared;

@@ -10,8 +10,9 @@ use nalgebra::{Cholesky, Complex, Matrix4, Vector4};
 
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, probes, with};
+use super::places::{numbered, thinned};
 use super::polynomial::{product, roots};
-use super::spectral_lines::{Lines, add_scaled, at, inverse, numbered, on_circle, thinned, turned};
+use super::spectral_lines::{Lines, add_scaled, at, inverse, on_circle, turned};
 use super::transfer::{Factor, TransferFunction, factors};
 
 type C = Complex<f64>;

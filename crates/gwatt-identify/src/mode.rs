@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 
 use nalgebra::Complex;
 
+use super::places::thinned;
 use super::polynomial::{product, roots};
-use super::spectral_lines::thinned;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction, factors};
 

@@ -13,7 +13,7 @@ use super::discrete::{LANES, Lanes, SampledResponse};
 use super::mode::with_mode;
 use super::normal::Normal;
 use super::parameters::{is_admissible, parameters, probes, with};
-use super::spectral_lines::numbered;
+use super::places::numbered;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
 

@@ -15,6 +15,7 @@ use super::data::Data;
 use super::disturbance::Noise;
 use super::neighbours::LAG_MAX;
 use super::parallel::{Hold, Section, TAPS};
+use super::places::thinned;
 use super::spectrum::transform_of;
 use super::state_space::Measured;
 
@@ -259,23 +260,6 @@ fn by_lateness(lines: Vec<C>, z: &[C], signal: &[f64], stretch: Range<usize>) ->
     out
 }
 
-/// Of so many, evenly up to a third of `most`, then by factors: about `most`, and a
-/// little more where there are many.
-#[must_use]
-pub fn thinned(count: usize, most: usize) -> Vec<usize> {
-    if count <= most {
-        return (0..count).collect();
-    }
-    let even = most as f64 / 3.0;
-    let mut out = Vec::new();
-    let mut place = 0.0;
-    while (place as usize) < count {
-        out.push(place as usize);
-        place += (place / even).max(1.0);
-    }
-    out
-}
-
 /// Adds a multiple of a signal.
 pub fn add_scaled(column: &mut [C], factor: f64, x: &[C]) {
     if factor != 0.0 {
@@ -311,12 +295,6 @@ pub fn turned(phi: [f64; 4], states: &[Vec<C>; 2], k: usize) -> [C; 2] {
     let [x, y] = states;
     let (x, y) = (at(x, k), at(y, k));
     [x * a + y * b, x * c + y * d]
-}
-
-/// Columns with their places.
-#[must_use]
-pub fn numbered(columns: &[Vec<f64>]) -> Vec<(usize, &[f64])> {
-    columns.iter().map(Vec::as_slice).enumerate().collect()
 }
 
 /// Size of the whitening filter's response.
