@@ -15,7 +15,7 @@ An axis is its letter, a colon, and what is known of it, with commas between:
   belt=20x2x9       teeth of its pulleys, pitch and width in mm     drive=linear-motor
   rotor_kg_m2       with coupling and brake           gear_ratio    motor by screw or wheel
   coulomb_n         friction; or guide_friction, the coefficient of its guides
-  counterweight_kg  what balances a vertical axis     efficiency    mechanical by electrical power
+  counterweight_kg  balances Z and moves with it     efficiency    mechanical by electrical power
   jerk_mm_s3        jerk
 
 Speed, acceleration, table_kg and one drive are needed. What else is left out is said once, with

@@ -71,11 +71,23 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
     field("jerk_mm_s3", axis.get("jerk_mm_s3"), "");
     let moved = rounded(axis.moved_kg());
     let table = shown(axis.get("table_kg").unwrap_or(0.0));
-    let comment = match axis.get("workpiece_kg") {
-        Some(workpiece) => format!("table {table} + workpiece {}", shown(workpiece)),
-        None => String::new(),
-    };
-    field("moved_mass_kg", Some(moved), &comment);
+    // A weight on a chain is accelerated too; a cylinder of gas is not, and counts higher.
+    let balancing = axis.get("counterweight_kg");
+    let parts = [
+        ("workpiece", axis.get("workpiece_kg")),
+        ("counterweight", balancing),
+    ];
+    let mut comment = String::new();
+    for (name, mass_kg) in parts {
+        if let Some(mass_kg) = mass_kg {
+            if comment.is_empty() {
+                let _ = write!(comment, "table {table}");
+            }
+            let _ = write!(comment, " + {name} {}", shown(mass_kg));
+        }
+    }
+    let accelerated = rounded(moved + balancing.unwrap_or(0.0));
+    field("moved_mass_kg", Some(accelerated), &comment);
     let rotor = axis.get("rotor_kg_m2").unwrap_or(0.0);
     let comment = match (axis.drive, axis.get("rotor_kg_m2")) {
         (Drive::Direct, _) => "a linear motor has no rotor",

@@ -74,6 +74,7 @@ pub(super) fn at_most(family: Family, expression: &[u8], most: f64) -> Option<St
         Family::Rs274 | Family::Iso => Some(format!(
             "[[{expression}+{most}-ABS[{expression}-{most}]]/2]"
         )),
+        Family::Isg => Some(format!("MIN[{expression},{most}]")),
         Family::Siemens => Some(format!("MINVAL({expression},{most})")),
         _ => None,
     }

@@ -21,9 +21,9 @@ fn what_is_known_becomes_a_machine_file() {
     # What the axes come to:
     #
     #   X  30000 mm/min  3000 mm/s2  246 kg   755 N  444 W alone
-    #   Z  12000 mm/min  2000 mm/s2  41.1 kg  230 N  57.6 W alone
+    #   Z  12000 mm/min  2000 mm/s2  71.1 kg  290 N  72.6 W alone
     #   X: 246.3 kg = 160 moved mass + 47.37 rotor (0.00012 kg m2) + 38.94 screw (0.00009865 kg m2)
-    #   Z: 41.1 kg = 40 moved mass + 1 rotor (0.0001 kg m2) + 0.09865 pinion (0.00003946 kg m2)
+    #   Z: 71.1 kg = 70 moved mass + 1 rotor (0.0001 kg m2) + 0.09865 pinion (0.00003946 kg m2)
     #
     # Not given:
     # * no controller given: programs are read as iso (`gwatt machine list` has all)
@@ -50,7 +50,7 @@ fn what_is_known_becomes_a_machine_file() {
     kind = "linear"
     rapid_mm_min = 12000
     accel_mm_s2 = 2000
-    moved_mass_kg = 40
+    moved_mass_kg = 70           # table 40 + counterweight 30
     rotor_kg_m2 = 0.0001
     gear_ratio = 2
     pinion = { diameter_mm = 40, width_mm = 20 }

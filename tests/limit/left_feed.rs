@@ -129,6 +129,14 @@ fn what_the_program_works_out_is_held_below_a_value() {
     ] {
         assert_eq!(limited(controller, 300.0, program), written);
     }
+    let isg = shop("isg", 300.0);
+    isg.put("a.nc", "P1=20000\nG60 G1 X1000 F=P1\nX0\nM30\n");
+    let (code, text, errors) = isg.run("limit a.nc --allow feed --strategy speed");
+    assert_eq!(code, 0, "{errors}");
+    assert!(
+        text.contains("\nG60 G1 X1000 F=MIN[P1,13714.]\nX0\n"),
+        "{text}"
+    );
     // A Fanuc control nests no more than five brackets.
     let nested = "#1=20000.\nG1 X1000. F[[[#1]]]\nM30\n";
     refused("iso", nested, "its feed is worked out by the program");
