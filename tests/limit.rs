@@ -192,3 +192,19 @@ pub(crate) fn options(run: Run) -> Options {
     }
     options
 }
+
+/// Peak power and time of a program, by hand.
+#[track_caller]
+pub(crate) fn assert_figures(
+    found: &gwatt::pipeline::Summary,
+    peak_w: f64,
+    duration_s: f64,
+    program: impl std::fmt::Display,
+) {
+    let (found_w, found_s) = (found.peak_w, found.duration_s);
+    assert!(
+        (found_w - peak_w).abs() < 1e-6 * peak_w,
+        "{program}: {found_w}"
+    );
+    assert!((found_s - duration_s).abs() < 1e-9, "{program}: {found_s}");
+}

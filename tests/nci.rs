@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use gwatt::pipeline::{Strategy, Summary, analyze};
 
-use crate::limit::{EXACT_STOP, RIG, Rig, options};
+use crate::limit::{EXACT_STOP, RIG, Rig, assert_figures, options};
 use crate::listing::{listing, machine, refusals};
 
 /// X and Y of 500 kg, 0.5 m/s and 5 m/s²: 1250 W and, over 400 mm, 0.8 s + 0.1 s.
@@ -130,16 +130,7 @@ fn the_dynamic_override_is_followed() {
     ];
     for (program, peak_w, duration_s) in cases {
         let found = summary(&NCI, program);
-        assert!(
-            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
-            "{program}: {}",
-            found.peak_w
-        );
-        assert!(
-            (found.duration_s - duration_s).abs() < 1e-9,
-            "{program}: {}",
-            found.duration_s
-        );
+        assert_figures(&found, peak_w, duration_s, program);
     }
 }
 
@@ -164,16 +155,7 @@ fn the_jerk_is_lowered_too() {
     ];
     for (program, peak_w, duration_s) in cases {
         let found = summary(&rig, &program);
-        assert!(
-            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
-            "{program}: {}",
-            found.peak_w
-        );
-        assert!(
-            (found.duration_s - duration_s).abs() < 1e-9,
-            "{program}: {}",
-            found.duration_s
-        );
+        assert_figures(&found, peak_w, duration_s, program);
     }
 }
 

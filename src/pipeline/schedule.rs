@@ -14,9 +14,9 @@ use crate::plan::{SpindleCaps, SpindleDrive};
 use crate::source::{Span, split_line_end};
 
 /// Rows that are read.
-const ROWS_MAX: usize = 1_000_000;
-/// Findings that are told.
-const FINDINGS_MAX: usize = 20;
+pub(super) const ROWS_MAX: usize = 1_000_000;
+/// Findings that are reported.
+pub(super) const FINDINGS_MAX: usize = 20;
 
 /// The columns: name, and other names that are understood.
 const COLUMNS: [(&str, &[&str]); 6] = [
@@ -75,9 +75,11 @@ impl Schedule {
             commands: Vec::new(),
             columns: None,
         };
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        for (index, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
-            reader.line(index as u64 + 1, line);
+        for (number, line) in lines(bytes) {
+            match line {
+                Ok(text) => reader.line(number, text),
+                Err(error) => reader.found.push(error),
+            }
             if reader.found.len() >= FINDINGS_MAX {
                 break;
             }
@@ -98,16 +100,7 @@ impl Schedule {
 }
 
 impl Reader<'_> {
-    fn line(&mut self, number: u64, bytes: &[u8]) {
-        let (body, _) = split_line_end(bytes);
-        let Ok(text) = std::str::from_utf8(body) else {
-            let span = Span::new(0, body.len());
-            let message = "this line is not text";
-            return self.error("schedule-text", message, None, (number, body, span));
-        };
-        if text.trim().is_empty() || text.trim_start().starts_with('#') {
-            return;
-        }
+    fn line(&mut self, number: u64, text: &str) {
         let fields = fields(text);
         match self.columns.take() {
             None => self.header(number, text, &fields),
@@ -281,6 +274,23 @@ impl Reader<'_> {
         error.help = help;
         self.found.push(error);
     }
+}
+
+/// The lines of a schedule with their numbers, but for blank ones and comments; an error for
+/// one that is not text.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (u64, Result<&str, Diagnostic>)> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let lines = (1..).zip(bytes.split_inclusive(|&byte| byte == b'\n'));
+    lines.filter_map(|(number, line)| {
+        let (body, _) = split_line_end(line);
+        let Ok(text) = std::str::from_utf8(body) else {
+            let error = Diagnostic::error("schedule-text", "this line is not text");
+            let whole = Span::new(0, body.len());
+            return Some((number, Err(error.at(number, whole, body))));
+        };
+        let says = !text.trim().is_empty() && !text.trim_start().starts_with('#');
+        says.then_some((number, Ok(text)))
+    })
 }
 
 /// The values of a line, split at commas, semicolons or tabs, without blanks

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use gwatt::pipeline::{Summary, analyze};
 
-use crate::limit::{EXACT_STOP, RIG, Rig, options};
+use crate::limit::{EXACT_STOP, RIG, Rig, assert_figures, options};
 
 /// X and Y of 500 kg, 0.5 m/s and 5 m/s²: 1250 W and, over 400 mm, 0.8 s + 0.1 s.
 const RIG_840D: Rig = Rig {
@@ -52,16 +52,7 @@ fn acceleration_is_that_of_the_program() {
     ];
     for (program, peak_w, duration_s) in cases {
         let found = summary(&RIG_840D, program);
-        assert!(
-            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
-            "{program}: {}",
-            found.peak_w
-        );
-        assert!(
-            (found.duration_s - duration_s).abs() < 1e-9,
-            "{program}: {}",
-            found.duration_s
-        );
+        assert_figures(&found, peak_w, duration_s, program);
     }
 }
 
@@ -182,16 +173,7 @@ fn percentages_of_the_jerk_count() {
         let program = Cursor::new(format!("{lines}\nG0 X400\nM30\n"));
         let found = analyze(program, &machine(vouched), &options(RIG.options), None);
         let found = found.expect("a program");
-        assert!(
-            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
-            "{lines}: {}",
-            found.peak_w
-        );
-        assert!(
-            (found.duration_s - duration_s).abs() < 1e-9,
-            "{lines}: {}",
-            found.duration_s
-        );
+        assert_figures(&found, peak_w, duration_s, lines);
     }
 }
 
@@ -216,15 +198,6 @@ fn percentages_of_the_speed_count_where_they_are_confirmed() {
     for (program, peak_w, duration_s) in cases {
         let text = Cursor::new(format!("{program}\nM30\n"));
         let found = analyze(text, &machine, &options(RIG.options), None).expect("a program");
-        assert!(
-            (found.peak_w - peak_w).abs() < 1e-6 * peak_w,
-            "{program}: {}",
-            found.peak_w
-        );
-        assert!(
-            (found.duration_s - duration_s).abs() < 1e-9,
-            "{program}: {}",
-            found.duration_s
-        );
+        assert_figures(&found, peak_w, duration_s, program);
     }
 }

@@ -16,13 +16,8 @@ use super::column::{COLUMNS, Column, Of, Quantity};
 use crate::diagnostic::Diagnostic;
 use crate::machine::units::SECONDS_PER_MINUTE;
 use crate::machine::{AxisKind, Machine};
-use crate::pipeline::schedule::{Field, fields};
-use crate::source::{Span, split_line_end};
-
-/// Rows that are read.
-const ROWS_MAX: usize = 1_000_000;
-/// Findings that are reported.
-const FINDINGS_MAX: usize = 20;
+use crate::pipeline::schedule::{FINDINGS_MAX, Field, ROWS_MAX, fields, lines};
+use crate::source::Span;
 
 /// Which drive a row is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,9 +95,11 @@ impl DriveSchedule {
             commands: Vec::new(),
             columns: None,
         };
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        for (number, line) in (1..).zip(bytes.split_inclusive(|&byte| byte == b'\n')) {
-            reader.line(number, line);
+        for (number, line) in lines(bytes) {
+            match line {
+                Ok(text) => reader.line(Line { number, text }),
+                Err(error) => reader.found.push(error),
+            }
             if reader.found.len() >= FINDINGS_MAX {
                 break;
             }
@@ -124,19 +121,8 @@ impl DriveSchedule {
 }
 
 impl Reader<'_> {
-    fn line(&mut self, number: u64, bytes: &[u8]) {
-        let (body, _) = split_line_end(bytes);
-        let Ok(text) = std::str::from_utf8(body) else {
-            let error = Diagnostic::error("schedule-text", "this line is not text");
-            self.found
-                .push(error.at(number, Span::new(0, body.len()), body));
-            return;
-        };
-        if text.trim().is_empty() || text.trim_start().starts_with('#') {
-            return;
-        }
-        let line = Line { number, text };
-        let fields = fields(text);
+    fn line(&mut self, line: Line<'_>) {
+        let fields = fields(line.text);
         match self.columns.take() {
             None => self.columns = Some(self.header(line, &fields)),
             Some(columns) => {
