@@ -35,6 +35,8 @@ pub(super) struct Entry {
     pub(super) apart: bool,
     /// Corners are taken in one way each time that it runs.
     pub(super) one_corner: bool,
+    /// Where a word stops the block before it: it can have that word.
+    pub(super) stop_before: bool,
     /// Where no F is in force, it may not have one either: another block cannot.
     pub(super) without_feed: bool,
     /// It has the comment that marks what stands for a rapid.
@@ -68,6 +70,7 @@ impl Entry {
             skips: false,
             apart: false,
             one_corner: true,
+            stop_before: false,
             without_feed: false,
             marked: false,
             mark: Mark::of(modal),
@@ -246,7 +249,6 @@ impl Entry {
         };
         let reasons = [edit, reason(&feed), reason(&rapid)];
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
-        let language = &machine.controller.language;
         let reason_help = self.help(machine, reason_text);
         let feed_accel_mm_s2 = self
             .knobs
@@ -269,11 +271,7 @@ impl Entry {
             rests: !facts.compensated && (stops || stopping && self.moves == 1),
             line_before: !facts.compensated,
             apart: self.apart,
-            stop_word: reasons[0].is_none()
-                && self.moves == 1
-                && !self.block.words.is_empty()
-                && language.exact_stop_word.is_some()
-                && self.may_stop_exactly(machine),
+            stop_word: self.takes_stop_word(machine, skips),
             unsplit: self.unsplit(mv),
             reason: reason_text,
             reason_help,
@@ -346,11 +344,22 @@ impl Entry {
         found.next().map(|(_, reason)| *reason)
     }
 
-    /// Whether its rapid may be written as a feed between two dwells of no time,
-    /// where the feed alone would be blended.
+    /// Whether its rapid may be written as a feed between two dwells of no time, or between
+    /// two words for an exact stop, where the feed alone would be blended.
     pub(super) fn between_stops(&self, machine: &Machine) -> bool {
         let mut moving = self.its_moves().filter(|mv| mv.kind != MoveKind::Dwell);
-        machine.controller.planner.dwell_stops && moving.next().is_some() && moving.next().is_none()
+        let one_move = moving.next().is_some() && moving.next().is_none();
+        let by_words = self.stop_before && self.may_stop_exactly(machine);
+        one_move && (machine.controller.planner.dwell_stops || by_words)
+    }
+
+    /// Whether the word for an exact stop may be put into its block.
+    pub(super) fn takes_stop_word(&self, machine: &Machine, skips: bool) -> bool {
+        self.keeps_its_words(skips).is_none()
+            && self.moves == 1
+            && !self.block.words.is_empty()
+            && machine.controller.language.exact_stop_word.is_some()
+            && self.may_stop_exactly(machine)
     }
 
     /// Whether it may run in exact stop, with a word in it or with words before and after it.

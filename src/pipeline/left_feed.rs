@@ -76,7 +76,16 @@ impl LeftFeeds {
                     one_expression: true,
                 });
                 user.one_feed &= user.restored.before.feed_value() == feed;
-                user.one_expression &= expression(&user.restored.before) == expression(before);
+                // The block itself may change what it is worked out from.
+                let known = expression(before);
+                let unit = if entry.facts.uses_motion {
+                    entry.facts.feed_mm_per_unit
+                } else {
+                    before.mm_per_unit
+                };
+                user.one_expression &= expression(&user.restored.before) == known
+                    && expression(&entry.mark) == known
+                    && known.is_some_and(|(_, meant)| meant == unit.to_bits());
             }
         }
         if may_change && self.is_open.insert(line) {

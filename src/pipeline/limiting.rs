@@ -375,6 +375,11 @@ impl Job<'_> {
                 rows.as_mut().map(|rows| as_sink(&mut **rows)),
             );
         };
+        let stopping = if machine.controller.stops_by_word() {
+            Some(whole.stopping(&mut input, source)?)
+        } else {
+            None
+        };
         let detail = Detail::of(rows.as_deref());
         let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
         let mut certifier = Certifier::new(machine, rungs, options, sink);
@@ -389,7 +394,8 @@ impl Job<'_> {
             None,
             PowerModel::new(machine),
         )
-        .pausing(plan);
+        .pausing(plan)
+        .stopping(stopping);
         let streamed = if options.threads > 1 {
             side_by_side(writer, certifier)?
         } else {

@@ -43,6 +43,7 @@ pub mod size;
 mod spindle;
 mod spindle_rows;
 mod split;
+mod stop_before;
 mod stops;
 mod strategy;
 mod summary;

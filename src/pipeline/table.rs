@@ -7,6 +7,7 @@ use super::decision::Decision;
 use super::entry::Entry;
 use super::left_feed::LeftFeeds;
 use super::line_key::{IN_A_FILE, LineKey};
+use super::stop_before::{Stopping, StopsBefore};
 use crate::interpret::{Corner, FeedMode, KnobState, MoveKind};
 use crate::limit::{Change, FirstFeed};
 use crate::machine::Machine;
@@ -29,6 +30,7 @@ pub(super) struct Table {
     /// The F that all of these get: the lowest that one of them needs.
     first_feed: Option<FirstFeed>,
     left_feeds: LeftFeeds,
+    stops_before: StopsBefore,
     /// Lines that nothing is decided about but the F that they count on.
     restored: HashMap<LineKey, Decision>,
 }
@@ -82,6 +84,7 @@ impl Table {
             without_feed: false,
             first_feed: None,
             left_feeds: LeftFeeds::default(),
+            stops_before: StopsBefore::default(),
             restored: HashMap::new(),
         }
     }
@@ -97,7 +100,10 @@ impl Table {
     }
 
     /// Takes note of a run of a line; `before` is the state before it.
-    pub(super) fn see(&mut self, line: LineKey, entry: &Entry, before: &Mark) {
+    pub(super) fn see(&mut self, machine: &Machine, line: LineKey, entry: &Entry, before: &Mark) {
+        if machine.controller.stops_by_word() {
+            self.stops_before.run(machine, line, entry, self.skips);
+        }
         // A line whose moves are held back counts too: they obey its words; and so does one
         // that stands where it would move to.
         let facts = &entry.facts;
@@ -155,6 +161,7 @@ impl Table {
     /// A path through a program has been seen to its end.
     pub(super) fn end(&mut self) {
         self.left_feeds.end();
+        self.stops_before.end();
     }
 
     /// All runs are seen.
@@ -206,6 +213,15 @@ impl Table {
     pub(super) fn one_corner(&self, line: LineKey) -> bool {
         let entered = self.lines.get(&line);
         entered.is_none_or(|entered| entered.one_corner)
+    }
+
+    /// Whether the axes stand before a line, or a word in the block before it can make them.
+    pub(super) fn may_stop_before(&self, line: LineKey) -> bool {
+        let writable = |line: LineKey| {
+            let entered = self.lines.get(&line);
+            (line.0 == 0 || self.with_files) && entered.is_some_and(|it| it.unanimous)
+        };
+        self.stops_before.may_stop(line, writable)
     }
 
     /// Takes what was decided for a run: the lowest of all runs counts. True
@@ -295,6 +311,34 @@ impl Table {
             };
             let decision = entered.decision.get_or_insert(own);
             decision.change.feed = Some(first.in_units(decision.facts.feed_mm_per_unit));
+        }
+    }
+
+    /// Lines before which the axes have to stand.
+    fn stopping_lines(&self) -> impl Iterator<Item = LineKey> {
+        let stopping = |entered: &Entered| entered.decision.as_ref().is_some_and(|it| it.stops);
+        let lines = self.lines.iter();
+        lines.filter_map(move |(line, entered)| stopping(entered).then_some(*line))
+    }
+
+    /// Where the program is stopped by words, if it runs from top to bottom.
+    pub(super) fn stopping(&self) -> Stopping {
+        Stopping::of(&self.stops_before, self.stopping_lines())
+    }
+
+    /// Where a rapid is written as a feed, the lines that move before it get their word.
+    pub(super) fn spread_stops(&mut self) {
+        let found: Vec<_> = self
+            .stopping_lines()
+            .flat_map(|line| self.stops_before.stopped(line))
+            .map(|(line, decision)| (line, decision.clone()))
+            .collect();
+        for (line, stopped) in found {
+            let Some(entered) = self.lines.get_mut(&line) else {
+                continue;
+            };
+            let decision = entered.decision.get_or_insert_with(|| Box::new(stopped));
+            decision.change.stop = true;
         }
     }
 

@@ -13,6 +13,7 @@ use super::certify::{Certified, Reasons, Verdict};
 use super::entry::Entry;
 use super::front::{Front, read_whole, too_large};
 use super::row::Detail;
+use super::stop_before::Stopping;
 use super::table::Table;
 use super::watching::watching_at;
 use super::ways::turns_switches;
@@ -73,6 +74,25 @@ impl Whole<'_> {
         Ok((decided.written(edited_lines)?, certified))
     }
 
+    /// Where a program is stopped by words before rapids that become feeds: what it takes to
+    /// know that of a block lies after it.
+    pub(super) fn stopping<R: Read + Seek>(
+        &self,
+        mut input: R,
+        (paths, depths, rungs): (&[Options], &Depths, &Lower),
+    ) -> Result<Stopping, Failure> {
+        let program = read_whole(&mut input)?.ok_or_else(too_large)?;
+        let source = Source {
+            program: &program,
+            paths,
+            depths,
+            rungs,
+        };
+        let (_, table) = self.decide(slice::from_ref(&source), 0, Detail::NoRows)?;
+        input.rewind().map_err(Failure::Input)?;
+        Ok(table.stopping())
+    }
+
     /// Decides about the lines of programs that share files of subprograms: the lowest of
     /// all their runs counts. `with_files` is how many programs there are where these files
     /// are written too, 0 where they are not.
@@ -122,6 +142,7 @@ impl Whole<'_> {
         }
         table.spread_word(machine);
         table.spread_feed();
+        table.spread_stops();
         table.spread_left_feeds();
         Ok((all, table))
     }
@@ -207,7 +228,7 @@ fn survey(
                 mode = mv.path_mode;
             }
         }
-        table.see(entry.key, entry, &before);
+        table.see(machine, entry.key, entry, &before);
         before = entry.mark;
     }
     table.end();
@@ -242,7 +263,7 @@ pub(super) fn write(
             feeds: decision.feeds,
             change: &decision.change,
             pieces: &[],
-            stops: decision.stops,
+            stops: decision.stops && machine.controller.planner.dwell_stops,
             rests: false,
         };
         // Contradicting edits leave the line as it was, which the certificate

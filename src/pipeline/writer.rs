@@ -4,7 +4,9 @@
 mod expect;
 mod first_feed;
 mod forced;
+mod judging;
 mod noted;
+mod stopping;
 mod waiting;
 
 use std::collections::VecDeque;
@@ -15,17 +17,18 @@ use super::batch::Batch;
 use super::certify::Reasons;
 use super::entry::{Entry, knobs, rests};
 use super::front::Front;
-use super::judge::{Flight, Judge, Queue};
+use super::judge::Flight;
 use super::outcome::Pause;
 use super::preset_notes::PresetNotes;
 use super::row::Detail;
 use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
+use super::stop_before::Stopping;
 use super::table::Table;
 use super::tally::Tally;
 use super::watching::watching;
 use super::{Failure, Options, Summary};
-use crate::interpret::{KnobState, Move, MoveKind, Step};
+use crate::interpret::{KnobState, MoveKind, Step};
 use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel};
@@ -92,6 +95,8 @@ pub(super) struct Writer<'m, R, W> {
     spindle: SpindleRows,
     may_skip: bool,
     waits: Waits,
+    /// Where blocks are stopped by a word before rapids that become feeds.
+    stopping: Option<Stopping>,
     /// Marks what stands for a rapid.
     comment: Option<Comment>,
     /// Decisions by line, for a program with calls or loops: nothing is written
@@ -146,6 +151,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             spindle: SpindleRows::default(),
             may_skip: false,
             waits: Waits::default(),
+            stopping: None,
             comment,
             table,
         }
@@ -231,6 +237,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             && !self.detail.has_rows()
             && self.table.is_none()
             && self.waits.plan.is_none()
+            && self.stopping.is_none()
             && let [Step::Move(mv)] = line.steps.as_slice()
             && !self.assessor.waits(mv)
         {
@@ -278,8 +285,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if let Some(table) = &self.table {
             self.tally.learn_files(line_files);
             self.reasons.learn_files(line_files);
-            table.tell(&mut entry);
+            table.tell(self.machine, &mut entry);
         }
+        self.tell_stop(&mut entry);
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {
@@ -291,156 +299,6 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             self.judge_waiting(entry);
         }
         Ok(true)
-    }
-
-    /// Lets a block wait, and judges its moves.
-    fn judge_waiting(&mut self, entry: Box<Entry>) {
-        let number = self.first + self.entries.len() as u64;
-        self.entries.push_back(entry);
-        let Self {
-            assessor,
-            limiter,
-            tally,
-            entries,
-            first,
-            flights,
-            judged,
-            outcomes,
-            spindle,
-            ..
-        } = self;
-        let entries = &*entries;
-        let Some(entry) = entries.back() else { return };
-        let moved = entry.moves_on();
-        // After the last step the line ends.
-        let steps = entry.steps.iter().map(Some).chain([None]);
-        for (index, step) in steps.enumerate() {
-            assessor.want = self.detail.want(tally.want());
-            if let Some(Step::Move(mv)) = step {
-                self.mode = mv.path_mode;
-                flights.push_back(Flight {
-                    entry: number,
-                    step: index,
-                    assessment: None,
-                });
-            }
-            let mut judge = Judge {
-                limiter,
-                queue: Queue {
-                    machine: self.machine,
-                    entries,
-                    first: *first,
-                    flights,
-                },
-                judged,
-                outcomes,
-            };
-            let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
-                tally.add(mv, assessment, text);
-                if spindle.judge(mv, assessment) {
-                    judge.take(mv, assessment);
-                }
-            };
-            match step {
-                Some(Step::Move(mv)) => assessor.push(mv, entry.text_of(mv), &mut sink),
-                Some(Step::Action(action)) => assessor.act(action, &mut sink),
-                None => assessor.end_line(moved, &mut sink),
-            }
-        }
-    }
-
-    /// Judges and decides the moves of a block none of which has to wait; of a
-    /// plain one, `judged` may be known.
-    fn decide_at_once(&mut self, entry: &mut Entry, judged: Option<Assessment>) {
-        for (step, mv) in entry.steps.iter().enumerate() {
-            let mv = match mv {
-                Step::Move(mv) => mv,
-                // No move waits that it could let go.
-                Step::Action(action) => {
-                    self.assessor.act(action, &mut |_, _, _| {});
-                    continue;
-                }
-            };
-            self.mode = mv.path_mode;
-            let Self {
-                assessor,
-                limiter,
-                tally,
-                machine,
-                decided,
-                spindle,
-                ..
-            } = self;
-            let mut decide = |assessment: &Assessment| {
-                let find = |_| Some(entry.waiting(machine, mv, step));
-                limiter.push(mv, assessment, &find, &mut |outcome| {
-                    decided.push((*assessment, outcome));
-                });
-            };
-            if let Some(assessment) = &judged {
-                decide(assessment);
-                continue;
-            }
-            assessor.want = self.detail.want(tally.want());
-            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
-                tally.add(judged, assessment, text);
-                if spindle.judge(judged, assessment) {
-                    decide(assessment);
-                }
-            });
-        }
-        std::mem::swap(&mut entry.decided, &mut self.decided);
-    }
-
-    /// Judges and decides what is left at the end.
-    fn finish_moves(&mut self) {
-        let Self {
-            assessor,
-            limiter,
-            tally,
-            entries,
-            first,
-            flights,
-            judged,
-            outcomes,
-            spindle,
-            ..
-        } = self;
-        let mut judge = Judge {
-            limiter,
-            queue: Queue {
-                machine: self.machine,
-                entries,
-                first: *first,
-                flights,
-            },
-            judged,
-            outcomes,
-        };
-        assessor.finish(&mut |mv, assessment, text| {
-            tally.add(mv, assessment, text);
-            if spindle.judge(mv, assessment) {
-                judge.take(mv, assessment);
-            }
-        });
-        judge.finish();
-        self.decide();
-    }
-
-    /// Gives the outcomes to their blocks.
-    fn decide(&mut self) {
-        for outcome in self.outcomes.drain(..) {
-            let Some(flight) = self.flights.pop_front() else {
-                break;
-            };
-            self.judged = self.judged.saturating_sub(1);
-            let index = (flight.entry - self.first) as usize;
-            if let (Some(entry), Some(assessment)) =
-                (self.entries.get_mut(index), flight.assessment)
-            {
-                entry.decided.push((assessment, outcome));
-            }
-        }
     }
 
     /// Writes what can be written after a block was read.
@@ -461,6 +319,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             return self.spare.push(entry);
         }
         let change = self.with_first_feed(&entry, change);
+        let change = self.with_stop(&entry, change);
         let pieces = entry.pieces(self.machine);
         let start = self.batch.bytes.len();
         self.wait_before(&entry);
@@ -475,7 +334,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             feeds: entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell)),
             change: change.as_ref().unwrap_or(&Change::NONE),
             pieces: &pieces,
-            stops: entry.needs_stops(self.machine, change.as_ref()),
+            stops: self.machine.controller.planner.dwell_stops
+                && entry.needs_stops(self.machine, change.as_ref()),
             rests: entry.rests(self.machine, change.as_ref()),
         };
         if !self.rewriter.write(&view, &mut self.batch.bytes) {

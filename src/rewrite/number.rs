@@ -109,11 +109,12 @@ pub(super) fn has_point(text: &[u8]) -> bool {
 pub(super) fn feed_again(feed: &Feed, mm_per_unit: f64) -> String {
     let text = feed.text.as_bytes();
     if feed.mm_per_unit == mm_per_unit && !text.is_empty() {
-        return text
-            .iter()
-            .map(|byte| char::from(*byte))
-            .filter(|c| !c.is_whitespace())
-            .collect();
+        let text = String::from_utf8_lossy(text);
+        if text.contains(char::is_alphabetic) {
+            // What it is worked out from.
+            return text.into_owned();
+        }
+        return text.chars().filter(|c| !c.is_whitespace()).collect();
     }
     let value = feed.value * feed.mm_per_unit / mm_per_unit;
     // Down in the twelfth digit: a feed never goes up.

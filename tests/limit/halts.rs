@@ -83,6 +83,46 @@ fn each_control_has_its_own_word() {
     }
 }
 
+/// Where no dwell is known to stop the axes, the word stands in the block before a rapid that
+/// becomes a feed and in its own; at 600 W both axes may run at F26404.
+#[test]
+fn rapids_between_two_words() {
+    let limited_to_600_w = |program: &str| limited(&shop("okuma", 600.0), program, "--allow feed");
+    let (code, text, errors) = limited_to_600_w(
+        "G0 X1000. Y800.\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nG61 X2.\nG0 X1000. Y802.\n\
+         G64\nM30\n",
+    );
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(
+        text,
+        "G9 G1 X1000. Y800. F26404\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nG61 X2.\n\
+         G1 X1000. Y802. F26364\nG64\nG0 F400\nM30\n"
+    );
+    // Each run of the block before ends at a rapid; the feed of a cycle does not stop, its way
+    // back does.
+    let (_, text, _) = limited_to_600_w(
+        "V1=1\nN1 G1 Z-5. F300\nG0 X1000. Y800.\nX0. Y0.\nV1=V1+1\nIF [V1 LT 4] N1\nG81 X5. Y5. Z-3. R2. F300 M54\n\
+         G0 X1000. Y800.\nM30\n",
+    );
+    assert!(
+        text.contains("N1 G9 G1 Z-5. F300\nG9 G1 X1000. Y800."),
+        "{text}"
+    );
+    // A block that is blended with a feed in one run must not be stopped; nor can one be that
+    // has a reason to stay as it is.
+    for program in [
+        "V1=1\nN1 G1 X5. F300\nIF [V1 EQ 2] N2\nG0 X1000. Y800.\nV1=2\nGOTO N1\nN2 G1 X9. Y9.\nM30\n",
+        "G41 D1 G1 X5. Y5. F300\nX50.\nG0 X1000. Y800.\nG40 X0.\nM30\n",
+    ] {
+        let (code, _, errors) = limited_to_600_w(program);
+        assert_eq!(code, 1, "{program}");
+        assert!(
+            errors.contains("without its stop") || errors.contains("compensation"),
+            "{errors}"
+        );
+    }
+}
+
 /// Where the profile has no word, and where no stop is needed, a message says so.
 #[test]
 fn a_control_without_the_word() {

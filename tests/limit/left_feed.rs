@@ -91,6 +91,40 @@ fn feeds_that_differ_are_worked_out_again() {
     assert!(limited("iso", 600.0, read).contains("\nF#1\n#2=#4109\n"));
 }
 
+/// The same in languages with expressions of their own.
+#[test]
+fn feeds_that_differ_are_worked_out_again_in_each_language() {
+    for (controller, power_w, program, given) in [
+        (
+            "siemens",
+            600.0,
+            "DEF REAL RATE\nG60\nR1=100\nWHILE R1<400\nRATE=R1*2\nG1 Z-10 F=RATE DIV 1\nR2=R1\n\
+             G0 X1000 Y800\nG0 X0\nG1 Z0\nR1=R1+100\nENDWHILE\nM30\n",
+            "G1 Z0 F=RATE DIV 1",
+        ),
+        (
+            "okuma",
+            600.0,
+            "V1=100\nN1 G1 Z-10. F=V1*2\nV2=V1\nG0 X1000. Y800.\nG0 X0.\nG1 Z0.\nV1=V1+100\n\
+             IF [V1 LT 400] N1\nM30\n",
+            "G1 Z0. F=V1*2",
+        ),
+        (
+            "isg",
+            300.0,
+            "P1=10000\n$WHILE P1 < 30000\nG60 G1 X1000 FP1\nG60 Z-10\nG60 G1 X0 F800\nP1=P1+7000\n\
+             $ENDWHILE\nM30\n",
+            "G60 G1 X1000 FMIN[P1,13714.]\nG60 Z-10 FP1",
+        ),
+    ] {
+        let shop = shop(controller, power_w);
+        shop.put("a.nc", program);
+        let (code, text, errors) = shop.run("limit a.nc --allow feed --strategy speed");
+        assert_eq!(code, 0, "{controller}: {errors}");
+        assert!(text.contains(&format!("\n{given}\n")), "{text}");
+    }
+}
+
 /// Nothing can be written where the feeds differ that are counted on, and what they were worked
 /// out from has another value by then.
 #[test]
@@ -104,6 +138,15 @@ fn feeds_that_differ_cannot_be_put_back() {
     let at_the_end = "#1=100\nWHILE [#1 LT 400] DO1\nG1 Z-10. F#1\n#1=#1+100\nG0 X1000. Y800.\n\
                       END1\n";
     refused("iso", at_the_end, DIFFER);
+    // The block that counts on it changes what it is worked out from.
+    let in_the_block = "G60\nR1=100\nWHILE R1<400\nG1 Z-10 F=R1\nG0 X1000 Y800\nR1=R1+100 G1 Z0\n\
+                        ENDWHILE\nM30\n";
+    refused("siemens", in_the_block, DIFFER);
+    // The name stands for another variable there.
+    let elsewhere = "DEF REAL RATE\nG60\nRATE=100\nWHILE RATE<400\nG1 Z-10 F=RATE\nDOWN\n\
+                     RATE=RATE+100\nENDWHILE\nM30\n%_N_DOWN_SPF\nPROC DOWN\nDEF REAL RATE=7\n\
+                     G0 X1000 Y800\nG1 Z0\nM17\n";
+    refused("siemens", elsewhere, DIFFER);
 }
 
 /// At F20000 an axis draws 391.7 W; half of 591.7 W is the F that the program works out, or the

@@ -21,6 +21,7 @@ mod direct;
 mod execute;
 mod expression;
 mod facts;
+mod feed_expression;
 mod hidden_words;
 mod flow;
 mod formula;

@@ -14,8 +14,8 @@ pub struct Feed {
     pub mm_per_unit: f64,
     /// The number as it was written, to be written again.
     pub text: NumberText,
-    /// What it was worked out from, where it was and as long as that has the same value: an
-    /// expression of RS274/NGC or of Fanuc's macros, empty for others.
+    /// What stands after F where the number was worked out, as long as that has the same
+    /// value; else empty.
     pub expression: NumberText,
 }
 

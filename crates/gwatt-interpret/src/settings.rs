@@ -3,7 +3,7 @@
 
 use super::code::{GCode, Motion, path_mode};
 use super::execute::{Control, Run};
-use super::expression::Reader;
+use super::feed_expression::expression_of;
 use super::modal::{Feed, NumberText};
 use gwatt_machine::{Family, PathMode};
 use gwatt_motion::{ActionKind, Corner, FeedMode};
@@ -55,7 +55,7 @@ impl Control<'_> {
         let (text, expression) = if run.facts.computed_feed {
             // Put back elsewhere, the expression might have another value.
             shown = word.value.to_string();
-            (shown.as_bytes(), NumberText::new(text))
+            (shown.as_bytes(), expression_of(word, run.report.text))
         } else {
             (text, NumberText::default())
         };
@@ -72,31 +72,6 @@ impl Control<'_> {
             self.note_feed(0.0, run);
         }
         self.modal.feed = Some(feed);
-    }
-
-    /// After a block: what the F in force was worked out from is kept as long as it has the
-    /// value of that F.
-    #[inline]
-    pub(super) fn check_expression(&mut self) {
-        let Some(feed) = self.modal.feed.as_ref() else {
-            return;
-        };
-        if !feed.expression.as_bytes().is_empty() && !self.has_value(feed) {
-            self.forget_expression();
-        }
-    }
-
-    #[cold]
-    fn has_value(&self, feed: &Feed) -> bool {
-        let found = Reader::new(feed.expression.as_bytes(), 0).value(self);
-        found == Ok(Some(feed.value))
-    }
-
-    #[cold]
-    fn forget_expression(&mut self) {
-        if let Some(feed) = &mut self.modal.feed {
-            feed.expression = NumberText::default();
-        }
     }
 
     /// Plane, units, compensation, offsets, path and distance mode.

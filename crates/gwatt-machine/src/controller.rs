@@ -338,6 +338,16 @@ pub enum RapidKnob {
 }
 
 impl Controller {
+    /// Whether a feed that stands for a rapid is stopped by words alone, in its block and in
+    /// the block before it: rapids begin and end at rest, and no dwell is known to stop the
+    /// axes.
+    #[must_use]
+    pub fn stops_by_word(&self) -> bool {
+        self.planner.rapid_joint == RapidJoint::Stop
+            && !self.planner.dwell_stops
+            && self.language.exact_stop_word.is_some()
+    }
+
     /// The confirmed knob that takes a value for each axis and else does what the one
     /// with this index does; that one itself where it takes such values.
     #[must_use]

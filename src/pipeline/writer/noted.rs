@@ -4,6 +4,7 @@ use std::io::{Read, Seek, Write};
 
 use super::{Writer, Written};
 use crate::limit::Change;
+use crate::machine::Machine;
 use crate::pipeline::Failure;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::split::SEVERAL_RUNS;
@@ -14,7 +15,7 @@ const NO_MOTION_WORD: &str = "no motion word is in force that could be put back"
 
 impl Table {
     /// Gives a block what all runs of its line are known to meet.
-    pub(super) fn tell(&self, entry: &mut Entry) {
+    pub(super) fn tell(&self, machine: &Machine, entry: &mut Entry) {
         entry.skips = self.skips;
         entry.apart = true;
         // A line that runs again would meet another motion word.
@@ -23,6 +24,7 @@ impl Table {
         let fixed = entry.facts.fixed.or(without);
         entry.facts.fixed = fixed.or_else(|| self.fixed(entry.key));
         entry.one_corner = self.one_corner(entry.key);
+        entry.stop_before = machine.controller.stops_by_word() && self.may_stop_before(entry.key);
         entry.without_feed = !self.may_get_feed();
     }
 }

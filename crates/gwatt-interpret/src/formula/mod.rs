@@ -36,6 +36,12 @@ pub(super) fn expression<N: Names + ?Sized>(
     deeper(cursor, |cursor| operators(cursor, names, 0))
 }
 
+/// The value of an expression that the text of the cursor holds, and nothing else.
+pub(super) fn whole_value<N: Names>(cursor: &mut Cursor<'_>, names: &mut N) -> Option<f64> {
+    let value = expression(cursor, names).ok()?;
+    cursor.peek().is_none().then_some(value)
+}
+
 fn deeper(
     cursor: &mut Cursor<'_>,
     read: impl FnOnce(&mut Cursor<'_>) -> Outcome<f64>,

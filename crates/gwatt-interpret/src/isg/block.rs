@@ -4,7 +4,7 @@ use super::Isg;
 use crate::beyond_words::{Note, not_finite};
 use crate::direct::is_direct;
 use crate::execute::Control;
-use crate::formula::{Cursor, Lexis, Outcome, Uses};
+use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::report::Report;
 use crate::transfer::Go;
 use gwatt_syntax::{Block, Word};
@@ -51,6 +51,25 @@ impl Control<'_> {
         self.isg = Some(state);
         self.place_system(system);
         transfers
+    }
+}
+
+impl Control<'_> {
+    /// The value of an expression.
+    pub(crate) fn isg_value(&mut self, text: &[u8]) -> Option<f64> {
+        let mut state = self.isg.take()?;
+        let mut reading = Reading {
+            control: self,
+            state: &mut state,
+            cursor: Cursor::new(text, Lexis::Comments),
+            notes: Vec::new(),
+            place: (self.text, 0),
+            uses: Uses::default(),
+            dwells: false,
+        };
+        let value = whole_value(&mut Cursor::new(text, Lexis::Comments), &mut reading);
+        self.isg = Some(state);
+        value
     }
 }
 

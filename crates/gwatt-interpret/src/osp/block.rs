@@ -4,7 +4,7 @@ use super::Osp;
 use crate::beyond_words::{Note, not_finite};
 use crate::execute::Control;
 use crate::expression::Fault;
-use crate::formula::{Cursor, Lexis, Outcome, Uses};
+use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::report::Report;
 use crate::transfer::Go;
 use gwatt_syntax::{Block, Word};
@@ -40,6 +40,21 @@ impl Control<'_> {
         self.begun |= read.is_ok();
         self.osp = Some(state);
         self.take_reading(read, notes, block, report)
+    }
+}
+
+impl Control<'_> {
+    /// The value of an expression.
+    pub(crate) fn osp_value(&mut self, text: &[u8]) -> Option<f64> {
+        let state = self.osp.as_deref_mut()?;
+        let mut reading = Reading {
+            state,
+            cursor: Cursor::new(text, Lexis::Comments),
+            notes: Vec::new(),
+            uses: Uses::default(),
+            passive: false,
+        };
+        whole_value(&mut Cursor::new(text, Lexis::Comments), &mut reading)
     }
 }
 

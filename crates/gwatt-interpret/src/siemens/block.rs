@@ -60,6 +60,21 @@ impl Control<'_> {
         transfers
     }
 
+    /// The value of an expression.
+    pub(crate) fn siemens_value(&mut self, text: &[u8]) -> Option<f64> {
+        let mut state = self.siemens.take()?;
+        let mut reading = Reading {
+            control: self,
+            state: &mut state,
+            cursor: Cursor::new(text, Lexis::Sinumerik),
+            notes: Vec::new(),
+        };
+        let value = reading.number().ok();
+        let value = value.filter(|_| reading.cursor.peek().is_none());
+        self.siemens = Some(state);
+        value
+    }
+
     /// Plain words get the offsets of the frame; where more is in force, each
     /// block takes the long way.
     pub(crate) fn settle_siemens(&mut self) {

@@ -1,0 +1,161 @@
+//! How the moves of blocks are judged and decided, at once or while their blocks wait.
+
+use std::io::{Read, Seek, Write};
+
+use super::Writer;
+use crate::interpret::{Move, Step};
+use crate::pipeline::entry::Entry;
+use crate::pipeline::judge::{Flight, Judge, Queue};
+use crate::power::Assessment;
+
+impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+    /// Lets a block wait, and judges its moves.
+    pub(super) fn judge_waiting(&mut self, entry: Box<Entry>) {
+        let number = self.first + self.entries.len() as u64;
+        self.entries.push_back(entry);
+        let Self {
+            assessor,
+            limiter,
+            tally,
+            entries,
+            first,
+            flights,
+            judged,
+            outcomes,
+            spindle,
+            ..
+        } = self;
+        let entries = &*entries;
+        let Some(entry) = entries.back() else { return };
+        let moved = entry.moves_on();
+        // After the last step the line ends.
+        let steps = entry.steps.iter().map(Some).chain([None]);
+        for (index, step) in steps.enumerate() {
+            assessor.want = self.detail.want(tally.want());
+            if let Some(Step::Move(mv)) = step {
+                self.mode = mv.path_mode;
+                flights.push_back(Flight {
+                    entry: number,
+                    step: index,
+                    assessment: None,
+                });
+            }
+            let mut judge = Judge {
+                limiter,
+                queue: Queue {
+                    machine: self.machine,
+                    entries,
+                    first: *first,
+                    flights,
+                },
+                judged,
+                outcomes,
+            };
+            let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
+                tally.add(mv, assessment, text);
+                if spindle.judge(mv, assessment) {
+                    judge.take(mv, assessment);
+                }
+            };
+            match step {
+                Some(Step::Move(mv)) => assessor.push(mv, entry.text_of(mv), &mut sink),
+                Some(Step::Action(action)) => assessor.act(action, &mut sink),
+                None => assessor.end_line(moved, &mut sink),
+            }
+        }
+    }
+
+    /// Judges and decides the moves of a block none of which has to wait; of a
+    /// plain one, `judged` may be known.
+    pub(super) fn decide_at_once(&mut self, entry: &mut Entry, judged: Option<Assessment>) {
+        for (step, mv) in entry.steps.iter().enumerate() {
+            let mv = match mv {
+                Step::Move(mv) => mv,
+                // No move waits that it could let go.
+                Step::Action(action) => {
+                    self.assessor.act(action, &mut |_, _, _| {});
+                    continue;
+                }
+            };
+            self.mode = mv.path_mode;
+            let Self {
+                assessor,
+                limiter,
+                tally,
+                machine,
+                decided,
+                spindle,
+                ..
+            } = self;
+            let mut decide = |assessment: &Assessment| {
+                let find = |_| Some(entry.waiting(machine, mv, step));
+                limiter.push(mv, assessment, &find, &mut |outcome| {
+                    decided.push((*assessment, outcome));
+                });
+            };
+            if let Some(assessment) = &judged {
+                decide(assessment);
+                continue;
+            }
+            assessor.want = self.detail.want(tally.want());
+            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
+                tally.add(judged, assessment, text);
+                if spindle.judge(judged, assessment) {
+                    decide(assessment);
+                }
+            });
+        }
+        std::mem::swap(&mut entry.decided, &mut self.decided);
+    }
+
+    /// Judges and decides what is left at the end.
+    pub(super) fn finish_moves(&mut self) {
+        let Self {
+            assessor,
+            limiter,
+            tally,
+            entries,
+            first,
+            flights,
+            judged,
+            outcomes,
+            spindle,
+            ..
+        } = self;
+        let mut judge = Judge {
+            limiter,
+            queue: Queue {
+                machine: self.machine,
+                entries,
+                first: *first,
+                flights,
+            },
+            judged,
+            outcomes,
+        };
+        assessor.finish(&mut |mv, assessment, text| {
+            tally.add(mv, assessment, text);
+            if spindle.judge(mv, assessment) {
+                judge.take(mv, assessment);
+            }
+        });
+        judge.finish();
+        self.decide();
+    }
+
+    /// Gives the outcomes to their blocks.
+    pub(super) fn decide(&mut self) {
+        for outcome in self.outcomes.drain(..) {
+            let Some(flight) = self.flights.pop_front() else {
+                break;
+            };
+            self.judged = self.judged.saturating_sub(1);
+            let index = (flight.entry - self.first) as usize;
+            if let (Some(entry), Some(assessment)) =
+                (self.entries.get_mut(index), flight.assessment)
+            {
+                entry.decided.push((assessment, outcome));
+            }
+        }
+    }
+}
