@@ -13,9 +13,11 @@ mod figure;
 mod finding;
 mod github;
 mod held;
+#[cfg(feature = "html")]
 mod html;
 mod identified;
 mod json;
+#[cfg(feature = "junit")]
 mod junit;
 mod level_table;
 mod line_edits;
@@ -26,11 +28,13 @@ mod overlay_chart;
 mod patch;
 mod quantity;
 mod record;
+#[cfg(feature = "sarif")]
 mod sarif;
 mod series;
 mod size;
 mod spindle;
 mod text;
+#[cfg(feature = "html")]
 mod tune_page;
 mod tuned;
 mod verified;
@@ -47,12 +51,14 @@ pub use csv::CsvRows;
 pub use drives::{DriveRows, drives_text};
 pub use github::github;
 pub use held::Held;
+#[cfg(feature = "html")]
 pub use html::{Found, LineTexts, Page, PageRows, PageSeries, Side};
 pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
     rigid_text,
 };
 pub use json::{JsonRows, check_json, check_json_line, limit_json, report_json, set_json};
+#[cfg(feature = "junit")]
 pub use junit::junit;
 pub use level_table::level_table;
 pub use line_edits::{LineEdit, line_edits};
@@ -62,11 +68,13 @@ pub use overlay_chart::OverlayChart;
 pub use patch::unified_diff;
 pub use quantity::{duration, power};
 pub use record::COLUMNS;
+#[cfg(feature = "sarif")]
 pub use sarif::sarif;
 pub use series::SeriesRows;
 pub use size::{size_chart, size_csv, size_json, size_text, size_verdict};
 pub use spindle::{SpindleRows, spindle_text};
 pub use text::{axis_table, check_text, limit_text, partial_text, set_text};
+#[cfg(feature = "html")]
 pub use tune_page::tune_page;
 pub use tuned::{sections_csv, tuned_json, tuned_text};
 pub use verified::{VerifiedNames, verified_csv, verified_json, verified_text};
