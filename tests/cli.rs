@@ -276,8 +276,8 @@ fn without_a_machine_the_default_is_named() {
     let shop = Shop::new();
     let ran = shop.run(&["check", "gentle.ngc"]);
     assert_eq!(ran.code, 0);
-    let told = "the built-in three-axis, with programs read as iso";
-    assert!(ran.stderr.contains(told), "{}", ran.stderr);
+    let shown = "the built-in three-axis, with programs read as iso";
+    assert!(ran.stderr.contains(shown), "{}", ran.stderr);
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn type_b() -> Machine {
 #[test]
 fn outside_corners_of_90_degrees() {
     // Radius 5, the tool to the left of a clockwise square: each corner is the
-    // one of the square that is larger by 5. Type A: the first move ends beside
+    // one of the square that is larger by 5. Type A: the first move ends next to
     // the start of the second, at (-5, 0); the last begins next to the end of the
     // one before, at (0, -5).
     let program = "G10 L12 P1 R5.\nG0 X-20. Y-20.\nG41 D1 G1 X0. Y0. F600\nY40.\nX40.\nY0.\nX0.\nG40 X-20. Y-20.\nM30\n";

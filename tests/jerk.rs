@@ -320,7 +320,7 @@ fn ten_million_random_states() {
 
 #[test]
 fn no_profile_is_longer_than_that_of_ruckig() {
-    // Ruckig 0.19.4; `tests/jerk/sample.py` tells how the sample was made.
+    // Ruckig 0.19.4; `tests/jerk/sample.py` says how the sample was made.
     let sample = include_str!("jerk/sample.csv");
     let (mut compared, mut unsolved) = (0, 0);
     for line in sample.lines().skip(1) {

@@ -20,8 +20,8 @@ fn mill(controller: &str, axis: &str, rest: &str) -> Shop {
 /// The report of a program.
 fn reported(shop: &Shop, program: &str) -> serde_json::Value {
     shop.put("a.ngc", program);
-    let (code, _, told) = shop.run("report a.ngc --json a.json");
-    assert_eq!(code, 0, "{told}");
+    let (code, _, shown) = shop.run("report a.ngc --json a.json");
+    assert_eq!(code, 0, "{shown}");
     serde_json::from_str(&shop.get("a.json")).unwrap()
 }
 
@@ -78,8 +78,8 @@ fn rapids_are_limited_under_limits_of_jerk() {
         let weak = format!("peak_power_w = {most}\nregen_power_w = 1000");
         let shop = mill("iso", axis, &weak);
         shop.put("a.ngc", THERE_AND_BACK);
-        let (code, out, told) = shop.run("limit a.ngc --json a.json");
-        assert_eq!(code, 0, "{told}");
+        let (code, out, shown) = shop.run("limit a.ngc --json a.json");
+        assert_eq!(code, 0, "{shown}");
         assert!(out.contains("G1"), "{out}");
         let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
         let after = report["peak_after_w"].as_f64().unwrap();
@@ -123,8 +123,8 @@ fn joints_that_limit_nothing_leave_no_trace() {
         "{conditions}"
     );
     // The series: acceleration never jumps.
-    let (code, _, told) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
-    assert_eq!(code, 0, "{told}");
+    let (code, _, shown) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
+    assert_eq!(code, 0, "{shown}");
     let rows = rows(&shop.get("a.csv"));
     close(rows.last().unwrap()[0], one);
     for pair in rows.windows(2) {
@@ -174,11 +174,11 @@ fn programs_are_limited_under_look_ahead_too() {
             let [slow, fast] = [&free, &plain].map(|shop| duration_s(shop, &program));
             assert!(slow > fast, "{controller} {axis}: {slow} {fast}");
             shop.put("a.ngc", &program);
-            let (code, out, told) = shop.run("limit a.ngc --allow feed --json a.json");
-            assert_eq!(code, 0, "{controller} {axis}: {told}");
+            let (code, out, shown) = shop.run("limit a.ngc --allow feed --json a.json");
+            assert_eq!(code, 0, "{controller} {axis}: {shown}");
             shop.put("b.ngc", &out);
-            let (code, told, _) = shop.run("check b.ngc");
-            assert_eq!(code, 0, "{controller} {axis}: {told}");
+            let (code, shown, _) = shop.run("check b.ngc");
+            assert_eq!(code, 0, "{controller} {axis}: {shown}");
             let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
             let after = report["peak_after_w"].as_f64().unwrap();
             assert!(after <= 200.0 * (1.0 + 1e-9), "{after}");
@@ -199,8 +199,8 @@ fn a_slower_arc_may_speed_up_harder() {
          accel_mm_s2 = 15000\nmass_kg = 316\njerk_mm_s3 = 210000\n",
     );
     shop.put("a.ngc", "G17 G3 I2.8756 J14.4646 F59213\nM30\n");
-    let (code, out, told) = shop.run("limit a.ngc --allow feed");
-    assert_eq!(code, 0, "{told}");
+    let (code, out, shown) = shop.run("limit a.ngc --allow feed");
+    assert_eq!(code, 0, "{shown}");
     assert!(out.contains("G131 = ") && out.contains("F11211"), "{out}");
 }
 
@@ -218,18 +218,18 @@ fn a_series_adds_up_to_the_report() {
         };
         shop.put("a.ngc", &program);
         // The series runs at 100 %; at lower overrides other moves speed up.
-        let (code, _, told) = shop.run("report a.ngc --override 100% --json a.json");
-        assert_eq!(code, 0, "{told}");
-        let (code, _, told) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
-        assert_eq!(code, 0, "{told}");
+        let (code, _, shown) = shop.run("report a.ngc --override 100% --json a.json");
+        assert_eq!(code, 0, "{shown}");
+        let (code, _, shown) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
+        assert_eq!(code, 0, "{shown}");
         let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
         let rows = rows(&shop.get("a.csv"));
         let bus = rows[0].len() - 2;
         let close = |found: f64, key: &str, share: f64| {
-            let told = report[key].as_f64().unwrap();
+            let shown = report[key].as_f64().unwrap();
             assert!(
-                (found - told).abs() <= share * told,
-                "{controller} {key}: {found} is not {told}"
+                (found - shown).abs() <= share * shown,
+                "{controller} {key}: {found} is not {shown}"
             );
         };
         close(rows.last().unwrap()[0], "duration_s", 1e-9);

@@ -8,21 +8,21 @@ fn check(dialect: &str, program: &str, options: &str) -> (i32, String) {
     let shop = Shop::mill("iso", "peak_power_w = 1e6\nregen_power_w = 1e6", "", "");
     shop.put("a.nc", program);
     shop.put("kept.var", "500 12.5\n31 4\n");
-    let (code, out, told) =
+    let (code, out, shown) =
         shop.run(format!("check a.nc --dialect {dialect} {options}").trim_end());
-    (code, out + &told)
+    (code, out + &shown)
 }
 
 #[track_caller]
 fn refused(dialect: &str, program: &str, part: &str) {
-    let (code, told) = check(dialect, program, "");
-    assert!(code == 2 && told.contains(part), "{code} {told}");
+    let (code, shown) = check(dialect, program, "");
+    assert!(code == 2 && shown.contains(part), "{code} {shown}");
 }
 
 #[track_caller]
 fn fits(dialect: &str, program: &str, options: &str) {
-    let (code, told) = check(dialect, program, options);
-    assert_eq!(code, 0, "{told}");
+    let (code, shown) = check(dialect, program, options);
+    assert_eq!(code, 0, "{shown}");
 }
 
 const HELD: &str = "holds what the control has kept from before, which is not known";
@@ -119,8 +119,8 @@ fn linuxcnc_parameters_are_unknown_until_the_program_sets_them() {
         |parameter: &str| format!("o1 if [{parameter} GT 7]\nG0 X9\no1 endif\nG0 X1\nM2\n");
     for number in [5161, 5181, 5210, 5211, 5221, 5230, 5241, 5390] {
         refused("linuxcnc", &decides(&format!("#{number}")), HELD);
-        let told = format!("--set #{number}=1");
-        fits("linuxcnc", &decides(&format!("#{number}")), &told);
+        let shown = format!("--set #{number}=1");
+        fits("linuxcnc", &decides(&format!("#{number}")), &shown);
     }
     fits("linuxcnc", &decides("#5221"), "--parameters kept.var");
     // What G10, G92, G28.1 and assignments have set is known, that of other axes is not.
@@ -189,24 +189,27 @@ fn linuxcnc_parameters_are_unknown_until_the_program_sets_them() {
 fn offsets_that_are_given_count() {
     let shop = Shop::mill("iso", "peak_power_w = 1e6\nregen_power_w = 1e6", "", "");
     shop.put("a.nc", "G53 G0 X0\nG0 X[#5221]\nM2\n");
-    let (code, out, told) = shop.run("moves a.nc --dialect linuxcnc --set #5221=10");
-    assert_eq!(code, 0, "{told}");
+    let (code, out, shown) = shop.run("moves a.nc --dialect linuxcnc --set #5221=10");
+    assert_eq!(code, 0, "{shown}");
     let last = out.lines().last().unwrap();
     assert!(last.contains(r#""end":{"X":20,"#), "{last}");
-    let (code, told) = check("linuxcnc", "G0 X1\nG92.3\nG0 X2\nM2\n", "");
-    assert!(code == 0 && told.contains("note[no-offsets]"), "{told}");
-    let (code, told) = check("linuxcnc", "G92 X1 Y0 Z0\nG92.3\nG0 X2\nM2\n", "");
-    assert!(code == 0 && !told.contains("no-offsets"), "{told}");
+    let (code, shown) = check("linuxcnc", "G0 X1\nG92.3\nG0 X2\nM2\n", "");
+    assert!(code == 0 && shown.contains("note[no-offsets]"), "{shown}");
+    let (code, shown) = check("linuxcnc", "G92 X1 Y0 Z0\nG92.3\nG0 X2\nM2\n", "");
+    assert!(code == 0 && !shown.contains("no-offsets"), "{shown}");
 }
 
 #[test]
 fn a_variable_that_a_control_does_not_have_is_not_given() {
-    let (code, told) = check("linuxcnc", "G0 X1\nM2\n", "--set #5420=2");
-    assert!(code == 2 && told.contains("has no such variable"), "{told}");
-    let (code, told) = check("fanuc", "G0 X1.\nM30\n", "--set R1=2");
+    let (code, shown) = check("linuxcnc", "G0 X1\nM2\n", "--set #5420=2");
     assert!(
-        code == 2 && told.contains("--set R1=2: `fanuc` has no such variable"),
-        "{told}"
+        code == 2 && shown.contains("has no such variable"),
+        "{shown}"
+    );
+    let (code, shown) = check("fanuc", "G0 X1.\nM30\n", "--set R1=2");
+    assert!(
+        code == 2 && shown.contains("--set R1=2: `fanuc` has no such variable"),
+        "{shown}"
     );
 }
 
@@ -229,10 +232,10 @@ fn a_program_that_ends_in_an_alarm_is_not_judged() {
         alarm,
         "alarm before anything has moved: whether the program fits is not known",
     );
-    let (code, told) = check("fanuc", &format!("G0 X1.\n{alarm}"), "");
+    let (code, shown) = check("fanuc", &format!("G0 X1.\n{alarm}"), "");
     assert!(
-        code == 0 && told.contains("raises an alarm: the program ends here"),
-        "{told}"
+        code == 0 && shown.contains("raises an alarm: the program ends here"),
+        "{shown}"
     );
 }
 
@@ -242,8 +245,8 @@ fn an_alarm_of_another_control_is_no_verdict_either() {
     let siemens = "IF R1<>2 GOTOF OK\nSETAL(65000)\nOK: G0 X5\nM30\n";
     let found = "SETAL raises an alarm: whether the program fits is not known";
     refused("siemens", &siemens.replace("R1", "1+1"), found);
-    let (code, told) = check("siemens", &siemens.replace("R1", "1+2"), "");
-    assert_eq!(code, 0, "{told}");
+    let (code, shown) = check("siemens", &siemens.replace("R1", "1+2"), "");
+    assert_eq!(code, 0, "{shown}");
     let found = "#ERROR raises an alarm: whether the program fits is not known";
     refused("isg", "G0 X5\n#ERROR [ID455 RC5]\nM30\n", found);
 }
@@ -270,16 +273,16 @@ fn what_depends_on_a_probe_is_refused() {
     // Z alone: 20 mm at 50 mm/min.
     assert!(missed.contains("\"duration_s\": 24.0"), "{missed}");
     // With an error the program stops at a G38.2 that finds nothing.
-    let (code, told) = check("linuxcnc", "G38.2 Z-20 F50\nG0 Z5\nM2\n", "--probe miss");
+    let (code, shown) = check("linuxcnc", "G38.2 Z-20 F50\nG0 Z5\nM2\n", "--probe miss");
     assert!(
-        code == 0 && told.contains("stops here with an error"),
-        "{told}"
+        code == 0 && shown.contains("stops here with an error"),
+        "{shown}"
     );
     // Where it touches is not known either way.
-    let (code, told) = check("linuxcnc", "G38.3 Z-20 F50\nG1 Z#5063\nM2\n", "--probe hit");
+    let (code, shown) = check("linuxcnc", "G38.3 Z-20 F50\nG1 Z#5063\nM2\n", "--probe hit");
     assert!(
-        code == 2 && told.contains("#5063 depends on the result"),
-        "{told}"
+        code == 2 && shown.contains("#5063 depends on the result"),
+        "{shown}"
     );
     fits(
         "linuxcnc",

@@ -96,8 +96,8 @@ pub(crate) fn refusals(program: &str, machine: &Machine) -> String {
 
 /// A listing without the numbers of its lines, for twins.
 pub(crate) fn without_lines(listing: &str) -> Vec<&str> {
-    let behind = |line| str::split_once(line, ' ').map_or(line, |(_, rest)| rest);
-    listing.lines().map(behind).collect()
+    let after_number = |line| str::split_once(line, ' ').map_or(line, |(_, rest)| rest);
+    listing.lines().map(after_number).collect()
 }
 
 /// The programs whose last move does not end at the X that is expected of their

@@ -22,17 +22,17 @@ const THERE_AND_BACK: &str = "G21 G90 G94\nG0 X400\nG0 X0\nG0 X400\nG0 X0\nM30\n
 fn a_single_override_is_shown() {
     let shop = mill("iso", "", "peak_power_w = 500");
     shop.put("a.ngc", THERE_AND_BACK);
-    let (code, told, _) = shop.run("check a.ngc");
+    let (code, reported, _) = shop.run("check a.ngc");
     assert_eq!(code, 1);
-    assert!(told.contains("peak 538 W"), "{told}");
-    let (code, told, _) = shop.run("check a.ngc --override 50%");
+    assert!(reported.contains("peak 538 W"), "{reported}");
+    let (code, reported, _) = shop.run("check a.ngc --override 50%");
     assert_eq!(code, 0);
-    assert!(told.contains("peak 319 W"), "{told}");
-    let (_, told, _) = shop.run("check a.ngc --override feed=10%,rapid=50%");
-    assert!(told.contains("peak 319 W"), "{told}");
-    let (code, _, told) = shop.run("check a.ngc --override rapid=120%");
+    assert!(reported.contains("peak 319 W"), "{reported}");
+    let (_, reported, _) = shop.run("check a.ngc --override feed=10%,rapid=50%");
+    assert!(reported.contains("peak 319 W"), "{reported}");
+    let (code, _, reported) = shop.run("check a.ngc --override rapid=120%");
     assert_eq!(code, 2);
-    assert!(told.contains("no override exceeds it"), "{told}");
+    assert!(reported.contains("no override exceeds it"), "{reported}");
     let above = |overrides: &str| {
         let (_, _, notes) = shop.run(&format!("check a.ngc --override {overrides}"));
         notes.contains("override-above-largest")
@@ -48,37 +48,41 @@ fn an_overload_is_told_and_lowered_away() {
                    overload = [{ power_w = 1000, seconds = 0.2, every_s = 10 }]";
     let shop = mill("iso", "", ratings);
     shop.put("a.ngc", THERE_AND_BACK);
-    let (code, told, _) = shop.run("check a.ngc");
+    let (code, reported, _) = shop.run("check a.ngc");
     assert_eq!(code, 1);
     assert!(
-        told.starts_with("a.ngc: does not fit: peak 538 W of 1.00 kW (line 2)"),
-        "{told}"
+        reported.starts_with("a.ngc: does not fit: peak 538 W of 1.00 kW (line 2)"),
+        "{reported}"
     );
-    let overload = told.lines().nth(1).unwrap();
+    let overload = reported.lines().nth(1).unwrap();
     assert!(
         overload.contains("overload above 300 W within 10 s"),
-        "{told}"
+        "{reported}"
     );
-    assert!(overload.contains("1.00 s of 0.20 s"), "{told}");
+    assert!(overload.contains("1.00 s of 0.20 s"), "{reported}");
     let (code, once, _) = shop.run("check a.ngc --once");
     assert_eq!(code, 1);
     assert!(once.contains("0.36 s of 0.20 s"), "{once}");
-    assert!(overload.contains("line 5 at "), "{told}");
-    assert!(overload.contains("does not fit → lower speeds"), "{told}");
+    assert!(overload.contains("line 5 at "), "{reported}");
     assert!(
-        told.lines()
+        overload.contains("does not fit → lower speeds"),
+        "{reported}"
+    );
+    assert!(
+        reported
+            .lines()
             .nth(2)
             .unwrap()
             .contains("continuous power over 3 min"),
-        "{told}"
+        "{reported}"
     );
 
-    let (code, _, told) = shop.run("limit a.ngc -o b.ngc");
-    assert_eq!(code, 0, "{told}");
-    let (code, told, _) = shop.run("check b.ngc");
-    assert_eq!(code, 0, "{told}");
+    let (code, _, reported) = shop.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 0, "{reported}");
+    let (code, reported, _) = shop.run("check b.ngc");
+    assert_eq!(code, 0, "{reported}");
     // A lower peak than needed would take longer.
-    let used: f64 = told
+    let used: f64 = reported
         .lines()
         .find(|line| line.contains("overload"))
         .and_then(|line| {
@@ -91,21 +95,21 @@ fn an_overload_is_told_and_lowered_away() {
                 .ok()
         })
         .unwrap();
-    assert!(used > 0.1, "{told}");
+    assert!(used > 0.1, "{reported}");
 
     for format in ["json", "sarif", "junit", "github"] {
-        let (code, told, _) = shop.run(&format!("check a.ngc --format {format}"));
+        let (code, reported, _) = shop.run(&format!("check a.ngc --format {format}"));
         assert_eq!(code, 1);
-        assert!(told.contains("overload"), "{format}: {told}");
+        assert!(reported.contains("overload"), "{format}: {reported}");
     }
-    let (_, told, _) = shop.run("check a.ngc --format json");
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-    let found = &told[0]["over_time"][0];
+    let (_, reported, _) = shop.run("check a.ngc --format json");
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
+    let found = &reported[0]["over_time"][0];
     assert_eq!(found["check"], "overload");
     assert_eq!(found["unit"], "s");
     assert_eq!(found["fits"], false);
     assert_eq!(found["line"], 5);
-    assert_eq!(told[0]["fits"], false);
+    assert_eq!(reported[0]["fits"], false);
 }
 
 /// Braking feeds 200 W back, less and less over 1/6 s: 15.04 J above 10 W, and 0.04 J below.
@@ -122,9 +126,9 @@ fn braking_at_the_end_and_at_the_beginning_add_up_where_a_program_runs_again() {
     );
     let braked = |options: &str| {
         let command = format!("check a.ngc --override 100% --format json {options}");
-        let (code, told, _) = shop.run(command.trim_end());
-        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-        let limits = told[0]["over_time"].as_array().unwrap();
+        let (code, reported, _) = shop.run(command.trim_end());
+        let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
+        let limits = reported[0]["over_time"].as_array().unwrap();
         let found = limits
             .iter()
             .find(|it| it["check"] == "brake-energy")
@@ -151,12 +155,15 @@ fn braking_at_the_end_and_at_the_beginning_add_up_where_a_program_runs_again() {
 fn what_cannot_be_lowered_is_refused_with_the_reason() {
     let shop = mill("iso", "", "peak_power_w = 1000\ncontinuous_power_w = 90");
     shop.put("a.ngc", THERE_AND_BACK);
-    let (code, _, told) = shop.run("limit a.ngc -o b.ngc");
+    let (code, _, reported) = shop.run("limit a.ngc -o b.ngc");
     assert_eq!(code, 1);
     assert!(!shop.has("b.ngc"));
-    assert!(told.contains("continuous-power"), "{told}");
-    assert!(told.contains("continuous power over 3 min: "), "{told}");
-    assert!(told.contains(" W of 90"), "{told}");
+    assert!(reported.contains("continuous-power"), "{reported}");
+    assert!(
+        reported.contains("continuous power over 3 min: "),
+        "{reported}"
+    );
+    assert!(reported.contains(" W of 90"), "{reported}");
 }
 
 #[test]
@@ -167,29 +174,29 @@ fn a_capacitor_carries_peaks_only_where_it_may() {
                bus_nominal_v = 600\nbus_min_v = 580";
     let strict = mill("iso", "", bus);
     strict.put("a.ngc", THERE_AND_BACK);
-    let (code, told, _) = strict.run("check a.ngc");
+    let (code, reported, _) = strict.run("check a.ngc");
     assert_eq!(code, 1);
     assert!(
-        told.contains("lowest bus voltage  582 V, at least 580 V"),
-        "{told}"
+        reported.contains("lowest bus voltage  582 V, at least 580 V"),
+        "{reported}"
     );
     let credited = mill("iso", "", &format!("{bus}\ncredit_capacitance = true"));
     credited.put("a.ngc", THERE_AND_BACK);
-    let (code, told, _) = credited.run("check a.ngc");
-    assert_eq!(code, 0, "{told}");
-    let (code, _, told) = credited.run("limit a.ngc -o b.ngc");
-    assert_eq!(code, 0, "{told}");
+    let (code, reported, _) = credited.run("check a.ngc");
+    assert_eq!(code, 0, "{reported}");
+    let (code, _, reported) = credited.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 0, "{reported}");
     assert_eq!(credited.get("b.ngc"), THERE_AND_BACK);
     // Half the capacitance is not enough: lowered, but not to 300 W.
     let half = bus.replace("1e-3", "5e-4");
     let half = mill("iso", "", &format!("{half}\ncredit_capacitance = true"));
     half.put("a.ngc", THERE_AND_BACK);
     assert_eq!(half.run("check a.ngc").0, 1);
-    let (code, _, told) = half.run("limit a.ngc -o b.ngc");
-    assert_eq!(code, 0, "{told}");
-    let (code, told, _) = half.run("check b.ngc");
-    assert_eq!(code, 0, "{told}");
-    let peak: f64 = told
+    let (code, _, reported) = half.run("limit a.ngc -o b.ngc");
+    assert_eq!(code, 0, "{reported}");
+    let (code, reported, _) = half.run("check b.ngc");
+    assert_eq!(code, 0, "{reported}");
+    let peak: f64 = reported
         .split("peak ")
         .nth(1)
         .unwrap()
@@ -198,7 +205,7 @@ fn a_capacitor_carries_peaks_only_where_it_may() {
         .unwrap()
         .parse()
         .unwrap();
-    assert!(peak > 310.0 && peak < 500.0, "{told}");
+    assert!(peak > 310.0 && peak < 500.0, "{reported}");
 }
 
 /// Lines, corners that are rounded, arcs, a dwell and a rapid.
@@ -219,9 +226,9 @@ fn a_series_adds_up_to_the_report() {
         let ratings = "peak_power_w = 2000\ncontinuous_power_w = 2000";
         let shop = mill(controller, "", ratings);
         shop.put("a.ngc", program);
-        let (code, _, told) =
+        let (code, _, reported) =
             shop.run("report a.ngc --json a.json --series a.csv --step-ms 0.2 --limited a.ngc");
-        assert_eq!(code, 0, "{told}");
+        assert_eq!(code, 0, "{reported}");
         let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
         let series = shop.get("a.csv");
         let header: Vec<&str> = series.lines().next().unwrap().split(',').collect();
@@ -233,10 +240,10 @@ fn a_series_adds_up_to_the_report() {
         let before = rows(&series, "before");
         assert_eq!(before, rows(&series, "after"));
         let close = |found: f64, key: &str, share: f64| {
-            let told = report[key].as_f64().unwrap();
+            let reported = report[key].as_f64().unwrap();
             assert!(
-                (found - told).abs() <= share * told,
-                "{key}: {found} is not {told}"
+                (found - reported).abs() <= share * reported,
+                "{key}: {found} is not {reported}"
             );
         };
         let bus = header.len() - 3;
@@ -295,12 +302,15 @@ fn a_series_shows_the_limited_program_too() {
     // What cannot be limited is shown as it is.
     let shop = mill("iso", "", "peak_power_w = 350");
     shop.put("a.ngc", "G21 G90 G94\nG1 X100 F20000\nM30\n");
-    let (code, _, told) = shop.run("report a.ngc --series a.csv");
+    let (code, _, reported) = shop.run("report a.ngc --series a.csv");
     assert_eq!(code, 0);
-    assert!(told.contains("the series shows it only as it is"), "{told}");
+    assert!(
+        reported.contains("the series shows it only as it is"),
+        "{reported}"
+    );
     assert!(rows(&shop.get("a.csv"), "after").is_empty());
-    let (code, _, told) = shop.run("report a.ngc --series a.csv --allow feed");
-    assert_eq!(code, 0, "{told}");
+    let (code, _, reported) = shop.run("report a.ngc --series a.csv --allow feed");
+    assert_eq!(code, 0, "{reported}");
     assert!(!rows(&shop.get("a.csv"), "after").is_empty());
 }
 
@@ -311,11 +321,11 @@ fn a_series_is_whole_or_not_there() {
     let (code, ..) = shop.run("report a.ngc --series a.csv");
     assert_eq!(code, 2);
     shop.put("b.ngc", "G21\nG4 P1000000000\n");
-    let (code, _, told) = shop.run("report b.ngc --series b.csv --step-ms 0.001");
+    let (code, _, reported) = shop.run("report b.ngc --series b.csv --step-ms 0.001");
     assert_eq!(code, 0);
     assert!(
-        told.contains("a longer --step-ms gives even rows"),
-        "{told}"
+        reported.contains("a longer --step-ms gives even rows"),
+        "{reported}"
     );
     assert!(shop.get("b.csv").lines().count() < 600_000);
     assert!(!shop.has("a.csv"));
@@ -327,9 +337,9 @@ fn a_series_is_whole_or_not_there() {
         ("report a.ngc --step-ms 1", "--series"),
         ("report a.ngc --series a.ngc", "a.ngc"),
     ] {
-        let (code, _, told) = shop.run(arguments);
+        let (code, _, reported) = shop.run(arguments);
         assert_eq!(code, 2);
-        assert!(told.contains(message), "{told}");
+        assert!(reported.contains(message), "{reported}");
     }
 }
 
@@ -349,18 +359,18 @@ fn machines_are_compared_by_their_limits_over_time_too() {
             .current_dir(shop.0.path())
             .output()
             .unwrap();
-        let told = String::from_utf8(output.stdout).unwrap();
-        (output.status.code().unwrap(), told)
+        let reported = String::from_utf8(output.stdout).unwrap();
+        (output.status.code().unwrap(), reported)
     };
-    let (code, told) = diff("mill.toml", "weak.toml");
-    assert_eq!(code, 1, "{told}");
+    let (code, reported) = diff("mill.toml", "weak.toml");
+    assert_eq!(code, 1, "{reported}");
     let ceases = "a.ngc: continuous power over 3 min ceases to fit\n";
-    assert!(told.ends_with(ceases), "{told}");
+    assert!(reported.ends_with(ceases), "{reported}");
     assert!(shop.get("diff.csv").ends_with(",0,0,0,0,0,1\r\n"));
-    let (code, told) = diff("weak.toml", "mill.toml");
-    assert_eq!(code, 0, "{told}");
-    assert!(told.contains("3 min begins to fit\n"), "{told}");
-    let (code, told) = diff("weak.toml", "weak.toml");
-    assert_eq!(code, 0, "{told}");
-    assert!(!told.contains("3 min"), "{told}");
+    let (code, reported) = diff("weak.toml", "mill.toml");
+    assert_eq!(code, 0, "{reported}");
+    assert!(reported.contains("3 min begins to fit\n"), "{reported}");
+    let (code, reported) = diff("weak.toml", "weak.toml");
+    assert_eq!(code, 0, "{reported}");
+    assert!(!reported.contains("3 min"), "{reported}");
 }

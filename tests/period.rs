@@ -446,7 +446,7 @@ proptest! {
     }
 
     /// Targets, periods and limits that change at any time: the jerk is kept, the
-    /// acceleration is above its limit only where that is told, and what is told
+    /// acceleration is above its limit only where that is shown, and what is shown
     /// of an overshoot at first is never exceeded.
     #[test]
     fn anything_may_change(
@@ -455,7 +455,7 @@ proptest! {
     ) {
         let mut planner = SpeedPlanner::default();
         for (target, limits, period_s, periods) in changes {
-            let mut told = f64::INFINITY;
+            let mut shown = f64::INFINITY;
             for _ in 0..periods {
                 let before = planner.motion();
                 let step = planner.step(target, period_s, &limits).unwrap();
@@ -463,14 +463,14 @@ proptest! {
                 prop_assert!(((accel - before.accel) / period_s).abs() <= limits.jerk.largest());
                 let limit = limits.up(speed * accel.signum());
                 prop_assert!(accel.abs() <= limit || step.excess > 0.0, "{step:?}");
-                prop_assert!(step.overshoot <= told * (1.0 + 1e-6) + 1e-6, "{told} {step:?}");
-                told = step.overshoot;
+                prop_assert!(step.overshoot <= shown * (1.0 + 1e-6) + 1e-6, "{shown} {step:?}");
+                shown = step.overshoot;
             }
         }
     }
 
     /// A position command from any state, with any target, comes to rest there,
-    /// and passes it by no more than what is told at first.
+    /// and passes it by no more than what is shown at first.
     #[test]
     fn any_position_is_reached(
         speed in -250.0..250.0, share in -1.0..1.0, way in -200.0..200.0, time in 0.01..0.2,
@@ -478,13 +478,13 @@ proptest! {
         let limits = Limits::constant(2000.0, 2000.0 / time).unwrap();
         let start = Motion { speed, accel: share * 2000.0 };
         let mut planner = PositionPlanner::new(0.0, start).unwrap();
-        let mut told = None;
+        let mut shown = None;
         for _ in 0..20_000 {
             let step = planner.step(way, 300.0, 1e-3, &limits).unwrap();
             prop_assert!(step.motion.accel.abs() <= 2000.0);
-            let told = *told.get_or_insert(step.overshoot);
+            let shown = *shown.get_or_insert(step.overshoot);
             let passed = (step.position - way) * way.signum();
-            prop_assert!(passed <= told * (1.0 + 1e-6) + 1e-6, "{told} {step:?}");
+            prop_assert!(passed <= shown * (1.0 + 1e-6) + 1e-6, "{shown} {step:?}");
             if step.reached {
                 return Ok(());
             }

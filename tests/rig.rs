@@ -245,7 +245,7 @@ fn on_path(mv: &Move, axis: usize, phase: &Phase, t: f64) -> (f64, f64) {
 }
 
 /// Power of the first converter at one instant of a path: what counts as
-/// drawn and as fed back. `sign_t` is an instant nearby that tells the
+/// drawn and as fed back. `sign_t` is an instant nearby that gives the
 /// directions of the axes, of which some may just be turning back.
 fn power_on_path(
     machine: &Machine,

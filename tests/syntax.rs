@@ -213,8 +213,8 @@ fn files(directory: &Path, found: &mut Vec<PathBuf>) {
 /// Real programs lie next to the project, not in it.
 #[test]
 fn real_programs_come_back() {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
-    let shared = std::env::var("GWATT_SHARED").unwrap_or_else(|_| beside.to_owned());
+    let sibling = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
+    let shared = std::env::var("GWATT_SHARED").unwrap_or_else(|_| sibling.to_owned());
     let mut found = Vec::new();
     files(&Path::new(&shared).join("corpus"), &mut found);
     if found.is_empty() {

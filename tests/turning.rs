@@ -140,12 +140,12 @@ fn stock_removal_along_z() {
         .replace("G71 U4. R1.\n", "")
         .replace("G71 P10", "G71 D4000 R1. P10");
     let [two, one] = [program, &one].map(|program| moves("fanuc-lathe", program));
-    let behind = |text: &str| {
+    let after = |text: &str| {
         text.lines()
             .map(|line| line.split_once(' ').unwrap_or_default().1.to_owned())
             .collect::<Vec<_>>()
     };
-    assert_eq!(behind(&two), behind(&one));
+    assert_eq!(after(&two), after(&one));
 }
 
 /// Type II: under the level X52 two valleys. The first, with walls of 45°, is 3 mm

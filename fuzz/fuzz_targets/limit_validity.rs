@@ -135,8 +135,8 @@ fuzz_target!(|bytes: &[u8]| {
     match analyze(std::io::Cursor::new(&output), machine, &options, None) {
         Ok(after) => {
             assert!(after.fits(), "the result does not fit: {:?}", after.worst);
-            let (told, found) = (summary.after.duration_s, after.duration_s);
-            assert!((told - found).abs() <= 1e-9 * found.abs().max(1.0));
+            let (shown, found) = (summary.after.duration_s, after.duration_s);
+            assert!((shown - found).abs() <= 1e-9 * found.abs().max(1.0));
         }
         Err(failure) => panic!("the result is refused: {failure:?}"),
     }

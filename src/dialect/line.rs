@@ -211,7 +211,7 @@ fn without_number(text: &str) -> &str {
     };
     let digits = run(rest.as_bytes(), 0, |byte| byte.is_ascii_digit());
     match rest.get(digits..) {
-        Some(behind) if digits > 0 => behind.trim_start(),
+        Some(after) if digits > 0 => after.trim_start(),
         _ => text,
     }
 }

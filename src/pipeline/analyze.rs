@@ -5,12 +5,12 @@ use std::slice;
 
 use super::advice::{Adviser, Circumstances};
 use super::conditions::{above_largest, conditions};
-use super::front::Front;
-use super::relay::relay;
+use super::executor::Executor;
 use super::summary::AT_LENGTH_MAX;
-use super::tally::Tally;
+use super::totals::Totals;
 use super::watching::watching_at;
 use super::ways::{has_ways, ways};
+use super::worker::relay;
 use super::worst::{worst, worst_of};
 use super::{Certificate, Failure, Options, RowSink, Summary};
 use crate::diagnostic::Diagnostic;
@@ -85,7 +85,7 @@ pub(super) fn judge<R: Read + Seek + Send>(
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
-    let mut front = Front::new(input, machine, options);
+    let mut front = Executor::new(input, machine, options);
     let mut analysis = Analysis::new(machine, rungs, options, rows);
     // Where little is to be judged, handing lines over costs as much.
     if options.threads > 1 && analysis.weighs() {
@@ -110,7 +110,7 @@ pub(super) fn judge<R: Read + Seek + Send>(
 struct Analysis<'m, 'r> {
     machine: &'m Machine,
     assessor: Assessor<'m>,
-    tally: Tally<'m, 'r>,
+    tally: Totals<'m, 'r>,
     adviser: Adviser<'m>,
     energy: bool,
 }
@@ -126,7 +126,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
         Self {
             machine,
             assessor: watching_at(machine, rungs, options),
-            tally: Tally::new(machine, options, rows),
+            tally: Totals::new(machine, options, rows),
             adviser: Adviser::new(machine),
             energy,
         }
@@ -173,7 +173,7 @@ impl<'m, 'r> Analysis<'m, 'r> {
     }
 
     /// The figures, after the last line.
-    fn finish<R: Read + Seek>(self, front: Front<'_, R>) -> Result<Summary, Failure> {
+    fn finish<R: Read + Seek>(self, front: Executor<'_, R>) -> Result<Summary, Failure> {
         let Self {
             machine,
             mut assessor,
@@ -209,7 +209,7 @@ pub fn moves<R: Read + Seek + Send>(
     options: &Options,
     each: &mut dyn FnMut(&Move, Option<f64>) -> std::io::Result<()>,
 ) -> Result<Vec<Diagnostic>, Failure> {
-    let mut front = Front::new(input, machine, options);
+    let mut front = Executor::new(input, machine, options);
     let assessor = Assessor::new(machine, None, Want::PEAKS);
     while let Some(line) = front.next_line()? {
         for step in &*line.steps {
@@ -224,7 +224,7 @@ pub fn moves<R: Read + Seek + Send>(
 }
 
 /// What is wanted of the next move.
-fn wanted(tally: &Tally<'_, '_>) -> Want {
+fn wanted(tally: &Totals<'_, '_>) -> Want {
     let want = tally.want();
     Want {
         accel: want.energy,

@@ -2,7 +2,7 @@
 
 use super::entry::Entry;
 use super::expected::{Expected, ExpectedMove};
-use crate::interpret::{Move, Stance, Step};
+use crate::interpret::{FastPathState, Move, Step};
 use crate::power::Assessment;
 
 /// A piece of the written program with what it must do.
@@ -17,7 +17,7 @@ pub(super) struct Batch {
     /// The moves of plain blocks.
     pub(super) moves: Vec<Move>,
     /// The original's state after each other block.
-    pub(super) stances: Vec<Stance>,
+    pub(super) fast_path_states: Vec<FastPathState>,
 }
 
 /// What was written for a block of the original.
@@ -37,11 +37,11 @@ impl Batch {
         let written = self.bytes.get(start..).unwrap_or_default();
         self.blocks.push(WrittenBlock {
             length: written.len(),
-            plain: entry.stance.is_none(),
+            plain: entry.fast_path_state.is_none(),
             unchanged: written == entry.text,
         });
-        if let Some(stance) = entry.stance.take() {
-            self.stances.push(stance);
+        if let Some(fast_path_state) = entry.fast_path_state.take() {
+            self.fast_path_states.push(fast_path_state);
         } else if let Some(Step::Move(mv)) = entry.steps.first() {
             self.moves.push(mv.clone());
         }
@@ -65,6 +65,6 @@ impl Batch {
         self.expected.clear();
         self.blocks.clear();
         self.moves.clear();
-        self.stances.clear();
+        self.fast_path_states.clear();
     }
 }

@@ -21,11 +21,11 @@ pub(super) use reasons::Reasons;
 
 use super::batch::Batch;
 use super::expected::{Expected, Originals, Stops, added_mode, added_stop, different};
-use super::tally::Tally;
+use super::totals::Totals;
 use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Interpreter, Move, MoveKind, Stance, Step};
+use crate::interpret::{Diagnostics, Facts, FastPathState, Interpreter, Move, MoveKind, Step};
 use crate::limit::{Deeper, Depths, Paced, Place};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, Lower, PowerModel, Rating, Want};
@@ -42,18 +42,18 @@ pub(super) struct Certifier<'m, 'r> {
     facts: Facts,
     line: u64,
     /// The original's state after the last block.
-    original: Stance,
+    original: FastPathState,
     /// The written program is in the same one.
     in_step: bool,
-    /// Its interpreter has yet to be told where plain blocks have moved to.
-    behind: bool,
+    /// Its interpreter does not yet know where plain blocks have moved to.
+    stale: bool,
     verdict: Verdict<'m, 'r>,
 }
 
 /// Holds the written program against the original.
 pub(super) struct Verdict<'m, 'r> {
     model: PowerModel,
-    tally: Tally<'m, 'r>,
+    tally: Totals<'m, 'r>,
     /// What the original does, from the first move that is not judged.
     originals: Originals,
     pieces: Pieces,
@@ -107,9 +107,9 @@ impl<'m, 'r> Certifier<'m, 'r> {
     ) -> Self {
         let interpreter = Interpreter::new(machine, &options.reading);
         Self {
-            original: interpreter.stance(),
+            original: interpreter.fast_path_state(),
             in_step: true,
-            behind: false,
+            stale: false,
             interpreter,
             diagnostics: Diagnostics::default(),
             assessor: watching_at(machine, rungs, options),
@@ -126,12 +126,12 @@ impl<'m, 'r> Certifier<'m, 'r> {
         self.verdict.refill(&mut batch.expected);
         let mut rest = batch.bytes.as_slice();
         let mut moves = batch.moves.iter();
-        let mut stances = batch.stances.drain(..);
+        let mut fast_path_states = batch.fast_path_states.drain(..);
         for block in &batch.blocks {
-            let Some((text, behind)) = rest.split_at_checked(block.length) else {
+            let Some((text, after)) = rest.split_at_checked(block.length) else {
                 break;
             };
-            rest = behind;
+            rest = after;
             let mv = if block.plain { moves.next() } else { None };
             if let Some(mv) = mv {
                 if self.in_step && block.unchanged {
@@ -143,14 +143,14 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 self.original.move_to(&mv.end);
             } else {
                 self.execute(text);
-                if let Some(stance) = stances.next() {
-                    self.original = stance;
+                if let Some(fast_path_state) = fast_path_states.next() {
+                    self.original = fast_path_state;
                 }
             }
             self.in_step = self.interpreter.stands_as(&self.original);
         }
         self.execute(rest);
-        drop(stances);
+        drop(fast_path_states);
         batch.clear();
         self.verdict.expect_nothing();
         self.verdict.tally.check()
@@ -158,7 +158,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
 
     /// Executes lines of the written program, and judges what they do.
     fn execute(&mut self, text: &[u8]) {
-        if std::mem::take(&mut self.behind) {
+        if std::mem::take(&mut self.stale) {
             self.interpreter.follow(&self.original);
         }
         for text in lines(text) {
@@ -206,7 +206,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
             assessor, verdict, ..
         } = self;
         self.line += 1;
-        self.behind = true;
+        self.stale = true;
         verdict.pass_spindle();
         verdict.done += 1;
         assessor.want = verdict.tally.want();
@@ -234,7 +234,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     ) -> Self {
         Self {
             model: PowerModel::new(machine),
-            tally: Tally::new(machine, options, rows),
+            tally: Totals::new(machine, options, rows),
             stops: Stops::of(machine),
             originals: Originals::default(),
             pieces: Pieces::default(),

@@ -3,7 +3,7 @@
 use std::io::{Cursor, Read, Seek};
 use std::vec;
 
-use super::front::Front;
+use super::executor::Executor;
 use super::{Failure, Options};
 use crate::interpret::{Move, Step};
 use crate::machine::Machine;
@@ -27,7 +27,7 @@ use crate::machine::Machine;
 /// ```
 pub struct Moves<'m, R> {
     /// `None`: it has been read to its end.
-    front: Option<Front<'m, R>>,
+    front: Option<Executor<'m, R>>,
     line: vec::IntoIter<Step>,
 }
 
@@ -48,7 +48,7 @@ impl<'m, R: Read + Seek> Moves<'m, R> {
     #[must_use]
     pub fn read(input: R, machine: &'m Machine, options: &Options) -> Self {
         Self {
-            front: Some(Front::new(input, machine, options)),
+            front: Some(Executor::new(input, machine, options)),
             line: Vec::new().into_iter(),
         }
     }

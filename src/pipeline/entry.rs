@@ -1,9 +1,9 @@
 //! A block that waits to be written, and what may be changed about it.
 
 use super::ends::Places;
-use super::front::Line;
+use super::executor::Line;
 use super::line_key::{IN_A_FILE, LineKey};
-use crate::interpret::{Facts, FeedMode, KnobState, Motion, Move, MoveKind, Stance, Step};
+use crate::interpret::{Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::motion::{CYCLE, TURNING_CYCLE};
@@ -44,7 +44,7 @@ pub(super) struct Entry {
     /// The state after it.
     pub(super) mark: Mark,
     /// The same, as far as plain blocks go by it; `None` after a plain one.
-    pub(super) stance: Option<Stance>,
+    pub(super) fast_path_state: Option<FastPathState>,
     pub(super) knobs: Option<KnobState>,
     pub(super) feed_mode: FeedMode,
     /// Path mode of the move before it.
@@ -74,7 +74,7 @@ impl Entry {
             without_feed: false,
             marked: false,
             mark: Mark::of(modal),
-            stance: None,
+            fast_path_state: None,
             knobs: None,
             feed_mode: modal.feed_mode,
             mode_before: modal.path_mode,
@@ -110,7 +110,7 @@ impl Entry {
             .count();
         self.mark = Mark::of(modal);
         let plain = self.facts.plain && matches!(self.steps.as_slice(), [Step::Move(_)]);
-        self.stance = (!plain).then(|| line.interpreter.stance());
+        self.fast_path_state = (!plain).then(|| line.interpreter.fast_path_state());
         self.knobs = knobs(machine, line.interpreter.knobs());
         self.feed_mode = modal.feed_mode;
         self.mode_before = mode_before;

@@ -172,7 +172,7 @@ pub(super) struct Originals {
 }
 
 impl Originals {
-    /// Drops the first `judged`, takes the next piece, and tells how much of
+    /// Drops the first `judged`, takes the next piece, and says how much of
     /// earlier ones is left.
     pub(super) fn refill(&mut self, judged: usize, next: &mut Vec<Expected>) -> usize {
         let old = judged.min(self.left.len());

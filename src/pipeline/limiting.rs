@@ -11,20 +11,20 @@ use super::analyze::judge;
 use super::batch::Batch;
 use super::certify::{Certified, Certifier};
 use super::conclusion::{conclude, holds_one_way};
+use super::derate::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::executor::read_whole;
 use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, in_fixed_blocks};
-use super::front::read_whole;
-use super::lower::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::looped_program::LoopedProgram;
 use super::pace::sooner;
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::readable::readable;
-use super::relay::no_thread;
 use super::row::Detail;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
 use super::unmarked::unmarked;
 use super::ways::{has_ways, ways};
-use super::whole::Whole;
+use super::worker::no_thread;
 use super::writer::{Plan, Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -361,7 +361,7 @@ impl Job<'_> {
             depths,
             plan,
         } = self;
-        let whole = Whole {
+        let whole = LoopedProgram {
             machine,
             target,
             how,

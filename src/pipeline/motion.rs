@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::io::{Read, Seek};
 
-use super::front::Front;
+use super::executor::Executor;
 use super::{Failure, Options};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Action, Arc, Move, MoveKind, Step};
@@ -84,7 +84,7 @@ pub fn motion<R: Read + Seek + Send>(
     options: &Options,
     each: &mut dyn FnMut(Stretch) -> Result<(), Failure>,
 ) -> Result<MotionNotes, Failure> {
-    let mut front = Front::new(input, machine, options);
+    let mut front = Executor::new(input, machine, options);
     let [largest, overrides] = Overrides::of(machine);
     let rules = machine.controller.planner.look_ahead;
     let rules = rules.filter(|_| machine.path.mode != Some(PathMode::ExactStop));

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeSet;
 
-use super::lower::LAST_ROUND;
+use super::derate::LAST_ROUND;
 use super::summary::AT_LENGTH_MAX;
 use super::{Failure, Law, LimitOptions, LimitSummary, Strategy};
 use crate::limit::{Paces, Place};

@@ -7,7 +7,7 @@
 use std::io::{Read, Seek, sink};
 use std::iter::once;
 
-use super::lower::lower_further;
+use super::derate::lower_further;
 use super::over_time::OverTime;
 use super::row::Detail;
 use super::ways::has_ways;

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::io::{self, Read, Seek};
 
-use super::front::Front;
+use super::executor::Executor;
 use super::{Failure, Options};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Step;
@@ -58,7 +58,7 @@ pub fn series<R: Read + Seek + Send>(
     step_s: f64,
     sink: &mut dyn SeriesSink,
 ) -> Result<Option<Diagnostic>, Failure> {
-    let mut front = Front::new(input, machine, options);
+    let mut front = Executor::new(input, machine, options);
     // Nothing is judged here.
     let want = Want {
         energy: false,

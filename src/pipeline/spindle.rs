@@ -137,7 +137,7 @@ impl Run<'_> {
         }
         let mut reached_s = None;
         let mut count = 0_u32;
-        let mut told = false;
+        let mut announced = false;
         loop {
             // Not summed up: the rounding of a million sums would show.
             let now_s = start_s + f64::from(count) * self.period_s;
@@ -161,8 +161,8 @@ impl Run<'_> {
             if step.reached && reached_s.is_none() {
                 reached_s = Some(self.time_s - start_s);
             }
-            if !told {
-                told = self.tell(command, &step, limits);
+            if !announced {
+                announced = self.announce(command, &step, limits);
             }
             self.sample(target, step.jerk)?;
         }
@@ -219,7 +219,7 @@ impl Run<'_> {
     }
 
     /// Warns of what cannot be helped; true when it has.
-    fn tell(&mut self, command: &Command, step: &Step, limits: &Limits) -> bool {
+    fn announce(&mut self, command: &Command, step: &Step, limits: &Limits) -> bool {
         let worth = |value: f64, of: f64| value > WORTH_TELLING * of.abs().max(1.0);
         let most = limits.drive.at(0.0);
         let message = if worth(step.overshoot, command.target_rpm) {

@@ -235,7 +235,7 @@ impl Line {
             let along = (0..AXES).map(|axis| (place[axis] - self.start[axis]) * way[axis]);
             along.sum::<f64>() / length2
         };
-        let beside = |place: &AxisValues| {
+        let is_outside = |place: &AxisValues| {
             let share = share(place);
             (0..AXES).any(|axis| {
                 let off = place[axis] - self.start[axis] - share * way[axis];
@@ -245,7 +245,7 @@ impl Line {
         let [first, last] = [share(from), share(to)];
         let rounding = BESIDE_MM / length2.sqrt();
         let forwards = first >= -rounding && last > first && last <= 1.0 + rounding;
-        forwards && !beside(from) && !beside(to)
+        forwards && !is_outside(from) && !is_outside(to)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::machine::AxisSet;
 use crate::power::Rating;
 
 use super::by_line::LineSummary;
-use super::front::ONLY_SUBPROGRAMS;
+use super::executor::ONLY_SUBPROGRAMS;
 use super::outcome::{Ideal, Pause, Price};
 use super::over_time::OverTime;
 use super::row::Certificate;

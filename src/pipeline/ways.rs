@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::io::{Read, Seek};
 
-use super::front::{Front, NO_PROGRAM};
+use super::executor::{Executor, NO_PROGRAM};
 use super::{Failure, Options};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{BlockDelete, ProbeResult, ProbeWay};
@@ -78,7 +78,7 @@ impl<R: Read + Seek> Search<'_, R> {
                 options.reading.probe = Some(ProbeResult::Either(way));
             }
             self.input.rewind().map_err(Failure::Input)?;
-            let mut front = Front::new(&mut self.input, self.machine, &options);
+            let mut front = Executor::new(&mut self.input, self.machine, &options);
             while let Some(line) = front.next_line()? {
                 if line.block.delete_level > 0 {
                     self.levels.insert(line.block.delete_level);

@@ -63,7 +63,7 @@ impl Summary {
         self.unfit.truncate(Self::KEPT);
         merge(&mut self.worst, &other.worst);
         self.worst.sort_by(|a, b| b.overload.total_cmp(&a.overload));
-        self.worst.truncate(super::tally::WORST);
+        self.worst.truncate(super::totals::WORST);
         for found in &other.over_time {
             self.rate_worse(found);
         }

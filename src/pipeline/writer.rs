@@ -16,7 +16,7 @@ use super::analyze::refuse_planned;
 use super::batch::Batch;
 use super::certify::Reasons;
 use super::entry::{Entry, knobs, rests};
-use super::front::Front;
+use super::executor::Executor;
 use super::judge::Flight;
 use super::outcome::Pause;
 use super::preset_notes::PresetNotes;
@@ -25,7 +25,7 @@ use super::spindle_rows::SpindleRows;
 use super::split::Unsplit;
 use super::stop_before::Stopping;
 use super::table::Table;
-use super::tally::Tally;
+use super::totals::Totals;
 use super::watching::watching;
 use super::{Failure, Options, Summary};
 use crate::interpret::{KnobState, MoveKind, Step};
@@ -56,11 +56,11 @@ pub(super) struct Written {
 /// Analyses, changes and writes.
 pub(super) struct Writer<'m, R, W> {
     machine: &'m Machine,
-    front: Front<'m, R>,
+    front: Executor<'m, R>,
     output: W,
     assessor: Assessor<'m>,
     limiter: Limiter<'m>,
-    tally: Tally<'m, 'm>,
+    tally: Totals<'m, 'm>,
     rewriter: Rewriter<'m>,
     /// Blocks that wait; `first` is the number of the front one.
     entries: VecDeque<Box<Entry>>,
@@ -117,7 +117,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         table: Option<Table>,
         model: PowerModel,
     ) -> Self {
-        let front = Front::new(input, machine, options);
+        let front = Executor::new(input, machine, options);
         let comment = options.comment(machine);
         Self {
             machine,
@@ -130,7 +130,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             output,
             assessor: watching(machine, options),
             limiter,
-            tally: Tally::new(machine, options, None),
+            tally: Totals::new(machine, options, None),
             rewriter: Rewriter::new(machine).marking(comment.clone()),
             entries: VecDeque::new(),
             first: 0,
@@ -285,9 +285,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         if let Some(table) = &self.table {
             self.tally.learn_files(line_files);
             self.reasons.learn_files(line_files);
-            table.tell(self.machine, &mut entry);
+            table.inform(self.machine, &mut entry);
         }
-        self.tell_stop(&mut entry);
+        self.inform_of_stop(&mut entry);
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
         if self.entries.is_empty() && !entry.steps.iter().any(waits) {

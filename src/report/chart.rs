@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use super::figure::round_to_digits;
 use crate::pipeline::Sample;
 
-/// Buckets of samples; more cannot be told apart.
+/// Buckets of samples; more cannot be distinguished.
 const BUCKETS_MAX: usize = 2048;
 /// Panels: name with unit.
 const PANELS: [&str; 5] = [

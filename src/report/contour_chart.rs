@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use crate::contour::{ArcResult, BINS, PlotPoint};
 
-/// Points that can be told apart; one more halves them.
+/// Points that can be distinguished; one more halves them.
 const POINTS_MAX: usize = 8192;
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 40.0;
@@ -209,7 +209,7 @@ fn circle(arc: &ArcResult, left: f64, top: f64, out: &mut impl Write) -> io::Res
     Ok(())
 }
 
-/// Bins that were met, less their mean: the shrinkage is told in words.
+/// Bins that were met, less their mean: the shrinkage is given in words.
 fn about_mean(bins: &[f32]) -> Vec<(usize, f64)> {
     let met = || {
         let all = bins.iter().enumerate();

@@ -12,7 +12,7 @@ use crate::contour::{ArcResult, ContourRow, ContourSummary, Errors, Roundness};
 pub const CONTOUR_COLUMNS: &str = "line,run,move,start_s,duration_s,error_um,error_rms_um,\
 corrected_error_um,corrected_error_rms_um,radius_mm,roundness_um,shrinkage_um,\
 corrected_roundness_um,corrected_shrinkage_um";
-/// Arcs that are told to people.
+/// Arcs that are shown to people.
 const ARCS_MAX: usize = 12;
 /// Micrometres in a millimetre.
 const UM: f64 = 1e3;
@@ -233,7 +233,7 @@ pub fn contour_text(
     text
 }
 
-/// Keeps what is told of arcs to people, and what is drawn of them: those that
+/// Keeps what people are shown of arcs, and what is drawn of them: those that
 /// are least round.
 #[derive(Debug, Default)]
 pub struct ArcList {

@@ -58,7 +58,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A share in percent; near 100 % with the digits that tell it from 100.
+/// A share in percent; near 100 % with the digits that distinguish it from 100.
 pub(super) fn percent(ratio: f64) -> String {
     let value = ratio * 100.0;
     let off = (value - 100.0).abs();

@@ -15,7 +15,7 @@ use crate::identify::{Factor, FrequencyResponse};
 const PAGE: &str = include_str!("page/tune.html");
 const STYLE: &str = include_str!("page/tune.css");
 const SCRIPT: &str = include_str!("page/tune.js");
-/// Points of a measured response that can be told apart.
+/// Points of a measured response that can be distinguished.
 const POINTS_MAX: usize = 2048;
 
 /// Writes the page.

@@ -468,10 +468,8 @@ fn without_tool(view: &BlockView<'_>) -> [Option<Span>; 2] {
     if gone.end < other.start || gone.start < one.start {
         return [Some(gone), Some(without(other, view))];
     }
-    let behind = view.text.get(other.end as usize..).unwrap_or_default();
-    let blanks = behind
-        .iter()
-        .take_while(|byte| matches!(byte, b' ' | b'\t'));
+    let after = view.text.get(other.end as usize..).unwrap_or_default();
+    let blanks = after.iter().take_while(|byte| matches!(byte, b' ' | b'\t'));
     let end = other.end + blanks.count() as u32;
     [Some(Span { end, ..gone }), None]
 }
@@ -482,10 +480,8 @@ fn without(word: Span, view: &BlockView<'_>) -> Span {
     if first != Some(word) {
         return with_blanks(view.text, word);
     }
-    let behind = view.text.get(word.end as usize..).unwrap_or_default();
-    let blanks = behind
-        .iter()
-        .take_while(|byte| matches!(byte, b' ' | b'\t'));
+    let after = view.text.get(word.end as usize..).unwrap_or_default();
+    let blanks = after.iter().take_while(|byte| matches!(byte, b' ' | b'\t'));
     Span {
         end: word.end + blanks.count() as u32,
         ..word

@@ -24,7 +24,7 @@ pub(super) struct Style {
 }
 
 impl Style {
-    /// The style of a block; blanks where it has too few words to tell.
+    /// The style of a block; blanks where it has too few words to show one.
     pub(super) fn of(text: &[u8], block: &Block) -> Self {
         let first = block
             .number

@@ -75,7 +75,7 @@ impl Mark {
     }
 }
 
-/// An F by value, to tell whether two are the same.
+/// An F by value, to see whether two are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeedValue {
     /// The number in the program.

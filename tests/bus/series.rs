@@ -170,7 +170,7 @@ fn a_series_adds_up_to_the_report() {
             ] {
                 let spindle = format!("{spindle}\njerk_time_s = {jerk_time_s}");
                 let machine = machine(controller, credit, &spindle, tools);
-                let (told, summary) = run(&machine, program, &Options::default());
+                let (output, summary) = run(&machine, program, &Options::default());
                 let rows = shown(&machine, program, 2e-4);
                 let name = format!("{controller} {credit} {jerk_time_s} {program}");
                 let last_s = rows[rows.len() - 1].0;
@@ -182,7 +182,7 @@ fn a_series_adds_up_to_the_report() {
                     assert!((0.0..=2e-4 + 1e-12).contains(&dt), "{name}: {dt}");
                     energy += 0.5 * dt * (pair[0].2.bus_w[0] + pair[1].2.bus_w[0]);
                 }
-                let expected: f64 = told.iter().map(|row| row.energy_j).sum();
+                let expected: f64 = output.iter().map(|row| row.energy_j).sum();
                 let off = (energy - expected).abs();
                 assert!(off <= 1e-6 * expected, "{name}: {energy}, not {expected}");
                 for (peak_w, of) in [

@@ -10,8 +10,8 @@ const STOPPED: &str = "G61.1\nG0 X200 Y200\nG1 X0 Y0 F300\nM2\n";
 const SHORT: &str = "G1 X50 F20000\nG1 X50.2\nG1 X100\n";
 
 /// The words that `check` names for each line, one by one.
-fn advised(told: &str) -> Vec<String> {
-    let advice = told
+fn advised(shown: &str) -> Vec<String> {
+    let advice = shown
         .lines()
         .filter_map(|line| line.split_once("fits with "));
     let words = advice.flat_map(|(_, words)| {
@@ -49,18 +49,18 @@ fn check_names_the_words_that_limit_writes() {
     for (controller, rest, program, power_w, word) in cases {
         let shop = Shop::mill(controller, &format!("peak_power_w = {power_w}"), rest, "");
         shop.put("a.nc", program);
-        let (code, told, errors) = shop.run("check a.nc");
+        let (code, shown, errors) = shop.run("check a.nc");
         assert_eq!(code, 1, "{controller}: {errors}");
-        let words = advised(&told);
+        let words = advised(&shown);
         assert!(
             words.iter().any(|it| it.starts_with(word)),
-            "{controller}: {told}"
+            "{controller}: {shown}"
         );
         let (code, text, errors) = shop.run("limit a.nc --allow feed");
         assert_eq!(code, 0, "{controller}: {errors}");
         for word in words {
             let word = word.trim_start_matches("G1 ");
-            assert!(text.contains(word), "{controller}: {word}\n{told}{text}");
+            assert!(text.contains(word), "{controller}: {word}\n{shown}{text}");
         }
     }
 }
@@ -165,10 +165,10 @@ fn what_is_permitted_is_not_advised() {
     // To write out what stays a cycle is not advised either.
     let shop = Shop::mill("fanuc", "peak_power_w = 300", STOPS, "");
     shop.put("a.nc", tap);
-    let (code, told, _) = shop.run("check a.nc");
+    let (code, shown, _) = shop.run("check a.nc");
     assert_eq!(code, 1);
     assert!(
-        told.contains("it cannot be written out") && !told.contains("--allow expand"),
-        "{told}"
+        shown.contains("it cannot be written out") && !shown.contains("--allow expand"),
+        "{shown}"
     );
 }

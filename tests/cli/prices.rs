@@ -18,8 +18,8 @@ fn mill(peak_w: f64) -> Shop {
 }
 
 /// The last line but blank ones.
-fn last(told: &str) -> &str {
-    told.lines().last().unwrap_or_default()
+fn last(shown: &str) -> &str {
+    shown.lines().last().unwrap_or_default()
 }
 
 /// The permissions that are named are enough, and it takes as long as is said.
@@ -29,24 +29,24 @@ fn the_price_is_what_limit_asks_for() {
     for (part, expected) in [(PART, "feed,expand"), (feeds, "feed")] {
         let shop = mill(450.0);
         shop.put("part.nc", part);
-        let (code, _, told) = shop.run("limit part.nc -o fit.nc --json refused.json");
-        assert_eq!(code, 1, "{told}");
-        let price = last(&told).strip_prefix("with --allow ").expect(&told);
+        let (code, _, shown) = shop.run("limit part.nc -o fit.nc --json refused.json");
+        assert_eq!(code, 1, "{shown}");
+        let price = last(&shown).strip_prefix("with --allow ").expect(&shown);
         let (allow, times) = price.split_once(" it fits, in ").expect(price);
         let refused: serde_json::Value = serde_json::from_str(&shop.get("refused.json")).unwrap();
         assert_eq!(allow, expected);
         assert_eq!(refused["price"]["allow"], allow);
-        let (code, _, told) = shop.run(&format!(
+        let (code, _, shown) = shop.run(&format!(
             "limit part.nc -o fit.nc --allow {allow} --json fit.json"
         ));
-        assert_eq!(code, 0, "{told}");
+        assert_eq!(code, 0, "{shown}");
         let fit: serde_json::Value = serde_json::from_str(&shop.get("fit.json")).unwrap();
         assert_eq!(
             fit["duration_after_s"],
             refused["price"]["duration_after_s"]
         );
         assert_eq!(fit["price"], serde_json::Value::Null);
-        assert!(told.contains(times.split(' ').next().unwrap()), "{told}");
+        assert!(shown.contains(times.split(' ').next().unwrap()), "{shown}");
     }
 }
 
@@ -56,18 +56,18 @@ fn the_feed_that_is_named_is_the_one_that_is_written() {
     let shop = Shop::mill("grbl", "peak_power_w = 350", "", "");
     let part = "G21 G90\nG1 X0.4 F24000\nX0.9 Y0.1\nX1.5 Y0.5\nX60\n";
     shop.put("part.nc", part);
-    let (code, _, told) = shop.run("limit part.nc -o fit.nc");
-    assert_eq!(code, 1, "{told}");
+    let (code, _, shown) = shop.run("limit part.nc -o fit.nc");
+    assert_eq!(code, 1, "{shown}");
     let (code, _, _) = shop.run("limit part.nc -o fit.nc --allow feed");
     assert_eq!(code, 0);
     let fit = shop.get("fit.nc");
-    let named = told
+    let named = shown
         .lines()
         .filter_map(|line| line.split("it fits at ").nth(1));
     let named: Vec<&str> = named
         .filter_map(|it| it.split(": --allow").next())
         .collect();
-    assert!(!named.is_empty(), "{told}");
+    assert!(!named.is_empty(), "{shown}");
     for feed in named {
         let written = fit.split_whitespace().any(|word| word == feed);
         assert!(written, "{feed}\n{fit}");
@@ -90,9 +90,9 @@ fn no_price_where_nothing_helps() {
     let shop = Shop::mill("fanuc", "peak_power_w = 450", load, "");
     shop.put("part.nc", &format!("M8\n{PART}"));
     for more in ["", " --allow feed,expand", " --partial"] {
-        let (code, _, told) = shop.run(&format!("limit part.nc -o fit.nc{more}"));
-        assert_eq!(code, 1, "{told}");
-        assert!(!told.contains("it fits, in"), "{told}");
+        let (code, _, shown) = shop.run(&format!("limit part.nc -o fit.nc{more}"));
+        assert_eq!(code, 1, "{shown}");
+        assert!(!shown.contains("it fits, in"), "{shown}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! The calls that `rs274` prints, to events in machine coordinates.
 //!
 //! Positions of its calls are program coordinates without offsets; the calls
-//! tell the offsets in force: G92, then the rotation, then the work offset and
+//! give the offsets in force: G92, then the rotation, then the work offset and
 //! the tool (LinuxCNC, "Coordinate Systems").
 
 use super::event::{Event, Kind};

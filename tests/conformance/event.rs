@@ -1,4 +1,4 @@
-//! What a program does, as far as `rs274` tells it: both sides become this.
+//! What a program does, as far as `rs274` prints it: both sides become this.
 
 use std::fmt::Write as _;
 

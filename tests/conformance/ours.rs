@@ -86,7 +86,7 @@ fn event(mv: &Move) -> Event {
     };
     let mut event = Event::new(kind, AXES.map(|letter| mv.end[place(letter)]));
     event.seconds = mv.dwell_s;
-    // The spindle leads threads: rs274 tells their F, which does not count.
+    // The spindle leads threads: rs274 prints their F, which does not count.
     let leads = matches!(mv.kind, MoveKind::Thread | MoveKind::Tap);
     event.feed = (mv.feed_mm_s.is_finite() && !leads).then_some(mv.feed_mm_s * 60.0);
     if let Some(arc) = &mv.arc {

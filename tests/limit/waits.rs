@@ -150,9 +150,9 @@ fn to_wait_is_advised_where_the_program_can() {
             format!("{advice}\n")
         };
         assert!(errors.contains(advice.trim_start()), "{errors}");
-        let (code, told, _) = shop.run("check a.nc");
-        assert_eq!(code, 1, "{told}");
-        assert_eq!(told.contains("or let it pause"), can, "{told}");
+        let (code, shown, _) = shop.run("check a.nc");
+        assert_eq!(code, 1, "{shown}");
+        assert_eq!(shown.contains("or let it pause"), can, "{shown}");
         let (_, _, errors) = limited(&shop, program, "--allow pause");
         assert!(!errors.contains("let it pause"), "{errors}");
     }

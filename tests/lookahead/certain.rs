@@ -34,8 +34,8 @@ fn behind_a_stop_nothing_is_left_of_what_is_not_certain() {
     let text = include_str!("../../machine-configs/linuxcnc-mill.toml");
     let text = text.replace("\naccel_mm_s2", "\njerk_mm_s3 = 50000\naccel_mm_s2");
     let (machine, _) = Machine::from_toml("mill.toml", &text).expect("a machine");
-    let behind = |stop: &str| rows_on(&machine, &format!("{program}{stop}G0 Z30\nX0\nM2\n"));
-    let (moving, dwelling) = (behind(""), behind("G4 P1\n"));
+    let before = |stop: &str| rows_on(&machine, &format!("{program}{stop}G0 Z30\nX0\nM2\n"));
+    let (moving, dwelling) = (before(""), before("G4 P1\n"));
     let certificates: Vec<_> = moving.iter().map(|row| row.certificate).collect();
     let [robust, planned] = [Certificate::Robust, Certificate::Planned];
     assert_eq!(

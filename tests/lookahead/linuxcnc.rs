@@ -90,12 +90,12 @@ fn in_exact_stop_an_arc_that_is_last_accelerates_by_half() {
     let whole = 1000.0 * (1.0 - 0.25_f64 * 0.25).sqrt();
     let arc = "G61.1\nG1 X0 F6000\nG2 X40 Y40 I40 J0\n";
     let machine = super::machine("linuxcnc", 100.0, 1000.0);
-    for (behind, accel) in [
+    for (after, accel) in [
         ("G1 X60\n", whole),
         ("G4 P1\nG1 X60\n", 500.0),
         ("M2\n", 500.0),
     ] {
-        let judged = super::glide::judged(&machine, &format!("G0 X0 Y0\n{arc}{behind}"), 0.0, true);
+        let judged = super::glide::judged(&machine, &format!("G0 X0 Y0\n{arc}{after}"), 0.0, true);
         let (_, arc) = judged.iter().find(|(line, _)| *line == 4).unwrap();
         assert_close(arc.duration_s, time(accel));
         assert!(!arc.blended);

@@ -54,8 +54,8 @@ fn printer() -> Machine {
 
 #[test]
 fn a_print_lasts_as_long_as_was_measured() {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
-    let shared = std::env::var("GWATT_SHARED").unwrap_or_else(|_| beside.to_owned());
+    let sibling = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
+    let shared = std::env::var("GWATT_SHARED").unwrap_or_else(|_| sibling.to_owned());
     let path = format!("{shared}/measured/print_times/31min17sec.gcode");
     let Ok(program) = std::fs::read(&path) else {
         crate::evidence::cannot_run("the print is not there");

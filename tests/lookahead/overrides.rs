@@ -68,7 +68,7 @@ fn a_feed_that_the_axes_cap_behind_one_that_is_not() {
     }
 }
 
-/// The same from behind: braking from 100 mm/s feeds back 0.1·(50 − 10) W.
+/// The same from the other end: braking from 100 mm/s feeds back 0.1·(50 − 10) W.
 #[test]
 fn a_feed_that_the_axes_cap_before_one_that_is_not() {
     let machine = plain("grbl");

@@ -132,8 +132,8 @@ impl Figures {
 }
 
 fn shared() -> PathBuf {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
-    PathBuf::from(std::env::var("GWATT_SHARED").unwrap_or_else(|_| beside.to_owned()))
+    let sibling = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared");
+    PathBuf::from(std::env::var("GWATT_SHARED").unwrap_or_else(|_| sibling.to_owned()))
 }
 
 /// Programs of our own: chords, a path in space, arcs and corners.

@@ -82,27 +82,27 @@ fn whole(plant: &Plant, summary: &Summary, watch: &mut Watch<'_>, energy_j: f64,
     let duration_s = watch.duration_s();
     // Two moves at once are bounded; a series does not show steps of speed.
     let bounded = rules.steps || rules.kink_s > 0.0;
-    let mut differs = |what: &str, own: f64, told: f64| {
-        watch
-            .wrong
-            .push(format!("{what}: {own} in the series, {told} in the report"));
+    let mut differs = |what: &str, own: f64, output: f64| {
+        watch.wrong.push(format!(
+            "{what}: {own} in the series, {output} in the report"
+        ));
     };
     if (duration_s - summary.duration_s).abs() > 1e-6 * summary.duration_s + 1e-6 {
         differs("duration", duration_s, summary.duration_s);
     }
     let [one] = watch.peaks_w[..] else { return };
-    let told = [summary.peak_w, summary.regen_w];
+    let output = [summary.peak_w, summary.regen_w];
     let exact = !bounded
         && plant.spindle.is_none()
         && plant
             .axes
             .iter()
             .all(|axis| (axis.factors, axis.warm) == ([1.0; 2], 1.0));
-    for (what, own, told) in [("peak", one[0], told[0]), ("fed back", one[1], told[1])] {
+    for (what, own, output) in [("peak", one[0], output[0]), ("fed back", one[1], output[1])] {
         let slack_w = 1e-6 * (one[0].abs() + one[1]) + 1e-6;
-        let high = exact && own < told - 0.01 * told - slack_w;
-        if own > told + slack_w || high {
-            differs(what, own, told);
+        let high = exact && own < output - 0.01 * output - slack_w;
+        if own > output + slack_w || high {
+            differs(what, own, output);
         }
     }
     let scale_j = duration_s * one[0].abs();

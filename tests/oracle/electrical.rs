@@ -66,7 +66,7 @@ impl Axis {
 
 /// What the spindle draws next to the axes: as `AxisPower`; base load in `idle_w`.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Beside {
+pub struct SpindleLoad {
     pub power_w: f64,
     pub idle_w: f64,
 }
@@ -85,9 +85,9 @@ impl Plant {
     /// What a converter sees: `Σ max(0, P)` and `Σ max(0, −P)`, or the plain sum
     /// where it credits what is fed back. `loads` has a bit for each load that is
     /// on; axes without a state stand and hold their weight.
-    pub fn bus(&self, which: usize, states: &[AxisState], loads: u32, beside: Beside) -> Bus {
+    pub fn bus(&self, which: usize, states: &[AxisState], loads: u32, load: SpindleLoad) -> Bus {
         let converter = &self.converters[which];
-        let mut idle_w = converter.base_w + beside.idle_w;
+        let mut idle_w = converter.base_w + load.idle_w;
         for (bit, (power_w, fed_by)) in self.loads.iter().enumerate() {
             if loads & (1 << bit) != 0 && *fed_by == which {
                 idle_w += power_w;
@@ -96,9 +96,9 @@ impl Plant {
         let own = |axis: &&Axis| converter.axes.contains(&axis.index);
         let mut list = [AxisPower::default(); LETTERS.len() + 1];
         list[0] = AxisPower {
-            drawn_w: beside.power_w,
-            fed_w: -beside.power_w,
-            nominal_w: beside.power_w,
+            drawn_w: load.power_w,
+            fed_w: -load.power_w,
+            nominal_w: load.power_w,
         };
         let mut count = 1;
         for axis in self.axes.iter().filter(own) {

@@ -3,7 +3,7 @@
 use gwatt::interpret::Move;
 
 use super::course::Course;
-use super::electrical::{Beside, Bus};
+use super::electrical::{Bus, SpindleLoad};
 use super::plant::Plant;
 use super::spindle::Turning;
 
@@ -84,16 +84,16 @@ impl<'p> Judge<'p> {
     /// What the converters see at `t` s of a move.
     fn buses(&self, course: &Course, mv: &Move, [t, inside]: [f64; 2], buses: &mut Vec<Bus>) {
         let spindle = self.plant.spindle.as_ref();
-        let beside = spindle.map_or(Beside::default(), |spindle| {
+        let load = spindle.map_or(SpindleLoad::default(), |spindle| {
             self.turning
-                .beside(spindle, self.now_s + t, self.now_s + inside)
+                .spindle_load(spindle, self.now_s + t, self.now_s + inside)
         });
         let states = course.at(t, inside);
         buses.clear();
         for which in 0..self.plant.converters.len() {
             let own = spindle.is_some_and(|spindle| spindle.converter == which);
-            let beside = if own { beside } else { Beside::default() };
-            buses.push(self.plant.bus(which, &states, mv.loads, beside));
+            let load = if own { load } else { SpindleLoad::default() };
+            buses.push(self.plant.bus(which, &states, mv.loads, load));
         }
     }
 

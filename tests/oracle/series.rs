@@ -9,7 +9,7 @@ use std::io;
 use gwatt::pipeline::{Row, SeriesSink};
 use gwatt::power::{AxisInstant, Instant};
 
-use super::electrical::{AxisState, Beside};
+use super::electrical::{AxisState, SpindleLoad};
 use super::plant::{Axis, LETTERS, Plant};
 
 /// Rounding of figures that follow from each other at once.
@@ -210,14 +210,14 @@ impl<'p> Watch<'p> {
             }
             self.peaks_w[which][0] = self.peaks_w[which][0].max(now.bus_w[which]);
             self.peaks_w[which][1] = self.peaks_w[which][1].max(now.regen_w[which]);
-            let beside = Beside {
+            let load = SpindleLoad {
                 power_w: beside_w,
                 idle_w: 0.0,
             };
             if !known {
                 continue;
             }
-            let bus = plant.bus(which, &states, mask, beside);
+            let bus = plant.bus(which, &states, mask, load);
             let peaks = self
                 .by_line
                 .entry((line, which))
@@ -263,42 +263,44 @@ impl<'p> Watch<'p> {
 
     /// Compares what was seen with the rows of a report.
     pub fn compare(&mut self, rows: &[Row]) {
-        let mut told: HashMap<(u64, usize), [f64; 2]> = HashMap::new();
+        let mut output: HashMap<(u64, usize), [f64; 2]> = HashMap::new();
         for row in rows {
             let named = self
                 .plant
                 .converters
                 .iter()
                 .position(|it| it.name == row.converter);
-            let peaks = told
+            let peaks = output
                 .entry((row.line, named.unwrap()))
                 .or_insert([row.peak_w, row.regen_w]);
             *peaks = [peaks[0].max(row.peak_w), peaks[1].max(row.regen_w)];
         }
         let mut low = Vec::new();
         for (at, own) in &self.by_line {
-            let Some(told) = told.get(at) else { continue };
+            let Some(output) = output.get(at) else {
+                continue;
+            };
             let slack_w = ROUNDING * (own[0].abs() + own[1]) + 1e-6;
-            let low_by = [own[0] - told[0], own[1] - told[1]];
+            let low_by = [own[0] - output[0], own[1] - output[1]];
             let converter = &self.plant.converters[at.1];
             let limits = [converter.limit_w, converter.regen_limit_w];
             // Of several converters a row has the figures of its worst moment.
             let ratio = |[drawn_w, fed_w]: [f64; 2]| (drawn_w / limits[0]).max(fed_w / limits[1]);
             let several = self.plant.converters.len() > 1;
-            if several && ratio(*own) <= ratio(*told) * (1.0 + ROUNDING) + 1e-9 {
+            if several && ratio(*own) <= ratio(*output) * (1.0 + ROUNDING) + 1e-9 {
                 continue;
             }
             if low_by.into_iter().any(|low_w| low_w > slack_w) {
-                low.push((at.0, *own, *told));
+                low.push((at.0, *own, *output));
             }
         }
         low.sort_by_key(|found| found.0);
-        for (line, own, told) in low {
+        for (line, own, output) in low {
             self.differs(
                 "read too low",
                 0.0,
                 line,
-                &[own[0], told[0], own[1], told[1]],
+                &[own[0], output[0], own[1], output[1]],
             );
         }
     }

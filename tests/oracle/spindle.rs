@@ -7,7 +7,7 @@
 
 use std::f64::consts::TAU;
 
-use super::electrical::Beside;
+use super::electrical::SpindleLoad;
 use super::plant::Spindle;
 
 const RAD_S_PER_RPM: f64 = TAU / 60.0;
@@ -109,10 +109,10 @@ impl Turning {
     }
 
     /// What it draws at that instant.
-    pub fn beside(&self, spindle: &Spindle, t: f64, inside: f64) -> Beside {
+    pub fn spindle_load(&self, spindle: &Spindle, t: f64, inside: f64) -> SpindleLoad {
         let state = self.at(t, inside);
         let on = self.switched.iter().rfind(|(since, _)| *since <= inside);
-        Beside {
+        SpindleLoad {
             power_w: spindle.power_w(state),
             idle_w: if on.is_some_and(|(_, on)| *on) {
                 spindle.base_w

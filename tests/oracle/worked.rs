@@ -91,7 +91,11 @@ fn a_spindle_runs_up() {
         turning.command(&spindle, 0.0, 3000.0, true);
         near(turning.settled_s(), 1.0, 1e-5);
         let end_s = turning.settled_s() - 1e-7;
-        near(turning.beside(&spindle, end_s, end_s).power_w, end_w, 1e-4);
+        near(
+            turning.spindle_load(&spindle, end_s, end_s).power_w,
+            end_w,
+            1e-4,
+        );
     }
 }
 

@@ -9,13 +9,13 @@ const LINES: &str = "G21 G90 G94\nF20000\nG1 X100\nG1 X200 Y3\nG1 X90 Y8\nG0 X0 
 
 /// Peak, certificate and limits over time.
 fn found(shop: &Shop) -> (f64, String, Vec<f64>) {
-    let (_, told, errors) = shop.run("check a.ngc --format json");
-    let told: serde_json::Value = serde_json::from_str(&told).expect(&errors);
-    let values = told[0]["over_time"].as_array();
+    let (_, shown, errors) = shop.run("check a.ngc --format json");
+    let shown: serde_json::Value = serde_json::from_str(&shown).expect(&errors);
+    let values = shown[0]["over_time"].as_array();
     let values = values.map(|all| all.iter().filter_map(|it| it["value"].as_f64()).collect());
     (
-        told[0]["peak_w"].as_f64().unwrap(),
-        told[0]["certificate"].to_string(),
+        shown[0]["peak_w"].as_f64().unwrap(),
+        shown[0]["certificate"].to_string(),
         values.unwrap_or_default(),
     )
 }
@@ -63,10 +63,10 @@ fn moves_that_overlap_count_together_while_they_do() {
         );
         let all = ["--override 100%", "--override 60%", "--override 30%", ""];
         let all = all.map(|overrides| {
-            let (_, told, errors) =
+            let (_, shown, errors) =
                 shop.run(format!("check a.ngc --format json {overrides}").trim_end());
-            let told: serde_json::Value = serde_json::from_str(&told).expect(&errors);
-            told[0]["over_time"][0]["value"].as_f64().unwrap()
+            let shown: serde_json::Value = serde_json::from_str(&shown).expect(&errors);
+            shown[0]["over_time"][0]["value"].as_f64().unwrap()
         });
         all.to_vec()
     };

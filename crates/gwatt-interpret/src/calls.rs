@@ -4,8 +4,8 @@
 use super::execute::Interpreter;
 use super::expression::{Fault, Name, Reader, Value};
 use super::isg::Pending;
+use super::jump::{Label, Transfer};
 use super::parameters::{LOCALS, Scope};
-use super::transfer::{Label, Transfer};
 use gwatt_machine::Family;
 use gwatt_syntax::source::Span;
 

@@ -5,9 +5,10 @@
 use std::cell::Cell;
 
 use super::compensation::{Choice, Compensation, Corners};
-use super::direct::is_direct;
 use super::facts::Facts;
+use super::fast_path::is_direct;
 use super::isg::Isg;
+use super::jump::Transfer;
 use super::knob::KnobState;
 use super::modal::Modal;
 use super::nci::Nci;
@@ -16,16 +17,15 @@ use super::parameters::Parameters;
 use super::position::{BlockDelete, Position, Reading};
 use super::printer;
 use super::probe::Probe;
-use super::programmed::{Polar, Programmed};
+use super::program_coordinates::{Polar, Programmed};
 use super::report::{Diagnostics, Report};
 use super::siemens::{Siemens, is_beyond_words};
 use super::special::Special;
+use super::spindle_announced::Announced;
 use super::spindle_speed::SpindleMode;
-use super::spindle_told::Told;
 use super::state_words::{Saved, Switches};
 use super::statement::Traces;
 use super::tools::Tools;
-use super::transfer::Transfer;
 use super::turning::Turning;
 use super::words::Words;
 use gwatt_machine::{Family, Machine};
@@ -55,7 +55,7 @@ pub(super) struct Control<'m> {
     /// G16.
     pub(super) polar: Option<Polar>,
     pub(super) spindle: SpindleMode,
-    pub(super) told: Told,
+    pub(super) announced: Announced,
     pub(super) switches: Switches,
     /// What M70 has saved, for each subprogram that is running.
     pub(super) saved: Vec<Option<Box<Saved>>>,
@@ -63,7 +63,7 @@ pub(super) struct Control<'m> {
     pub(super) probe: Probe,
     pub(super) input: Option<f64>,
     /// What a restored state still has to do and to say.
-    pub(super) debts: Vec<(ActionKind, f64)>,
+    pub(super) pending_actions: Vec<(ActionKind, f64)>,
     pub(super) lost: Option<&'static str>,
     /// Targets are more than offsets: see `targets`.
     pub(super) bent: bool,
@@ -150,12 +150,12 @@ impl<'m> Interpreter<'m> {
             programmed: Programmed::default(),
             polar: None,
             spindle: SpindleMode::default(),
-            told: Told::default(),
+            announced: Announced::default(),
             switches: Switches::default(),
             saved: vec![None],
             probe: Probe::new(reading.probe),
             input: None,
-            debts: Vec::new(),
+            pending_actions: Vec::new(),
             lost: None,
             bent: false,
             compensation: None,
@@ -383,7 +383,7 @@ impl Control<'_> {
         }
         self.take_dynamics(run);
         let errors = run.report.diagnostics.errors;
-        if !self.debts.is_empty() {
+        if !self.pending_actions.is_empty() {
             let span = run.whole();
             self.settle_debts(span, run);
             self.tell_spindle(run);

@@ -54,7 +54,7 @@ pub struct Facts {
     /// The block is executed: not deleted, not after the end, not empty.
     pub executed: bool,
     /// It moves straight on, and changes nothing else of the state: see
-    /// [`Stance`](super::Stance).
+    /// [`FastPathState`](super::FastPathState).
     pub plain: bool,
     /// The block turns a knob.
     pub turns_knob: bool,

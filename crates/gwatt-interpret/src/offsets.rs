@@ -38,7 +38,7 @@ pub(super) const FURTHER_MAX: u16 = 300;
 pub(super) struct Offsets {
     stored: Box<[f64; COUNT]>,
     /// Which of them are known, and not taken as 0.
-    told: [bool; COUNT],
+    has_value: [bool; COUNT],
     further: BTreeMap<u16, AxisValues>,
     /// Millimetres in the machine's own unit.
     native_mm: f64,
@@ -82,7 +82,7 @@ impl Offsets {
         let metric = machine.controller.language.metric;
         let mut offsets = Self {
             stored: Box::new([0.0; COUNT]),
-            told: [parameters.is_some(); COUNT],
+            has_value: [parameters.is_some(); COUNT],
             further: BTreeMap::new(),
             native_mm: if metric { 1.0 } else { MM_PER_INCH },
             linear: set,
@@ -134,20 +134,21 @@ impl Offsets {
     }
 
     /// The same where it is known, and not only taken as 0.
-    pub(super) fn told(&self, number: u32) -> Option<f64> {
+    pub(super) fn known(&self, number: u32) -> Option<f64> {
         let index = number.checked_sub(FIRST)?;
-        let told = self.told.get(index as usize).copied()?;
-        told.then(|| self.stored(number)).flatten()
+        let has_value = self.has_value.get(index as usize).copied()?;
+        has_value.then(|| self.stored(number)).flatten()
     }
 
     /// Stores a parameter; false if it is none of those kept here.
     pub(super) fn set_stored(&mut self, number: u32, value: f64) -> bool {
         let index = number.wrapping_sub(FIRST) as usize;
-        let (Some(slot), Some(told)) = (self.stored.get_mut(index), self.told.get_mut(index))
+        let (Some(slot), Some(has_value)) =
+            (self.stored.get_mut(index), self.has_value.get_mut(index))
         else {
             return false;
         };
-        (*slot, *told) = (value, true);
+        (*slot, *has_value) = (value, true);
         true
     }
 
@@ -244,12 +245,12 @@ impl Offsets {
         self.g92[axis] = value_mm;
         self.set_stored(G92_ON, 1.0);
         // The other axes store what was in force, which need not be known.
-        let told = self.told;
+        let has_value = self.has_value;
         let values = self.g92;
         for (axis, value) in values.into_iter().enumerate() {
             self.store_axis(G92, axis, value);
         }
-        self.told = told;
+        self.has_value = has_value;
         self.store_axis(G92, axis, value_mm);
     }
 
@@ -264,7 +265,7 @@ impl Offsets {
 
     /// Whether it is known what G92 has stored for an axis.
     pub(super) fn is_g92_told(&self, axis: usize) -> bool {
-        axis >= PARAMETER_AXES || self.told(G92 + axis as u32).is_some()
+        axis >= PARAMETER_AXES || self.known(G92 + axis as u32).is_some()
     }
 
     /// G92.3.

@@ -22,7 +22,7 @@ pub(super) const LOCALS: usize = 34;
 /// Parameters that a program may keep: beyond, something runs away.
 const COUNT_MAX: usize = 100_000;
 
-/// `LinuxCNC` does not tell places there either.
+/// `LinuxCNC` does not give places there either.
 const UNDER_COMPENSATION: &str = "where the path ends under cutter compensation";
 
 /// What a program has assigned.

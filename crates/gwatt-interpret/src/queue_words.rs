@@ -49,14 +49,14 @@ impl Control<'_> {
         }
     }
 
-    /// Tells of words that change offsets or lengths, or the meaning of S.
+    /// Reports words that change offsets or lengths, or the meaning of S.
     fn note_offsets(&self, run: &mut Run<'_, '_>) {
         if !self.plans_ahead() {
             return;
         }
         for index in 0..run.words.g.len() {
             let (code, number, _) = run.words.g[index];
-            let tells = match code {
+            let reported = match code {
                 // The extruder alone takes no part in the path.
                 GCode::SetOffset => run.words.axes().any(|(axis, _)| axis != EXTRUDER),
                 GCode::WorkOffset(_)
@@ -69,7 +69,7 @@ impl Control<'_> {
                 GCode::DataSetting => self.sets_what_is_in_force(run),
                 _ => false,
             };
-            if tells {
+            if reported {
                 run.act(ActionKind::Offset, f64::from(number) / 10.0);
             }
         }
@@ -91,7 +91,7 @@ impl Control<'_> {
         }
     }
 
-    /// Tells of a comment that acts, such as `(MSG, …)`: the last one of a line
+    /// Reports a comment that acts, such as `(MSG, …)`: the last one of a line
     /// counts (`LinuxCNC`, "Messages").
     #[inline]
     pub(super) fn note_message(

@@ -91,7 +91,7 @@ impl Shelf {
     }
 }
 
-/// A path that tells one file from another: its folder without links, and its own name,
+/// A path that distinguishes one file from another: its folder without links, and its own name,
 /// under which the control finds it.
 fn place_of(path: &Path) -> PathBuf {
     let folder = match path.parent() {

@@ -131,7 +131,7 @@ impl Control<'_> {
         }
     }
 
-    /// M62 to M68. What is wired to them is not the program's to tell.
+    /// M62 to M68. What is wired to them the program does not know.
     fn input_output(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
         let channel = |letter: u8, run: &mut Run<'_, '_>| {
             run.words
@@ -231,7 +231,7 @@ impl Control<'_> {
     /// Actions of a restored state, which the next block reports.
     pub(super) fn settle_debts(&mut self, span: Span, run: &mut Run<'_, '_>) {
         run.facts.boundary = true;
-        for (kind, value) in self.debts.drain(..) {
+        for (kind, value) in self.pending_actions.drain(..) {
             run.act(kind, value);
         }
         if let Some(reason) = self.lost.take() {
@@ -274,13 +274,13 @@ impl Control<'_> {
             self.modal.spindle_rpm = now.spindle_rpm;
         } else {
             self.modal.spindle_rpm = saved.modal.spindle_rpm.round_ties_even();
-            self.debts
+            self.pending_actions
                 .push((ActionKind::SpindleSpeed, self.modal.spindle_rpm));
         }
         match (saved.spindle.surface_mm_min, self.spindle.surface_mm_min) {
             (Some(_), None) => {
                 self.lost = Some("G96 cannot be restored: its S is lost");
-                self.debts.push((ActionKind::Other, 72.0));
+                self.pending_actions.push((ActionKind::Other, 72.0));
             }
             (None, Some(_)) => self.spindle.surface_mm_min = None,
             _ => {}
@@ -302,7 +302,7 @@ impl Control<'_> {
         self.restore_switches(saved.switches);
         self.note_bent();
         if now.path_mode != saved.modal.path_mode {
-            self.debts.push((ActionKind::PathMode, 0.0));
+            self.pending_actions.push((ActionKind::PathMode, 0.0));
         }
     }
 
@@ -332,7 +332,7 @@ impl Control<'_> {
             let value = f64::from(number) / 10.0;
             self.switches.switch(number);
             self.switch_loads(value);
-            self.debts.push((kind, value));
+            self.pending_actions.push((kind, value));
         }
     }
 }

@@ -6,8 +6,8 @@
 use super::code::GCode;
 use super::execute::{Control, Run};
 use super::expression::Value;
+use super::jump::{Call, Label, Target, Transfer};
 use super::parameters::LOCALS;
-use super::transfer::{Call, Label, Target, Transfer};
 use gwatt_machine::Family;
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
@@ -139,13 +139,13 @@ impl Control<'_> {
         }
         let mut arguments = [None; LOCALS];
         let (mut program, mut times) = (None, None);
-        let mut behind = false;
+        let mut after = false;
         // The second and further I J K are #7 to #9, #10 to #12 and so on.
         let mut sets = 0;
         let mut last = b'K';
         for word in &run.block.words {
-            if !behind {
-                behind = word.span == span;
+            if !after {
+                after = word.span == span;
                 continue;
             }
             match word.letter {

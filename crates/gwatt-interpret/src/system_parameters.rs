@@ -42,7 +42,7 @@ impl Control<'_> {
         let after = |first: u32| (number - first) as usize;
         match number {
             PROBE_FIRST..=PROBE_LAST => self.probe.value(after(PROBE_FIRST)),
-            FIRST..=LAST => self.position.offsets().told(number),
+            FIRST..=LAST => self.position.offsets().known(number),
             INPUT => self.input,
             TOOL_FIRST..=TOOL_LAST => self.tool_parameter(after(TOOL_FIRST)),
             _ => self.place(after(PLACE_FIRST)),

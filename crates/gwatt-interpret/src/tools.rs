@@ -148,7 +148,7 @@ impl Control<'_> {
         }
     }
 
-    /// M6, and M61 Q of `LinuxCNC`, which only tells what is loaded.
+    /// M6, and M61 Q of `LinuxCNC`, which only says what is loaded.
     pub(super) fn load_tool(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
         self.forget_way_back();
         if number == 60 {

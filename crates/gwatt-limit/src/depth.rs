@@ -131,7 +131,7 @@ impl Depths {
         self.everywhere > before
     }
 
-    /// Lines that [`Self::deepen`] is to be told at most.
+    /// Lines that [`Self::deepen`] is given at most.
     #[must_use]
     pub fn wanted() -> usize {
         LINES_MAX

@@ -173,7 +173,7 @@ impl<'m> Limiter<'m> {
                 needed = center;
             }
         }
-        self.hand_on(needed, sink);
+        self.emit(needed, sink);
     }
 
     /// Whether a move is all right as it is: it ends at rest, fits, and no
@@ -211,11 +211,11 @@ impl<'m> Limiter<'m> {
             self.slots[center].joined = false;
             window::settle(&self.solver, &mut self.slots, find, center);
         }
-        self.hand_on(self.slots.len(), sink);
+        self.emit(self.slots.len(), sink);
     }
 
     /// Hands on the first `count` that wait.
-    fn hand_on(&mut self, count: usize, sink: &mut impl FnMut(Outcome)) {
+    fn emit(&mut self, count: usize, sink: &mut impl FnMut(Outcome)) {
         for _ in 0..count {
             let Some(slot) = self.slots.pop_front() else {
                 break;

@@ -54,7 +54,7 @@ impl Paced {
 /// with its speed.
 pub(super) fn fitting_mm_s(model: &PowerModel, mv: &Move, judged: &Assessment) -> Option<f64> {
     let rest = model.robust(mv, &SpeedBound::default(), &[0.0; AXES]);
-    let base = model.load_beside(&rest, &judged.spindle, 0.0);
+    let base = model.load_with_spindle(&rest, &judged.spindle, 0.0);
     let load = judged.demand.load_ratio;
     let share = (1.0 - base) / (load - base);
     let by_steps = judged.loads.steps > 1.0 && judged.loads.own <= 1.0;

@@ -169,7 +169,7 @@ impl<'a> Road<'a> {
         let demand = model.demand(self.case.mv, &plan, Want::PEAKS);
         let demand = model.with_cruises(demand, self.case.mv, top_speed_mm_s);
         let share = &self.case.assessment.spindle;
-        model.load_beside(&demand, share, top_speed_mm_s)
+        model.load_with_spindle(&demand, share, top_speed_mm_s)
     }
 
     /// An acceleration as the knob says it, rounded down.

@@ -155,11 +155,11 @@ impl<'m> Solver<'m> {
             let ramps = ramps(self.machine, mv, self.largest, [f64::INFINITY; 2]);
             let demand = self.model.demand(mv, &ramps, Want::PEAKS);
             let demand = self.model.with_cruises(demand, mv, speed_mm_s);
-            return self.model.load_beside(&demand, share, speed_mm_s);
+            return self.model.load_with_spindle(&demand, share, speed_mm_s);
         }
         let bound = blended_bound(self.machine, mv, self.largest);
         let demand = self.model.robust(mv, &bound, &mv.accel_mm_s2);
-        let load = self.model.load_beside(&demand, share, speed_mm_s);
+        let load = self.model.load_with_spindle(&demand, share, speed_mm_s);
         load / libm::pow(0.9, f64::from(depth.saturating_sub(2)))
     }
 
@@ -185,7 +185,7 @@ impl<'m> Solver<'m> {
             mv.feed_mm_s * self.largest.feed
         };
         let share = &share(case, mv);
-        self.model.load_beside(&demand, share, speed_mm_s)
+        self.model.load_with_spindle(&demand, share, speed_mm_s)
     }
 
     /// Whether a move has to fit whatever its neighbours do, changed or not.
@@ -450,7 +450,7 @@ impl<'m> Solver<'m> {
         let demand = self.model.demand(&slow, &cruise, Want::PEAKS);
         let share = &case.assessment.spindle;
         let speed_mm_s = planned.speed_limit_mm_s;
-        Some(self.model.load_beside(&demand, share, speed_mm_s))
+        Some(self.model.load_with_spindle(&demand, share, speed_mm_s))
     }
 
     pub(super) fn respect_floor(&self, case: Case<'_>, change: &Change) -> Result<(), Obstacle> {

@@ -27,7 +27,7 @@ const GAIN: f64 = 1e-3;
 const NO_LOOK_AHEAD: &str = "its pieces would not run on into each other as planned";
 const UNLIKE: &str = "an axis limits its jerk, has a curve of force, or runs for itself";
 const NOT_SOONER: &str = "one acceleration is as good";
-const BESIDE: &str = "next to its neighbours the pieces would exceed the limit";
+const NEIGHBOURS: &str = "next to its neighbours the pieces would exceed the limit";
 
 /// A block in several pieces.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +75,7 @@ impl Solver<'_> {
             exact_stop: false,
         };
         if tries >= SPLIT_TRIES {
-            return Err(BESIDE);
+            return Err(NEIGHBOURS);
         }
         let mut road = self.road(case, &levers(self.machine, self.how, mv, permit))?;
         road.coarser(tries);

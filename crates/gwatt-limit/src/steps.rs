@@ -22,8 +22,8 @@ pub(super) const ROUNDS: u8 = 3;
 /// to `mv` or not.
 pub(super) fn exceed(solver: &Solver<'_>, case: Case<'_>, mv: &Move) -> bool {
     let loads = case.assessment.loads;
-    let beside = case.assessment.spindle;
-    let alone = beside.drawn_w == 0.0 && beside.fed_back_w == 0.0;
+    let spindle = case.assessment.spindle;
+    let alone = spindle.drawn_w == 0.0 && spindle.fed_back_w == 0.0;
     let known = mv.unknown_start.is_empty() && mv.length_mm > 0.0;
     let slows = solver.how.strategy != Strategy::Accel;
     let stepped = loads.steps > 1.0 && loads.own <= 1.0;

@@ -212,8 +212,8 @@ fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
     let before = slots.iter().take(center).rposition(|slot| !slot.rider);
     window.extend(before.filter(|before| slots[*before].joined));
     window.push(center);
-    let behind = (center + 1..slots.len()).find(|index| !slots[*index].rider);
-    window.extend(behind.filter(|_| slots[center].joined));
+    let after = (center + 1..slots.len()).find(|index| !slots[*index].rider);
+    window.extend(after.filter(|_| slots[center].joined));
     window
 }
 
@@ -245,7 +245,9 @@ fn window_load(
         .map(|member| {
             let demand = solver.model.robust(member.mv, bound, accel);
             let share = &slots[member.index].assessment.spindle;
-            solver.model.load_beside(&demand, share, path_speed(bound))
+            solver
+                .model
+                .load_with_spindle(&demand, share, path_speed(bound))
         })
         .fold(0.0, f64::max)
 }

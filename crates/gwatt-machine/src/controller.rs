@@ -228,7 +228,7 @@ pub enum CompensationCorner {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CompensationLead {
     /// Next to its own end; then round the corner like any other (LinuxCNC).
-    Beside,
+    AtEnd,
     /// Next to the start of the next move (Fanuc's type A, SINUMERIK NORM).
     Perpendicular,
     /// As Perpendicular, but round outside corners like any other (Fanuc's type B).

@@ -9,7 +9,7 @@ use super::response::Responses;
 pub struct Machine {
     /// The name in the file.
     pub name: String,
-    /// What its controller reads, plans and can be told.
+    /// What its controller reads and plans, and the words that it takes.
     pub controller: Controller,
     /// Axes by `AxisId as usize`; `None` where the machine has none.
     pub axes: [Option<Axis>; AXES],
@@ -207,10 +207,10 @@ pub struct Spindle {
     pub max_rpm: f64,
     /// Speed up to which the torque is constant, in 1/min; 0: not given.
     pub base_rpm: f64,
-    /// Time to `max_rpm` in s; `None` where the torque curve tells it.
+    /// Time to `max_rpm` in s; `None` where the torque curve gives it.
     pub accel_time_s: Option<f64>,
     /// The largest torque over speed, ascending from rest, straight between the
-    /// points; empty where `accel_time_s` tells it.
+    /// points; empty where `accel_time_s` gives it.
     pub torque_curve: Vec<TorquePoint>,
     /// Time to full acceleration in s.
     pub jerk_time_s: f64,

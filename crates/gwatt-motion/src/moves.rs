@@ -291,7 +291,7 @@ pub enum ActionKind {
     /// like the following only where the machine has a spindle.
     SpindleRpm,
     /// Under G96 the speed of the surface, mm/s; 0: no longer. Before it, the
-    /// largest speed of the spindle and the place of its axis are told.
+    /// largest speed of the spindle and the place of its axis are given.
     SurfaceSpeed,
     /// The largest spindle speed under G96, 1/min.
     SpindleClamp,

@@ -4,19 +4,19 @@
 //! same order. A move that may be blended with its successor waits for it; all
 //! others are judged at once.
 
-use super::ahead::Ahead;
 use super::assessment::{Assessment, Certificate, Loads};
 use super::bus::{Shown, SpindleBus, SpindleShare};
 use super::demand::{Demand, Want};
+use super::duty_cycle::{DutyCycle, Rating};
 use super::effect::{Effect, Switched};
-use super::eye::Eye;
-use super::held::{Behind, Held, Rider};
 use super::idle::Idle;
 use super::late::unpaced;
 use super::line::Line;
+use super::lookahead::Ahead;
 use super::model::PowerModel;
 use super::motion::Motion;
-use super::watch::{Rating, Watch};
+use super::observer::Observer;
+use super::pending::{Pending, Rider, Successor};
 use gwatt_machine::{Machine, PathMode};
 use gwatt_motion::{Action, Move, MoveKind};
 use gwatt_plan::{Overrides, PathFigures, path_figures, plan};
@@ -36,12 +36,12 @@ pub struct Assessor<'m> {
     pub(super) requested: Option<Certificate>,
     /// What is wanted of evaluations; the floor may rise as peaks are found.
     pub want: Want,
-    pub(super) held: Option<Box<Held>>,
+    pub(super) held: Option<Box<Pending>>,
     /// What began with a move that was held, where it goes straight on.
     pub(super) line: Line,
     /// The one that was held before, and room that is used again.
-    pub(super) before: Option<Box<Held>>,
-    pub(super) spare: Option<Box<Held>>,
+    pub(super) before: Option<Box<Pending>>,
+    pub(super) spare: Option<Box<Pending>>,
     pub(super) idle: Idle,
     /// A blended move was found although the planned certificate was asked for.
     pub needs_robust: bool,
@@ -49,7 +49,7 @@ pub struct Assessor<'m> {
     pub(super) rested: bool,
     /// Moves that the controller plans together, where its rules are modelled.
     pub(super) ahead: Option<Box<Ahead>>,
-    pub(super) eye: Eye,
+    pub(super) observer: Observer,
     /// What is switched on.
     switched: Switched,
     /// The spindle next to the axes, where the machine has one.
@@ -86,7 +86,7 @@ impl<'m> Assessor<'m> {
             needs_robust: false,
             rested: false,
             ahead,
-            eye: Eye::default(),
+            observer: Observer::default(),
             switched: Switched::default(),
             bus: SpindleBus::new(machine, [largest, nominal], false).map(Box::new),
             lower: Vec::new(),
@@ -97,7 +97,7 @@ impl<'m> Assessor<'m> {
     /// have any.
     #[must_use]
     pub fn watching(mut self) -> Self {
-        self.eye.watch = Watch::new(self.machine, &self.model);
+        self.observer.watch = DutyCycle::new(self.machine, &self.model);
         self.watch_spindle();
         self
     }
@@ -105,7 +105,7 @@ impl<'m> Assessor<'m> {
     /// The program runs again at once, for ever, as far as limits over time go.
     #[must_use]
     pub fn repeating(mut self, repeats: bool) -> Self {
-        if let Some(watch) = &mut self.eye.watch {
+        if let Some(watch) = &mut self.observer.watch {
             watch.repeated = repeats;
         }
         self
@@ -115,7 +115,7 @@ impl<'m> Assessor<'m> {
     /// spindle with [`Self::turnings`].
     #[must_use]
     pub fn showing(mut self) -> Self {
-        self.eye.motions = Some(Vec::new());
+        self.observer.motions = Some(Vec::new());
         if let Some(bus) = &mut self.bus {
             bus.shown = Some(Shown::default());
         }
@@ -126,13 +126,13 @@ impl<'m> Assessor<'m> {
     /// whose timing depends on others that are not modelled it is the one with
     /// stops; moves from an unknown start are left out.
     pub fn motions(&mut self) -> std::vec::Drain<'_, Motion> {
-        self.eye.motions.get_or_insert_default().drain(..)
+        self.observer.motions.get_or_insert_default().drain(..)
     }
 
     /// What was found about limits over time, of the moves handed on so far.
     #[must_use]
     pub fn ratings(&self) -> Vec<Rating> {
-        let watch = self.eye.watch.as_ref();
+        let watch = self.observer.watch.as_ref();
         watch.map_or_else(Vec::new, |watch| watch.ratings())
     }
 
@@ -146,7 +146,7 @@ impl<'m> Assessor<'m> {
     /// takes about as long as reading them.
     #[must_use]
     pub fn weighs(&self) -> bool {
-        self.ahead.is_some() || self.eye.watch.is_some()
+        self.ahead.is_some() || self.observer.watch.is_some()
     }
 
     /// Whether the next move would wait for its successor, or others for it.
@@ -167,7 +167,8 @@ impl<'m> Assessor<'m> {
         self.act_on_axes(action, &mut |mv, judged, text| {
             bus.take(mv, judged, text, want, sink);
         });
-        self.eye.beside(&self.model, &mut bus.beside);
+        self.observer
+            .spindle_loads(&self.model, &mut bus.spindle_loads);
         bus.act(action);
         self.bus = Some(bus);
     }
@@ -180,8 +181,8 @@ impl<'m> Assessor<'m> {
             Effect::None => {}
             Effect::Part => ahead.part(),
             Effect::Stop => {
-                ahead.stop(self.machine, &self.model, &mut self.eye);
-                ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
+                ahead.stop(self.machine, &self.model, &mut self.observer);
+                ahead.emit(self.machine, &self.model, &mut self.observer, sink);
             }
             Effect::Unknown => ahead.doubt(),
         }
@@ -196,14 +197,14 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let (machine, model, eye) = (self.machine, &self.model, &mut self.eye);
+        let (machine, model, observer) = (self.machine, &self.model, &mut self.observer);
         let Some(ahead) = &mut self.ahead else {
             return;
         };
-        if !ahead.push_path(machine, model, eye, mv, text, self.want) {
+        if !ahead.push_path(machine, model, observer, mv, text, self.want) {
             return self.push_between(mv, text, sink);
         }
-        ahead.hand_on(machine, model, eye, sink);
+        ahead.emit(machine, model, observer, sink);
     }
 
     /// The same for a dwell, and for a move that has no path.
@@ -218,29 +219,29 @@ impl<'m> Assessor<'m> {
             blended: false,
             ..self.alone(mv, path_figures(self.machine, mv, self.largest).as_ref())
         };
-        let (machine, model, eye) = (self.machine, &self.model, &mut self.eye);
+        let (machine, model, observer) = (self.machine, &self.model, &mut self.observer);
         let Some(ahead) = &mut self.ahead else {
             return;
         };
         if mv.kind == MoveKind::Dwell {
-            ahead.stop(machine, model, eye);
-            ahead.hand_on(machine, model, eye, sink);
-            eye.alone(machine, model, mv, self.largest);
-            eye.show(machine, mv, self.nominal);
+            ahead.stop(machine, model, observer);
+            ahead.emit(machine, model, observer, sink);
+            observer.alone(machine, model, mv, self.largest);
+            observer.show(machine, mv, self.nominal);
             sink(mv, &alone, text);
         } else {
-            ahead.push_other(machine, model, eye, mv, text, alone, self.want);
-            ahead.hand_on(machine, model, eye, sink);
+            ahead.push_other(machine, model, observer, mv, text, alone, self.want);
+            ahead.emit(machine, model, observer, sink);
         }
     }
 
     /// The last move ends at rest, and the controller sees that another one comes.
     #[inline(never)]
     fn stop_between(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        let (machine, model, eye) = (self.machine, &self.model, &mut self.eye);
+        let (machine, model, observer) = (self.machine, &self.model, &mut self.observer);
         if let Some(ahead) = &mut self.ahead {
-            ahead.stop_between(machine, model, eye);
-            ahead.hand_on(machine, model, eye, sink);
+            ahead.stop_between(machine, model, observer);
+            ahead.emit(machine, model, observer, sink);
         }
     }
 
@@ -302,7 +303,7 @@ impl<'m> Assessor<'m> {
         text: &[u8],
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        self.eye.show(self.machine, mv, self.nominal);
+        self.observer.show(self.machine, mv, self.nominal);
         let rests = self.ends_at_rest(mv).unwrap_or(self.rested);
         let rested = std::mem::replace(&mut self.rested, rests);
         let figures = path_figures(self.machine, mv, self.largest);
@@ -325,9 +326,9 @@ impl<'m> Assessor<'m> {
             return;
         }
         if !(assessment.blended || joined) {
-            self.release(Behind::Stop, sink);
+            self.release(Successor::Stop, sink);
             let figures = figures.as_ref();
-            self.eye
+            self.observer
                 .alone_as(self.machine, &self.model, mv, self.largest, figures);
             sink(mv, &assessment, text);
             return;
@@ -345,15 +346,16 @@ impl<'m> Assessor<'m> {
         let want = self.want;
         self.finish_axes(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
         bus.finish(sink);
-        self.eye.beside(&self.model, &mut bus.beside);
+        self.observer
+            .spindle_loads(&self.model, &mut bus.spindle_loads);
     }
 
     fn finish_axes(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.end_straight(None, sink);
-        self.release(Behind::End, sink);
+        self.release(Successor::End, sink);
         if let Some(ahead) = &mut self.ahead {
-            ahead.stop(self.machine, &self.model, &mut self.eye);
-            ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
+            ahead.stop(self.machine, &self.model, &mut self.observer);
+            ahead.emit(self.machine, &self.model, &mut self.observer, sink);
         }
     }
 

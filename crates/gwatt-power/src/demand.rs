@@ -53,7 +53,7 @@ pub struct Demand {
     /// converters: above 1 the move does not fit.
     pub load_ratio: f64,
     /// Peak and regenerative peak of the converter that feeds the spindle, W.
-    pub(super) beside: [f64; 2],
+    pub(super) spindle_converter_w: [f64; 2],
 }
 
 impl Demand {
@@ -64,14 +64,16 @@ impl Demand {
         energy_j: 0.0,
         converter: 0,
         load_ratio: f64::NEG_INFINITY,
-        beside: [0.0; 2],
+        spindle_converter_w: [0.0; 2],
     };
 
     /// Takes in what another part of the same move asks for; the energy is left
     /// aside.
     #[inline]
     pub(super) fn include(&mut self, other: &Self) {
-        let beside = std::array::from_fn(|i| larger(self.beside[i], other.beside[i]));
+        let spindle_converter_w = std::array::from_fn(|i| {
+            larger(self.spindle_converter_w[i], other.spindle_converter_w[i])
+        });
         if other.converter == self.converter || self.load_ratio == f64::NEG_INFINITY {
             self.converter = other.converter;
             self.peak_w = larger(self.peak_w, other.peak_w);
@@ -83,7 +85,7 @@ impl Demand {
                 ..*other
             };
         }
-        self.beside = beside;
+        self.spindle_converter_w = spindle_converter_w;
     }
 
     /// A demand that nobody wants to know more of; none where one of its peaks
@@ -93,7 +95,7 @@ impl Demand {
         want.passes([peak_w, regen_w]).then_some(Self {
             peak_w,
             regen_w,
-            beside: [peak_w, regen_w],
+            spindle_converter_w: [peak_w, regen_w],
             ..Self::NONE
         })
     }

@@ -6,7 +6,7 @@
 
 use super::assess::Assessor;
 use super::assessment::Assessment;
-use super::held::{Behind, Held};
+use super::pending::{Pending, Successor};
 use gwatt_motion::{Move, MoveKind};
 
 /// Lines in a row that move no axis after which what waits is judged.
@@ -56,22 +56,23 @@ impl Assessor<'_> {
         };
         let want = self.want;
         self.run_axes_dry(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
-        self.eye.beside(&self.model, &mut bus.beside);
+        self.observer
+            .spindle_loads(&self.model, &mut bus.spindle_loads);
         self.bus = Some(bus);
     }
 
     fn run_axes_dry(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         if let Some(ahead) = &mut self.ahead {
-            ahead.run_dry(self.machine, &self.model, &mut self.eye);
-            ahead.hand_on(self.machine, &self.model, &mut self.eye, sink);
+            ahead.run_dry(self.machine, &self.model, &mut self.observer);
+            ahead.emit(self.machine, &self.model, &mut self.observer, sink);
         }
         self.bound_line(sink);
         self.idle.in_doubt |= self.held.is_some();
-        self.release(Behind::Doubt, sink);
+        self.release(Successor::Doubt, sink);
     }
 
     /// The move without modelled rules that the next one may be blended with.
-    pub(super) fn last_held(&self) -> Option<&Held> {
+    pub(super) fn last_held(&self) -> Option<&Pending> {
         let before = self.before.as_deref().filter(|_| self.idle.in_doubt);
         self.held.as_deref().or(before)
     }

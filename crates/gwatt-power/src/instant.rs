@@ -121,7 +121,7 @@ impl Motion {
     }
 
     /// Speed and acceleration of an axis at two instants between the same
-    /// switches, of which the second tells the law; `None` where it stands.
+    /// switches, of which the second gives the law; `None` where it stands.
     pub(super) fn axis(&self, axis: usize, instants: [f64; 2]) -> Option<[(f64, f64); 2]> {
         let [t, inside] = instants.map(|t| t + self.from_s);
         match &self.course {

@@ -1,8 +1,8 @@
 //! Which moves wait for what comes after them.
 
-use super::ahead::{Role, role};
 use super::assess::Assessor;
 use super::assessment::Certificate;
+use super::lookahead::{Role, role};
 use gwatt_machine::{PathMode, RapidJoint};
 use gwatt_motion::{Move, MoveKind};
 

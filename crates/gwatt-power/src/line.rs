@@ -10,9 +10,9 @@ use super::assess::Assessor;
 use super::assessment::{Assessment, Certificate, Loads};
 use super::bus::SpindleShare;
 use super::demand::Want;
+use super::duty_cycle::DutyCycle;
 use super::model::PowerModel;
 use super::piece::piece_demand;
-use super::watch::Watch;
 use gwatt_machine::{AXES, CornerAngle, CornerRule, LookAhead, Machine};
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::lookahead::{Element, Joint, PathPlanner, Planned};
@@ -52,7 +52,7 @@ pub(super) struct Line {
 #[must_use]
 pub fn plans_lines(machine: &Machine, model: &PowerModel) -> bool {
     let modelled = machine.controller.planner.look_ahead.is_some();
-    !modelled && machine.spindle.is_none() && Watch::new(machine, model).is_none()
+    !modelled && machine.spindle.is_none() && DutyCycle::new(machine, model).is_none()
 }
 
 impl Line {
@@ -87,7 +87,8 @@ impl Assessor<'_> {
         };
         let modelled = self.machine.controller.planner.look_ahead.is_some();
         let planned = self.requested != Some(Certificate::Robust);
-        let plain = self.bus.is_none() && self.eye.watch.is_none() && self.eye.motions.is_none();
+        let plain =
+            self.bus.is_none() && self.observer.watch.is_none() && self.observer.motions.is_none();
         let fits = !modelled && planned && plain && self.line.blocks.len() < BLOCKS_MAX;
         let runs = fits && self.joins(last, mv) && self.may_run(last) && self.may_run(mv);
         if !(runs && straight_on(last, mv) && self.knows_change(last, mv)) {

@@ -4,8 +4,8 @@
 
 use super::axis::AxisPower;
 use super::bus::SpindleShare;
-use super::ceiling::Ceiling;
 use super::demand::{Demand, Totals, Want, larger};
+use super::upper_bound::UpperBound;
 use super::{arc, independent, straight};
 use gwatt_machine::{AXES, AxisSet, Machine};
 use gwatt_motion::Move;
@@ -35,7 +35,7 @@ pub(super) struct ConverterPower {
     /// Of these, axes that draw power while they hold their weight.
     pub holding: AxisSet,
     /// A quick upper bound.
-    ceiling: Ceiling,
+    ceiling: UpperBound,
     /// Whether it feeds the spindle.
     pub feeds_spindle: bool,
     /// Whether fed-back power feeds the other axes.
@@ -145,7 +145,7 @@ impl PowerModel {
     /// The load ratio of a demand of the axes with the spindle next to them, at a
     /// speed of the path of `speed_mm_s`.
     #[must_use]
-    pub fn load_beside(&self, demand: &Demand, share: &SpindleShare, speed_mm_s: f64) -> f64 {
+    pub fn load_with_spindle(&self, demand: &Demand, share: &SpindleShare, speed_mm_s: f64) -> f64 {
         let fed = self.converters.iter().position(|it| it.feeds_spindle);
         let Some(index) = fed else {
             return demand.load_ratio;
@@ -233,7 +233,7 @@ impl ConverterPower {
             curved: select(AxisPower::is_curved),
             factored: select(AxisPower::has_factors),
             holding: select(|axis| axis.holding_w() > 0.0),
-            ceiling: Ceiling::new(axes, fed),
+            ceiling: UpperBound::new(axes, fed),
             feeds_spindle: machine.spindle.as_ref().map(|it| it.converter) == Some(index),
             credit_regen: converter.credit_regen,
             base_w: converter.base_load_w,
@@ -302,14 +302,14 @@ impl Demand {
         }
         self.energy_j += totals.energy_j;
         if converter.feeds_spindle {
-            self.beside = [totals.peak_w, totals.regen_w];
+            self.spindle_converter_w = [totals.peak_w, totals.regen_w];
         }
     }
 
     /// Adds what the spindle asks of its converter: `drawn_w` on top of the peak,
     /// `fed_back_w` on top of the power that is fed back; either may be negative.
     pub(super) fn add_spindle(&mut self, index: usize, model: &PowerModel, by: [f64; 2]) {
-        let [peak_w, regen_w] = self.beside;
+        let [peak_w, regen_w] = self.spindle_converter_w;
         self.set_spindle(index, model, [peak_w + by[0], (regen_w + by[1]).max(0.0)]);
     }
 
@@ -323,7 +323,7 @@ impl Demand {
             _ => 0.0,
         };
         let ratio = (peaks[0] / converter.limit_w).max(regen_ratio);
-        self.beside = peaks;
+        self.spindle_converter_w = peaks;
         if model.converters.len() == 1 || ratio > self.load_ratio {
             self.load_ratio = ratio;
             self.converter = index;

@@ -44,7 +44,7 @@ pub(super) struct Search {
     best: f64,
     /// No value is larger.
     upper: f64,
-    /// Values up to this need not be told apart.
+    /// Values up to this need not be distinguished.
     floor: f64,
 }
 

@@ -29,7 +29,7 @@ impl PowerModel {
                 strayed.peak_w += more_w;
                 strayed.regen_w += more_w;
             }
-            strayed.beside = strayed.beside.map(|beside| beside + more_w);
+            strayed.spindle_converter_w = strayed.spindle_converter_w.map(|peak_w| peak_w + more_w);
         }
         strayed
     }

@@ -215,14 +215,14 @@ impl Work {
         let v = at(self.speed);
         let forces = [self.force, other].map(at);
         if side == Side::Motor {
-            let [own, beside] = forces.map(|force| axis.electrical(v, force));
-            return if beside > own { other } else { self.force };
+            let [own, others] = forces.map(|force| axis.electrical(v, force));
+            return if others > own { other } else { self.force };
         }
         let best_by_speed = -0.5 * axis.efficiency / axis.copper;
-        let [own, beside] = forces.map(|force| best_by_speed * v - force);
-        if own * beside < 0.0 {
+        let [own, others] = forces.map(|force| best_by_speed * v - force);
+        if own * others < 0.0 {
             self.speed.map(|c| best_by_speed * c)
-        } else if beside.abs() < own.abs() {
+        } else if others.abs() < own.abs() {
             other
         } else {
             self.force

@@ -6,7 +6,7 @@
 
 use super::instant::on_path;
 use super::model::PowerModel;
-use super::tandem::Ride;
+use super::parabolic_blend::Ride;
 use gwatt_machine::{AXES, AxisSet, AxisValues};
 use gwatt_motion::Move;
 

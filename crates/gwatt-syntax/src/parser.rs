@@ -21,7 +21,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// Reads one line, its line end included, into its pieces and its block.
 ///
-/// `first` tells that the line is the first of its file, where a byte order
+/// `first` says that the line is the first of its file, where a byte order
 /// mark may stand. `pieces` and `block` are emptied before. The pieces follow
 /// one another without gaps and cover the line. The text of a line must be
 /// shorter than 4 GiB.

@@ -13,7 +13,7 @@ use crate::source::{Span, split_line_end};
 /// Reads one line, its line end included, into its block: the same block as
 /// [`super::parse_line`] gives, many times faster for lines of plain words.
 ///
-/// `first` tells that the line is the first of its file. `block` is emptied
+/// `first` says that the line is the first of its file. `block` is emptied
 /// before; nothing is allocated once its buffers have grown.
 pub fn scan_line(line: &[u8], first: bool, block: &mut Block) {
     if scan_words(line, block).is_none() {

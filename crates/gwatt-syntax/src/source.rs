@@ -103,8 +103,8 @@ pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
             return None;
         }
         let length = line_length(rest).unwrap_or(rest.len());
-        let (line, behind) = rest.split_at_checked(length)?;
-        rest = behind;
+        let (line, after) = rest.split_at_checked(length)?;
+        rest = after;
         Some(line)
     })
 }

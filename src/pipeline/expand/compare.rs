@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use crate::interpret::{ActionKind, Arc, Corner, FeedMode, Move, MoveKind, Step};
 use crate::machine::Machine;
-use crate::pipeline::front::Front;
+use crate::pipeline::executor::Executor;
 use crate::pipeline::{Failure, Options};
 
 /// Rounding of a coordinate that is written with six decimals, in inches too, mm.
@@ -24,7 +24,7 @@ pub(super) fn first_difference(
     options: &Options,
 ) -> Result<Option<u64>, Failure> {
     let [mut own, mut other] = [original, written].map(|text| Steps {
-        front: Front::new(Cursor::new(text), machine, options),
+        front: Executor::new(Cursor::new(text), machine, options),
         waiting: VecDeque::new(),
         line: 0,
     });
@@ -68,7 +68,7 @@ pub(super) fn first_difference(
 }
 
 struct Steps<'p, 'm> {
-    front: Front<'m, Cursor<&'p [u8]>>,
+    front: Executor<'m, Cursor<&'p [u8]>>,
     waiting: VecDeque<Step>,
     line: u64,
 }

@@ -14,7 +14,7 @@ mod turning;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use super::front::Front;
+use super::executor::Executor;
 use super::{Failure, LimitSummary, Options, Summary};
 pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 
@@ -236,7 +236,7 @@ fn survey_path(
 ) -> Result<(), Failure> {
     let singles = Singles::new(machine);
     let lathe = machine.controller.language.dialect.lathe.is_some();
-    let mut front = Front::new(Cursor::new(program), machine, options);
+    let mut front = Executor::new(Cursor::new(program), machine, options);
     let mut open: Option<Series> = None;
     // What comes next taps without a chuck that gives way.
     let mut rigid = false;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::{Lines, Series};
 use crate::interpret::{Modal, Motion, Step};
 use crate::machine::{AxisKind, AxisSet, Family, Lathe, Machine};
-use crate::pipeline::front::Line;
+use crate::pipeline::executor::Line;
 use crate::rewrite::Return;
 use crate::syntax::Block;
 

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::{Lines, Series};
-use crate::pipeline::front::Line;
+use crate::pipeline::executor::Line;
 use crate::rewrite::{CycleBlock, Singles, contour_as_comment};
 use crate::source::lines;
 use crate::syntax::{Block, Word};

@@ -8,8 +8,8 @@ use crate::limit::{
 };
 use crate::machine::{AXES, Machine, PathMode};
 use crate::pipeline::entry::Entry;
-use crate::pipeline::front::Front;
-use crate::pipeline::tally::Tally;
+use crate::pipeline::executor::Executor;
+use crate::pipeline::totals::Totals;
 use crate::pipeline::watching::watching;
 use crate::pipeline::{Failure, LimitOptions, Options};
 use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
@@ -44,7 +44,7 @@ impl<'m> Trial<'m> {
         machine: &'m Machine,
         options: &Options,
     ) -> Result<Option<Self>, Failure> {
-        let mut front = Front::new(input, machine, options);
+        let mut front = Executor::new(input, machine, options);
         let comment = options.comment(machine);
         let mut mode = PathMode::ExactStop;
         let mut mm_per_unit = front.interpreter().modal().mm_per_unit;
@@ -154,7 +154,7 @@ impl<'m> Trial<'m> {
         let mut verdict = Verdict {
             trial: self,
             model: PowerModel::new(self.machine),
-            tally: Tally::new(self.machine, options, None),
+            tally: Totals::new(self.machine, options, None),
             deeper: Vec::new(),
             places: Vec::new(),
             judged: 0,
@@ -236,7 +236,7 @@ struct Found {
 struct Verdict<'t, 'm> {
     trial: &'t Trial<'m>,
     model: PowerModel,
-    tally: Tally<'m, 'm>,
+    tally: Totals<'m, 'm>,
     deeper: Vec<Deeper>,
     /// Of each move that was handed over: its number, and whether it is a piece.
     places: Vec<(usize, bool)>,

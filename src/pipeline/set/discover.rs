@@ -10,7 +10,7 @@ use super::{SetFailure, SetProgram};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Shelf;
 use crate::machine::Machine;
-use crate::pipeline::front::Front;
+use crate::pipeline::executor::Executor;
 use crate::pipeline::{Failure, Options};
 
 /// The files of a set.
@@ -59,7 +59,7 @@ pub(super) fn discover(
 
 /// The files that a program calls.
 fn files_of(text: &[u8], machine: &Machine, options: &Options) -> Result<Vec<PathBuf>, Failure> {
-    let mut front = Front::new(Cursor::new(text), machine, options);
+    let mut front = Executor::new(Cursor::new(text), machine, options);
     while front.next_line()?.is_some() {}
     let paths = front.paths().to_vec();
     front.finish()?;

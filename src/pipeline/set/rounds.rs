@@ -11,11 +11,11 @@ use crate::limit::Depths;
 use crate::machine::Machine;
 use crate::pipeline::certify::Certified;
 use crate::pipeline::conclusion::conclude;
+use crate::pipeline::derate::lower_further;
 use crate::pipeline::expand::Expanded;
 use crate::pipeline::limiting::last_round;
-use crate::pipeline::lower::lower_further;
+use crate::pipeline::looped_program::{Decided, LoopedProgram, Source, write};
 use crate::pipeline::row::Detail;
-use crate::pipeline::whole::{Decided, Source, Whole, write};
 use crate::pipeline::worst::worst_of;
 use crate::pipeline::{Failure, LimitOptions, LimitSummary, Options, RestartRows, RowSink};
 use crate::power::{Ladder, Lower};
@@ -138,7 +138,7 @@ impl<'a> Job<'a> {
         target: &Machine,
         rows: &mut Option<&mut dyn RestartRows>,
     ) -> Result<SetSummary, Failure> {
-        let whole = Whole {
+        let whole = LoopedProgram {
             machine: self.machine,
             target,
             how: self.how,

@@ -5,7 +5,7 @@
 //! nothing is interpolated, and no formula stands for a run. So `limit` does with such
 //! a machine what is said here.
 
-mod ladder;
+mod rating_steps;
 mod scale;
 mod search;
 mod trial;
@@ -18,7 +18,7 @@ pub use trial::{Job, Trial};
 use super::{Failure, LimitOptions};
 use crate::diagnostic::Diagnostic;
 use crate::machine::Machine;
-use ladder::curve;
+use rating_steps::curve;
 use scale::Scale;
 use search::find;
 use trial::{Bench, each};

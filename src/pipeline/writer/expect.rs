@@ -1,4 +1,4 @@
-//! What the certifier is told that the written program must do.
+//! What the certifier expects of the written program.
 
 use std::io::{Read, Seek, Write};
 
@@ -11,14 +11,14 @@ use crate::pipeline::expected::{Expected, ExpectedMove};
 use crate::pipeline::split::{BLENDED, Line};
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
-    /// Tells the certifier of the rows of the spindle before the next move.
+    /// Passes the certifier the rows of the spindle before the next move.
     pub(super) fn expect_spindle(&mut self) {
         let of = (self.machine, &self.model, self.detail.has_rows());
         let expected = &mut self.batch.expected;
         self.spindle.hand_over(of, &mut self.start_s, expected);
     }
 
-    /// Tells the certifier what the block must do.
+    /// Passes the certifier what the block must do.
     pub(super) fn expect(&mut self, entry: &mut Entry, change: Option<&Change>) {
         let feed_before = entry.feed_before();
         let mut list = std::mem::take(&mut entry.decided);

@@ -15,7 +15,7 @@ const NO_MOTION_WORD: &str = "no motion word is in force that could be put back"
 
 impl Table {
     /// Gives a block what all runs of its line are known to meet.
-    pub(super) fn tell(&self, machine: &Machine, entry: &mut Entry) {
+    pub(super) fn inform(&self, machine: &Machine, entry: &mut Entry) {
         entry.skips = self.skips;
         entry.apart = true;
         // A line that runs again would meet another motion word.

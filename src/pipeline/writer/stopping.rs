@@ -15,7 +15,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     }
 
     /// Gives a block whether the one before it can be stopped.
-    pub(super) fn tell_stop(&self, entry: &mut Entry) {
+    pub(super) fn inform_of_stop(&self, entry: &mut Entry) {
         if let Some(stopping) = &self.stopping {
             entry.stop_before = stopping.may_stop_before(entry.key);
         }

@@ -70,7 +70,7 @@ pub(super) fn words<'a>(values: impl Iterator<Item = &'a str>) -> Value {
     }
 }
 
-/// A share with few digits, but near 1 with those that tell it from 1.
+/// A share with few digits, but near 1 with those that distinguish it from 1.
 pub(super) fn share(value: f64) -> Value {
     let near = (value - 1.0).abs() < 0.01;
     digits(value, if near { FIGURE_DIGITS } else { SHARE_DIGITS })

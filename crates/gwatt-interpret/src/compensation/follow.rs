@@ -42,8 +42,8 @@ impl Compensation {
         }
         // LinuxCNC takes the time for the way that is programmed, so that the speed is
         // known already (`inverse_time_rate_straight`, `inverse_time_rate_arc`).
-        let beside = self.style.lead == CompensationLead::Beside;
-        if mv.feed_mode == FeedMode::InverseTime && mv.kind != MoveKind::Rapid && !beside {
+        let at_end = self.style.lead == CompensationLead::AtEnd;
+        if mv.feed_mode == FeedMode::InverseTime && mv.kind != MoveKind::Rapid && !at_end {
             return Err(Fault::InverseTime);
         }
         let [first, second] = self.plane;
@@ -53,7 +53,7 @@ impl Compensation {
         let corner = [mv.start[first], mv.start[second]];
         let target = [mv.end[first], mv.end[second]];
         let stays = mv.arc.is_none() && corner == target;
-        if self.state == State::Entry && (beside || !stays) {
+        if self.state == State::Entry && (at_end || !stays) {
             return self.enter(mv, corner, target);
         }
         if stays {
@@ -65,7 +65,7 @@ impl Compensation {
         };
         let entering = std::mem::take(&mut self.entering);
         let bend = self.bend(corner, &before, &element);
-        if !beside && bend != Bend::Smooth && self.idle > self.style.idle_blocks {
+        if !at_end && bend != Bend::Smooth && self.idle > self.style.idle_blocks {
             return Err(Fault::Idle);
         }
         if entering && (self.style.lead == CompensationLead::Perpendicular || bend != Bend::Outside)
@@ -80,13 +80,13 @@ impl Compensation {
                 }
                 Bend::Outside if self.rounds(&before, &element)? => {
                     // LinuxCNC looks back only where a line follows.
-                    if beside && mv.arc.is_some() {
+                    if at_end && mv.arc.is_some() {
                         self.hold.release(out)?;
                     } else {
                         self.hold.finish(out)?;
                     }
                     self.hold
-                        .round(&mut mv, corner, element.start, self.side, beside, out)?;
+                        .round(&mut mv, corner, element.start, self.side, at_end, out)?;
                 }
                 Bend::Outside => self.straight_round(&mv, corner, &before, &element, out)?,
             }
@@ -103,7 +103,7 @@ impl Compensation {
     /// How the path bends at `corner`.
     pub(super) fn bend(&self, corner: Vector, before: &Track, after: &Element) -> Bend {
         let lines = |track: &Track| matches!(track, Track::Line { .. });
-        let smooth_rad = if self.style.lead == CompensationLead::Beside {
+        let smooth_rad = if self.style.lead == CompensationLead::AtEnd {
             SMOOTH_RAD
         } else if lines(before) && lines(&after.track) {
             STRAIGHT_RAD
@@ -137,7 +137,7 @@ impl Compensation {
 
     /// The first move: from where the tool is to next to its programmed end.
     fn enter(&mut self, mv: Move, from: Vector, to: Vector) -> Result<(), Fault> {
-        if self.style.lead != CompensationLead::Beside {
+        if self.style.lead != CompensationLead::AtEnd {
             return self.lead_in(mv, from, to);
         }
         if distance(from, to) <= self.radius_mm {
@@ -165,7 +165,7 @@ impl Compensation {
         Ok(())
     }
 
-    /// The first move, straight, to where the next one says; until then beside
+    /// The first move, straight, to where the next one says; until then next to
     /// its programmed end.
     fn lead_in(&mut self, mv: Move, from: Vector, to: Vector) -> Result<(), Fault> {
         if mv.arc.is_some() {

@@ -100,13 +100,13 @@ impl Hold {
     /// Hands on what waits as it is: the next move does not touch its end.
     pub(super) fn release(&mut self, out: &mut Vec<Step>) -> Result<(), Fault> {
         self.guard = Guard::None;
-        self.hand_on(self.end, out)
+        self.emit(self.end, out)
     }
 
     /// Hands on what waits; it ends at `end`.
     pub(super) fn release_to(&mut self, end: Vector, out: &mut Vec<Step>) -> Result<(), Fault> {
         self.guard = Guard::None;
-        self.hand_on(end, out)
+        self.emit(end, out)
     }
 
     /// Hands on what waits at the end of the compensation.
@@ -121,10 +121,10 @@ impl Hold {
         {
             return Err(Fault::LineGouges);
         }
-        self.hand_on(end, out)
+        self.emit(end, out)
     }
 
-    fn hand_on(&mut self, end: Vector, out: &mut Vec<Step>) -> Result<(), Fault> {
+    fn emit(&mut self, end: Vector, out: &mut Vec<Step>) -> Result<(), Fault> {
         let mut steps = std::mem::take(&mut self.steps);
         for step in steps.drain(..) {
             match step {

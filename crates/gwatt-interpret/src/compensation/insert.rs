@@ -89,7 +89,7 @@ impl Control<'_> {
         }
         match self.join(&mut corners, ask, before, run) {
             Ok(()) => self.corners = Some(corners),
-            // One fault is told once.
+            // One fault is reported once.
             Err(fault) => fault.report(run),
         }
     }
@@ -240,7 +240,7 @@ impl Element {
     }
 
     /// What lies `radius_mm` next to it, to the left for a `side` of 1.
-    fn beside(&self, side: f64, radius_mm: f64) -> Result<Track, Fault> {
+    fn offset(&self, side: f64, radius_mm: f64) -> Result<Track, Fault> {
         let [direction, _] = self.directions;
         let Some(arc) = &self.arc else {
             return Ok(Track::Line {
@@ -325,7 +325,7 @@ impl Corner {
 
     fn round(&self, radius_mm: f64) -> Result<(Vector, Vector, Option<Arc>), Fault> {
         let side = self.bend_rad.signum();
-        let [before, after] = [&self.before, &self.after].map(|it| it.beside(side, radius_mm));
+        let [before, after] = [&self.before, &self.after].map(|it| it.offset(side, radius_mm));
         let center = meet(&before?, &after?, side * radius_mm).map_err(|_| Fault::LargeCorner)?;
         let from = self.before.touched_from(center);
         let to = self.after.touched_from(center);

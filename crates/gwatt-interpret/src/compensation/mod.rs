@@ -148,7 +148,7 @@ impl Compensation {
     /// Whether a move after G40 takes the tool back: in LinuxCNC any, elsewhere
     /// the first in the plane.
     fn leaves_by(&self, mv: &Move) -> bool {
-        self.style.lead == CompensationLead::Beside
+        self.style.lead == CompensationLead::AtEnd
             || mv.arc.is_some()
             || self
                 .plane
@@ -207,7 +207,7 @@ impl Control<'_> {
             return;
         };
         if compensation.state != State::Leaving
-            || compensation.style.lead != CompensationLead::Beside
+            || compensation.style.lead != CompensationLead::AtEnd
         {
             return;
         }
@@ -247,7 +247,7 @@ impl Control<'_> {
             let mut own = std::mem::take(&mut compensation.own);
             own.extend(run.steps.drain(before..));
             if let Err(fault) = self.pass(&mut compensation, &mut own, run) {
-                // One fault is told once: it goes on without compensation.
+                // One fault is reported once: it goes on without compensation.
                 fault.report(run);
                 return;
             }
@@ -315,8 +315,8 @@ impl Control<'_> {
             return Err(Fault::ArcAfterExit);
         }
         let timed = mv.feed_mode == gwatt_motion::FeedMode::InverseTime;
-        let beside = compensation.style.lead == CompensationLead::Beside;
-        if timed && mv.kind != MoveKind::Rapid && !beside {
+        let at_end = compensation.style.lead == CompensationLead::AtEnd;
+        if timed && mv.kind != MoveKind::Rapid && !at_end {
             return Err(Fault::InverseTime);
         }
         if compensation.style.lead == CompensationLead::Corner {

@@ -26,15 +26,15 @@ impl Compensation {
         let offset = sub(self.hold.end, corner);
         let came = unit(scale(left(offset), -self.side)).ok_or(Fault::NoCorner)?;
         let goes = after.tangent;
-        let beside = |direction| scale(left(direction), self.side * self.radius_mm);
+        let offset = |direction| scale(left(direction), self.side * self.radius_mm);
         let cosine = dot(came, goes);
         let (first, second) = if cosine >= 0.0 {
-            let sum = add(beside(came), beside(goes));
+            let sum = add(offset(came), offset(goes));
             let point = add(corner, scale(sum, 1.0 / (1.0 + cosine)));
             (point, point)
         } else {
-            let on = add(beside(came), scale(came, self.radius_mm));
-            let back = sub(beside(goes), scale(goes, self.radius_mm));
+            let on = add(offset(came), scale(came, self.radius_mm));
+            let back = sub(offset(goes), scale(goes, self.radius_mm));
             (add(corner, on), add(corner, back))
         };
         if matches!(before, Track::Line { .. }) {

@@ -150,8 +150,8 @@ impl Control<'_> {
             }
         }
         let [first, second, normal] = plane;
-        let beside = style.lead == CompensationLead::Beside;
-        if beside && !NORMALS.contains(&normal) {
+        let at_end = style.lead == CompensationLead::AtEnd;
+        if at_end && !NORMALS.contains(&normal) {
             run.report
                 .error(
                     "compensation",
@@ -163,7 +163,7 @@ impl Control<'_> {
         }
         let nose = if by_diameter {
             nose_by_words(run, mm_per_unit, normal, span)
-        } else if beside {
+        } else if at_end {
             self.nose_by_number(run, span)
         } else {
             self.nose_by_offset(run, span)
@@ -175,7 +175,7 @@ impl Control<'_> {
         } else {
             nose
         };
-        let passive = !beside && nose.radius_mm == 0.0;
+        let passive = !at_end && nose.radius_mm == 0.0;
         if !passive && self.refuse_style(span, run) {
             return;
         }
@@ -185,7 +185,7 @@ impl Control<'_> {
             .take()
             .filter(|before| before.state == State::Leaving);
         let (tool, straight_first) = match leaving {
-            Some(before) if !beside || before.plane != plane || nose.radius_mm == 0.0 => {
+            Some(before) if !at_end || before.plane != plane || nose.radius_mm == 0.0 => {
                 let message = "the tool has not left the compensation before this one";
                 run.report
                     .error("compensation", message, span)
@@ -199,7 +199,7 @@ impl Control<'_> {
         let left = (left == (nose.radius_mm >= 0.0)) != flipped;
         let radius_mm = nose.radius_mm.abs();
         let mut shift = nose_shift(nose.orientation, radius_mm, normal);
-        if !beside {
+        if !at_end {
             // Fanuc's picture ("Direction of Imaginary Tool Nose") has +X up
             // where LinuxCNC's has it down.
             shift[1] = -shift[1];

@@ -34,7 +34,7 @@ pub(crate) enum Op {
 pub(crate) struct Tape {
     pub(crate) ops: Vec<Op>,
     pub(crate) records: bool,
-    /// Something was read that steps do not tell.
+    /// Something was read that steps do not show.
     pub(crate) lost: bool,
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn parameter_number(value: Value) -> Option<u32> {
 }
 
 /// What the steps lead to. `None` where anything is wrong, which the text then
-/// tells.
+/// shows.
 pub(crate) fn work_out(ops: &[Op], variables: &impl Variables) -> Option<Value> {
     let fanuc = variables.fanuc();
     let mut waiting: ArrayVec<Value, WAITING_MAX> = ArrayVec::new();

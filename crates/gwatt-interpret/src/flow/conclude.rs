@@ -1,10 +1,10 @@
 //! What is done after a line: the moves of cycles about contours, and where it goes on.
 
-use super::{Flow, Trouble};
+use super::{Flow, FlowError};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
+use crate::jump::Transfer;
 use crate::report::Diagnostics;
-use crate::transfer::Transfer;
 use gwatt_motion::Step;
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;
@@ -73,7 +73,7 @@ impl Flow {
                     self.limits.idle_lines
                 );
                 let help = "look for a loop that does not end; --max-idle-lines sets this limit";
-                return Err(self.trouble(Trouble::new("endless", message, help)));
+                return Err(self.trouble(FlowError::new("endless", message, help)));
             }
             return Ok(());
         }
@@ -86,7 +86,7 @@ impl Flow {
                     self.limits.repeated_moves
                 );
                 let help = "look for a loop that does not end; --max-moves sets this limit";
-                return Err(self.trouble(Trouble::new("endless", message, help)));
+                return Err(self.trouble(FlowError::new("endless", message, help)));
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Reads the blocks of a contour for a turning cycle.
 
-use super::{Flow, Trouble};
+use super::{Flow, FlowError};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
 use crate::report::Diagnostics;
@@ -34,7 +34,7 @@ impl Flow {
         block: &Block,
         steps: &mut Vec<Step>,
         diagnostics: &mut Diagnostics,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         let first = self.find_block(contour.first, self.next)?;
         let before = interpreter.before_contour(contour);
         let errors = diagnostics.errors;
@@ -53,7 +53,7 @@ impl Flow {
                     contour.last, contour.first
                 );
                 let help = "give the contour's first and last block as P and Q";
-                return Err(Trouble::new("contour", message, help));
+                return Err(FlowError::new("contour", message, help));
             };
             scan_line(text, false, &mut own);
             let number = place.line as u64 + 1;
@@ -69,7 +69,7 @@ impl Flow {
             if interpreter.transfer().is_some() || interpreter.ended() {
                 let message = format!("line {number} leaves the contour of a turning cycle");
                 let help = "write no calls, jumps, cycles or ends between the blocks of P and Q";
-                return Err(Trouble::new("contour", message, help));
+                return Err(FlowError::new("contour", message, help));
             }
             place.line += 1;
             if own

@@ -2,11 +2,11 @@
 //! statements", "Subroutine techniques") and of Okuma's OSP ("Subprogram
 //! Functions", "Branch Function").
 
-use super::{Flow, Place, Style, Trouble};
+use super::{Flow, FlowError, Place, Style};
 use crate::execute::Interpreter;
 use crate::isg::Pending;
+use crate::jump::Go;
 use crate::parameters::LOCALS;
-use crate::transfer::Go;
 
 use super::landmarks::{Landmarks, Part};
 use super::text::Text;
@@ -16,7 +16,7 @@ impl Flow {
         &mut self,
         word: Go,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         self.is_isg = interpreter.is_isg();
         match word {
             Go::Next | Go::If(true) | Go::Loop(true) | Go::Again(false) => {}
@@ -25,7 +25,7 @@ impl Flow {
                 let Some(line) = self.landmarks(text)?.main() else {
                     let message = "local subprograms without a main program after them";
                     let help = "write % and a name before the main program";
-                    return Err(Trouble::new("subprogram", message, help));
+                    return Err(FlowError::new("subprogram", message, help));
                 };
                 self.next.line = line + 1;
             }
@@ -69,52 +69,56 @@ impl Flow {
         Ok(())
     }
 
-    fn landmarks(&mut self, text: usize) -> Result<&Landmarks, Trouble> {
+    fn landmarks(&mut self, text: usize) -> Result<&Landmarks, FlowError> {
         let dollar = self.is_isg;
         let text = self.texts.get_mut(text);
         text.map(|text| text.landmarks(dollar))
-            .ok_or_else(|| Trouble::new("flow", "there is no such text", ""))
+            .ok_or_else(|| FlowError::new("flow", "there is no such text", ""))
     }
 
     /// The structure that the line belongs to.
-    fn part(&mut self) -> Result<Part, Trouble> {
+    fn part(&mut self) -> Result<Part, FlowError> {
         let line = self.now.line;
         self.landmarks(self.now.text)?.part(line).ok_or_else(|| {
             let message = "the other end of this statement is missing";
             let help = "give each $IF, $SWITCH, $FOR, $WHILE, $DO and $REPEAT its end";
-            Trouble::new("structure", message, help)
+            FlowError::new("structure", message, help)
         })
     }
 
-    fn around(&mut self) -> Result<usize, Trouble> {
+    fn around(&mut self) -> Result<usize, FlowError> {
         let line = self.now.line;
         let part = self.landmarks(self.now.text)?.part(line);
         part.and_then(|part| part.around).ok_or_else(|| {
             let message = "there is no loop around this";
             let help = "write $BREAK in a loop or $SWITCH, $CONTINUE in a loop";
-            Trouble::new("structure", message, help)
+            FlowError::new("structure", message, help)
         })
     }
 
-    fn jump_to(&mut self, label: &str) -> Result<(), Trouble> {
+    fn jump_to(&mut self, label: &str) -> Result<(), FlowError> {
         let line = self.now.line;
         let len = self.texts.get(self.now.text).map_or(0, Text::len);
         let found = self.landmarks(self.now.text)?.find(label, line, len);
         let Some(found) = found else {
             let message = format!("there is no {label} to jump to in this program");
             let help = "write the label at the beginning of the block that is meant";
-            return Err(Trouble::new("no-such-block", message, help));
+            return Err(FlowError::new("no-such-block", message, help));
         };
         self.next.line = found;
         Ok(())
     }
 
-    fn call_local(&mut self, name: &str, interpreter: &mut Interpreter<'_>) -> Result<(), Trouble> {
+    fn call_local(
+        &mut self,
+        name: &str,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), FlowError> {
         let text = self.now.text;
         let Some(line) = self.landmarks(text)?.program(name) else {
             let message = format!("there is no local subprogram {name} in this file");
             let help = "define it before the main program, by %L and its name";
-            return Err(Trouble::new("no-such-subprogram", message, help));
+            return Err(FlowError::new("no-such-subprogram", message, help));
         };
         let begin = Place {
             text,
@@ -123,7 +127,11 @@ impl Flow {
         self.enter_named(begin, 1, interpreter)
     }
 
-    fn call_file(&mut self, name: &str, interpreter: &mut Interpreter<'_>) -> Result<(), Trouble> {
+    fn call_file(
+        &mut self,
+        name: &str,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), FlowError> {
         let names = [name.to_owned(), format!("{name}.nc")];
         let text = self.text_named(name, &names)?;
         let line = self.landmarks(text)?.main();
@@ -140,7 +148,7 @@ impl Flow {
         name: &str,
         times: u64,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         for text in 0..self.texts.len() {
             if let Some(line) = self.landmarks(text)?.program(name) {
                 let begin = Place {
@@ -160,7 +168,7 @@ impl Flow {
         let Some(line) = line else {
             let message = format!("the file of {name} does not hold it");
             let help = "begin the subprogram by its name";
-            return Err(Trouble::new("no-such-subprogram", message, help));
+            return Err(FlowError::new("no-such-subprogram", message, help));
         };
         let begin = Place {
             text,
@@ -170,7 +178,10 @@ impl Flow {
     }
 
     /// Calls the subprogram that MODIN has set, after a block that moved.
-    pub(super) fn modal_call(&mut self, interpreter: &mut Interpreter<'_>) -> Result<(), Trouble> {
+    pub(super) fn modal_call(
+        &mut self,
+        interpreter: &mut Interpreter<'_>,
+    ) -> Result<(), FlowError> {
         match self.modal_named.clone() {
             // Moves of the subprogram itself do not call it.
             Some((name, depth)) if depth == self.calls.len() => {
@@ -180,7 +191,7 @@ impl Flow {
         }
     }
 
-    fn text_named(&mut self, name: &str, files: &[String]) -> Result<usize, Trouble> {
+    fn text_named(&mut self, name: &str, files: &[String]) -> Result<usize, FlowError> {
         if let Some((_, text)) = self.named.iter().find(|(known, _)| known == name) {
             return Ok(*text);
         }
@@ -190,7 +201,7 @@ impl Flow {
                 "put {} into the program's folder or one given by --sub-path",
                 files.first().map_or(name, String::as_str)
             );
-            return Err(Trouble::new("no-such-subprogram", message, help));
+            return Err(FlowError::new("no-such-subprogram", message, help));
         };
         let text = self.texts.len();
         self.texts.push(Text::new(bytes));
@@ -203,7 +214,7 @@ impl Flow {
         begin: Place,
         times: u64,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         if times == 0 {
             return Ok(());
         }

@@ -111,8 +111,8 @@ impl Landmarks {
             let word = rest.run(u8::is_ascii_alphabetic);
             self.structure(line, &word, &rest, open);
         } else if let Some(begin) = memchr::memmem::find(&upper, b"#COMMENT BEGIN") {
-            let behind = upper.get(begin..).unwrap_or_default();
-            *comments = memchr::memmem::find(behind, b"#COMMENT END").is_none();
+            let after = upper.get(begin..).unwrap_or_default();
+            *comments = memchr::memmem::find(after, b"#COMMENT END").is_none();
         }
     }
 

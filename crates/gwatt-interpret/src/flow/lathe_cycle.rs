@@ -1,11 +1,11 @@
 //! Runs through the subroutine of a contour for a turning cycle of `LinuxCNC`.
 
-use super::{Flow, Trouble};
+use super::{Flow, FlowError};
 use crate::execute::Interpreter;
+use crate::jump::{Transfer, Verb};
 use crate::lathe_cycle::{LatheCycle, Reader};
 use crate::parameters::LOCALS;
 use crate::report::Diagnostics;
-use crate::transfer::{Transfer, Verb};
 use gwatt_motion::Step;
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;
@@ -73,7 +73,7 @@ impl Flow {
                 Some(_) => {
                     let message = "the contour of a turning cycle calls or ends a program";
                     let help = "write only O words and moves into its subroutine";
-                    let trouble = Trouble::new("lathe-cycle", message, help);
+                    let trouble = FlowError::new("lathe-cycle", message, help);
                     return Err(self.trouble(trouble));
                 }
                 None => {}

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Flow, Place, Trouble};
+use super::{Flow, FlowError, Place};
+use crate::jump::Label;
 use crate::position::Reading;
 use crate::shelf::Shelf;
-use crate::transfer::Label;
 
 /// Bytes that all files of subprograms may have together.
 const BYTES_MAX: u64 = 64 << 20;
@@ -89,7 +89,7 @@ impl Library {
     }
 
     /// That there is no such subprogram.
-    pub(super) fn nothing(label: &Label) -> Trouble {
+    pub(super) fn nothing(label: &Label) -> FlowError {
         let message = format!("there is no subprogram {label}");
         let file = match label {
             Label::Name(_) => names(label)
@@ -104,11 +104,11 @@ impl Library {
         let help = format!(
             "define it in the program, or put {file} into its folder or one given by --sub-path"
         );
-        Trouble::new("no-such-subprogram", message, help)
+        FlowError::new("no-such-subprogram", message, help)
     }
 
     /// The contents of `NAME.SPF`, if there is such a file.
-    pub(super) fn load_subprogram(&mut self, name: &str) -> Result<Option<Vec<u8>>, Trouble> {
+    pub(super) fn load_subprogram(&mut self, name: &str) -> Result<Option<Vec<u8>>, FlowError> {
         self.load_named(&[
             format!("{name}.SPF"),
             format!("_N_{name}_SPF"),
@@ -117,14 +117,14 @@ impl Library {
     }
 
     /// That there is no such macro any more.
-    pub(super) fn no_macro(name: &str) -> Trouble {
+    pub(super) fn no_macro(name: &str) -> FlowError {
         let message = format!("there is no file of the macro {name}");
-        Trouble::new("unknown-macro", message, "check the folders of --sub-path")
+        FlowError::new("unknown-macro", message, "check the folders of --sub-path")
     }
 
     /// The contents of the file that holds a subprogram of SINUMERIK:
     /// `NAME.SPF` or `NAME.MPF`, whatever the case of its letters.
-    pub(super) fn load_siemens(&mut self, name: &str) -> Result<Vec<u8>, Trouble> {
+    pub(super) fn load_siemens(&mut self, name: &str) -> Result<Vec<u8>, FlowError> {
         let wanted = [
             format!("{name}.SPF"),
             format!("{name}.MPF"),
@@ -137,14 +137,14 @@ impl Library {
             let help = format!(
                 "define it in the program, or put {name}.SPF into its folder or one given by --sub-path"
             );
-            return Err(Trouble::new("no-such-subprogram", message, help));
+            return Err(FlowError::new("no-such-subprogram", message, help));
         };
         Ok(bytes)
     }
 
     /// The contents of the file with one of these names, whatever the case of
     /// their letters; the first name that exists counts.
-    pub(super) fn load_named(&mut self, wanted: &[String]) -> Result<Option<Vec<u8>>, Trouble> {
+    pub(super) fn load_named(&mut self, wanted: &[String]) -> Result<Option<Vec<u8>>, FlowError> {
         match find_named(&self.folders, wanted) {
             Some(path) => self.read(&path).map(Some),
             None => Ok(None),
@@ -152,7 +152,7 @@ impl Library {
     }
 
     /// The contents of the file that holds a subprogram, if there is one.
-    pub(super) fn load(&mut self, label: &Label) -> Result<Option<Vec<u8>>, Trouble> {
+    pub(super) fn load(&mut self, label: &Label) -> Result<Option<Vec<u8>>, FlowError> {
         let names = names(label);
         let found = self.folders.iter().find_map(|folder| {
             let mut usual = names.iter().map(|name| folder.join(name));
@@ -165,11 +165,11 @@ impl Library {
         self.read(&path).map(Some)
     }
 
-    fn read(&mut self, path: &Path) -> Result<Vec<u8>, Trouble> {
+    fn read(&mut self, path: &Path) -> Result<Vec<u8>, FlowError> {
         let shown = path.display().to_string();
         let unreadable = |why: String| {
             let message = format!("the subprogram file {shown} cannot be read: {why}");
-            Trouble::new("no-such-subprogram", message, "check the file")
+            FlowError::new("no-such-subprogram", message, "check the file")
         };
         if let Some(shelf) = &self.shelf {
             let Some((number, text)) = shelf.take(path) else {

@@ -1,23 +1,23 @@
 //! GOTO, WHILE and M99.
 
 use super::text::Search;
-use super::{Flow, Place, Style, Trouble};
+use super::{Flow, FlowError, Place, Style};
 use crate::execute::Interpreter;
 
 impl Flow {
-    pub(super) fn go_to(&mut self, block: u64) -> Result<(), Trouble> {
+    pub(super) fn go_to(&mut self, block: u64) -> Result<(), FlowError> {
         self.next = self.find_block(block, self.next)?;
         Ok(())
     }
 
-    pub(super) fn begin_loop(&mut self, number: u8, holds: bool) -> Result<(), Trouble> {
+    pub(super) fn begin_loop(&mut self, number: u8, holds: bool) -> Result<(), FlowError> {
         if holds {
             return Ok(());
         }
         let end = self.find_here(&Search::EndLoop(number), self.next.line);
         let Some(end) = end else {
             let message = format!("there is no END{number} for this loop");
-            return Err(Trouble::new(
+            return Err(FlowError::new(
                 "loop",
                 message,
                 "end each loop with END and its number",
@@ -27,11 +27,11 @@ impl Flow {
         Ok(())
     }
 
-    pub(super) fn end_loop(&mut self, number: u8) -> Result<(), Trouble> {
+    pub(super) fn end_loop(&mut self, number: u8) -> Result<(), FlowError> {
         let begin = self.find_here(&Search::BeginLoop(number), self.now.line);
         let Some(begin) = begin else {
             let message = format!("there is no DO{number} for this END");
-            return Err(Trouble::new(
+            return Err(FlowError::new(
                 "loop",
                 message,
                 "begin each loop with WHILE [ … ] DO and its number",
@@ -47,7 +47,7 @@ impl Flow {
         &mut self,
         block: Option<u64>,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         if self
             .calls
             .last()
@@ -55,7 +55,7 @@ impl Flow {
         {
             let message = "M99 ends a program that M98 has called";
             let help = "end what `o… call` has called with endsub or return";
-            return Err(Trouble::new("subprogram", message, help));
+            return Err(FlowError::new("subprogram", message, help));
         }
         if let Some(back) = self.leave(interpreter) {
             if let Some(block) = block

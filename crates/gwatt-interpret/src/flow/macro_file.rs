@@ -2,7 +2,7 @@
 
 use super::library::{self, Library};
 use super::text::Text;
-use super::{Flow, Place, Style, Trouble};
+use super::{Flow, FlowError, Place, Style};
 use crate::execute::Interpreter;
 use gwatt_syntax::diagnostic::Diagnostic;
 
@@ -12,7 +12,7 @@ impl Flow {
         &mut self,
         name: &str,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         let known = self.named.iter().find(|(known, _)| known == name);
         let text = if let Some((_, text)) = known {
             *text
@@ -23,7 +23,7 @@ impl Flow {
             if bytes.contains(&b'{') {
                 let message = format!("the file of the macro {name} holds a template: `{{`");
                 let help = "write the commands that it comes to, one a line";
-                return Err(Trouble::new("macro-file", message, help));
+                return Err(FlowError::new("macro-file", message, help));
             }
             self.texts.push(Text::new(bytes));
             self.named.push((name.to_owned(), self.texts.len() - 1));
@@ -59,6 +59,6 @@ impl Flow {
         } else {
             "end it with M99, or endsub"
         };
-        self.trouble(Trouble::new("subprogram", message, help))
+        self.trouble(FlowError::new("subprogram", message, help))
     }
 }

@@ -22,10 +22,10 @@ pub use self::limits::Limits;
 use self::siemens::Section;
 use self::text::{Search, Text};
 use super::execute::Interpreter;
+use super::jump::{Call, Label, Target, Transfer};
 use super::parameters::{LOCALS, Scope};
 use super::position::Reading;
 use super::statement::Keyword;
-use super::transfer::{Call, Label, Target, Transfer};
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;
 use gwatt_syntax::source::{Span, split_line_end};
@@ -121,13 +121,13 @@ enum LoopKind {
 }
 
 /// What went wrong, at the line that is being executed.
-pub(super) struct Trouble {
+pub(super) struct FlowError {
     rule: &'static str,
     message: String,
     help: String,
 }
 
-impl Trouble {
+impl FlowError {
     fn new(rule: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
         Self {
             rule,
@@ -288,7 +288,7 @@ impl Flow {
         done.map_err(|trouble| self.trouble(trouble))
     }
 
-    fn trouble(&self, trouble: Trouble) -> Box<Diagnostic> {
+    fn trouble(&self, trouble: FlowError) -> Box<Diagnostic> {
         let text = self.text();
         let span = Span::new(0, split_line_end(text).0.len());
         let mut diagnostic = Diagnostic::error(trouble.rule, trouble.message)
@@ -298,7 +298,7 @@ impl Flow {
         Box::new(diagnostic)
     }
 
-    fn call(&mut self, call: Call, interpreter: &mut Interpreter<'_>) -> Result<(), Trouble> {
+    fn call(&mut self, call: Call, interpreter: &mut Interpreter<'_>) -> Result<(), FlowError> {
         if call.times == 0 {
             return Ok(());
         }
@@ -319,7 +319,7 @@ impl Flow {
         };
         if interpreter.rs274() && self.is_sub(begin) {
             let message = "M98 calls a subroutine that begins with `sub`";
-            return Err(Trouble::new(
+            return Err(FlowError::new(
                 "subprogram",
                 message,
                 "call it with `o… call`",
@@ -336,11 +336,11 @@ impl Flow {
         arguments: Option<Box<[Option<f64>; LOCALS]>>,
         style: Style,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         if self.calls.len() >= self.limits.depth {
             let message = format!("more than {} calls inside one another", self.limits.depth);
             let help = "look for a subprogram that calls itself; --max-depth sets this limit";
-            return Err(Trouble::new("call-depth", message, help));
+            return Err(FlowError::new("call-depth", message, help));
         }
         // LinuxCNC ("M98 and M99"): the program has its own names, and the
         // numbers of its caller.
@@ -393,7 +393,7 @@ impl Flow {
 
     /// Where a program or subroutine begins, in the texts that are there or in
     /// a file of its own.
-    fn find_program(&mut self, label: &Label) -> Result<Place, Trouble> {
+    fn find_program(&mut self, label: &Label) -> Result<Place, FlowError> {
         if let Some(place) = self.find_loaded(label) {
             return Ok(place);
         }
@@ -407,7 +407,7 @@ impl Flow {
     }
 
     /// Reads the file of a subprogram, if there is one; gives its text.
-    fn load(&mut self, label: &Label) -> Result<Option<usize>, Trouble> {
+    fn load(&mut self, label: &Label) -> Result<Option<usize>, FlowError> {
         let Some(bytes) = self.library.load(label)? else {
             return Ok(None);
         };
@@ -435,14 +435,14 @@ impl Flow {
     }
 
     /// A block of the program that `from` belongs to, looked for from there on.
-    fn find_block(&mut self, block: u64, from: Place) -> Result<Place, Trouble> {
+    fn find_block(&mut self, block: u64, from: Place) -> Result<Place, FlowError> {
         self.texts
             .get_mut(from.text)
             .and_then(|text| text.find(&Search::Block(block), from.line))
             .map(|line| Place { line, ..from })
             .ok_or_else(|| {
                 let message = format!("there is no block N{block} in this program");
-                Trouble::new(
+                FlowError::new(
                     "no-such-block",
                     message,
                     "write the number of a block that exists",

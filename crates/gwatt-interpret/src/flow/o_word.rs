@@ -2,10 +2,10 @@
 
 use super::library::Library;
 use super::text::{Search, Text};
-use super::{Flow, Loop, LoopKind, Place, Style, Trouble};
+use super::{Flow, FlowError, Loop, LoopKind, Place, Style};
 use crate::execute::Interpreter;
+use crate::jump::{Label, Verb};
 use crate::statement::Keyword;
-use crate::transfer::{Label, Verb};
 use gwatt_syntax::source::Span;
 
 /// Repetitions that one loop may ask for.
@@ -25,7 +25,7 @@ impl Flow {
         label: Label,
         verb: Verb,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         let undecided = self.undecided.take();
         self.check_label(&label, &verb, interpreter.loose_o_words())?;
         // Only LinuxCNC remembers a break.
@@ -49,7 +49,7 @@ impl Flow {
                 }
             }
             Verb::ElseIf(_) | Verb::Else => {
-                self.behind(&label, &[Keyword::EndIf], "endif", interpreter)
+                self.continue_after(&label, &[Keyword::EndIf], "endif", interpreter)
             }
             Verb::While(holds) => self.begin_while(label, holds, interpreter),
             Verb::EndWhile => match self.take_loop(&label) {
@@ -68,10 +68,15 @@ impl Flow {
                 let times = times.round_ties_even();
                 if times.abs() > REPEATS_MAX {
                     let message = format!("{times} is too many repetitions");
-                    return Err(Trouble::new("endless", message, "write a smaller number"));
+                    return Err(FlowError::new("endless", message, "write a smaller number"));
                 }
                 if times < 1.0 {
-                    return self.behind(&label, &[Keyword::EndRepeat], "endrepeat", interpreter);
+                    return self.continue_after(
+                        &label,
+                        &[Keyword::EndRepeat],
+                        "endrepeat",
+                        interpreter,
+                    );
                 }
                 let left = times as u64 - 1;
                 self.begin_loop_of(label, LoopKind::Repeat { left });
@@ -84,28 +89,28 @@ impl Flow {
     }
 
     /// A subroutine that is not called is passed over.
-    fn pass_sub(&mut self, label: Label, interpreter: &Interpreter<'_>) -> Result<(), Trouble> {
+    fn pass_sub(&mut self, label: Label, interpreter: &Interpreter<'_>) -> Result<(), FlowError> {
         if !self.calls.is_empty() {
             return Err(nested());
         }
         if interpreter.in_program() {
             let message = "a subroutine begins inside a program with an O number";
             let help = "end the program with M2 or M30 before it";
-            return Err(Trouble::new("o-word", message, help));
+            return Err(FlowError::new("o-word", message, help));
         }
         if let Some(known) = self.subs.get(&label)
             && *known != self.now
         {
             return Err(duplicate(&label, known.line));
         }
-        self.behind(&label, &[Keyword::EndSub], "endsub", interpreter)?;
+        self.continue_after(&label, &[Keyword::EndSub], "endsub", interpreter)?;
         self.subs.insert(label, self.now);
         Ok(())
     }
 
     /// Where a subroutine begins: one that was passed, one in a file of its own,
     /// or one further down, in this order as in `LinuxCNC`.
-    fn find_sub(&mut self, label: Label) -> Result<Place, Trouble> {
+    fn find_sub(&mut self, label: Label) -> Result<Place, FlowError> {
         if let Some(place) = self.subs.get(&label) {
             return Ok(*place);
         }
@@ -122,7 +127,7 @@ impl Flow {
             let program = self.texts.get_mut(text).and_then(|text| text.begin(&label));
             if program.is_some_and(|line| line >= from) {
                 let message = format!("`call` calls the program {label}, which has no `sub`");
-                return Err(Trouble::new("o-word", message, "call it with M98"));
+                return Err(FlowError::new("o-word", message, "call it with M98"));
             }
             return Err(Library::nothing(&label));
         };
@@ -133,7 +138,7 @@ impl Flow {
 
     /// Each branch and loop of a subroutine has its own label, and what belongs
     /// to it comes after it.
-    fn check_label(&mut self, label: &Label, verb: &Verb, repeat: bool) -> Result<(), Trouble> {
+    fn check_label(&mut self, label: &Label, verb: &Verb, repeat: bool) -> Result<(), FlowError> {
         let keyword = verb.keyword();
         let text = self.texts.get(self.now.text);
         let runs = text.and_then(|text| text.runs.get(self.now.line));
@@ -164,13 +169,13 @@ impl Flow {
     }
 
     /// Goes on after one of these O-words.
-    fn behind(
+    fn continue_after(
         &mut self,
         label: &Label,
         keywords: &'static [Keyword],
         name: &str,
         interpreter: &Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         self.next.line = self.find_o_word(label, keywords, name, interpreter)? + 1;
         Ok(())
     }
@@ -181,14 +186,14 @@ impl Flow {
         keywords: &'static [Keyword],
         name: &str,
         interpreter: &Interpreter<'_>,
-    ) -> Result<usize, Trouble> {
+    ) -> Result<usize, FlowError> {
         let search = Search::OWord(label.clone(), keywords);
         let from = self.now.line + 1;
         let mut found = None;
         if let Some(text) = self.texts.get_mut(self.now.text) {
             let line = if text.works_out_labels() {
                 text.find_worked_out(label, keywords, from, interpreter)
-                    .map_err(|fault| Trouble::new(fault.rule, fault.message, fault.help))?
+                    .map_err(|fault| FlowError::new(fault.rule, fault.message, fault.help))?
             } else {
                 text.find(&search, from)
             };
@@ -200,7 +205,7 @@ impl Flow {
             Some(_) => Err(duplicate(label, self.now.line)),
             None => {
                 let message = format!("there is no `{label} {name}` after this");
-                Err(Trouble::new(
+                Err(FlowError::new(
                     "o-word",
                     message,
                     "give each O-word its counterpart",
@@ -210,7 +215,11 @@ impl Flow {
     }
 
     /// Goes on at the next branch of an IF.
-    fn next_branch(&mut self, label: Label, interpreter: &Interpreter<'_>) -> Result<(), Trouble> {
+    fn next_branch(
+        &mut self,
+        label: Label,
+        interpreter: &Interpreter<'_>,
+    ) -> Result<(), FlowError> {
         const BRANCHES: &[Keyword] = &[Keyword::ElseIf, Keyword::Else, Keyword::EndIf];
         let line = self.find_o_word(&label, BRANCHES, "endif", interpreter)?;
         let text = self.texts.get(self.now.text);
@@ -224,22 +233,22 @@ impl Flow {
     }
 
     /// The condition of an ELSEIF.
-    fn holds(&self, condition: Span, interpreter: &Interpreter<'_>) -> Result<bool, Trouble> {
+    fn holds(&self, condition: Span, interpreter: &Interpreter<'_>) -> Result<bool, FlowError> {
         interpreter
             .condition(self.text(), condition)
-            .map_err(|fault| Trouble::new(fault.rule, fault.message, fault.help))
+            .map_err(|fault| FlowError::new(fault.rule, fault.message, fault.help))
     }
 
     fn return_from(
         &mut self,
         value: Option<f64>,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         match self.calls.last().map(|frame| frame.style) {
             Some(Style::Sub) => {}
             Some(Style::Program | Style::Macro) => {
                 let message = "a program that M98 has called ends with M99";
-                return Err(Trouble::new("o-word", message, "write M99"));
+                return Err(FlowError::new("o-word", message, "write M99"));
             }
             None => return Err(stray("endsub")),
         }
@@ -253,14 +262,14 @@ impl Flow {
         label: Label,
         holds: bool,
         interpreter: &Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         // The end of a DO loop.
         if self.running(&label) == Some(LoopKind::Do) {
             if std::mem::take(&mut self.broke) && holds {
                 let message = "a break has left a while loop before, which ends this do loop \
                                on LinuxCNC 2.9";
                 let help = "write the loop with while and endwhile";
-                return Err(Trouble::new("o-word", message, help));
+                return Err(FlowError::new("o-word", message, help));
             }
             if let Some(running) = self.take_loop(&label)
                 && holds
@@ -274,7 +283,7 @@ impl Flow {
             self.begin_loop_of(label, LoopKind::While);
             return Ok(());
         }
-        self.behind(&label, &[Keyword::EndWhile], "endwhile", interpreter)
+        self.continue_after(&label, &[Keyword::EndWhile], "endwhile", interpreter)
     }
 
     fn begin_loop_of(&mut self, label: Label, kind: LoopKind) {
@@ -284,7 +293,7 @@ impl Flow {
         self.loops.push(Loop { label, kind, line });
     }
 
-    fn end_repeat(&mut self, label: &Label) -> Result<(), Trouble> {
+    fn end_repeat(&mut self, label: &Label) -> Result<(), FlowError> {
         let Some(mut running) = self.take_loop(label) else {
             return Err(stray("endrepeat"));
         };
@@ -299,20 +308,24 @@ impl Flow {
         Ok(())
     }
 
-    fn break_loop(&mut self, label: &Label, interpreter: &Interpreter<'_>) -> Result<(), Trouble> {
+    fn break_loop(
+        &mut self,
+        label: &Label,
+        interpreter: &Interpreter<'_>,
+    ) -> Result<(), FlowError> {
         let Some(running) = self.take_loop(label) else {
             return Err(stray("break"));
         };
         self.broke |= running.kind == LoopKind::While;
         let (keywords, name) = end_of(running.kind);
-        self.behind(label, keywords, name, interpreter)
+        self.continue_after(label, keywords, name, interpreter)
     }
 
     fn continue_loop(
         &mut self,
         label: &Label,
         interpreter: &Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         let Some(kind) = self.running(label) else {
             return Err(stray("continue"));
         };
@@ -333,7 +346,7 @@ impl Flow {
             let message = "after this continue stands a break of the same do loop, \
                            which LinuxCNC would take";
             let help = "write the break before the continue, or the loop with while and endwhile";
-            return Err(Trouble::new("o-word", message, help));
+            return Err(FlowError::new("o-word", message, help));
         }
         self.next.line = line;
         Ok(())
@@ -368,19 +381,19 @@ fn end_of(kind: LoopKind) -> (&'static [Keyword], &'static str) {
     }
 }
 
-fn nested() -> Trouble {
+fn nested() -> FlowError {
     let message = "a subroutine begins inside another";
-    Trouble::new("o-word", message, "end each subroutine before the next")
+    FlowError::new("o-word", message, "end each subroutine before the next")
 }
 
-fn duplicate(label: &Label, line: usize) -> Trouble {
+fn duplicate(label: &Label, line: usize) -> FlowError {
     let line = line + 1;
     let message = format!("the label {label} is used for two things, before in line {line}");
     let help = "give each branch and loop of a subroutine a label of its own";
-    Trouble::new("o-word", message, help)
+    FlowError::new("o-word", message, help)
 }
 
-fn stray(name: &str) -> Trouble {
+fn stray(name: &str) -> FlowError {
     let message = format!("{name} without what it belongs to");
-    Trouble::new("o-word", message, "give each O-word its counterpart")
+    FlowError::new("o-word", message, "give each O-word its counterpart")
 }

@@ -212,13 +212,13 @@ impl Rest<'_> {
         if !matches!(self.0.first(), Some(b'N' | b'n' | b':')) {
             return None;
         }
-        let mut behind = Rest(self.0);
-        behind.skip(1);
-        let length = behind.digits();
-        let digits = std::str::from_utf8(behind.0.get(..length)?).ok()?;
+        let mut rest = Rest(self.0);
+        rest.skip(1);
+        let length = rest.digits();
+        let digits = std::str::from_utf8(rest.0.get(..length)?).ok()?;
         let number: u64 = digits.parse().ok()?;
-        behind.skip(length);
-        self.0 = behind.0;
+        rest.skip(length);
+        self.0 = rest.0;
         if self.0.first() == Some(&b'/') {
             self.skip(1);
             self.skip(self.digits());

@@ -3,10 +3,10 @@
 
 use super::outline::Outline;
 use super::text::Text;
-use super::{Flow, Place, Style, Trouble};
+use super::{Flow, FlowError, Place, Style};
 use crate::execute::Interpreter;
+use crate::jump::{Direction, Siemens};
 use crate::parameters::LOCALS;
-use crate::transfer::{Direction, Siemens};
 
 /// A section that is repeated.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl Flow {
         &mut self,
         word: Siemens,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         self.is_siemens = true;
         match word {
             Siemens::Next | Siemens::If(true) | Siemens::While(true) | Siemens::Until(true) => {
@@ -75,17 +75,17 @@ impl Flow {
     }
 
     /// The outline of a text, made when it is first asked for.
-    fn outline(&mut self, text: usize) -> Result<&Outline, Trouble> {
+    fn outline(&mut self, text: usize) -> Result<&Outline, FlowError> {
         let text = self.texts.get_mut(text);
         text.map(Text::outline)
-            .ok_or_else(|| Trouble::new("flow", "there is no such text", ""))
+            .ok_or_else(|| FlowError::new("flow", "there is no such text", ""))
     }
 
-    fn partner(&mut self, what: &str) -> Result<usize, Trouble> {
+    fn partner(&mut self, what: &str) -> Result<usize, FlowError> {
         let line = self.now.line;
         self.outline(self.now.text)?.partner(line).ok_or_else(|| {
             let message = format!("there is no {what} for this");
-            Trouble::new(
+            FlowError::new(
                 "structure",
                 message,
                 "give each IF, WHILE, FOR, LOOP and REPEAT its end",
@@ -93,7 +93,7 @@ impl Flow {
         })
     }
 
-    fn behind_partner(&mut self, what: &str) -> Result<(), Trouble> {
+    fn behind_partner(&mut self, what: &str) -> Result<(), FlowError> {
         self.next.line = self.partner(what)? + 1;
         Ok(())
     }
@@ -102,7 +102,7 @@ impl Flow {
         self.texts.get(self.now.text).map_or(0, Text::len)
     }
 
-    fn jump(&mut self, to: &str, direction: Direction, quiet: bool) -> Result<(), Trouble> {
+    fn jump(&mut self, to: &str, direction: Direction, quiet: bool) -> Result<(), FlowError> {
         let (here, len) = (self.now.line, self.len());
         let outline = self.outline(self.now.text)?;
         let found = match direction {
@@ -119,7 +119,7 @@ impl Flow {
             None => {
                 let message = format!("there is no {to} to jump to in this direction");
                 let help = "write the label with `:` after it, or the block's number";
-                return Err(Trouble::new("no-such-block", message, help));
+                return Err(FlowError::new("no-such-block", message, help));
             }
         }
         Ok(())
@@ -133,7 +133,7 @@ impl Flow {
         to: Option<&str>,
         block: bool,
         times: u64,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         let (here, len) = (self.now.line, self.len());
         let outline = self.outline(self.now.text)?;
         let find = |label: &str| {
@@ -144,7 +144,7 @@ impl Flow {
         let missing = |label: &str| {
             let message = format!("there is no {label} to repeat");
             let help = "write the label with `:` after it";
-            Trouble::new("no-such-block", message, help)
+            FlowError::new("no-such-block", message, help)
         };
         let first = find(from).ok_or_else(|| missing(from))?;
         let last = match to {
@@ -158,7 +158,7 @@ impl Flow {
         if last < first || (first..=last).contains(&here) {
             let message = "a section that ends before it begins, or repeats itself";
             let help = "write the labels in the order of the program, around other blocks";
-            return Err(Trouble::new("flow", message, help));
+            return Err(FlowError::new("flow", message, help));
         }
         if times == 0 {
             return Ok(());
@@ -166,7 +166,7 @@ impl Flow {
         if self.sections.len() >= self.limits.depth {
             let message = format!("more than {} calls inside one another", self.limits.depth);
             let help = "look for a section that repeats itself; --max-depth sets this limit";
-            return Err(Trouble::new("call-depth", message, help));
+            return Err(FlowError::new("call-depth", message, help));
         }
         self.sections.push(Section {
             text: self.now.text,
@@ -215,7 +215,7 @@ impl Flow {
         name: &str,
         times: u64,
         interpreter: &mut Interpreter<'_>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), FlowError> {
         if times == 0 {
             return Ok(());
         }
@@ -226,7 +226,7 @@ impl Flow {
 
     /// A subprogram: in the texts that are there, or in a file of its own. A main program
     /// comes last: one may call the subprogram that has its name.
-    fn find_siemens(&mut self, name: &str) -> Result<Place, Trouble> {
+    fn find_siemens(&mut self, name: &str) -> Result<Place, FlowError> {
         let stem = name
             .strip_prefix("_N_")
             .unwrap_or(name)
@@ -256,7 +256,7 @@ impl Flow {
     }
 
     /// A program or subprogram with a header, in the texts that are there.
-    fn find_header(&mut self, stem: &str, main: bool) -> Result<Option<Place>, Trouble> {
+    fn find_header(&mut self, stem: &str, main: bool) -> Result<Option<Place>, FlowError> {
         for text in 0..self.texts.len() {
             if let Some(line) = self.outline(text)?.program(stem, main) {
                 return Ok(Some(Place { text, line }));

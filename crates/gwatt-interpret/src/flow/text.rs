@@ -6,8 +6,8 @@ use super::landmarks::Landmarks;
 use super::outline::Outline;
 use crate::execute::Interpreter;
 use crate::expression::Fault;
+use crate::jump::Label;
 use crate::statement::{Keyword, Sight, glance, glance_at};
-use crate::transfer::Label;
 use gwatt_syntax::source::lines;
 use gwatt_syntax::{Block, scan_line};
 

@@ -258,7 +258,7 @@ impl<'t> Cursor<'t> {
 /// A number of so few digits that a division of whole numbers gives it exactly as
 /// the nearest one.
 fn exact_decimal(text: &[u8]) -> Option<f64> {
-    let (mut whole, mut scale, mut behind) = (0_u64, 1_u64, false);
+    let (mut whole, mut scale, mut after_point) = (0_u64, 1_u64, false);
     if text.len() < 2 && !text.first().is_some_and(u8::is_ascii_digit) || text.len() > 16 {
         return None;
     }
@@ -266,9 +266,9 @@ fn exact_decimal(text: &[u8]) -> Option<f64> {
         match byte {
             b'0'..=b'9' => {
                 whole = whole * 10 + u64::from(byte - b'0');
-                scale *= if behind { 10 } else { 1 };
+                scale *= if after_point { 10 } else { 1 };
             }
-            _ => behind = true,
+            _ => after_point = true,
         }
     }
     (whole < 1 << 53).then(|| whole as f64 / scale as f64)

@@ -89,7 +89,7 @@ impl Function {
             Self::Asin => libm::asin(x).to_degrees(),
             Self::Atan => libm::atan(x).to_degrees(),
             Self::Atan2 => libm::atan2(x, y).to_degrees(),
-            // Which half the control takes for negative numbers is not told.
+            // Which half the control takes for negative numbers is not documented.
             Self::Acot if x <= 0.0 => return Err("ACOT of a number that is not positive"),
             Self::Acot => libm::atan(1.0 / x).to_degrees(),
             Self::Cos => libm::cos(x.to_radians()),

@@ -34,7 +34,7 @@ pub(crate) fn keep(
 }
 
 /// Variables that a block has read and assigned so far: which comes first, the
-/// manuals do not tell.
+/// manuals do not say.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
     read: Vec<Ident>,
@@ -68,6 +68,6 @@ impl Uses {
 
 fn both(name: &Ident, cursor: &Cursor<'_>, start: usize) -> Fault {
     let message = format!("the block assigns {name} and uses it");
-    let help = "write two blocks: which comes first is not told";
+    let help = "write two blocks: which comes first is not documented";
     cursor.fault("assignment", message, help, start)
 }

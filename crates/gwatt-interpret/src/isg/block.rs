@@ -1,12 +1,12 @@
 //! A block, word by word ("Structure of NC blocks", "Program structure").
 
 use super::Isg;
-use crate::beyond_words::{Note, not_finite};
-use crate::direct::is_direct;
 use crate::execute::Control;
+use crate::fast_path::is_direct;
 use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
+use crate::jump::Go;
+use crate::macro_block::{Note, not_finite};
 use crate::report::Report;
-use crate::transfer::Go;
 use gwatt_syntax::{Block, Word};
 
 /// A block while it is read.

@@ -2,7 +2,7 @@
 
 use super::block::Reading;
 use crate::formula::{Cursor, Outcome, expression};
-use crate::transfer::Go;
+use crate::jump::Go;
 use gwatt_syntax::Block;
 
 /// What a command is.

@@ -4,7 +4,7 @@
 
 use super::block::Reading;
 use crate::formula::{Cursor, Ident, Outcome};
-use crate::transfer::Go;
+use crate::jump::Go;
 use gwatt_machine::ALL_AXES;
 use gwatt_syntax::Block;
 

@@ -5,7 +5,7 @@
 use super::Pending;
 use super::block::Reading;
 use crate::formula::Outcome;
-use crate::transfer::Go;
+use crate::jump::Go;
 use gwatt_syntax::Block;
 
 /// Values that $SWITCH and $CASE take for equal ("Switch branching").
@@ -141,7 +141,8 @@ impl Reading<'_, '_, '_> {
         if pending == Pending::Count {
             if self.state.counts.get(&key) != Some(&(last, step)) {
                 let message = "the end or the step of $FOR has changed while the loop runs";
-                let help = "which of them counts is not told: keep them in variables that stay";
+                let help =
+                    "which of them counts is not documented: keep them in variables that stay";
                 return Err(self.cursor.fault("flow", message, help, start));
             }
             let here = self.read_back(&name).unwrap_or(first);

@@ -3,7 +3,7 @@
 
 use super::block::Reading;
 use crate::formula::{Outcome, expression};
-use crate::transfer::Go;
+use crate::jump::Go;
 use gwatt_syntax::Block;
 
 impl Reading<'_, '_, '_> {

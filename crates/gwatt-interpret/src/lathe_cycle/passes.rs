@@ -59,9 +59,9 @@ fn finish(mut shape: Shape, first: f64, last: f64, times: u32) -> Result<Vec<Cut
     shape.check()?;
     let mut out = Vec::new();
     for pass in (0..times).rev() {
-        let beside = f64::from(pass) * (first - last) / f64::from(times) + last;
+        let shift = f64::from(pass) * (first - last) / f64::from(times) + last;
         let mut path = shape.clone();
-        path.shift(beside)?;
+        path.shift(shift)?;
         let begin = path.first()?;
         for to in [begin.start, begin.end] {
             out.push((to, CutKind::Rapid));

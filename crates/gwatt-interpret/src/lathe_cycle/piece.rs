@@ -48,7 +48,7 @@ pub(super) enum Way {
     Other,
     /// It does not have to move.
     Stay,
-    /// The piece lies behind: its end counts as reached.
+    /// The piece is done: its end counts as reached.
     Past,
     /// To this place on it.
     To(Vector),

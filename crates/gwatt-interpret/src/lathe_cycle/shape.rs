@@ -295,11 +295,11 @@ fn join(before: &mut Piece, after: &mut Piece) -> Result<(), Fault> {
         _ if before.round.is_some() != after.round.is_some() && near() => return Ok(()),
         (Some(round), None) => {
             let radius = distance(round.center, before.end);
-            beside(after.end, after.start, round.center, radius, after.start)?
+            on_circle(after.end, after.start, round.center, radius, after.start)?
         }
         (None, Some(round)) => {
             let radius = distance(round.center, after.end);
-            beside(before.end, before.start, round.center, radius, after.start)?
+            on_circle(before.end, before.start, round.center, radius, after.start)?
         }
         (Some(one), Some(other)) => {
             let between = sub(one.center, other.center);
@@ -326,7 +326,7 @@ fn join(before: &mut Piece, after: &mut Piece) -> Result<(), Fault> {
 }
 
 /// Where a line meets a circle, nearest to a place.
-fn beside(
+fn on_circle(
     from: Vector,
     to: Vector,
     center: Vector,

@@ -125,7 +125,7 @@ pub(super) fn nci_g_code(number: u16, common: impl Fn(u16) -> Option<GCode>) -> 
         // "Accurate Stop": G60 holds until G0.
         600 => Some(GCode::PathMode),
         // "Inch/metric dimensions": G71 is in force at the start. Feeds stay in the units of
-        // the machine under G70, which its parameters tell.
+        // the machine under G70, which its parameters say.
         710 => common(210),
         // "Zero Offset Shifts": G53 takes them away until further notice.
         530 => Some(GCode::WorkOffset(0)),

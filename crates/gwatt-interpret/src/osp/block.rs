@@ -1,12 +1,12 @@
 //! A block, word by word ("Program Configuration", "Sequence Name").
 
 use super::Osp;
-use crate::beyond_words::{Note, not_finite};
 use crate::execute::Control;
 use crate::expression::Fault;
 use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
+use crate::jump::Go;
+use crate::macro_block::{Note, not_finite};
 use crate::report::Report;
-use crate::transfer::Go;
 use gwatt_syntax::{Block, Word};
 
 /// A block while it is read.

@@ -3,7 +3,7 @@
 
 use super::block::Reading;
 use crate::formula::Outcome;
-use crate::transfer::Go;
+use crate::jump::Go;
 use gwatt_syntax::Block;
 
 /// Repetitions that one call may ask for.
@@ -161,7 +161,8 @@ impl Reading<'_, '_> {
         let (name, times) = self.callee(start)?;
         if times > 1 && !self.state.pending.is_empty() {
             let message = "a call with repetitions and variables";
-            let help = "write a call for each: whether they get their values again is not told";
+            let help =
+                "write a call for each: whether they get their values again is not documented";
             return Err(self.cursor.fault("subprogram", message, help, start));
         }
         Ok(Go::Call { name, times })

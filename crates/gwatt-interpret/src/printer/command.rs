@@ -74,7 +74,7 @@ impl Control<'_> {
         }
         let (parameters, next) = match text.parameters(at) {
             Ok(found) => found,
-            // Whatever it is told, the profile says what it does.
+            // Whatever its arguments, the profile says what it does.
             Err(_) if self.is_listed(letter, number) && self.one_a_line() => {
                 (Parameters::new(), None)
             }

@@ -131,7 +131,7 @@ impl Control<'_> {
         }
     }
 
-    /// `SET_FAN_SPEED FAN=name SPEED=s`: which of several fans is not told, so
+    /// `SET_FAN_SPEED FAN=name SPEED=s`: which of several fans it is is not known, so
     /// none is ever taken for switched off.
     pub(super) fn set_fan(&mut self, run: &mut Run<'_, '_>, text: Text<'_>, at: usize, span: Span) {
         let on = text.number_argument(at, "SPEED") != Ok(Some(0.0));

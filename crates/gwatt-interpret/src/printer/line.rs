@@ -233,7 +233,7 @@ impl<'t> Text<'t> {
             let start = at;
             let letter = byte.to_ascii_uppercase();
             if letter == b'(' {
-                at = self.behind(at, b')');
+                at = self.after_next(at, b')');
                 // Firmware that knows no comment of this form takes its words.
                 if holds_word(self.line.get(start..at).unwrap_or_default()) {
                     return Err(Span::new(start, at));
@@ -256,7 +256,7 @@ impl<'t> Text<'t> {
             }
             at = match self.byte(number) {
                 _ if value.is_some() => self.behind_list(end, &mut value),
-                Some(b'"') => self.behind(number, b'"'),
+                Some(b'"') => self.after_next(number, b'"'),
                 _ => start + 1,
             };
             // A letter right after a letter is a word of text, not a flag.
@@ -291,7 +291,7 @@ impl<'t> Text<'t> {
     }
 
     /// After the next `close` after `at`, or the end.
-    fn behind(&self, at: usize, close: u8) -> usize {
+    fn after_next(&self, at: usize, close: u8) -> usize {
         let mut end = at + 1;
         while self.byte(end).is_some_and(|byte| byte != close) {
             end += 1;

@@ -3,11 +3,11 @@
 
 use super::codes::Code;
 use super::{Called, Siemens};
-use crate::beyond_words::not_finite;
 use crate::code::{GCode, Motion};
 use crate::execute::{Control, Run};
+use crate::jump::{Siemens as Go, Transfer};
+use crate::macro_block::not_finite;
 use crate::report::Report;
-use crate::transfer::{Siemens as Go, Transfer};
 use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 use gwatt_machine::{AxisKind, Family, PathMode};
 use gwatt_motion::{ActionKind, FeedMode, Step};

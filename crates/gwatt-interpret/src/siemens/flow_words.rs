@@ -8,7 +8,7 @@ use super::reading::Reading;
 use super::value::{Argument, Val};
 use super::{Called, ModalCall, cycle};
 use crate::formula::Outcome;
-use crate::transfer::{Direction, Siemens as Go};
+use crate::jump::{Direction, Siemens as Go};
 
 /// Repetitions that one word may ask for.
 const TIMES_MAX: f64 = 1e6;

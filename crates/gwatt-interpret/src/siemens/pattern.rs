@@ -5,7 +5,7 @@ use super::cycle::{Call, Kind};
 use super::frame_words::at_angle;
 use super::{Called, PatternAt, Siemens};
 use crate::execute::{Control, Run};
-use crate::transfer::{Siemens as Go, Transfer};
+use crate::jump::{Siemens as Go, Transfer};
 use gwatt_motion::MoveKind;
 
 /// Holes of one pattern.

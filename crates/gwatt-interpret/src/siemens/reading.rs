@@ -14,7 +14,7 @@ pub(super) struct Reading<'c, 'm, 't> {
     pub(super) control: &'c Control<'m>,
     pub(super) state: &'c mut Siemens,
     pub(super) cursor: Cursor<'t>,
-    /// What is to be told once, with its rule.
+    /// What is to be reported once, with its rule.
     pub(super) notes: Vec<(&'static str, &'static str, Span)>,
 }
 

@@ -8,7 +8,7 @@ use super::reading::Reading;
 use super::value::{Kind, Val};
 use super::{Measure, frame_words};
 use crate::formula::Outcome;
-use crate::transfer::Siemens as Go;
+use crate::jump::Siemens as Go;
 use gwatt_machine::AxisId;
 use gwatt_syntax::{Block, Word};
 
@@ -221,14 +221,14 @@ impl Reading<'_, '_, '_> {
         block: &mut Block,
     ) -> Outcome<bool> {
         let letter = name.bytes().next().unwrap_or_default();
-        let behind = name.get(1..).unwrap_or_default();
-        if behind.is_empty() {
+        let rest = name.get(1..).unwrap_or_default();
+        if rest.is_empty() {
             return self.letter(letter, assigns, start, block);
         }
-        if !behind.starts_with(|c: char| c.is_ascii_digit()) {
+        if !rest.starts_with(|c: char| c.is_ascii_digit()) {
             return Ok(false);
         }
-        let number = behind.parse::<u32>().ok();
+        let number = rest.parse::<u32>().ok();
         if assigns && let Some(number) = number {
             self.cursor.at += 1;
             return self.extended(name, letter, number, start, block);

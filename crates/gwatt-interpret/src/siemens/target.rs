@@ -163,7 +163,7 @@ impl Control<'_> {
                 Measure::Increment => {
                     if state.adrift.contains(axis) {
                         let span = run.words.span(letter, run.block);
-                        let message = "an increment right behind a change of the frame: \
+                        let message = "an increment right after a change of the frame: \
                                        the offset is traversed too (SD42440 = 1)";
                         run.report.note_once("frame-increment", message, span);
                     }

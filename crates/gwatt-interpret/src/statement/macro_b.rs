@@ -3,7 +3,7 @@
 use super::{For, Statement, Target, Unread};
 use crate::execute::Control;
 use crate::expression::{Reader, Value};
-use crate::transfer::Transfer;
+use crate::jump::Transfer;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {

@@ -12,7 +12,7 @@ use self::trace::{For, Recorder, Target};
 
 use super::execute::Control;
 use super::expression::{Fault, Held, Name, Reader, Variables};
-use super::transfer::Transfer;
+use super::jump::Transfer;
 use gwatt_machine::Family;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, IssueKind, Word};

@@ -3,8 +3,8 @@
 use super::{For, Statement, Unread};
 use crate::execute::Control;
 use crate::expression::{Fault, Reader};
+use crate::jump::{Label, Transfer, Verb};
 use crate::parameters::LOCALS;
-use crate::transfer::{Label, Transfer, Verb};
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
 

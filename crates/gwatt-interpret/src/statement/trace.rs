@@ -8,8 +8,8 @@ use arrayvec::ArrayVec;
 
 use crate::execute::Control;
 use crate::expression::{Name, Op, Reader, Value, parameter_number, work_out};
+use crate::jump::{Transfer, Verb};
 use crate::report::Report;
-use crate::transfer::{Transfer, Verb};
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
 
@@ -91,7 +91,7 @@ impl Target {
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
     items: Vec<Item>,
-    /// Something was read that items do not tell.
+    /// Something was read that items do not show.
     pub(super) lost: bool,
     /// Where the block goes on if its condition holds.
     pub(super) goes: Option<Transfer>,

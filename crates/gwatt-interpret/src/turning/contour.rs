@@ -9,12 +9,12 @@
 use super::{Control, Run, X, Z, note_parameter, turning_needs};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
+use crate::jump::Transfer;
 use crate::modal::Modal;
 use crate::position::Position;
 use crate::report::{Diagnostics, Report};
 use crate::spindle_speed::SpindleMode;
 use crate::state_words::Switches;
-use crate::transfer::Transfer;
 use gwatt_motion::{Move, MoveKind, Step};
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;

@@ -153,7 +153,8 @@ pub(crate) enum CornerName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum LeadName {
-    Beside,
+    #[serde(alias = "beside")]
+    AtEnd,
     Perpendicular,
     Corner,
 }

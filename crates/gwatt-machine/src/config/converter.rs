@@ -7,7 +7,7 @@ use super::{plausible, ratings};
 use crate::axis::{ALL_AXES, AxisSet};
 use crate::model::Converter;
 
-/// Makes the converters of their tables; the margin is needed to tell
+/// Makes the converters of their tables; the margin is needed to see
 /// whether anything is left for motion.
 pub(crate) fn converters(
     findings: &mut Findings<'_>,

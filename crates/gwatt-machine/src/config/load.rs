@@ -103,7 +103,7 @@ fn load_controller(folder: &Path, name: &str) -> Loaded<Controller> {
     Controller::from_toml(&text?)
 }
 
-/// The machine's controller; what is wrong with its profile is told at the
+/// The machine's controller; what is wrong with its profile is reported at the
 /// line that names it, and again where it stands.
 fn controller(
     findings: &mut Findings<'_>,
@@ -186,7 +186,7 @@ fn read(
     })
 }
 
-/// At most one byte more than permitted: enough to tell, also for a device.
+/// At most one byte more than permitted: enough to know, also for a device.
 fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?

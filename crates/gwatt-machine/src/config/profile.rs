@@ -137,7 +137,7 @@ pub(crate) fn compensation(table: &CompensationTable) -> Option<CutterCompensati
             CornerName::Line => CompensationCorner::Line,
         },
         lead: match table.lead? {
-            LeadName::Beside => CompensationLead::Beside,
+            LeadName::AtEnd => CompensationLead::AtEnd,
             LeadName::Perpendicular => CompensationLead::Perpendicular,
             LeadName::Corner => CompensationLead::Corner,
         },

@@ -15,7 +15,7 @@ use gwatt_motion::{Arc, Corner, Move, MoveKind, Square};
 pub enum Joint {
     /// A stop: exact stop mode, or a dwell, a tool change or another word
     /// after it for which the controller waits. Where the stop has such a
-    /// reason the planner is told with [`super::PathPlanner::stop`].
+    /// reason the planner learns of it by [`super::PathPlanner::stop`].
     #[default]
     Stop,
     /// The path is kept; joints without a corner are run through.

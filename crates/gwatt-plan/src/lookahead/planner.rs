@@ -84,7 +84,7 @@ pub struct Planned<T> {
     /// elements were open than the window holds.
     pub certain: bool,
     /// True where it ends at rest even if it is not certain, since the rules stop
-    /// there. `LinuxCNC`'s tell it; with others it is false.
+    /// there. `LinuxCNC`'s say so; with others it is false.
     pub rests: bool,
     /// How long it runs already while the piece before it comes to rest, s.
     pub overlap_s: f64,

@@ -4,9 +4,9 @@
 use super::SpindleBus;
 use crate::cutting::cuts;
 use crate::demand::{Demand, Totals};
+use crate::duty_cycle::SpindleLoad;
 use crate::spindle_state::SpindleState;
 use crate::spindle_trace::SpindleSpan;
-use crate::watch::Beside;
 use crate::{Assessment, Certificate, Loads, SpindleShare};
 use gwatt_machine::{AxisSet, SpindleWait};
 use gwatt_motion::{Move, MoveKind};
@@ -26,7 +26,7 @@ impl SpindleBus<'_> {
             let idle_w = converter.idle_w(&place, &self.model.axes, AxisSet::default());
             demand.add(index, converter, Totals::new(idle_w));
         }
-        let idle_w = demand.beside[0];
+        let idle_w = demand.spindle_converter_w[0];
         self.add(&mut demand, [largest_w, least_w], idle_w, 0.0);
         demand
     }
@@ -134,15 +134,15 @@ impl SpindleBus<'_> {
             span.drawn_j -= held_j;
         }
         if let Some(place) = self.place(Some(mv))
-            && self.beside.is_some()
+            && self.spindle_loads.is_some()
         {
             let longest_s = self.states[0].left_s();
             let window = self.states[0].window(&self.motor, longest_s);
-            let beside = Beside {
+            let load = SpindleLoad {
                 levels: self.levels(&window, (longest_s, false), 0.0),
                 alone: Some(Box::new(place)),
             };
-            self.beside.get_or_insert_default().push(beside);
+            self.spindle_loads.get_or_insert_default().push(load);
         }
         if self.shown.is_some() {
             self.show_wait(mv, duration_s);

@@ -17,11 +17,11 @@ impl Assessor<'_> {
         self
     }
 
-    /// Has the spindle tell what it draws, where that is watched over time.
+    /// Has the spindle report what it draws, where that is watched over time.
     pub(crate) fn watch_spindle(&mut self) {
-        let watch = self.eye.watch.as_ref();
+        let watch = self.observer.watch.as_ref();
         if let Some(bus) = &mut self.bus {
-            bus.beside = watch
+            bus.spindle_loads = watch
                 .filter(|watch| watch.follows_spindle())
                 .map(|_| Vec::new());
         }
@@ -44,7 +44,8 @@ impl Assessor<'_> {
             bus.take(mv, judged, text, want, sink);
         });
         self.want = want;
-        self.eye.beside(&self.model, &mut bus.beside);
+        self.observer
+            .spindle_loads(&self.model, &mut bus.spindle_loads);
         self.bus = Some(bus);
     }
 }

@@ -30,7 +30,11 @@ impl SpindleBus<'_> {
         let credit = self.credits();
         let by = if credit {
             // What is drawn anyhow is taken off already, as far as it goes.
-            let spare = if demand.beside[1] > 0.0 { 0.0 } else { idle_w };
+            let spare = if demand.spindle_converter_w[1] > 0.0 {
+                0.0
+            } else {
+                idle_w
+            };
             let credited_w = self.credited_w();
             [largest + base_w + cutting_w, -least - credited_w - spare]
         } else {
@@ -72,7 +76,8 @@ impl SpindleBus<'_> {
     ) -> bool {
         let mut bound = *demand;
         self.add(&mut bound, extremes, 0.0, cutting_w);
-        bound.beside[0] > want.floor_w || bound.beside[1] > want.regen_floor_w
+        bound.spindle_converter_w[0] > want.floor_w
+            || bound.spindle_converter_w[1] > want.regen_floor_w
     }
 
     /// What cutting takes during a move.

@@ -1,9 +1,9 @@
 //! The spindle over time in steps, for whoever watches the converter.
 
 use super::SpindleBus;
+use crate::duty_cycle::{Level, Steps};
 use crate::spindle_state::Window;
 use crate::spindle_trace::{SpindleSpan, SpindleTrace};
-use crate::watch::{Level, Steps};
 
 /// Steps of a run are no higher than this share of its largest power.
 const STEP: f64 = 0.002;

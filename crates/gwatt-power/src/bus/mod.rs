@@ -27,11 +27,11 @@ use self::slower::Slower;
 use crate::assessment::{Assessment, Certificate};
 use crate::cutting::CuttingPower;
 use crate::demand::Want;
+use crate::duty_cycle::SpindleLoad;
 use crate::model::PowerModel;
 use crate::overlap;
 use crate::spindle_state::{SpindleMotor, SpindleState, Window};
 use crate::surface_speed::Surface;
-use crate::watch::Beside;
 use gwatt_machine::{Machine, Spindle, SpindleWait};
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::{Overrides, plan};
@@ -97,7 +97,7 @@ pub(super) struct SpindleBus<'m> {
     /// Commands so far.
     commands: u32,
     /// What it does during the moves handed on, where that is watched over time.
-    pub(super) beside: Option<Vec<Beside>>,
+    pub(super) spindle_loads: Option<Vec<SpindleLoad>>,
     /// The same at 100 %, where that is wanted.
     pub(super) shown: Option<Shown>,
     last: Option<Move>,
@@ -143,7 +143,7 @@ impl<'m> SpindleBus<'m> {
             cutting: CuttingPower::new(machine),
             asked: None,
             commands: 0,
-            beside: None,
+            spindle_loads: None,
             shown: None,
             last: None,
             reserve_w: [0.0; 2],
@@ -202,10 +202,10 @@ impl<'m> SpindleBus<'m> {
             self.show(mv, &judged, followed.as_ref());
         }
         let window = self.states[0].window(&self.motor, duration_s);
-        let beside = self.beside.is_some().then(|| {
+        let load = self.spindle_loads.is_some().then(|| {
             let covered = covered.map(Window::Between);
             let window = covered.as_ref().unwrap_or(&window);
-            Beside {
+            SpindleLoad {
                 levels: self.levels(window, (duration_s, judged.ahead), cutting_w),
                 alone: None,
             }
@@ -268,8 +268,8 @@ impl<'m> SpindleBus<'m> {
             self.count_energy(mv, &mut judged, followed.as_ref());
         }
         self.move_on(mv, &judged, followed.is_some());
-        if let (Some(list), Some(beside)) = (&mut self.beside, beside) {
-            list.push(beside);
+        if let (Some(list), Some(load)) = (&mut self.spindle_loads, load) {
+            list.push(load);
         }
         match &mut self.last {
             Some(last) => last.clone_from(mv),

@@ -150,7 +150,7 @@ fn course(state: &SpindleState) -> Course {
 
 impl Turning {
     /// Instants between two at which its law changes, s after its beginning.
-    /// `x_mm` tells where X is then.
+    /// `x_mm` gives where X is then.
     #[must_use]
     pub fn switches_s(&self, [from, to]: [f64; 2], x_mm: impl Fn(f64) -> f64) -> Vec<f64> {
         match &self.course {

@@ -160,7 +160,7 @@ impl SpindleBus<'_> {
             } else {
                 f64::INFINITY
             };
-            let axes = (duration_s, assessment.demand.beside);
+            let axes = (duration_s, assessment.demand.spindle_converter_w);
             let [peak_w, regen_w] =
                 overlap_lower::peaks(&self.model, converter, mv, plan, axes, (run, since));
             let more_w = self.spindle.base_load_w + cutting_w;

@@ -43,8 +43,8 @@ impl Diagnostic {
                 // The renderer counts columns in what it is given, so the place
                 // stands in a group of its own.
                 let origin = origin.char_column(self.column as usize);
-                let behind = Group::with_level(level).element(snippet).elements(help);
-                vec![title.element(origin), behind]
+                let body = Group::with_level(level).element(snippet).elements(help);
+                vec![title.element(origin), body]
             } else {
                 vec![title.element(snippet.path(file)).elements(help)]
             }

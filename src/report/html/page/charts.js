@@ -189,7 +189,7 @@ function outline(ctx, which, visible, x, y) {
   }
 }
 
-/** The bar under the cursor: of those that are too narrow to tell apart, the one with the most load. */
+/** The bar under the cursor: of those that are too narrow to distinguish, the one with the most load. */
 function nearest(plot, which, left) {
   if (BARS.count === 0) return null;
   const reach = Math.abs(plot.posToVal(left + 4, "x") - plot.posToVal(left, "x"));

@@ -55,7 +55,7 @@ function duration(seconds) {
   return hours > 0 ? `${hours} h ${minutes} min ${whole % 60} s` : `${minutes} min ${whole % 60} s`;
 }
 
-/** A moment, with the digits that tell it from its neighbours. */
+/** A moment, with the digits that distinguish it from its neighbours. */
 function moment(seconds) {
   if (seconds === null) return "";
   if (seconds < 60) return `${seconds.toFixed(3)} s`;
@@ -94,12 +94,12 @@ const barOf = (row) => Math.max(0, above(BARS.first, row) - 1);
 /** What is shown of one program: its bars and the planned power. */
 function side(name) {
   const after = name === "after";
-  const column = (before, behind) => all(BARS[after ? behind : before], BARS.count);
+  const column = (before, later) => all(BARS[after ? later : before], BARS.count);
   const start = column("from_s", "from_after_s");
   // A move may wait for the spindle in one program and not in the other.
   const bar = [...start.keys()].sort((a, b) => start[a] - start[b] || a - b);
-  const sorted = (before, behind) => {
-    const list = column(before, behind);
+  const sorted = (before, later) => {
+    const list = column(before, later);
     return bar.map((place) => list[place]);
   };
   const own = {

@@ -93,7 +93,7 @@ function worstTable() {
   element("worst-table").append(table(caption, names, rows));
 }
 
-/** Percent without the digits that tell it from 100. */
+/** Percent without the digits that distinguish it from 100. */
 const rough = (share) => (Math.abs(share - 1) < 0.01 && share <= 1.000001 ? "100 %" : percent(share));
 
 /** What was done to a block. */

@@ -262,7 +262,7 @@ impl<P> Runs<P> {
                 lowest.lowest(element.steepness)
             })
         };
-        let behind = Run {
+        let after = Run {
             count: run.count - count,
             length: rest,
             top,
@@ -281,7 +281,7 @@ impl<P> Runs<P> {
         self.growing = Some(Growing {
             ramp_count: 1,
             ramp_length: element.map_or(0.0, |element| element.length),
-            run: behind,
+            run: after,
         });
         self.add(before);
     }

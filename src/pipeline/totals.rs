@@ -18,7 +18,7 @@ pub(super) const WORST: usize = 10;
 const TEXT_MAX: usize = 200;
 
 /// Adds up the moves of a program.
-pub(super) struct Tally<'m, 'r> {
+pub(super) struct Totals<'m, 'r> {
     machine: &'m Machine,
     model: PowerModel,
     rows: Option<&'r mut (dyn RowSink + 'r)>,
@@ -50,7 +50,7 @@ pub(super) fn whether_fits(machine: &Machine, model: &PowerModel) -> Want {
     }
 }
 
-impl<'m, 'r> Tally<'m, 'r> {
+impl<'m, 'r> Totals<'m, 'r> {
     pub(super) fn new(
         machine: &'m Machine,
         options: &Options,

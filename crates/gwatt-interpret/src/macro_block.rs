@@ -3,9 +3,9 @@
 
 use super::execute::{Control, Run};
 use super::expression::{Fault, Held, Name, Value, Variables, remedy};
+use super::jump::{Go, Transfer};
 use super::report::Report;
 use super::statement::Unread;
-use super::transfer::{Go, Transfer};
 use gwatt_machine::Family;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Issue, IssueKind};

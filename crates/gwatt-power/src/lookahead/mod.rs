@@ -14,8 +14,8 @@
 
 mod count;
 mod driven;
-mod glide;
-mod hand_on;
+mod constant_speed;
+mod emit;
 mod joints;
 mod open;
 mod pace;
@@ -25,12 +25,12 @@ mod surges;
 
 use super::assessment::Assessment;
 use super::demand::Want;
-use super::eye::Eye;
 use super::model::PowerModel;
+use super::observer::Observer;
+use super::parabolic_blend::Ride;
 use super::robust::Extremes;
 use super::steps::Steps;
-use super::tandem::Ride;
-use glide::Glider;
+use constant_speed::Glider;
 use gwatt_machine::{AXES, AxisValues, LookAhead, Machine, PathMode};
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::Overrides;
@@ -159,12 +159,12 @@ impl Ahead {
         &mut self,
         machine: &Machine,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         mv: &Move,
         text: &[u8],
         want: Want,
     ) -> bool {
-        if self.glide(model, eye, mv, text, want) {
+        if self.glide(model, observer, mv, text, want) {
             return true;
         }
         if role(machine, mv) != Role::Path {
@@ -184,7 +184,7 @@ impl Ahead {
         let surges = self.surges.as_mut();
         let pace = surges.map(|surges| surges.push(number, &self.largest.element));
         if self.in_doubt {
-            self.brake_in_doubt(model, eye);
+            self.brake_in_doubt(model, observer);
         }
         let open = self.open.push(mv, text, want);
         if let Some(pace) = pace {
@@ -208,7 +208,7 @@ impl Ahead {
         if let Some(side) = &mut self.nominal {
             side.planner.push(&side.element);
         }
-        self.pump(model, eye);
+        self.pump(model, observer);
         true
     }
 
@@ -218,7 +218,7 @@ impl Ahead {
         &mut self,
         machine: &Machine,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         mv: &Move,
         text: &[u8],
         assessment: Assessment,
@@ -231,9 +231,9 @@ impl Ahead {
                 self.part();
             }
             self.open.push(mv, text, want).assessment = assessment;
-            return self.pump(model, eye);
+            return self.pump(model, observer);
         }
-        self.brake_in_doubt(model, eye);
+        self.brake_in_doubt(model, observer);
         self.stop_planners();
         let open = self.open.push(mv, text, want);
         open.assessment = Assessment {
@@ -245,50 +245,50 @@ impl Ahead {
         open.moves = true;
         open.in_doubt = std::mem::replace(&mut self.in_doubt, true);
         self.at_rest = false;
-        self.pump(model, eye);
+        self.pump(model, observer);
         self.rest_after(model);
         // No piece will speak of it.
         self.finish();
         let side = self.nominal.as_ref().unwrap_or(&self.largest);
-        eye.show(machine, mv, side.overrides);
+        observer.show(machine, mv, side.overrides);
     }
 
     /// Where the motion stops after the last move, or whether it does, cannot be
     /// waited for.
-    pub fn run_dry(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+    pub fn run_dry(&mut self, machine: &Machine, model: &PowerModel, observer: &mut Observer) {
         if self.at_rest {
             return;
         }
         let stops = self.rests();
         self.catch_up(machine);
-        self.brake_in_doubt(model, eye);
+        self.brake_in_doubt(model, observer);
         self.stop_planners();
-        self.rest(model, eye);
+        self.rest(model, observer);
         self.in_doubt = !stops;
     }
 
     /// The motion stops after the last move.
-    pub fn stop(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+    pub fn stop(&mut self, machine: &Machine, model: &PowerModel, observer: &mut Observer) {
         self.catch_up(machine);
         self.stop_planners();
-        self.rest(model, eye);
+        self.rest(model, observer);
     }
 
     /// The motion stops after the last move; the controller sees that another one
     /// comes.
-    pub fn stop_between(&mut self, machine: &Machine, model: &PowerModel, eye: &mut Eye) {
+    pub fn stop_between(&mut self, machine: &Machine, model: &PowerModel, observer: &mut Observer) {
         self.catch_up(machine);
         self.largest.planner.stop_between();
         if let Some(nominal) = &mut self.nominal {
             nominal.planner.stop_between();
         }
-        self.rest(model, eye);
+        self.rest(model, observer);
     }
 
-    fn rest(&mut self, model: &PowerModel, eye: &mut Eye) {
+    fn rest(&mut self, model: &PowerModel, observer: &mut Observer) {
         self.at_rest = true;
         self.in_doubt = false;
-        self.pump(model, eye);
+        self.pump(model, observer);
     }
 
     /// Lines before and after this place are not put together. Where the motion
@@ -311,9 +311,9 @@ impl Ahead {
     }
 
     /// The moves that a stop here would change are in doubt.
-    fn brake_in_doubt(&mut self, model: &PowerModel, eye: &mut Eye) {
+    fn brake_in_doubt(&mut self, model: &PowerModel, observer: &mut Observer) {
         self.largest.planner.settle();
-        self.pump(model, eye);
+        self.pump(model, observer);
         let unfinished = self.largest.next.max(self.open.first());
         for number in unfinished..self.open.end() {
             if let Some(open) = self.open.get_mut(number) {
@@ -338,17 +338,17 @@ impl Ahead {
     }
 
     /// Takes what the planners have finished.
-    fn pump(&mut self, model: &PowerModel, eye: &mut Eye) {
+    fn pump(&mut self, model: &PowerModel, observer: &mut Observer) {
         let times = self.nominal.is_none();
         while let Some(planned) = self.largest.planner.pop() {
             self.largest.next = planned.first;
-            self.take(model, eye, &planned, true, times);
+            self.take(model, observer, &planned, true, times);
         }
         while let Some(nominal) = &mut self.nominal
             && let Some(planned) = nominal.planner.pop()
         {
             nominal.next = planned.first;
-            self.take(model, eye, &planned, false, true);
+            self.take(model, observer, &planned, false, true);
         }
         if self.at_rest {
             self.rest_after(model);

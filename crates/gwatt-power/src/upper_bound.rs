@@ -22,7 +22,7 @@ const XYZ: u16 = 0b111;
 
 /// The coefficients of the bound for one converter.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ceiling {
+pub(super) struct UpperBound {
     /// The converter's axes.
     axes: AxisSet,
     si_per_unit: f64,
@@ -35,7 +35,7 @@ pub(super) struct Ceiling {
     inverse_efficiency: f64,
 }
 
-impl Ceiling {
+impl UpperBound {
     /// The bound for the axes of `set`.
     pub fn new(axes: &[AxisPower], set: AxisSet) -> Self {
         let mut ceiling = Self {

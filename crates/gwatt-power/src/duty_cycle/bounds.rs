@@ -1,18 +1,18 @@
 //! What the limits over time have to know of moves where they are bounds over lower
 //! overrides: see [`terms`](super::terms).
 
-use super::{Kept, Span, Track, Watch};
+use super::{Buffered, DutyCycle, Span, Track};
 use crate::demand::larger;
 use crate::model::PowerModel;
+use crate::parabolic_blend::Tandem;
 use crate::robust::{Extremes, Part};
 use crate::surge::{Surge, surge_powers};
-use crate::tandem::Tandem;
 use crate::trace::{Flow, Slice, Tracer};
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::lookahead::Planned;
 use gwatt_plan::{Plan, Profile, SpeedBound, Trajectory};
 
-impl Watch {
+impl DutyCycle {
     /// At lower overrides a piece may be sped up or braked where it is not at the
     /// largest.
     #[cold]
@@ -22,7 +22,7 @@ impl Watch {
         mv: &Move,
         planned: &Planned<u64>,
         surge: &Surge,
-        kept: &mut Kept,
+        kept: &mut Buffered,
     ) {
         let least_share = self.least_share(mv);
         let copper = model.has_copper(mv);
@@ -72,7 +72,7 @@ impl Watch {
         model: &PowerModel,
         mv: &Move,
         tandem: &Tandem,
-        [before, own]: [&mut Kept; 2],
+        [before, own]: [&mut Buffered; 2],
     ) {
         let shared_s = tandem.overlap_s;
         let least_share = self.least_share(mv);
@@ -200,7 +200,7 @@ pub(super) fn shift(
     (mv, profiles): (&Move, &[(usize, Profile)]),
     least_share: f64,
     index: usize,
-    kept: &mut Kept,
+    kept: &mut Buffered,
 ) {
     let mut late = Vec::new();
     let out = &mut |slice| kept.push(index, slice);
@@ -222,7 +222,7 @@ pub(super) fn bound(
     (mv, plan): (&Move, &Plan),
     least_share: f64,
     index: usize,
-    kept: &mut Kept,
+    kept: &mut Buffered,
 ) {
     if matches!(plan.trajectory, Trajectory::Rest) {
         // It lasts as long as it does.

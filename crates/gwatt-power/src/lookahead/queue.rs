@@ -5,7 +5,7 @@
 
 use super::open::Open;
 use crate::demand::Want;
-use crate::watch::Kept;
+use crate::duty_cycle::Buffered;
 use gwatt_motion::Move;
 
 /// A smaller ring is no gain.
@@ -90,9 +90,9 @@ impl Queue {
     }
 
     /// Takes what is kept of a move over time.
-    pub fn take_kept(&mut self, number: u64) -> Kept {
+    pub fn take_kept(&mut self, number: u64) -> Buffered {
         let open = self.get_mut(number);
-        open.map_or_else(Kept::default, |open| std::mem::take(&mut open.kept))
+        open.map_or_else(Buffered::default, |open| std::mem::take(&mut open.kept))
     }
 
     /// The last one.

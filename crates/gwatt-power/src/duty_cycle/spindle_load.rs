@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use super::rating::Place;
 use super::span::Span;
 use super::terms::Models;
-use super::{Kept, Track};
+use super::{Buffered, Track};
 use crate::model::PowerModel;
 use crate::trace::{Flow, Slice};
 use gwatt_motion::Move;
@@ -46,7 +46,7 @@ impl Steps {
 
 /// The spindle during one move, or by itself.
 #[derive(Debug, Clone)]
-pub(crate) struct Beside {
+pub(crate) struct SpindleLoad {
     /// In the order of time.
     pub levels: Steps,
     /// The place at which the axes wait for it; none while they move.
@@ -60,25 +60,25 @@ pub(super) struct Waiting {
     pub converter: usize,
     pub moves: VecDeque<Waits>,
     /// Room that is used again.
-    pub spare: Vec<Kept>,
+    pub spare: Vec<Buffered>,
 }
 
 /// A move whose spindle is not known yet.
 #[derive(Debug)]
 pub(super) struct Waits {
     pub place: Place,
-    pub slices: Kept,
+    pub slices: Buffered,
     /// Powers by track, for a time that is not known.
     pub lasting: Option<(Vec<[f64; 3]>, Span)>,
 }
 
 impl Waiting {
-    pub fn room(&mut self) -> Kept {
+    pub fn room(&mut self) -> Buffered {
         self.spare.pop().unwrap_or_default()
     }
 
     /// Hands the next move to the tracks, with the spindle in it.
-    pub fn hand_on(
+    pub fn emit(
         &mut self,
         model: &PowerModel,
         models: &Models,
@@ -90,13 +90,13 @@ impl Waiting {
         };
         let converter = self.converter;
         for (index, track) in tracks.iter_mut().enumerate() {
-            let mut beside = Levels::new(levels, track, converter);
+            let mut spindle = Levels::new(levels, track, converter);
             let own = track.model(model, models);
-            track.take_kept(index, own, &mut waits.slices, &mut beside, waits.place);
+            track.take_kept(index, own, &mut waits.slices, &mut spindle, waits.place);
             if let Some((powers, span)) = &waits.lasting
                 && let Some(powers) = powers.get(index)
             {
-                let [more_w, lasting_w] = [beside.largest_w(), beside.lasting_w()];
+                let [more_w, lasting_w] = [spindle.largest_w(), spindle.lasting_w()];
                 let [drawn_w, fed_back_w, rest_w] = *powers;
                 let powers = [drawn_w + more_w, fed_back_w + more_w, rest_w + lasting_w];
                 track.span(powers, *span, waits.place);

@@ -214,7 +214,7 @@ proptest! {
         }
         let [mut one, mut other] = [(); 2].map(|()| Interpreter::new(&machine, &reading));
         let mut diagnostics = [(); 2].map(|()| Diagnostics::default());
-        let (mut stance, mut behind) = (one.stance(), false);
+        let (mut fast_path_state, mut stale) = (one.fast_path_state(), false);
         for (number, line) in (1..).zip(&lines) {
             let mut facts = [Facts::default(); 2];
             let mut steps = [(); 2].map(|()| Vec::new());
@@ -229,19 +229,19 @@ proptest! {
             };
             if run(&mut one, 0) {
                 let Some(Step::Move(mv)) = steps[0].first() else { unreachable!() };
-                stance.move_to(&mv.end);
-                behind = true;
+                fast_path_state.move_to(&mv.end);
+                stale = true;
                 prop_assert_eq!(steps[0].len(), 1);
             } else {
-                if std::mem::take(&mut behind) {
-                    other.follow(&stance);
+                if std::mem::take(&mut stale) {
+                    other.follow(&fast_path_state);
                 }
                 run(&mut other, 1);
-                stance = one.stance();
+                fast_path_state = one.fast_path_state();
                 prop_assert_eq!(&steps[0], &steps[1], "{}: {:?}", line, lines);
-                prop_assert!(other.stands_as(&stance));
+                prop_assert!(other.stands_as(&fast_path_state));
             }
-            prop_assert_eq!(&stance, &one.stance());
+            prop_assert_eq!(&fast_path_state, &one.fast_path_state());
         }
         let [one, other] = diagnostics;
         prop_assert_eq!(format!("{:?}", one.list), format!("{:?}", other.list));

@@ -13,7 +13,7 @@
 
 use super::assess::Assessor;
 use super::demand::Want;
-use super::watch::{Measure, Rating};
+use super::duty_cycle::{Measure, Rating};
 use gwatt_machine::{Machine, OverrideAt};
 use gwatt_motion::{Action, Move};
 
@@ -394,7 +394,7 @@ impl Assessor<'_> {
         };
         for lower in &mut self.lower {
             lower.want = peaks;
-            if let Some(watch) = &mut lower.eye.watch {
+            if let Some(watch) = &mut lower.observer.watch {
                 watch.only(&at.watched);
                 if let [_] = lower.model.converters.as_slice() {
                     watch.cap(at.peaks_w);

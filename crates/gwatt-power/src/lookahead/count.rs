@@ -3,12 +3,12 @@
 use super::joints::step_before;
 use super::{Ahead, Side};
 use crate::demand::Demand;
-use crate::eye::Eye;
 use crate::model::PowerModel;
+use crate::observer::Observer;
+use crate::parabolic_blend::{Ride, Tandem};
 use crate::piece::{is_quiet, piece_demand};
 use crate::steps::StepEnergy;
 use crate::surge::{Surge, surge_demand};
-use crate::tandem::{Ride, Tandem};
 use crate::tandem_energy::shared_energy_j;
 use gwatt_motion::Move;
 use gwatt_plan::lookahead::{Piece, Planned};
@@ -19,27 +19,27 @@ impl Ahead {
     pub(super) fn take(
         &mut self,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         planned: &Planned<u64>,
         peaks: bool,
         times: bool,
     ) {
         if planned.next.is_some() || planned.first != planned.tag {
-            return self.take_shared(model, eye, planned, peaks, times);
+            return self.take_shared(model, observer, planned, peaks, times);
         }
         let number = planned.tag;
         let Some(open) = self.open.get_mut(number) else {
             return;
         };
-        if times && !eye.is_closed() {
-            eye.show_piece(&open.mv, planned);
+        if times && !observer.is_closed() {
+            observer.show_piece(&open.mv, planned);
         }
         let duration_s = planned.duration_s();
         let rests = planned.speeds2.start == 0.0 && planned.speeds2.end == 0.0;
         open.alone &= rests && is_whole(&open.mv, planned);
         open.steady &= planned.speeds2.are_one();
         let with_energy = times && open.want.energy;
-        let watched = peaks && eye.watch.is_some();
+        let watched = peaks && observer.watch.is_some();
         if with_energy || watched {
             let step = self.step(planned, peaks);
             let Some(open) = self.open.get_mut(number) else {
@@ -49,7 +49,7 @@ impl Ahead {
                 open.assessment.demand.energy_j += step.supplied_j(model);
             }
             if watched {
-                eye.keep(model, &open.mv, planned, step.as_ref(), &mut open.kept);
+                observer.keep(model, &open.mv, planned, step.as_ref(), &mut open.kept);
             }
         }
         if peaks {
@@ -75,7 +75,7 @@ impl Ahead {
         }
         if peaks {
             let late = self.late(model, planned);
-            let surge = self.surge(model, eye, planned);
+            let surge = self.surge(model, observer, planned);
             let Some(open) = self.open.get_mut(number) else {
                 return;
             };
@@ -98,14 +98,14 @@ impl Ahead {
             let doubtful =
                 open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;
             if doubtful {
-                self.ride(model, eye, planned, true, times);
+                self.ride(model, observer, planned, true, times);
                 let certain = self.is_certain(planned, number, number);
                 if let Some(open) = self.open.get_mut(number) {
                     open.certain &= certain;
                 }
             }
         } else {
-            self.ride(model, eye, planned, false, times);
+            self.ride(model, observer, planned, false, times);
         }
     }
 
@@ -147,7 +147,7 @@ impl Ahead {
     fn take_shared(
         &mut self,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         planned: &Planned<u64>,
         peaks: bool,
         times: bool,
@@ -156,15 +156,15 @@ impl Ahead {
         let to = planned.next.unwrap_or(own);
         if times && let Some(open) = self.open.get(own) {
             match self.open.get(to).filter(|_| to > own) {
-                Some(next) => eye.show_blend(&open.mv, &next.mv, planned),
-                None => eye.show_piece(&open.mv, planned),
+                Some(next) => observer.show_blend(&open.mv, &next.mv, planned),
+                None => observer.show_piece(&open.mv, planned),
             }
         }
         let Some(open) = self.open.get(own) else {
             return;
         };
         let with_energy = times && open.want.energy;
-        let watched = peaks && eye.watch.is_some();
+        let watched = peaks && observer.watch.is_some();
         let step = (with_energy || watched).then(|| self.step(planned, peaks));
         let step = step.flatten();
         if peaks {
@@ -175,7 +175,7 @@ impl Ahead {
         };
         if peaks {
             open.rests |= planned.rests;
-            eye.keep(model, &open.mv, planned, step.as_ref(), &mut open.kept);
+            observer.keep(model, &open.mv, planned, step.as_ref(), &mut open.kept);
         }
         let mut demand = if !open.want.energy && is_quiet(model, &open.mv, planned, open.want) {
             Demand::NONE
@@ -185,13 +185,13 @@ impl Ahead {
         if with_energy && let Some(step) = &step {
             demand.energy_j += step.supplied_j(model);
         }
-        self.ride(model, eye, planned, peaks, times);
+        self.ride(model, observer, planned, peaks, times);
         let late = peaks.then(|| self.late(model, planned)).flatten();
         if let Some(late) = &late {
             demand.include(late);
         }
         if peaks {
-            if let Some(surge) = self.surge(model, eye, planned) {
+            if let Some(surge) = self.surge(model, observer, planned) {
                 demand.include(&surge);
             }
             if self.surges.is_some()
@@ -247,7 +247,7 @@ impl Ahead {
     fn ride(
         &mut self,
         model: &PowerModel,
-        eye: &Eye,
+        observer: &Observer,
         planned: &Planned<u64>,
         peaks: bool,
         times: bool,
@@ -269,7 +269,7 @@ impl Ahead {
         if let Some(last) = last {
             let rides = [&last, &ride];
             if peaks {
-                self.ride_together(model, eye, rides, planned.overlap_s);
+                self.ride_together(model, observer, rides, planned.overlap_s);
             }
             if times
                 && let Some(open) = self.open.get_mut(planned.tag)
@@ -299,7 +299,13 @@ impl Ahead {
     }
 
     /// What two pieces ask for that share some of their time.
-    fn ride_together(&mut self, model: &PowerModel, eye: &Eye, rides: [&Ride; 2], overlap_s: f64) {
+    fn ride_together(
+        &mut self,
+        model: &PowerModel,
+        observer: &Observer,
+        rides: [&Ride; 2],
+        overlap_s: f64,
+    ) {
         let [last, ride] = rides;
         let tandem = if self.surges.is_some() {
             Tandem::at_any(rides, overlap_s)
@@ -313,7 +319,7 @@ impl Ahead {
         let demand = tandem.demand(model, &open.mv);
         let mut kept = self.open.take_kept(before);
         if let Some(open) = self.open.get_mut(own) {
-            eye.together(model, &open.mv, &tandem, [&mut kept, &mut open.kept]);
+            observer.together(model, &open.mv, &tandem, [&mut kept, &mut open.kept]);
         }
         if let Some(open) = self.open.get_mut(before) {
             open.kept = kept;

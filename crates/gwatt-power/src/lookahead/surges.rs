@@ -5,8 +5,8 @@ use super::Ahead;
 use super::pace::{Course, Pace, Past};
 use super::runs::Runs;
 use crate::demand::{Demand, Want};
-use crate::eye::Eye;
 use crate::model::PowerModel;
+use crate::observer::Observer;
 use crate::piece::{Shift, is_quiet, piece_demand, shifted_demand, slower_demand};
 use crate::steps::Beyond;
 use crate::surge::{Surge, surge_demand};
@@ -211,7 +211,7 @@ impl Ahead {
     pub(super) fn surge(
         &mut self,
         model: &PowerModel,
-        eye: &Eye,
+        observer: &Observer,
         planned: &Planned<u64>,
     ) -> Option<Demand> {
         let surges = self.surges.as_mut()?;
@@ -280,11 +280,11 @@ impl Ahead {
         if let Some(surge) = surge {
             self.follow_surge(model, planned, &surge);
         }
-        self.watch_surge(model, eye, planned, surge.as_ref(), longer);
+        self.watch_surge(model, observer, planned, surge.as_ref(), longer);
         let most_mm_s = surge.map_or(top_mm_s, |it| it.speed_mm_s().max(top_mm_s));
         let chords = any_ramp(planned, most_mm_s);
         if let Some(chords) = &chords {
-            self.watch_surge(model, eye, planned, Some(chords), longer);
+            self.watch_surge(model, observer, planned, Some(chords), longer);
         }
         let chords = chords.filter(|_| planned.section.is_some());
         let chords = chords.and_then(|it| self.surged(model, planned, &it, straight));
@@ -343,19 +343,19 @@ impl Ahead {
     fn watch_surge(
         &mut self,
         model: &PowerModel,
-        eye: &Eye,
+        observer: &Observer,
         planned: &Planned<u64>,
         surge: Option<&Surge>,
         longer: bool,
     ) {
-        if eye.watch.is_none() {
+        if observer.watch.is_none() {
             return;
         }
         let Some(open) = self.open.get_mut(planned.tag) else {
             return;
         };
         if let Some(surge) = surge {
-            eye.surge(model, &open.mv, planned, surge, &mut open.kept);
+            observer.surge(model, &open.mv, planned, surge, &mut open.kept);
         }
         let longer = longer && planned.section.is_none();
         let top_mm_s = planned.top_speed_mm_s();
@@ -369,7 +369,7 @@ impl Ahead {
                 accel_mm_s2: planned.accel_mm_s2,
                 section: None,
             };
-            eye.surge(model, &open.mv, planned, &ramps, &mut open.kept);
+            observer.surge(model, &open.mv, planned, &ramps, &mut open.kept);
         }
     }
 

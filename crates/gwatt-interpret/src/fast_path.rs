@@ -203,7 +203,7 @@ impl Control<'_> {
             && self.compensation.is_none()
             && self.corners.is_none()
             && self.special.left.is_none()
-            && self.debts.is_empty()
+            && self.pending_actions.is_empty()
             && self.knobs.pending.is_none()
             && !self.knobs.is_paced()
             && self.callee.is_none()

@@ -12,7 +12,7 @@ use std::thread;
 
 use super::Failure;
 use super::advice::Circumstances;
-use super::front::{Front, Line};
+use super::executor::{Executor, Line};
 use crate::interpret::Step;
 
 /// A batch goes over when it has so many steps or bytes.
@@ -152,9 +152,9 @@ impl Batch {
 /// # Errors
 /// Those of `each`, and of the program otherwise.
 pub(super) fn relay<R: Read + Seek + Send>(
-    front: Front<'_, R>,
+    front: Executor<'_, R>,
     mut each: impl FnMut(&[String], &Relayed<'_>) -> Result<(), Failure>,
-) -> Result<Front<'_, R>, Failure> {
+) -> Result<Executor<'_, R>, Failure> {
     thread::scope(|scope| {
         let (sender, receiver) = sync_channel(BATCHES);
         let (back, empty) = sync_channel(BATCHES + 2);
@@ -175,10 +175,10 @@ pub(super) fn no_thread(error: &io::Error) -> Failure {
 
 /// Reads and executes all lines, as long as somebody takes them.
 fn execute<'m, R: Read + Seek>(
-    mut front: Front<'m, R>,
+    mut front: Executor<'m, R>,
     sender: &SyncSender<Batch>,
     empty: &Receiver<Batch>,
-) -> Result<Front<'m, R>, Failure> {
+) -> Result<Executor<'m, R>, Failure> {
     let mut batch = Batch::default();
     let mut files = 0;
     let end = loop {

@@ -4,13 +4,13 @@
 //! Input: plans and pieces of plans in the order of the program. Without anything
 //! to look for it costs a branch a move.
 
+use super::duty_cycle::{Buffered, DutyCycle, Known, Span, SpindleLoad};
 use super::model::PowerModel;
 use super::motion::Motion;
+use super::parabolic_blend::Tandem;
 use super::robust::Part;
 use super::steps::StepEnergy;
 use super::surge::Surge;
-use super::tandem::Tandem;
-use super::watch::{Beside, Kept, Known, Span, Watch};
 use gwatt_machine::Machine;
 use gwatt_motion::Move;
 use gwatt_plan::lookahead::Planned;
@@ -20,13 +20,13 @@ use gwatt_plan::{
 
 /// See the module.
 #[derive(Debug, Default)]
-pub(super) struct Eye {
-    pub watch: Option<Box<Watch>>,
+pub(super) struct Observer {
+    pub watch: Option<Box<DutyCycle>>,
     /// The motion at 100 % that nobody has taken yet, where it is wanted.
     pub motions: Option<Vec<Motion>>,
 }
 
-impl Eye {
+impl Observer {
     /// Whether nothing is looked at.
     #[inline]
     pub fn is_closed(&self) -> bool {
@@ -71,10 +71,10 @@ impl Eye {
 
     /// What the spindle does during the moves handed on since, in their order.
     #[inline]
-    pub fn beside(&mut self, model: &PowerModel, beside: &mut Option<Vec<Beside>>) {
-        if let (Some(watch), Some(beside)) = (&mut self.watch, beside) {
-            for beside in beside.drain(..) {
-                watch.beside(model, &beside);
+    pub fn spindle_loads(&mut self, model: &PowerModel, loads: &mut Option<Vec<SpindleLoad>>) {
+        if let (Some(watch), Some(loads)) = (&mut self.watch, loads) {
+            for load in loads.drain(..) {
+                watch.spindle_load(model, &load);
             }
         }
     }
@@ -123,7 +123,7 @@ impl Eye {
             let bound = blended_bound(machine, mv, largest);
             let part = part(mv, &bound);
             let known = Known::lasting(Span::ANY);
-            watch.unknown(model, mv, &[part], &mut Kept::default(), known);
+            watch.unknown(model, mv, &[part], &mut Buffered::default(), known);
         }
     }
 
@@ -136,7 +136,7 @@ impl Eye {
         mv: &Move,
         planned: &Planned<u64>,
         step: Option<&StepEnergy>,
-        kept: &mut Kept,
+        kept: &mut Buffered,
     ) {
         if let Some(watch) = &self.watch {
             watch.keep(model, mv, planned, step, kept);
@@ -152,7 +152,7 @@ impl Eye {
         mv: &Move,
         planned: &Planned<u64>,
         surge: &Surge,
-        kept: &mut Kept,
+        kept: &mut Buffered,
     ) {
         if let Some(watch) = &self.watch {
             watch.surge(model, mv, planned, surge, kept);
@@ -161,7 +161,13 @@ impl Eye {
 
     /// Two moves that share some of their time, of which the pieces are kept.
     #[inline]
-    pub fn together(&self, model: &PowerModel, mv: &Move, tandem: &Tandem, kept: [&mut Kept; 2]) {
+    pub fn together(
+        &self,
+        model: &PowerModel,
+        mv: &Move,
+        tandem: &Tandem,
+        kept: [&mut Buffered; 2],
+    ) {
         if let Some(watch) = &self.watch {
             watch.together(model, mv, tandem, kept);
         }
@@ -169,7 +175,7 @@ impl Eye {
 
     /// A move that runs as planned: its pieces.
     #[inline]
-    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Buffered) {
         if let Some(watch) = &mut self.watch {
             watch.kept(model, mv, kept);
         }
@@ -183,7 +189,7 @@ impl Eye {
         model: &PowerModel,
         mv: &Move,
         parts: &[Part<'_>],
-        kept: &mut Kept,
+        kept: &mut Buffered,
         largest: Overrides,
     ) {
         if self.watch.is_some() {
@@ -199,7 +205,7 @@ impl Eye {
         model: &PowerModel,
         mv: &Move,
         parts: &[Part<'_>],
-        kept: &mut Kept,
+        kept: &mut Buffered,
         known: Known,
     ) {
         if let Some(watch) = &mut self.watch {

@@ -1,10 +1,10 @@
 //! A move that waits for what is planned after it, and how moves take part.
 
-use super::glide::Glided;
+use super::constant_speed::Glided;
 use super::pace::Pace;
 use crate::assessment::Assessment;
 use crate::demand::Want;
-use crate::watch::Kept;
+use crate::duty_cycle::Buffered;
 use gwatt_machine::{Machine, PathMode};
 use gwatt_motion::{Corner, Move, MoveKind};
 use gwatt_plan::is_independent;
@@ -35,7 +35,7 @@ pub(super) struct Open {
     /// How it comes out where the motion glides.
     pub glided: Glided,
     /// Its pieces over time, where they are looked at.
-    pub kept: Kept,
+    pub kept: Buffered,
 }
 
 /// How a move takes part.
@@ -67,7 +67,7 @@ impl Open {
             steady: true,
             pace: Pace::default(),
             glided: Glided::default(),
-            kept: Kept::default(),
+            kept: Buffered::default(),
         }
     }
 

@@ -79,15 +79,15 @@ impl Runs {
         if falls || last.first <= number {
             return None;
         }
-        self.behind(number, pace, course, on2)
+        self.after(number, pace, course, on2)
     }
 
-    fn behind(&self, number: u64, pace: &Pace, course: &Course, on2: f64) -> Option<f64> {
+    fn after(&self, number: u64, pace: &Pace, course: &Course, on2: f64) -> Option<f64> {
         let (end2, kept) = (course.end2, pace.keeps(course.end2));
         let behind2 = pace.before2 + on2;
         let mut found: Option<f64> = None;
-        let behind = self.runs.iter().filter(|run| run.first > number);
-        for (looked, run) in behind.enumerate() {
+        let after = self.runs.iter().filter(|run| run.first > number);
+        for (looked, run) in after.enumerate() {
             let distance2 = run.slow.at2 - behind2 - SUM_ROUNDING * run.slow.at2;
             if distance2 >= end2 {
                 break;

@@ -5,11 +5,11 @@ use super::open::Open;
 use super::queue::Leaving;
 use crate::assessment::{Assessment, Certificate};
 use crate::demand::{Demand, Want, larger};
-use crate::eye::{Eye, span};
+use crate::duty_cycle::{Known, Span};
 use crate::late::unpaced;
 use crate::model::PowerModel;
+use crate::observer::{Observer, span};
 use crate::robust::{Extremes, Part};
-use crate::watch::{Known, Span};
 use gwatt_machine::Machine;
 use gwatt_motion::Move;
 use gwatt_plan::{Overrides, SpeedBound, blended_bound, blended_speed};
@@ -18,17 +18,17 @@ impl Ahead {
     /// Hands on the moves that are finished, and whose neighbours are. All, when
     /// nothing moves after the last one.
     #[inline]
-    pub fn hand_on(
+    pub fn emit(
         &mut self,
         machine: &Machine,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         if let Some(begun) = self.glider.begun()
             && self.open.first() > begun
         {
-            return self.hand_on_gliding(sink);
+            return self.emit_gliding(sink);
         }
         let nominal = self.nominal.as_ref();
         let nominal = nominal.map_or(u64::MAX, |nominal| nominal.next);
@@ -40,7 +40,7 @@ impl Ahead {
             };
             if !front.moves {
                 // Those that do not move are passed.
-                eye.pass();
+                observer.pass();
                 sink(&front.mv, &front.assessment, &front.text);
                 self.open.pass();
                 continue;
@@ -63,37 +63,23 @@ impl Ahead {
             if driven {
                 let largest = self.largest.overrides;
                 let doubtful = self.in_doubt || self.unwaited.is_some();
-                let ends_mm_s = [before, next].map(|beside| match beside {
+                let ends_mm_s = [before, next].map(|adjacent| match adjacent {
                     _ if doubtful => f64::INFINITY,
-                    Some(beside) => blended_speed(machine, &unpaced(&beside.mv), largest),
+                    Some(adjacent) => blended_speed(machine, &unpaced(&adjacent.mv), largest),
                     None => 0.0,
                 });
                 own.drive(ends_mm_s, machine, model, largest);
             }
-            if self.surges.is_some()
-                && let Some(cruises) = model.cruises(&own.mv, own.assessment.top_speed_mm_s)
-            {
-                own.assessment.demand.include(&cruises);
-            }
-            if own.mv.pace < 1.0 {
-                let of_plan = [own.assessment.speed_mm_s, own.assessment.accel_mm_s2];
-                let late = model.late(machine, &own.mv, of_plan, self.largest.overrides);
-                if let Some(late) = late {
-                    own.assessment.demand.include(&late);
-                }
-            }
-            if own.mv.stray.strays() && own.assessment.ahead {
-                let top_speed_mm_s = own.assessment.top_speed_mm_s;
-                let demand = own.assessment.demand;
-                own.assessment.demand = model.with_stray(demand, &own.mv, top_speed_mm_s);
-            }
-            let certain = |beside: Option<&Open>| beside.is_none_or(|beside| beside.certain);
+            let overrides = self.largest.overrides;
+            own.include_deviations(machine, model, self.surges.is_some(), overrides);
+            let certain =
+                |adjacent: Option<&Open>| adjacent.is_none_or(|adjacent| adjacent.certain);
             // What no piece speaks of is not known.
             let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;
             if planned && own.certain && certain(before) && certain(next) {
                 own.assessment.blended = !own.alone;
                 if own.assessment.ahead && own.in_turn {
-                    eye.kept(model, &own.mv, &mut own.kept);
+                    observer.kept(model, &own.mv, &mut own.kept);
                 } else if own.assessment.ahead {
                     let overrides = self.largest.overrides;
                     let span = if driven {
@@ -101,14 +87,21 @@ impl Ahead {
                     } else {
                         Span::of(own.assessment.fastest_s)
                     };
-                    own.watch([before, next], span, (machine, model), eye, overrides);
+                    own.watch([before, next], span, (machine, model), observer, overrides);
                 } else {
-                    eye.alone(machine, model, &own.mv, self.largest.overrides);
+                    observer.alone(machine, model, &own.mv, self.largest.overrides);
                 }
             } else {
                 let overrides = self.largest.overrides;
                 let unwaited = &mut self.unwaited;
-                own.bound([before, next], unwaited, machine, model, eye, overrides);
+                own.bound(
+                    [before, next],
+                    unwaited,
+                    machine,
+                    model,
+                    observer,
+                    overrides,
+                );
                 if !(next.is_none() && self.at_rest && self.in_doubt) {
                     self.unwaited = None;
                 }
@@ -128,7 +121,7 @@ impl Ahead {
 
     /// The same over moves where the motion glides: all move, and all is certain.
     #[inline]
-    fn hand_on_gliding(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
+    fn emit_gliding(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         while self.open.first() + 1 < self.largest.next {
             let Some(front) = self.open.get(self.open.first()) else {
                 break;
@@ -140,25 +133,50 @@ impl Ahead {
 }
 
 impl Open {
+    /// Adds what the move draws where it does not run exactly as it is planned: in cruises
+    /// between surges, at a lower pace, and off its path.
+    fn include_deviations(
+        &mut self,
+        machine: &Machine,
+        model: &PowerModel,
+        surges: bool,
+        overrides: Overrides,
+    ) {
+        if surges && let Some(cruises) = model.cruises(&self.mv, self.assessment.top_speed_mm_s) {
+            self.assessment.demand.include(&cruises);
+        }
+        if self.mv.pace < 1.0 {
+            let of_plan = [self.assessment.speed_mm_s, self.assessment.accel_mm_s2];
+            if let Some(late) = model.late(machine, &self.mv, of_plan, overrides) {
+                self.assessment.demand.include(&late);
+            }
+        }
+        if self.mv.stray.strays() && self.assessment.ahead {
+            let top_speed_mm_s = self.assessment.top_speed_mm_s;
+            let demand = self.assessment.demand;
+            self.assessment.demand = model.with_stray(demand, &self.mv, top_speed_mm_s);
+        }
+    }
+
     /// Gives it the robust bound, with those before and after it. `unwaited` stands in
     /// place of the one before, where that did not wait for it, and is then what this
     /// bound covers.
     fn bound(
         &mut self,
-        beside: [Option<&Self>; 2],
+        adjacent: [Option<&Self>; 2],
         unwaited: &mut Option<Extremes>,
         machine: &Machine,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         largest: Overrides,
     ) {
         let mut kept = std::mem::take(&mut self.kept);
-        let bounds = self.bounds(beside, machine, largest);
-        let mut window = self.window(beside, &bounds);
+        let bounds = self.bounds(adjacent, machine, largest);
+        let mut window = self.window(adjacent, &bounds);
         if let Some(unwaited) = unwaited {
             window[0] = unwaited.part();
         }
-        eye.blended(machine, model, &self.mv, &window, &mut kept, largest);
+        observer.blended(machine, model, &self.mv, &window, &mut kept, largest);
         let mut demand = model.robust_over(&self.mv, &window, self.want);
         let covered = Extremes::of(&window);
         // Chords of a small arc may ask for more than the axes' limits.
@@ -176,18 +194,18 @@ impl Open {
     #[cold]
     fn watch(
         &mut self,
-        beside: [Option<&Self>; 2],
+        adjacent: [Option<&Self>; 2],
         span: Span,
         (machine, model): (&Machine, &PowerModel),
-        eye: &mut Eye,
+        observer: &mut Observer,
         largest: Overrides,
     ) {
-        if eye.watch.is_none() {
+        if observer.watch.is_none() {
             return;
         }
         let mut kept = std::mem::take(&mut self.kept);
-        let bounds = self.bounds(beside, machine, largest);
-        let window = self.window(beside, &bounds);
+        let bounds = self.bounds(adjacent, machine, largest);
+        let window = self.window(adjacent, &bounds);
         let Demand {
             peak_w, regen_w, ..
         } = self.assessment.demand;
@@ -201,7 +219,7 @@ impl Open {
             span,
             most_w: (model.converters.len() == 1).then_some(most_w),
         };
-        eye.unknown(model, &self.mv, &window, &mut kept, known);
+        observer.unknown(model, &self.mv, &window, &mut kept, known);
     }
 
     /// The speeds of the one before it, its own, and those of the one after it.

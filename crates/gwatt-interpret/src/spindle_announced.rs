@@ -1,4 +1,4 @@
-//! What the spindle is to do, told as far as it changes: for machines that
+//! What the spindle is to do, announced as far as it changes: for machines that
 //! have one on their converter.
 
 use super::execute::{Control, Run};
@@ -6,9 +6,9 @@ use gwatt_machine::Family;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::ActionKind;
 
-/// What was told last.
+/// What was announced last.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Told {
+pub(super) struct Announced {
     rpm: f64,
     surface_mm_s: f64,
     clamp_rpm: f64,
@@ -18,13 +18,13 @@ pub(super) struct Told {
 }
 
 impl Control<'_> {
-    /// Tells of the spindle what has changed.
+    /// Announces what has changed about the spindle.
     pub(super) fn tell_spindle(&mut self, run: &mut Run<'_, '_>) {
         let Some(spindle) = &self.machine.spindle else {
             return;
         };
         let max_rpm = spindle.max_rpm;
-        let mut now = self.told;
+        let mut now = self.announced;
         now.tool = self.tool_in_use();
         now.rpm = self.modal.spindle_rpm;
         (now.surface_mm_s, now.clamp_rpm, now.center) = (0.0, 0.0, None);
@@ -46,7 +46,7 @@ impl Control<'_> {
             // Where it stands; on the way it follows X.
             now.rpm = self.highest_rpm(&self.position.at, None);
         }
-        let before = std::mem::replace(&mut self.told, now);
+        let before = std::mem::replace(&mut self.announced, now);
         if now.tool != before.tool {
             run.act(ActionKind::ToolLoaded, now.tool);
         }

@@ -3,14 +3,14 @@
 use super::assess::Assessor;
 use super::assessment::{Assessment, Certificate};
 use super::demand::Demand;
+use super::duty_cycle::Buffered;
 use super::robust::{Extremes, Part};
-use super::watch::Kept;
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::{PathFigures, SpeedBound, blended_bound, path_bound, path_figures};
 
 /// A move that waits for its successor.
 #[derive(Debug)]
-pub(super) struct Held {
+pub(super) struct Pending {
     pub mv: Move,
     pub text: Vec<u8>,
     pub assessment: Assessment,
@@ -23,7 +23,7 @@ pub(super) struct Held {
     pub riders: Vec<Rider>,
 }
 
-impl Held {
+impl Pending {
     pub fn part(&self) -> Part<'_> {
         Part {
             bound: &self.bound,
@@ -42,7 +42,7 @@ pub(super) struct Rider {
 
 /// What stands after a move that waits.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Behind<'a> {
+pub(super) enum Successor<'a> {
     /// A stop: a dwell, or a move that begins at rest.
     Stop,
     /// The end of the program.
@@ -80,7 +80,7 @@ impl Assessor<'_> {
                 fresh.rested = rested;
                 fresh
             }
-            None => Box::new(Held {
+            None => Box::new(Pending {
                 mv: mv.clone(),
                 text: text.to_vec(),
                 assessment,
@@ -90,19 +90,19 @@ impl Assessor<'_> {
             }),
         };
         let joined = assessment.joined;
-        let behind = if joined {
-            Behind::Move(fresh.part())
+        let successor = if joined {
+            Successor::Move(fresh.part())
         } else {
-            Behind::Stop
+            Successor::Stop
         };
-        self.release(behind, sink);
+        self.release(successor, sink);
         self.held = Some(fresh);
     }
 
     /// Judges what is held.
     pub(super) fn release(
         &mut self,
-        behind: Behind<'_>,
+        successor: Successor<'_>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
         let Some(mut held) = self.held.take() else {
@@ -111,37 +111,37 @@ impl Assessor<'_> {
         let joined = held.assessment.joined;
         // A rapid between two stops is planned like any other, and so is a straight feed
         // between dwells, or between rapids of a controller that waits at both.
-        let stops = matches!(behind, Behind::Stop | Behind::End);
+        let stops = matches!(successor, Successor::Stop | Successor::End);
         let alone = !joined && stops && self.requested != Some(Certificate::Robust);
         if alone && held.mv.kind == MoveKind::Rapid {
             held.assessment.blended = false;
-            self.eye
+            self.observer
                 .alone(self.machine, &self.model, &held.mv, self.largest);
         } else if alone
             && held.rested
-            && !matches!(behind, Behind::End)
+            && !matches!(successor, Successor::End)
             && held.mv.arc.is_none()
             && !held.mv.stray.is_far()
         {
             let figures = path_figures(self.machine, &held.mv, self.largest);
             held.assessment = self.evaluate(&held.mv, figures.as_ref(), false);
-            self.eye
+            self.observer
                 .alone(self.machine, &self.model, &held.mv, self.largest);
         } else {
             let demand = {
                 let own = held.part();
                 let before = self.before.as_deref().filter(|_| joined);
-                let next = match behind {
-                    Behind::Move(next) => next,
+                let next = match successor {
+                    Successor::Move(next) => next,
                     _ => own,
                 };
-                let window = [before.map_or(own, Held::part), own, next];
-                self.eye.blended(
+                let window = [before.map_or(own, Pending::part), own, next];
+                self.observer.blended(
                     self.machine,
                     &self.model,
                     &held.mv,
                     &window,
-                    &mut Kept::default(),
+                    &mut Buffered::default(),
                     self.largest,
                 );
                 self.model.robust_over(&held.mv, &window, self.want)
@@ -154,7 +154,7 @@ impl Assessor<'_> {
             self.needs_robust |= self.requested == Some(Certificate::Planned);
         }
         sink(&held.mv, &held.assessment, &held.text);
-        if matches!(behind, Behind::Doubt)
+        if matches!(successor, Successor::Doubt)
             && let Some(before) = self.before.as_deref().filter(|_| joined)
         {
             // All of them may run into what nobody waited for.
@@ -162,7 +162,7 @@ impl Assessor<'_> {
             (held.bound, held.mv.accel_mm_s2) = (both.bound, both.accel_mm_s2);
         }
         for rider in &held.riders {
-            self.eye.pass();
+            self.observer.pass();
             sink(&rider.mv, &rider.assessment, &rider.text);
         }
         held.riders.clear();

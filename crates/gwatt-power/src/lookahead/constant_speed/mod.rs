@@ -14,8 +14,8 @@ use super::open::Open;
 use super::pace::Pace;
 use super::surges::Surges;
 use crate::demand::Want;
-use crate::eye::Eye;
 use crate::model::PowerModel;
+use crate::observer::Observer;
 use gwatt_machine::{AxisSet, LookAhead, Machine};
 use gwatt_motion::Move;
 use gwatt_plan::Overrides;
@@ -104,13 +104,13 @@ impl Ahead {
     pub(super) fn glide(
         &mut self,
         model: &PowerModel,
-        eye: &mut Eye,
+        observer: &mut Observer,
         mv: &Move,
         text: &[u8],
         want: Want,
     ) -> bool {
         let doubtful = self.in_doubt || self.reach2.is_some();
-        if doubtful || want.accel || !eye.is_closed() || !self.glider.terms.suit(mv) {
+        if doubtful || want.accel || !observer.is_closed() || !self.glider.terms.suit(mv) {
             return false;
         }
         if self.glider.glide.is_none() {
@@ -118,7 +118,7 @@ impl Ahead {
                 self.glider.wait -= 1;
                 return false;
             }
-            self.glider.glide = self.begin_gliding(model, eye);
+            self.glider.glide = self.begin_gliding(model, observer);
         }
         let Some(speed_mm_s) = self.glide_on(model, mv) else {
             self.glider.back_off();
@@ -175,9 +175,9 @@ impl Ahead {
     }
 
     /// How the motion glides over the moves that are open, if it does.
-    fn begin_gliding(&mut self, model: &PowerModel, eye: &mut Eye) -> Option<Glide> {
+    fn begin_gliding(&mut self, model: &PowerModel, observer: &mut Observer) -> Option<Glide> {
         self.largest.planner.settle();
-        self.pump(model, eye);
+        self.pump(model, observer);
         // What has become final may have left a doubt.
         if self.steps.is_doubtful() || self.reach2.is_some() {
             return None;
@@ -258,7 +258,7 @@ impl Ahead {
         }
     }
 
-    /// Tells the planner of the moves since it was left alone.
+    /// Passes the planner the moves since it was left alone.
     #[inline]
     pub(super) fn catch_up(&mut self, machine: &Machine) {
         if let Some(glide) = self.glider.glide.take() {

@@ -1,16 +1,16 @@
 //! What is kept of a move until it is its turn.
 
 use super::Track;
-use super::beside::Levels;
 use super::rating::Place;
 use super::span::Late;
+use super::spindle_load::Levels;
 use super::terms::Terms;
 use crate::model::PowerModel;
 use crate::trace::{Line, Slice};
 
 /// One move that waits for its neighbours or for the spindle, by track.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Kept(Vec<Own>);
+pub(crate) struct Buffered(Vec<Own>);
 
 /// What one track is to take.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +33,7 @@ pub(super) struct Added {
     pub lasts_s: f64,
 }
 
-impl Kept {
+impl Buffered {
     pub fn clear(&mut self) {
         for own in &mut self.0 {
             own.slices.clear();
@@ -154,29 +154,29 @@ impl Kept {
 
 impl Track {
     /// Takes its share of a move, with what comes on top. Where the power changes
-    /// nothing but means, and that is plain, only these are told; of a line that
+    /// nothing but means, and that is plain, only these are passed on; of a line that
     /// is bounded only the time counts then.
     pub fn take_kept(
         &mut self,
         index: usize,
         model: &PowerModel,
-        kept: &mut Kept,
-        beside: &mut Levels<'_>,
+        kept: &mut Buffered,
+        spindle: &mut Levels<'_>,
         place: Place,
     ) {
         let terms = kept.0.get(index).map(|own| own.terms);
         let terms = terms.filter(|_| self.bounds);
-        let terms = terms.map(|terms| terms.raised(beside.lasting_w()).capped(self.most_w));
+        let terms = terms.map(|terms| terms.raised(spindle.lasting_w()).capped(self.most_w));
         if let Some(terms) = &terms {
             self.limits.begin(terms, self.time_s, place);
             if let Some(apart) = &terms.apart {
-                let rest_w = terms.rest_w - beside.lasting_w() + beside.largest_w();
+                let rest_w = terms.rest_w - spindle.lasting_w() + spindle.largest_w();
                 self.limits.apart(apart, rest_w, self.time_s, place);
                 self.time_s += apart.duration_s;
             }
         }
-        let largest_w = beside.largest_w();
-        self.take_slices(index, model, kept, beside, place);
+        let largest_w = spindle.largest_w();
+        self.take_slices(index, model, kept, spindle, place);
         if let Some(terms) = &terms {
             let late = kept.0.get(index).map_or(&[][..], |own| &own.late);
             for late in late {
@@ -192,14 +192,14 @@ impl Track {
         &mut self,
         index: usize,
         model: &PowerModel,
-        kept: &mut Kept,
-        beside: &mut Levels<'_>,
+        kept: &mut Buffered,
+        spindle: &mut Levels<'_>,
         place: Place,
     ) {
         let Some(Own { slices, line, .. }) = kept.0.get_mut(index) else {
             return;
         };
-        let steady = beside
+        let steady = spindle
             .steady_w()
             .map(|more_w| (more_w, self.limits.calm_w()));
         if let Some((most_w, line)) = line {
@@ -227,7 +227,7 @@ impl Track {
             }
         }
         for slice in &*slices {
-            beside.add(slice, &mut |slice| self.take(slice, place));
+            spindle.add(slice, &mut |slice| self.take(slice, place));
         }
     }
 }
@@ -235,9 +235,9 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::duty_cycle::limits::Limits;
+    use crate::duty_cycle::{Level, Track};
     use crate::trace::Flow;
-    use crate::watch::limits::Limits;
-    use crate::watch::{Level, Track};
     use gwatt_machine::Machine;
 
     const MACHINE: &str = "schema = 1\nname = \"test\"\ncontroller = \"iso\"\n[converter]\n\
@@ -269,7 +269,7 @@ mod tests {
         for line in 1..=3000 {
             // Some moves far below the limits, some near, and some above.
             let most_w = [600.0, 1400.0, 2400.0, 3600.0][(next() * 4.0) as usize];
-            let mut kept = Kept::default();
+            let mut kept = Buffered::default();
             for _ in 0..3 {
                 let [from_w, to_w] = [next(), next()].map(|share| share * most_w);
                 kept.push(0, Slice::linear(1e-3 + 0.2 * next(), from_w, to_w));
@@ -282,12 +282,12 @@ mod tests {
             };
             let levels = [level];
             let place = Place { line, text: 0 };
-            let mut beside = Levels::new(&levels, &general, 0);
+            let mut spindle = Levels::new(&levels, &general, 0);
             for slice in kept.slices(0) {
-                beside.add(slice, &mut |slice| general.take(slice, place));
+                spindle.add(slice, &mut |slice| general.take(slice, place));
             }
-            let mut beside = Levels::new(&levels, &quick, 0);
-            quick.take_kept(0, &model, &mut kept, &mut beside, place);
+            let mut spindle = Levels::new(&levels, &quick, 0);
+            quick.take_kept(0, &model, &mut kept, &mut spindle, place);
             assert_eq!(quick.time_s, general.time_s);
             assert_eq!(
                 quick.limits.ratings(0, false),

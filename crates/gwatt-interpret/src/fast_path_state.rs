@@ -13,7 +13,7 @@ use gwatt_machine::{AxisSet, AxisValues};
 
 /// The state that a plain straight block depends on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stance {
+pub struct FastPathState {
     /// A straight block may take the short way.
     direct: bool,
     modal: Modal,
@@ -26,7 +26,7 @@ pub struct Stance {
     text: u16,
 }
 
-impl Stance {
+impl FastPathState {
     /// A plain block has moved the axes, machine coordinates in mm and degrees.
     pub fn move_to(&mut self, end: &AxisValues) {
         self.at = *end;
@@ -34,8 +34,8 @@ impl Stance {
 }
 
 impl Control<'_> {
-    fn stance(&self) -> Stance {
-        Stance {
+    fn fast_path_state(&self) -> FastPathState {
+        FastPathState {
             direct: self.may_go_direct(),
             modal: self.modal.clone(),
             at: self.position.at,
@@ -52,20 +52,20 @@ impl Control<'_> {
 impl Interpreter<'_> {
     /// What a plain block that comes next goes by.
     #[must_use]
-    pub fn stance(&self) -> Stance {
-        self.control.stance()
+    pub fn fast_path_state(&self) -> FastPathState {
+        self.control.fast_path_state()
     }
 
-    /// Whether a plain block does here what it does in this stance.
+    /// Whether a plain block does here what it does in this state.
     #[must_use]
-    pub fn stands_as(&self, stance: &Stance) -> bool {
-        self.control.stance() == *stance
+    pub fn stands_as(&self, fast_path_state: &FastPathState) -> bool {
+        self.control.fast_path_state() == *fast_path_state
     }
 
-    /// Plain blocks that began in a stance equal to this interpreter's have
-    /// moved the axes to where `stance` has them.
-    pub fn follow(&mut self, stance: &Stance) {
+    /// Plain blocks that began in a state equal to this interpreter's have
+    /// moved the axes to where `fast_path_state` has them.
+    pub fn follow(&mut self, fast_path_state: &FastPathState) {
         self.control.begun = true;
-        self.control.position.at = stance.at;
+        self.control.position.at = fast_path_state.at;
     }
 }

@@ -11,7 +11,7 @@ use original::Original;
 
 use super::certify::{Certified, Reasons, Verdict};
 use super::entry::Entry;
-use super::front::{Front, read_whole, too_large};
+use super::executor::{Executor, read_whole, too_large};
 use super::row::Detail;
 use super::stop_before::Stopping;
 use super::table::Table;
@@ -29,7 +29,7 @@ use crate::source::lines;
 
 /// What programs that are held whole are limited by.
 #[derive(Clone, Copy)]
-pub(super) struct Whole<'a> {
+pub(super) struct LoopedProgram<'a> {
     pub(super) machine: &'a Machine,
     /// The same with the limits that are aimed at.
     pub(super) target: &'a Machine,
@@ -46,7 +46,7 @@ pub(super) struct Source<'a> {
     pub(super) rungs: &'a Lower,
 }
 
-impl Whole<'_> {
+impl LoopedProgram<'_> {
     /// Limits a program, and certifies what was written on each path; `rows` are those
     /// of the path that draws the most.
     pub(super) fn limit<R: Read + Seek>(
@@ -215,7 +215,7 @@ fn survey(
     options: &Options,
     table: &mut Table,
 ) -> Result<(), Failure> {
-    let mut front = Front::new(Cursor::new(program), machine, options);
+    let mut front = Executor::new(Cursor::new(program), machine, options);
     // The axes stand before the first move.
     let mut mode = PathMode::ExactStop;
     let mut before = Mark::of(front.interpreter().modal());
@@ -284,7 +284,7 @@ fn certify(
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Certified, Failure> {
     let mut verdict = Verdict::new(machine, options, rows);
-    let mut written = Front::new(Cursor::new(text), machine, options);
+    let mut written = Executor::new(Cursor::new(text), machine, options);
     let mut assessor = watching_at(machine, rungs, options);
     let mut expected = Vec::new();
     let mut more = true;

@@ -46,7 +46,7 @@ impl Line<'_, '_> {
 }
 
 /// A stream of executed lines.
-pub(super) struct Front<'m, R> {
+pub(super) struct Executor<'m, R> {
     reader: LineReader<R>,
     reading: Reading,
     block: Block,
@@ -64,7 +64,7 @@ pub(super) struct Front<'m, R> {
     stuck: bool,
 }
 
-impl<'m, R: Read + Seek> Front<'m, R> {
+impl<'m, R: Read + Seek> Executor<'m, R> {
     pub(super) fn new(input: R, machine: &'m Machine, options: &Options) -> Self {
         Self {
             reader: LineReader::new(input),

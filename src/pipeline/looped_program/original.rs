@@ -7,13 +7,13 @@ use std::io::Cursor;
 use crate::interpret::{Move, MoveKind, Step};
 use crate::machine::Machine;
 use crate::pipeline::describe::{describe, row};
+use crate::pipeline::executor::Executor;
 use crate::pipeline::expected::{Expected, ExpectedMove};
-use crate::pipeline::front::Front;
 use crate::pipeline::line_key::LineKey;
 use crate::pipeline::row::Detail;
 use crate::pipeline::spindle_rows::SpindleRows;
 use crate::pipeline::table::Table;
-use crate::pipeline::tally::whether_fits;
+use crate::pipeline::totals::whether_fits;
 use crate::pipeline::{Failure, Options};
 use crate::power::{Assessment, Assessor, PowerModel};
 
@@ -23,7 +23,7 @@ const STEPS: usize = 4096;
 /// The original, run once more for the comparison.
 pub(super) struct Original<'m, 'p> {
     machine: &'m Machine,
-    front: Front<'m, Cursor<&'p [u8]>>,
+    front: Executor<'m, Cursor<&'p [u8]>>,
     assessor: Assessor<'m>,
     model: PowerModel,
     table: &'p Table,
@@ -106,7 +106,7 @@ impl<'m, 'p> Original<'m, 'p> {
         assessor.want = want;
         Self {
             machine,
-            front: Front::new(Cursor::new(program), machine, options),
+            front: Executor::new(Cursor::new(program), machine, options),
             assessor,
             model,
             table,

@@ -28,11 +28,11 @@
 //! no shorter than its path at full speed: whichever is worse counts for each
 //! limit. A move from an unknown start may last for ever.
 
-mod beside;
+mod spindle_load;
 mod bounded;
 mod bounds;
 mod continuous;
-mod kept;
+mod buffered;
 mod limits;
 mod overload;
 mod rating;
@@ -41,18 +41,17 @@ mod span;
 mod store;
 mod terms;
 
-pub(super) use beside::{Beside, Level, Steps};
-use kept::Added;
-pub(super) use kept::Kept;
+use buffered::Added;
+pub(super) use buffered::Buffered;
 pub use rating::{Measure, Rating};
 pub(super) use span::{Known, Span};
+pub(super) use spindle_load::{Level, SpindleLoad, Steps};
 
 use super::model::PowerModel;
 use super::piece::straight_line;
 use super::robust::Part;
 use super::steps::StepEnergy;
 use super::trace::{Flow, Slice, Tracer};
-use beside::{Levels, Waiting, Waits};
 use bounds::{bound, least_share, lower_of, shift};
 use gwatt_machine::{Machine, RapidJoint};
 use gwatt_motion::Move;
@@ -60,16 +59,17 @@ use gwatt_plan::lookahead::{Piece, Planned};
 use gwatt_plan::{Plan, Trajectory};
 use limits::Limits;
 use rating::Place;
+use spindle_load::{Levels, Waiting, Waits};
 use terms::{Models, Terms};
 
 /// Watches the converters that have limits over time.
 #[derive(Debug)]
-pub(super) struct Watch {
+pub(super) struct DutyCycle {
     tracks: Vec<Track>,
     /// Where the spindle's converter is watched: moves that wait for it.
     waiting: Option<Waiting>,
     /// Room for the slices of a move, and for powers by track.
-    kept: Kept,
+    kept: Buffered,
     powers: Vec<[f64; 3]>,
     /// The program runs again and again.
     pub repeated: bool,
@@ -98,7 +98,7 @@ struct Track {
     most_w: f64,
 }
 
-impl Watch {
+impl DutyCycle {
     /// What the machine file limits over time; `None` where it limits nothing. Where
     /// overrides below the largest count, each limit is watched twice: at the largest, and
     /// as a bound over all.
@@ -142,7 +142,7 @@ impl Watch {
             Box::new(Self {
                 tracks,
                 waiting,
-                kept: Kept::default(),
+                kept: Buffered::default(),
                 powers: Vec::new(),
                 repeated: false,
                 models: Models::new(model, lower),
@@ -175,7 +175,7 @@ impl Watch {
         }
     }
 
-    /// Whether it has to be told what the spindle does.
+    /// Whether it needs to know what the spindle does.
     pub fn follows_spindle(&self) -> bool {
         self.waiting.is_some()
     }
@@ -193,17 +193,17 @@ impl Watch {
     }
 
     /// What the spindle does during the next move, or by itself before it.
-    pub fn beside(&mut self, model: &PowerModel, beside: &Beside) {
+    pub fn spindle_load(&mut self, model: &PowerModel, load: &SpindleLoad) {
         let Some(waiting) = &mut self.waiting else {
             return;
         };
-        let Some(mv) = &beside.alone else {
-            let levels = beside.levels.as_slice();
-            waiting.hand_on(model, &self.models, levels, &mut self.tracks);
+        let Some(mv) = &load.alone else {
+            let levels = load.levels.as_slice();
+            waiting.emit(model, &self.models, levels, &mut self.tracks);
             return;
         };
         let place = Place::of(mv);
-        let levels = beside.levels.as_slice();
+        let levels = load.levels.as_slice();
         let duration_s = levels.iter().map(|level| level.duration_s).sum();
         for track in &mut self.tracks {
             let [drawn_w, fed_back_w] = model.resting_w(track.converter, mv);
@@ -286,7 +286,7 @@ impl Watch {
         mv: &Move,
         planned: &Planned<u64>,
         step: Option<&StepEnergy>,
-        kept: &mut Kept,
+        kept: &mut Buffered,
     ) {
         for (index, track) in self.tracks.iter().enumerate() {
             let Some(tracer) = track.tracer(track.model(model, &self.models)) else {
@@ -337,7 +337,7 @@ impl Watch {
     }
 
     /// Takes what was kept of a move that runs as planned.
-    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Kept) {
+    pub fn kept(&mut self, model: &PowerModel, mv: &Move, kept: &mut Buffered) {
         let place = Place::of(mv);
         if let Some(waiting) = &mut self.waiting {
             let slices = std::mem::replace(kept, waiting.room());
@@ -363,7 +363,7 @@ impl Watch {
         model: &PowerModel,
         mv: &Move,
         parts: &[Part<'_>],
-        kept: &mut Kept,
+        kept: &mut Buffered,
         Known { span, most_w }: Known,
     ) {
         let place = Place::of(mv);
