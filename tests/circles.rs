@@ -8,9 +8,8 @@ use std::path::Path;
 use crate::layers::{CRATES, folder_of, rust_files};
 
 /// How many files each circle of a crate has.
-const LEFT: [(&str, &[usize]); 6] = [
+const LEFT: [(&str, &[usize]); 5] = [
     ("gwatt-identify", &[6]),
-    ("gwatt-interpret", &[48]),
     ("gwatt-limit", &[16]),
     ("gwatt-machine", &[17]),
     ("gwatt-plan", &[2, 5, 6]),

@@ -2,8 +2,8 @@
 
 use super::arc::{self, ArcFault, Ends, Slack};
 use super::code::Motion;
-use super::execute::{Control, Run};
-use super::motion::STANDSTILL_MM;
+use super::control::{Control, Run};
+use super::places::STANDSTILL_MM;
 use super::turned_arc::Tilted;
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{ALL_AXES, AxisKind, Family};

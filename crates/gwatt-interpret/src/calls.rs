@@ -4,7 +4,8 @@
 use super::execute::Interpreter;
 use super::expression::{Fault, Name, Reader, Value};
 use super::isg::Pending;
-use super::jump::{Label, Transfer};
+use super::jump::Transfer;
+use super::label::Label;
 use super::parameters::{LOCALS, Scope};
 use gwatt_machine::Family;
 use gwatt_syntax::source::Span;

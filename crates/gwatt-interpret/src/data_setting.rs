@@ -1,12 +1,12 @@
 //! G10: the program sets offsets and tools ("G10 L1", "L2", "L10", "L11" and
 //! "L20" of `LinuxCNC`; Fanuc "Programmable Data Input (G10)").
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::frame::Affine;
-use super::motion::POSITION_MAX_MM;
 use super::offsets::{FURTHER, FURTHER_MAX, SYSTEMS};
+use super::places::POSITION_MAX_MM;
 use super::tool_table::Tool;
-use super::tools::tool_number;
+use super::tools::words::tool_number;
 use gwatt_machine::{ALL_AXES, AXES, AxisValues, Family};
 use gwatt_syntax::source::Span;
 

@@ -5,10 +5,10 @@
 //! `execute`; the tests of this file hold the two equal.
 
 use super::code::Motion;
-use super::execute::Control;
+use super::control::Control;
 use super::facts::Facts;
 use super::modal::{Feed, NumberText};
-use super::motion::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM};
+use super::places::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM};
 use super::words::axis_of;
 use gwatt_machine::{AxisKind, AxisSet, AxisValues, Family, Machine};
 use gwatt_motion::{FeedMode, Move, MoveKind, Step, Stray, path_length};

@@ -5,7 +5,8 @@
 //! where the axes stand. Where two interpreters agree in it, such a block does
 //! the same in both.
 
-use super::execute::{Control, Interpreter};
+use super::control::Control;
+use super::execute::Interpreter;
 use super::frame::Frame;
 use super::knob::KnobState;
 use super::modal::Modal;

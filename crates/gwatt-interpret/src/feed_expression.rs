@@ -1,7 +1,7 @@
 //! What the F in force was worked out from. It is kept with the F as long as it has the same
 //! value, so that a later block can be given the F by it, whichever value it has in a run.
 
-use super::execute::Control;
+use super::control::Control;
 use super::expression::Reader;
 use super::modal::{Feed, NumberText};
 use gwatt_machine::Family;

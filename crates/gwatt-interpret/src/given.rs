@@ -1,11 +1,11 @@
 //! Variables that the control keeps, with the values that whoever runs the program
 //! gives them: `#500=1.5`, `#<_depth>=2`, `R1=3`, `VC1=4`.
 
+mod control;
+
 use std::fmt;
 use std::str::FromStr;
 
-use super::execute::Control;
-use super::expression::Name;
 use gwatt_machine::{Family, Language};
 
 /// Largest number of a variable, and of an R parameter.
@@ -113,42 +113,6 @@ impl GivenVariable {
             Given::Named(_) => language.family == Family::Rs274,
             Given::R(_) => language.family == Family::Siemens,
             Given::Common(_) => language.dialect.osp,
-        }
-    }
-}
-
-impl Control<'_> {
-    /// Takes over what was given.
-    pub(super) fn give(&mut self, given: &GivenVariable) {
-        let value = given.value;
-        match &given.name {
-            Given::Number(number) if self.is_system_parameter(*number) => {
-                self.give_system_parameter(*number, value);
-            }
-            Given::Number(TOOL_OF_FANUC)
-                if self.machine.controller.language.family == Family::Iso =>
-            {
-                self.tools.give(value);
-            }
-            // There are fewer than a program may keep.
-            Given::Number(number) => {
-                let _ = self.parameters.set(&Name::Number(*number), Ok(Some(value)));
-            }
-            Given::Named(name) => {
-                let _ = self
-                    .parameters
-                    .set(&Name::Text(name.into()), Ok(Some(value)));
-            }
-            Given::R(number) => {
-                if let Some(siemens) = &mut self.siemens {
-                    siemens.keep(*number, value);
-                }
-            }
-            Given::Common(name) => {
-                if let Some(osp) = &mut self.osp {
-                    osp.keep(name, value);
-                }
-            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! grbl's lines that begin with `$` ("Commands", "Configuration v1.1").
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use gwatt_machine::Family;
 use gwatt_motion::{ActionKind, MoveKind};
 

@@ -1,7 +1,7 @@
 //! Comments that are none for the control: words after a `;` where that ends a block are
 //! another block of the same line, and firmware of printers may know no parentheses.
 
-use super::execute::Control;
+use super::control::Control;
 use super::report::Report;
 use gwatt_machine::Family;
 use gwatt_syntax::source::Span;

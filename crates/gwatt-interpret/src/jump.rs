@@ -1,29 +1,12 @@
 //! Where a program goes on, when that is not the next line.
 
 use super::expression::Value;
+use super::label::Label;
 use super::lathe_cycle::LatheCycle;
 use super::parameters::LOCALS;
-use super::statement::Keyword;
+use super::statement::keyword::Keyword;
 use super::turning::Contour;
 use gwatt_syntax::source::Span;
-
-/// The name of an O-word or of a subprogram.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum Label {
-    /// `o100`, `O1000`.
-    Number(u32),
-    /// `o<name>`, lower case without blanks.
-    Name(String),
-}
-
-impl std::fmt::Display for Label {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "O{number}"),
-            Self::Name(name) => write!(f, "o<{name}>"),
-        }
-    }
-}
 
 /// What a block says about the order of execution.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! Words by which a program itself limits acceleration or rapid speed.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use gwatt_machine::{KnobArgument, KnobTarget};
 
 impl Control<'_> {

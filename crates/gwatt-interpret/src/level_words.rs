@@ -1,8 +1,8 @@
 //! Words by which a program selects a level of acceleration or rapid speed, as the
 //! machine file describes them.
 
-use super::execute::{Control, Run};
-use super::words::{AXIS_LETTERS, bit};
+use super::control::{Control, Run};
+use super::letters::{AXIS_LETTERS, bit};
 use gwatt_machine::{Levels, Machine};
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;

@@ -1,6 +1,6 @@
 //! M words, S and T: actions, and the loads that they switch.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use gwatt_machine::Family;
 use gwatt_motion::ActionKind;
 use gwatt_syntax::Word;
@@ -72,7 +72,7 @@ impl Control<'_> {
             Self::note_other_m(number, span, run);
         }
         if !self.dialect().other_m || run.words.groups == 0 && !run.words.has_axes() {
-            run.words.unused &= super::words::AXIS_LETTERS;
+            run.words.unused &= super::letters::AXIS_LETTERS;
         }
     }
 

@@ -1,7 +1,7 @@
 //! Blocks that are more than plain words: what they assign, call and say of the
 //! order of execution takes effect.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::expression::{Fault, Held, Name, Value, Variables, remedy};
 use super::jump::{Go, Transfer};
 use super::report::Report;

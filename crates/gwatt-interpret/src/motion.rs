@@ -1,22 +1,16 @@
 //! Motion: straight moves, arcs, reference points, and G92.
 
 use super::code::{GCode, Motion};
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
+use super::letters::{AXIS_LETTERS, bit};
+use super::places::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM};
 use super::printer::Course;
 use super::report::Report;
 use super::stray;
-use super::words::{AXIS_LETTERS, bit};
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
 use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 use gwatt_syntax::source::Span;
-
-/// Differences of position below this are rounding, not motion (mm, degrees).
-pub(super) const STANDSTILL_MM: f64 = 1e-9;
-/// Positions beyond this are refused (mm, degrees): no machine is that large.
-pub(super) const POSITION_MAX_MM: f64 = 1e9;
-/// Index of the extruder axis.
-pub(super) const EXTRUDER: usize = 9;
 
 impl Control<'_> {
     /// The block's motion, with what else uses axis words.

@@ -2,7 +2,7 @@
 //! Parameters" of `LinuxCNC`). They are read only.
 
 use super::code::Motion;
-use super::execute::Control;
+use super::control::Control;
 use super::modal::Feed;
 use gwatt_machine::Family;
 use gwatt_motion::FeedMode;

@@ -1,7 +1,7 @@
 //! Analog outputs that act on the motion (`LinuxCNC`, "M67", "M68"), where the machine file
 //! says that they are wired: M68 sets one, and M66 waits until it acts.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use gwatt_machine::KnobTarget;
 use gwatt_motion::Step;
 use gwatt_syntax::source::Span;

@@ -9,13 +9,14 @@
 //! Those that the control keeps from one program to the next (`kept_variables` of the
 //! profile) are unknown until a parameter file, `--set` or the program gives them a value.
 
+mod control;
+mod variables;
+
 use std::collections::HashMap;
 
-use super::execute::Control;
-use super::expression::{Held, KEPT, Name, PROBED, Read, TOOL, Value, Variables};
+use super::expression::{Held, Name, Value};
 use super::parameter_file::ParameterFile;
-use gwatt_machine::{Family, Lathe};
-use gwatt_motion::FeedMode;
+use gwatt_machine::Family;
 
 /// Numbers that belong to the subroutine that runs, and 0.
 pub(super) const LOCALS: usize = 34;
@@ -175,180 +176,4 @@ impl Parameters {
 /// Predefined names that are not known before the program has a T.
 fn is_tool(name: &str) -> bool {
     matches!(name, "_current_tool" | "_selected_tool")
-}
-
-impl Variables for Control<'_> {
-    fn numbered(&self, number: u32) -> Read {
-        if let Some(held) = self.parameters.local(number) {
-            return held.into();
-        }
-        if self.fanuc() {
-            return self.fanuc_variable(number);
-        }
-        if self.is_compensating() && matches!(number, 5420..=5428) {
-            return Read::Unknown(UNDER_COMPENSATION);
-        }
-        if let Some(value) = self.system_parameter(number) {
-            return Read::Value(Some(value));
-        }
-        match number {
-            5061..=5070 => Read::Unknown(PROBED),
-            5161..=5390 => Read::Unknown(KEPT),
-            5399 => Read::Unknown("an input (M66)"),
-            5400..=5413 if self.tools.loaded_known().is_none() => Read::Unknown(TOOL),
-            5400..=5413 => Read::Unknown("the tool, without a tool table"),
-            5420..=5428 => Read::Unknown("the start position"),
-            0 | 5602.. => Read::Missing,
-            _ => match self.parameters.number(number) {
-                Some(held) => held.map(|value| value.or(Some(0.0))).into(),
-                None if self.is_kept(number) => Read::Unknown(KEPT),
-                None => Read::Value(Some(0.0)),
-            },
-        }
-    }
-
-    fn named(&self, name: &str) -> Read {
-        if let Some(held) = self.parameters.named(name) {
-            return held.map(|value| value.or(Some(0.0))).into();
-        }
-        let place = matches!(name.as_bytes(), [b'_', b'a'..=b'c' | b'u'..=b'z']);
-        if place && self.is_compensating() {
-            return Read::Unknown(UNDER_COMPENSATION);
-        }
-        if matches!(name, "_feed" | "_motion_mode") {
-            self.reads_state.set(true);
-        }
-        if let Some(value) = self.named_parameter(name) {
-            return Read::Value(Some(value));
-        }
-        if is_tool(name) {
-            return Read::Unknown(TOOL);
-        }
-        if name.starts_with("_hal[") || name.starts_with("_ini[") {
-            return Read::Unknown("the machine's configuration");
-        }
-        Read::Missing
-    }
-
-    fn fanuc(&self) -> bool {
-        self.machine.controller.language.family != Family::Rs274
-    }
-}
-
-impl Control<'_> {
-    /// B-63944EN, "System Variables": what the program itself decides is known.
-    fn fanuc_variable(&self, number: u32) -> Read {
-        if matches!(number, 4001 | 4109) {
-            self.reads_state.set(true);
-        }
-        if matches!(number, 3001 | 3002 | 3011 | 3012) {
-            return Read::Unknown("the time");
-        }
-        if let Some(held) = self.parameters.number(number) {
-            return held.into();
-        }
-        let shifted = self.compensation.as_ref().is_some_and(|it| it.shifts());
-        if shifted && matches!(number, 5001..=5009 | 5021..=5029 | 5041..=5049) {
-            return Read::Unknown(UNDER_COMPENSATION);
-        }
-        if self.is_kept(number) {
-            return Read::Unknown(KEPT);
-        }
-        let axis = |first: u32| (number - first) as usize;
-        let known = match number {
-            _ if self.is_common(number) => return Read::Value(None),
-            0 | 100..=199 | 500..=999 => return Read::Value(None),
-            4001..=4021 => self.modal_code(number),
-            4120 if self.tools.selected_known().is_none() => return Read::Unknown(TOOL),
-            4120 => self.tools.selected_known().map(f64::from),
-            4109 => self.modal.feed.as_ref().map(|feed| feed.value),
-            4119 => Some(self.modal.spindle_rpm),
-            5001..=5009 => self.place(axis(5001)),
-            5021..=5029 => self.place_in_machine(axis(5021)),
-            5041..=5049 => self.place(axis(5041)),
-            _ => None,
-        };
-        match known {
-            Some(value) => Read::Value(Some(value)),
-            None if number >= 1000 => Read::Unknown("the state of the control"),
-            None => Read::Missing,
-        }
-    }
-
-    /// Whether the control keeps a variable whose value is not given.
-    fn is_kept(&self, number: u32) -> bool {
-        !self.parameters.complete && self.is_common(number)
-    }
-
-    /// Whether it keeps a variable from one program to the next.
-    pub(super) fn is_common(&self, number: u32) -> bool {
-        let kept = &self.machine.controller.language.kept_variables;
-        kept.iter()
-            .any(|[first, last]| (*first..=*last).contains(&number))
-    }
-
-    /// #4001 and so on: the G codes in force, by group.
-    fn modal_code(&self, number: u32) -> Option<f64> {
-        let system_a = self.dialect().lathe == Some(Lathe::A);
-        Some(match number {
-            4001 => f64::from(self.modal.motion.digit()? - b'0'),
-            4002 => match self.modal.plane {
-                [0, 1, 2] => 17.0,
-                [2, 0, 1] => 18.0,
-                _ => 19.0,
-            },
-            4003 if system_a => return None,
-            4003 if self.modal.absolute => 90.0,
-            4003 => 91.0,
-            4005 => match (self.modal.feed_mode, system_a) {
-                (FeedMode::InverseTime, _) => 93.0,
-                (FeedMode::PerMinute, false) => 94.0,
-                (FeedMode::PerRevolution, false) => 95.0,
-                (FeedMode::PerMinute, true) => 98.0,
-                (FeedMode::PerRevolution, true) => 99.0,
-            },
-            4006 if self.modal.mm_per_unit == 1.0 => 21.0,
-            4006 => 20.0,
-            4014 => match self.position.offsets().system {
-                system @ 1..=6 => 53.0 + f64::from(system),
-                _ => return None,
-            },
-            _ => return None,
-        })
-    }
-
-    /// Gives a parameter a value, or takes note that what it holds is not known; the
-    /// reason where it cannot have one.
-    pub(super) fn assign(&mut self, name: &Name<'_>, held: Held) -> Result<(), &'static str> {
-        match name {
-            Name::Number(0) => return Err("#0 is always null"),
-            Name::Number(number) if !self.fanuc() => {
-                if *number > 5601 {
-                    return Err("there are parameters up to #5601");
-                }
-                if let Ok(value) = held
-                    && self.set_system_parameter(*number, value.unwrap_or(0.0))
-                {
-                    return Ok(());
-                }
-                if self.is_system_parameter(*number) {
-                    return Err("it can only be read");
-                }
-            }
-            Name::Number(number) if self.is_common(*number) => {}
-            Name::Number(3000) => return Err("#3000 raises an alarm, which ends the program"),
-            Name::Number(number @ 1000..) if !(3000..4000).contains(number) => {
-                return Err("it belongs to the control, and may change offsets");
-            }
-            Name::Text(name) if self.named_parameter(name).is_some() || is_tool(name) => {
-                return Err("it can only be read");
-            }
-            _ => {}
-        }
-        if self.parameters.set(name, held) {
-            Ok(())
-        } else {
-            Err("there are more than 100000 of them")
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Blocks that are not executed: after the end, skipped, or with words in what is no comment
 //! for the control.
 
-use super::execute::Control;
+use super::control::Control;
 use super::report::Report;
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;

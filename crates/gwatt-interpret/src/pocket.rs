@@ -10,7 +10,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use crate::code::Motion;
 use gwatt_machine::{AxisKind, AxisSet, AxisValues};
 use gwatt_motion::{Arc, MoveKind};

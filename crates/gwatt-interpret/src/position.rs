@@ -7,7 +7,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::flow::Limits;
+use super::flow::limits::Limits;
 use super::frame::Frame;
 use super::given::GivenVariable;
 use super::offsets::Offsets;

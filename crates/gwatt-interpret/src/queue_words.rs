@@ -2,8 +2,8 @@
 //! tool lengths, and comments that act.
 
 use super::code::GCode;
-use super::execute::{Control, Run};
-use super::motion::EXTRUDER;
+use super::control::{Control, Run};
+use super::places::EXTRUDER;
 use super::report::Report;
 use gwatt_machine::{CornerRule, Family, MESSAGES};
 use gwatt_motion::{Action, ActionKind, Corner, Step};

@@ -1,9 +1,9 @@
 //! G28, G30 and G92: reference points and offsets.
 
-use super::execute::{Control, Run};
-use super::motion::POSITION_MAX_MM;
+use super::control::{Control, Run};
+use super::letters::bit;
 use super::offsets::REFERENCE;
-use super::words::bit;
+use super::places::POSITION_MAX_MM;
 use arrayvec::ArrayVec;
 use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, RapidPath};
 use gwatt_motion::MoveKind;

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::code::{code_number, refused_g_name, refused_m_name};
+use super::g_codes::{code_number, refused_g_name, refused_m_name};
 use gwatt_machine::{Family, Language};
 use gwatt_syntax::Word;
 use gwatt_syntax::diagnostic::{Diagnostic, Severity};
@@ -79,9 +79,9 @@ impl Report<'_, '_> {
     /// Reports a G word that is not supported.
     pub(super) fn refused_g(&mut self, word: Word, language: &Language) {
         let name = code_number(word.value).map_or("a word", |number| {
-            let own = super::osp::refused_name(number).filter(|_| language.dialect.osp);
+            let own = super::osp::codes::refused_name(number).filter(|_| language.dialect.osp);
             match language.family {
-                Family::Siemens => super::siemens::refused_name(number),
+                Family::Siemens => super::siemens::codes::refused_name(number),
                 _ => own.unwrap_or_else(|| refused_g_name(number)),
             }
         });

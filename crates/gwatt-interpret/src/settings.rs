@@ -1,9 +1,10 @@
 //! Words that set modal state: feed, units, plane, modes; and the time of a
 //! dwell.
 
-use super::code::{GCode, Motion, path_mode};
-use super::execute::{Control, Run};
+use super::code::{GCode, Motion};
+use super::control::{Control, Run};
 use super::feed_expression::expression_of;
+use super::g_codes::path_mode;
 use super::modal::{Feed, NumberText};
 use gwatt_machine::{Family, PathMode};
 use gwatt_motion::{ActionKind, Corner, FeedMode};

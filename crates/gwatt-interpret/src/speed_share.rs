@@ -4,7 +4,7 @@
 //! M67 acts as the next move begins, M68 waits for the axes and acts at once, and neither does
 //! anything unless M52 has switched it on. What follows the spindle keeps its speed.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::knob::KnobState;
 use gwatt_machine::{Knob, KnobTarget, Machine};
 use gwatt_motion::{Move, MoveKind, Step};

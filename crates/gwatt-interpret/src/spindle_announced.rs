@@ -1,10 +1,7 @@
 //! What the spindle is to do, announced as far as it changes: for machines that
 //! have one on their converter.
 
-use super::execute::{Control, Run};
-use gwatt_machine::Family;
-use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_motion::ActionKind;
+mod control;
 
 /// What was announced last.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -15,68 +12,4 @@ pub(super) struct Announced {
     /// Bits of the place, so that a place that is not known equals itself.
     center: Option<u64>,
     tool: f64,
-}
-
-impl Control<'_> {
-    /// Announces what has changed about the spindle.
-    pub(super) fn tell_spindle(&mut self, run: &mut Run<'_, '_>) {
-        let Some(spindle) = &self.machine.spindle else {
-            return;
-        };
-        let max_rpm = spindle.max_rpm;
-        let mut now = self.announced;
-        now.tool = self.tool_in_use();
-        now.rpm = self.modal.spindle_rpm;
-        (now.surface_mm_s, now.clamp_rpm, now.center) = (0.0, 0.0, None);
-        if let Some(limit_rpm) = self.spindle.unknown_up_to_rpm {
-            // Any speed up to the limit: how it follows X is not known.
-            now.surface_mm_s = f64::MAX;
-            now.clamp_rpm = limit_rpm.min(max_rpm);
-            now.center = Some(f64::NAN.to_bits());
-        } else if let Some(surface) = self.spindle.surface_mm_min {
-            now.surface_mm_s = surface / SECONDS_PER_MINUTE;
-            now.clamp_rpm = self.spindle.limit_rpm().min(max_rpm);
-            let known = !self.bent && !self.position.unknown.contains(0);
-            let center = if known {
-                self.position.frame.shifted(0, 0.0)
-            } else {
-                f64::NAN
-            };
-            now.center = Some(center.to_bits());
-            // Where it stands; on the way it follows X.
-            now.rpm = self.highest_rpm(&self.position.at, None);
-        }
-        let before = std::mem::replace(&mut self.announced, now);
-        if now.tool != before.tool {
-            run.act(ActionKind::ToolLoaded, now.tool);
-        }
-        let follows = (now.surface_mm_s, now.clamp_rpm, now.center);
-        if follows != (before.surface_mm_s, before.clamp_rpm, before.center) {
-            if let Some(center) = now.center {
-                run.act(ActionKind::SpindleClamp, now.clamp_rpm);
-                run.act(ActionKind::SpindleCenter, f64::from_bits(center));
-            }
-            run.act(ActionKind::SurfaceSpeed, now.surface_mm_s);
-        }
-        if now.rpm != before.rpm {
-            run.act(ActionKind::SpindleRpm, now.rpm);
-        }
-    }
-
-    /// The tool that cuts: on a lathe T turns the turret at once, and its last
-    /// two digits are an offset.
-    fn tool_in_use(&self) -> f64 {
-        let language = &self.machine.controller.language;
-        let selected = self.tools.selected;
-        let number = if language.dialect.lathe.is_some() && language.family == Family::Iso {
-            if selected >= 100 {
-                selected / 100
-            } else {
-                selected
-            }
-        } else {
-            self.tools.loaded
-        };
-        f64::from(number)
-    }
 }

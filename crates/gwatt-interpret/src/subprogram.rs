@@ -4,9 +4,10 @@
 //! manual (M97, M98, M99, G65), `LinuxCNC` ("M98 and M99").
 
 use super::code::GCode;
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::expression::Value;
-use super::jump::{Call, Label, Target, Transfer};
+use super::jump::{Call, Target, Transfer};
+use super::label::Label;
 use super::parameters::LOCALS;
 use gwatt_machine::Family;
 use gwatt_syntax::Word;

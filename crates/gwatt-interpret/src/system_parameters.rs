@@ -3,7 +3,7 @@
 //!
 //! Offsets and tools are in the machine's unit, places in the program's.
 
-use super::execute::Control;
+use super::control::Control;
 use super::offsets::{FIRST, LAST, PARAMETER_AXES};
 use gwatt_machine::Family;
 

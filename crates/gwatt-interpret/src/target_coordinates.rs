@@ -1,9 +1,9 @@
 //! Targets that are more than offsets: turned, scaled or mirrored coordinates,
 //! polar coordinates, diameters.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::frame::sin_cos_deg;
-use super::words::{AXIS_LETTERS, POLAR, bit};
+use super::letters::{AXIS_LETTERS, POLAR, bit};
 use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family};
 use gwatt_syntax::source::Span;
 
@@ -98,7 +98,7 @@ impl Control<'_> {
         }
         if end
             .iter()
-            .any(|place| place.abs() > super::motion::POSITION_MAX_MM)
+            .any(|place| place.abs() > super::places::POSITION_MAX_MM)
         {
             run.report
                 .error(
@@ -116,7 +116,7 @@ impl Control<'_> {
         if run.words.incremental & bit(ALL_AXES[axis].letter()) != 0 {
             return false;
         }
-        if axis == super::motion::EXTRUDER {
+        if axis == super::places::EXTRUDER {
             self.modal.extruder_absolute
         } else {
             self.modal.absolute

@@ -3,7 +3,7 @@
 //!
 //! K is the way in one revolution, along the path.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::special::Turning;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::MoveKind;

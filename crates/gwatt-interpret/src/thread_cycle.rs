@@ -7,7 +7,7 @@
 //! line, along the thread to Z, and out; with Q its start is moved so that one
 //! flank is cut; with L and E its ends run out over the length E.
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::thread::FIXED;
 use gwatt_machine::AxisValues;
 use gwatt_motion::MoveKind;

@@ -8,7 +8,7 @@
 
 use std::f64::consts::TAU;
 
-use super::execute::{Control, Run};
+use super::control::{Control, Run};
 use super::{frame, stray};
 use gwatt_machine::{AxisSet, AxisValues, Family};
 use gwatt_motion::{Arc, FeedMode, MoveKind, Step, Stray};

@@ -6,7 +6,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::Fault;
+use super::fault::Fault;
 use crate::vector::{Vector, along, cross, dot, left, length, scale, sub, unit};
 
 /// Bends below it are passed by LinuxCNC as if the path were smooth, rad.

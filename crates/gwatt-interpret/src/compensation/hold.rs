@@ -1,9 +1,9 @@
 //! Moves that wait until the next one says where they end.
 
-use super::Fault;
 use super::corner::Track;
+use super::fault::Fault;
 use crate::arc::{self, Ends, Slack};
-use crate::motion::STANDSTILL_MM;
+use crate::places::STANDSTILL_MM;
 use crate::stray;
 use crate::vector::{Vector, add, distance, dot, sub};
 use gwatt_machine::AxisSet;

@@ -7,7 +7,7 @@
 //! G28, G92), which is not followed.
 
 use crate::code::GCode;
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use gwatt_machine::Family;
 use gwatt_syntax::source::Span;
 

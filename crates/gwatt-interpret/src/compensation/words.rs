@@ -3,7 +3,7 @@
 use super::hold::Hold;
 use super::{Compensation, State};
 use crate::code::GCode;
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{CompensationCorner, CompensationLead, CutterCompensation, Family};
 use gwatt_syntax::source::Span;

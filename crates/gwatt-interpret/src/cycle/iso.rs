@@ -6,7 +6,7 @@
 //! initial level (G98) or to R (G99). What was written once holds until G80 or
 //! a word of G0 to G3.
 
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::special::Turning;
 use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
 use gwatt_motion::CYCLE as FIXED;

@@ -2,9 +2,9 @@
 //! sections of its G-code reference; the order of moves, and what happens where
 //! the text is silent, as its interpreter 2.9 shows).
 
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
+use crate::letters::{AXIS_LETTERS, POLAR, bit};
 use crate::special::Turning;
-use crate::words::{AXIS_LETTERS, POLAR, bit};
 use gwatt_machine::{ALL_AXES, AXES, AxisValues, PathMode};
 use gwatt_motion::CYCLE as FIXED;
 use gwatt_motion::{ActionKind, Corner, FeedMode, MoveKind};

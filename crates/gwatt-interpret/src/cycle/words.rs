@@ -1,7 +1,7 @@
 //! Words of a cycle that every family has.
 
 use super::Initial;
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use gwatt_machine::{ALL_AXES, AxisKind};
 
 impl Control<'_> {

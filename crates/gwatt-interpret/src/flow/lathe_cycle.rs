@@ -3,7 +3,8 @@
 use super::{Flow, FlowError};
 use crate::execute::Interpreter;
 use crate::jump::{Transfer, Verb};
-use crate::lathe_cycle::{LatheCycle, Reader};
+use crate::lathe_cycle::LatheCycle;
+use crate::lathe_cycle::contour::Reader;
 use crate::parameters::LOCALS;
 use crate::report::Diagnostics;
 use gwatt_motion::Step;

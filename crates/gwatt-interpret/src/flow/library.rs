@@ -1,11 +1,13 @@
 //! Subprograms in files of their own.
 
+mod loading;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Flow, FlowError, Place};
-use crate::jump::Label;
+use super::error::FlowError;
+use crate::label::Label;
 use crate::position::Reading;
 use crate::shelf::Shelf;
 
@@ -200,20 +202,6 @@ impl Library {
         self.loaded.push(shown);
         self.paths.push(path.to_owned());
         self.numbers.push(number);
-    }
-}
-
-impl Flow {
-    /// Where the files that were read so far lie.
-    #[must_use]
-    pub fn paths(&self) -> &[PathBuf] {
-        self.library.paths()
-    }
-
-    /// The number of a text, by which moves and reports know it.
-    #[must_use]
-    pub fn number(&self, place: Place) -> u16 {
-        self.library.number(place.text)
     }
 }
 

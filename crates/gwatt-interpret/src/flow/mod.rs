@@ -3,41 +3,38 @@
 
 mod conclude;
 mod contour;
+mod error;
 mod go;
 mod landmarks;
 mod lathe_cycle;
 pub(crate) mod library;
-mod limits;
+pub(crate) mod limits;
 mod macro_b;
 mod macro_file;
 mod o_word;
 mod outline;
+mod place;
+mod section;
 mod siemens;
 mod text;
 
 use std::collections::HashMap;
 
+use self::error::FlowError;
 use self::library::Library;
 pub use self::limits::Limits;
-use self::siemens::Section;
+pub use self::place::Place;
+use self::section::Section;
 use self::text::{Search, Text};
 use super::execute::Interpreter;
-use super::jump::{Call, Label, Target, Transfer};
+use super::jump::{Call, Target, Transfer};
+use super::label::Label;
 use super::parameters::{LOCALS, Scope};
 use super::position::Reading;
-use super::statement::Keyword;
+use super::statement::keyword::Keyword;
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;
 use gwatt_syntax::source::{Span, split_line_end};
-
-/// A line of one of the texts, from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Place {
-    /// Which text; 0 is the program itself.
-    pub text: usize,
-    /// Its line, from 0.
-    pub line: usize,
-}
 
 /// Runs through a program in the order of its execution.
 #[derive(Debug)]
@@ -118,23 +115,6 @@ enum LoopKind {
     While,
     Do,
     Repeat { left: u64 },
-}
-
-/// What went wrong, at the line that is being executed.
-pub(super) struct FlowError {
-    rule: &'static str,
-    message: String,
-    help: String,
-}
-
-impl FlowError {
-    fn new(rule: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self {
-            rule,
-            message: message.into(),
-            help: help.into(),
-        }
-    }
 }
 
 impl Flow {

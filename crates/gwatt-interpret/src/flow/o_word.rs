@@ -4,8 +4,9 @@ use super::library::Library;
 use super::text::{Search, Text};
 use super::{Flow, FlowError, Loop, LoopKind, Place, Style};
 use crate::execute::Interpreter;
-use crate::jump::{Label, Verb};
-use crate::statement::Keyword;
+use crate::jump::Verb;
+use crate::label::Label;
+use crate::statement::keyword::Keyword;
 use gwatt_syntax::source::Span;
 
 /// Repetitions that one loop may ask for.

@@ -2,23 +2,12 @@
 //! structures, repetition of sections, subprograms).
 
 use super::outline::Outline;
+use super::section::Section;
 use super::text::Text;
 use super::{Flow, FlowError, Place, Style};
 use crate::execute::Interpreter;
 use crate::jump::{Direction, Siemens};
 use crate::parameters::LOCALS;
-
-/// A section that is repeated.
-#[derive(Debug)]
-pub(super) struct Section {
-    text: usize,
-    /// Calls that were open when it began.
-    depth: usize,
-    first: usize,
-    last: usize,
-    left: u64,
-    back: usize,
-}
 
 impl Flow {
     pub(super) fn siemens(

@@ -6,8 +6,9 @@ use super::landmarks::Landmarks;
 use super::outline::Outline;
 use crate::execute::Interpreter;
 use crate::expression::Fault;
-use crate::jump::Label;
-use crate::statement::{Keyword, Sight, glance, glance_at};
+use crate::label::Label;
+use crate::statement::keyword::Keyword;
+use crate::statement::{Sight, glance, glance_at};
 use gwatt_syntax::source::lines;
 use gwatt_syntax::{Block, scan_line};
 

@@ -1,7 +1,7 @@
 //! A block, word by word ("Structure of NC blocks", "Program structure").
 
 use super::Isg;
-use crate::execute::Control;
+use crate::control::Control;
 use crate::fast_path::is_direct;
 use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::jump::Go;

@@ -3,7 +3,8 @@
 use super::piece::{Corner, Piece, Round};
 use super::{LatheCycle, X, Z};
 use crate::code::{GCode, Motion};
-use crate::execute::{Control, Interpreter, Run};
+use crate::control::{Control, Run};
+use crate::execute::Interpreter;
 use crate::facts::Facts;
 use crate::jump::Transfer;
 use crate::report::{Diagnostics, Report};

@@ -1,7 +1,7 @@
 //! Commands that change accelerations and jerk: `DynOvr=0.4`, `#set paramPathDynamics( … )#`.
 
 use super::dynamics::PATH_AXES;
-use crate::execute::Control;
+use crate::control::Control;
 use crate::expression::Fault;
 use gwatt_machine::AxisKind;
 use gwatt_syntax::Block;

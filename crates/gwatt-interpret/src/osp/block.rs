@@ -1,7 +1,7 @@
 //! A block, word by word ("Program Configuration", "Sequence Name").
 
 use super::Osp;
-use crate::execute::Control;
+use crate::control::Control;
 use crate::expression::Fault;
 use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::jump::Go;

@@ -5,11 +5,12 @@
 //! point. Blocks that are more than plain words are read here, word by word.
 
 mod block;
-mod codes;
+pub(super) mod code;
+pub(super) mod codes;
 mod statement;
 mod variable;
 
-pub(super) use codes::{OspCode, osp_code, refused_name};
+pub(super) use codes::osp_code;
 
 use super::formula::Kept;
 use gwatt_syntax::Block;

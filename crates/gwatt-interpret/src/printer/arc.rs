@@ -1,7 +1,7 @@
 //! Arcs that other controllers refuse.
 
 use crate::arc::{self, Ends};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use gwatt_machine::{AxisSet, AxisValues};
 use gwatt_motion::MoveKind;
 

@@ -2,8 +2,9 @@
 
 use super::line::{Head, Parameters, Text, has, value};
 use super::verify_checksum;
-use crate::code::{GCode, Motion, g_code};
-use crate::execute::{Control, Run};
+use crate::code::{GCode, Motion};
+use crate::control::{Control, Run};
+use crate::g_codes::g_code;
 use crate::report::Report;
 use crate::tools::ToolLength;
 use gwatt_machine::{Command, ExtruderMode, Family};

@@ -5,7 +5,7 @@
 //! Klipper, "G-Codes", `[heaters]`, `[fan_generic]`.
 
 use super::line::{Parameters, Text, value};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use gwatt_syntax::source::Span;
 
 /// Number under which a fan or heater with a name is kept.

@@ -1,9 +1,9 @@
 //! Positions and states that a program keeps and comes back to.
 
 use super::line::{Parameters, has, value};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::modal::Feed;
-use crate::motion::EXTRUDER;
+use crate::places::EXTRUDER;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
 use gwatt_motion::{ActionKind, MoveKind};

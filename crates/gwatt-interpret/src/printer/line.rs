@@ -180,7 +180,7 @@ impl<'t> Text<'t> {
             if begins
                 && let Some(number) = self
                     .read(digits, end)
-                    .and_then(super::super::code::code_number)
+                    .and_then(super::super::g_codes::code_number)
             {
                 return (Head::Code(letter, number, span), end);
             }

@@ -7,10 +7,10 @@
 use super::command::{note_advance, note_levelling};
 use super::kept::Back;
 use super::line::{Parameters, Text};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::flow::library;
 use crate::jump::Transfer;
-use crate::motion::EXTRUDER;
+use crate::places::EXTRUDER;
 use gwatt_machine::Command;
 use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;

@@ -2,8 +2,8 @@
 
 use super::command::note_levelling;
 use super::line::Parameters;
-use crate::execute::{Control, Run};
-use crate::motion::EXTRUDER;
+use crate::control::{Control, Run};
+use crate::places::EXTRUDER;
 use gwatt_machine::{AxisId, AxisSet};
 use gwatt_motion::{ActionKind, MoveKind};
 use gwatt_syntax::source::Span;

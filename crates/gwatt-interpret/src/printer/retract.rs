@@ -1,8 +1,8 @@
 //! G10 and G11: filament that the firmware pulls back and pushes forward.
 
 use super::line::{Parameters, has, value};
-use crate::execute::{Control, Run};
-use crate::motion::EXTRUDER;
+use crate::control::{Control, Run};
+use crate::places::EXTRUDER;
 use gwatt_machine::{AxisId, AxisSet};
 use gwatt_motion::{ActionKind, MoveKind};
 use gwatt_syntax::source::Span;

@@ -1,8 +1,8 @@
 //! What settings do to a move: M220, M221, M200, M203, M205.
 
 use super::Course;
-use crate::execute::{Control, Run};
-use crate::motion::EXTRUDER;
+use crate::control::{Control, Run};
+use crate::places::EXTRUDER;
 use gwatt_machine::{AxisSet, AxisValues};
 
 /// X and Y, which Klipper's velocity limit speaks for.

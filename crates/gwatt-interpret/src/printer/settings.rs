@@ -1,7 +1,7 @@
 //! Settings that change later moves: percentages, speed limits, retracts.
 
 use super::line::{Parameters, value};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::knob::KnobState;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{AxisId, KnobArgument};

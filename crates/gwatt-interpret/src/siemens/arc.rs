@@ -6,7 +6,7 @@ use super::{Measure, Siemens};
 use crate::arc::{self, ArcFault, Ends, Slack};
 use crate::arc_words::report_fault;
 use crate::code::Motion;
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::turned_arc::Tilted;
 use gwatt_machine::{ALL_AXES, AxisKind, AxisValues};
 use gwatt_motion::{Arc, MoveKind};

@@ -1,10 +1,10 @@
 //! The order of execution of a block: modes, feed, spindle, tool, M words, then
 //! motion, then a cycle or a modal call, then stops and ends.
 
-use super::codes::Code;
+use super::code::Code;
 use super::{Called, Siemens};
 use crate::code::{GCode, Motion};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::jump::{Siemens as Go, Transfer};
 use crate::macro_block::not_finite;
 use crate::report::Report;
@@ -317,7 +317,7 @@ impl Control<'_> {
                 GCode::Siemens(Code::Suppress) => state.extra.machine_coordinates = true,
                 GCode::Siemens(Code::Limits) => {
                     // Limits of the work area or of the spindle: data.
-                    run.words.unused &= !super::super::words::AXIS_LETTERS;
+                    run.words.unused &= !super::super::letters::AXIS_LETTERS;
                     run.words.take(b'S');
                 }
                 GCode::WorkOffset(offset) if offset > 1 => {

@@ -5,7 +5,7 @@
 //! axis at right angles to the plane; levels are absolute.
 
 use super::Siemens;
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use gwatt_syntax::source::Span;
 
 /// Why no word of such a block is changed.

@@ -2,7 +2,7 @@
 
 use super::Siemens;
 use super::cycle::{Call, Kind, Levels};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::modal::{Feed, NumberText};
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::MoveKind;

@@ -4,8 +4,8 @@
 //! array variables (DEF, SET, REP)", "Subprogram with parameter transfer
 //! (PROC)".
 
-use super::Saved;
 use super::reading::Reading;
+use super::saved::Saved;
 use super::value::{COUNT_MAX, Kind, Scope, Val, Variable};
 use crate::formula::Outcome;
 

@@ -8,7 +8,7 @@
 
 use super::reading::Reading;
 use super::value::Val;
-use crate::execute::Control;
+use crate::control::Control;
 use crate::formula::Outcome;
 use gwatt_machine::{AXES, AxisValues, Machine};
 

@@ -9,7 +9,8 @@
 mod arc;
 mod axis_name;
 mod block;
-mod codes;
+pub(super) mod code;
+pub(super) mod codes;
 mod cursor;
 mod cycle;
 mod cycle_moves;
@@ -25,6 +26,7 @@ mod pattern;
 mod polar;
 mod radius;
 mod reading;
+mod saved;
 mod setting;
 mod statement;
 mod system;
@@ -34,7 +36,7 @@ mod value;
 
 use std::collections::HashMap;
 
-pub(super) use codes::{Code, is_beyond_words, refused_name, siemens_code};
+pub(super) use codes::is_beyond_words;
 
 use self::frame::Frame;
 use self::value::{Argument, Scope, Val};
@@ -43,7 +45,7 @@ use super::compensation::Insert;
 use super::modal::Modal;
 use super::words::Words;
 use crate::knob::KnobState;
-use gwatt_machine::{AXES, AxisSet, AxisValues, LEVEL_GROUPS, Machine};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Machine};
 
 /// How the value of an axis is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -120,14 +122,6 @@ struct Polar {
     pole: [f64; 3],
     angle_deg: f64,
     radius: f64,
-}
-
-/// SAVE: what a subprogram gives back.
-#[derive(Debug)]
-struct Saved {
-    modal: Modal,
-    frame: Frame,
-    levels: [Option<u8>; LEVEL_GROUPS],
 }
 
 /// What a control of this language keeps besides the modal state.
@@ -220,7 +214,7 @@ impl Siemens {
         let thread = |code: &GCode| matches!(code, GCode::Motion(Motion::Special(_)));
         !self.active
             && !self.special
-            && words.present & super::words::bit(b'R') == 0
+            && words.present & super::letters::bit(b'R') == 0
             && !words.g.iter().any(|(code, ..)| thread(code))
     }
 

@@ -4,7 +4,7 @@
 use super::cycle::{Call, Kind};
 use super::frame_words::at_angle;
 use super::{Called, PatternAt, Siemens};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::jump::{Siemens as Go, Transfer};
 use gwatt_motion::MoveKind;
 

@@ -7,8 +7,8 @@
 use super::frame_words::at_angle;
 use super::target::Target;
 use super::{Measure, Siemens};
-use crate::execute::{Control, Run};
-use crate::words::AXIS_LETTERS;
+use crate::control::{Control, Run};
+use crate::letters::AXIS_LETTERS;
 use gwatt_machine::{AxisSet, AxisValues};
 use gwatt_syntax::source::Span;
 

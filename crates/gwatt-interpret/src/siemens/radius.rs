@@ -9,10 +9,10 @@ use super::value::{Kind, Val};
 use super::{Siemens, frame_words};
 use crate::code::GCode;
 use crate::compensation::{Choice, ContourFeed};
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::formula::Outcome;
 
-use super::codes::Code;
+use super::code::Code;
 
 /// Edges of tools that a program may describe.
 const EDGES_MAX: usize = 10_000;

@@ -2,7 +2,7 @@
 
 use super::value::{COUNT_MAX, Kind, Val};
 use super::{Extra, Siemens};
-use crate::execute::Control;
+use crate::control::Control;
 use crate::formula::{Cursor, Outcome};
 use gwatt_syntax::source::Span;
 

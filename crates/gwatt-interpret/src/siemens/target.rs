@@ -1,12 +1,12 @@
 //! Where a block goes: targets in program coordinates, straight moves,
 //! reference points.
 
-use super::codes::Code;
+use super::code::Code;
 use super::{Measure, Siemens};
 use crate::code::{GCode, Motion};
-use crate::execute::{Control, Run};
-use crate::motion::POSITION_MAX_MM;
-use crate::words::AXIS_LETTERS;
+use crate::control::{Control, Run};
+use crate::letters::AXIS_LETTERS;
+use crate::places::POSITION_MAX_MM;
 use gwatt_machine::{ALL_AXES, AXES, AxisKind, AxisSet, AxisValues};
 use gwatt_motion::{Arc, MoveKind, Step};
 

@@ -4,7 +4,7 @@
 
 use super::Siemens;
 use super::target::Target;
-use crate::execute::{Control, Run};
+use crate::control::{Control, Run};
 use crate::thread::FIXED;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::{MoveKind, Step};

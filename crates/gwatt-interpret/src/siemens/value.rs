@@ -132,5 +132,5 @@ pub(super) struct Scope {
     /// VAR parameters with the caller's variables.
     pub(super) given_back: Vec<(String, String)>,
     /// SAVE: the state to return to.
-    pub(super) saved: Option<Box<super::Saved>>,
+    pub(super) saved: Option<Box<super::saved::Saved>>,
 }

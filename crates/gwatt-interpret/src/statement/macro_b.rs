@@ -1,7 +1,7 @@
 //! Statements of Fanuc custom macro B (B-63944EN, "Branch and Repetition").
 
 use super::{For, Statement, Target, Unread};
-use crate::execute::Control;
+use crate::control::Control;
 use crate::expression::{Reader, Value};
 use crate::jump::Transfer;
 use gwatt_syntax::source::Span;

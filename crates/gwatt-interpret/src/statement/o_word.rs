@@ -1,9 +1,11 @@
 //! O-words: subroutines, branches and loops (`LinuxCNC`, "O Codes").
 
+use super::keyword::{KEYWORDS, Keyword};
 use super::{For, Statement, Unread};
-use crate::execute::Control;
+use crate::control::Control;
 use crate::expression::{Fault, Reader};
-use crate::jump::{Label, Transfer, Verb};
+use crate::jump::{Transfer, Verb};
+use crate::label::Label;
 use crate::parameters::LOCALS;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
@@ -160,58 +162,6 @@ impl Control<'_> {
         Ok(None)
     }
 }
-
-/// The words that make an O-word flow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Keyword {
-    Sub,
-    EndSub,
-    Return,
-    Call,
-    If,
-    ElseIf,
-    Else,
-    EndIf,
-    While,
-    EndWhile,
-    Do,
-    Repeat,
-    EndRepeat,
-    Break,
-    Continue,
-}
-
-impl Keyword {
-    /// Whether it begins a branch or a loop; `while` may also end one.
-    pub(crate) fn opens(self) -> bool {
-        matches!(self, Self::If | Self::While | Self::Do | Self::Repeat)
-    }
-
-    /// As it is written.
-    pub(crate) fn name(self) -> &'static str {
-        let found = KEYWORDS.iter().find(|(_, keyword)| *keyword == self);
-        found.map_or("", |(name, _)| name)
-    }
-}
-
-// What begins like another stands after it.
-const KEYWORDS: [(&str, Keyword); 15] = [
-    ("sub", Keyword::Sub),
-    ("endsub", Keyword::EndSub),
-    ("return", Keyword::Return),
-    ("call", Keyword::Call),
-    ("if", Keyword::If),
-    ("elseif", Keyword::ElseIf),
-    ("else", Keyword::Else),
-    ("endif", Keyword::EndIf),
-    ("while", Keyword::While),
-    ("endwhile", Keyword::EndWhile),
-    ("do", Keyword::Do),
-    ("repeat", Keyword::Repeat),
-    ("endrepeat", Keyword::EndRepeat),
-    ("break", Keyword::Break),
-    ("continue", Keyword::Continue),
-];
 
 /// Takes the keyword that is next.
 fn keyword(reader: &mut Reader<'_>) -> Option<Keyword> {

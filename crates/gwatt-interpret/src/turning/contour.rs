@@ -6,7 +6,9 @@
 //! it is the contour. The program then goes on after them; after G70 it goes
 //! on at the next block.
 
-use super::{Control, Run, X, Z, note_parameter, turning_needs};
+use super::words::{note_parameter, turning_needs};
+use super::{X, Z};
+use crate::control::{Control, Run};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
 use crate::jump::Transfer;

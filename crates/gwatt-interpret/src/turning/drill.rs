@@ -2,7 +2,9 @@
 //! (G80-G89)" of lathes): R is a distance from where the cycle begins, and the
 //! tool comes back to there.
 
-use super::{Control, Run, X, Z, turning_needs};
+use super::words::turning_needs;
+use super::{X, Z};
+use crate::control::{Control, Run};
 use crate::special::Turning as Spin;
 use gwatt_machine::{ALL_AXES, AxisValues};
 use gwatt_motion::MoveKind::{Feed, Rapid, Tap};

@@ -1,7 +1,9 @@
 //! G74 and G75: pecking along Z or X, column by column ("End Face Peck Drilling
 //! Cycle (G74)", "Outer Diameter/Internal Diameter Drilling Cycle (G75)").
 
-use super::{Control, Run, X, Z, note_parameter, turning_needs};
+use super::words::{note_parameter, turning_needs};
+use super::{X, Z};
+use crate::control::{Control, Run};
 use gwatt_motion::MoveKind::{Feed, Rapid};
 
 impl Control<'_> {

@@ -3,7 +3,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::contour::contour_value;
-use super::{Run, X, Z};
+use super::{X, Z};
+use crate::control::Run;
 use gwatt_machine::AxisValues;
 use gwatt_motion::{Arc, Move, MoveKind};
 

@@ -8,7 +8,8 @@
 //! along, and feeds down.
 
 use super::piece::{Piece, TOLERANCE_MM, contour_wrong};
-use super::{Control, Run, X, Z};
+use super::{X, Z};
+use crate::control::{Control, Run};
 use gwatt_machine::AxisValues;
 use gwatt_motion::MoveKind;
 

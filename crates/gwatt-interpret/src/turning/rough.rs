@@ -9,7 +9,8 @@
 use super::contour::{Contour, ContourCycle};
 use super::piece::{Piece, TOLERANCE_MM, contour_wrong};
 use super::pockets::Stock;
-use super::{Control, Run, X, Z};
+use super::{X, Z};
+use crate::control::{Control, Run};
 use gwatt_machine::AxisSet;
 use gwatt_motion::{Move, MoveKind};
 

@@ -2,7 +2,9 @@
 //! system B ("Outer Diameter/Internal Diameter Cutting Cycle (G90)", "Thread
 //! Cutting Cycle (G92)", "End Face Turning Cycle (G94)").
 
-use super::{BOX, Control, FACE, Held, Run, THREAD_BOX, X, Z, note_parameter, turning_needs, xz};
+use super::words::{note_parameter, turning_needs};
+use super::{BOX, FACE, Held, THREAD_BOX, X, Z, xz};
+use crate::control::{Control, Run};
 use gwatt_motion::MoveKind::{Feed, Rapid};
 
 impl Control<'_> {

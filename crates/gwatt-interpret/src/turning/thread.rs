@@ -2,7 +2,9 @@
 //! Thread Cutting Cycle (G76)"; one block in the format of Series 10/11, which
 //! is that of Haas).
 
-use super::{Control, Run, X, Z, note_parameter, turning_needs, xz};
+use super::words::{note_parameter, turning_needs};
+use super::{X, Z, xz};
+use crate::control::{Control, Run};
 use gwatt_machine::AxisValues;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::MoveKind::{Rapid, Thread};

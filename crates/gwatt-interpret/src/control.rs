@@ -1,0 +1,126 @@
+//! What holds from block to block, and the block that is being executed. What the words do is
+//! in the files of their kinds, as methods of both.
+
+use std::cell::Cell;
+
+use super::compensation::{Choice, Compensation, Corners};
+use super::facts::Facts;
+use super::isg::Isg;
+use super::jump::Transfer;
+use super::knob::KnobState;
+use super::modal::Modal;
+use super::nci::Nci;
+use super::osp::Osp;
+use super::parameters::Parameters;
+use super::position::{BlockDelete, Position};
+use super::printer;
+use super::probe::Probe;
+use super::program_coordinates::{Polar, Programmed};
+use super::report::Report;
+use super::siemens::Siemens;
+use super::special::Special;
+use super::spindle_announced::Announced;
+use super::spindle_speed::SpindleMode;
+use super::state_words::{Saved, Switches};
+use super::statement::Traces;
+use super::tools::Tools;
+use super::turning::Turning;
+use super::words::Words;
+use gwatt_machine::Machine;
+use gwatt_motion::{Action, ActionKind, Step};
+use gwatt_syntax::Block;
+use gwatt_syntax::source::Span;
+
+/// What holds from block to block.
+#[derive(Debug)]
+pub(super) struct Control<'m> {
+    pub(super) machine: &'m Machine,
+    pub(super) modal: Modal,
+    pub(super) position: Position,
+    pub(super) knobs: KnobState,
+    pub(super) special: Special,
+    pub(super) loads: u32,
+    pub(super) loads_off: u32,
+    pub(super) tools: Tools,
+    pub(super) programmed: Programmed,
+    /// G16.
+    pub(super) polar: Option<Polar>,
+    pub(super) spindle: SpindleMode,
+    pub(super) announced: Announced,
+    pub(super) switches: Switches,
+    /// What M70 has saved, for each subprogram that is running.
+    pub(super) saved: Vec<Option<Box<Saved>>>,
+    /// What is known of the last probe; M66 has asked.
+    pub(super) probe: Probe,
+    pub(super) input: Option<f64>,
+    /// What a restored state still has to do and to say.
+    pub(super) pending_actions: Vec<(ActionKind, f64)>,
+    pub(super) lost: Option<&'static str>,
+    /// Targets are more than offsets: see `targets`.
+    pub(super) bent: bool,
+    /// Cutter compensation, while it is on or being left.
+    pub(super) compensation: Option<Box<Compensation>>,
+    /// What the next one goes by.
+    pub(super) choice: Choice,
+    /// Chamfers and rounded corners, once the program has any.
+    pub(super) corners: Option<Box<Corners>>,
+    pub(super) printer: printer::State,
+    /// The words of a block need a second look: see `dialect`.
+    pub(super) adapts: bool,
+    /// Blocks may take the short way: see `direct`.
+    pub(super) direct: bool,
+    /// The program that the block names to be called.
+    pub(super) callee: Option<String>,
+    pub(super) turning: Turning,
+    pub(super) block_delete: BlockDelete,
+    pub(super) begun: bool,
+    pub(super) ended: bool,
+    /// Some axis has been moved.
+    pub(super) moved: bool,
+    pub(super) has_program_number: bool,
+    /// Which run of the line this is, from 1.
+    pub(super) run: u32,
+    /// Which text it stands in; 0 is the program itself.
+    pub(super) text: u16,
+    pub(super) parameters: Parameters,
+    /// Lines that run again and again.
+    pub(super) traces: Traces,
+    pub(super) transfer: Option<Transfer>,
+    /// A value of the block shows the motion word or the F in force.
+    pub(super) reads_state: Cell<bool>,
+    /// What only SINUMERIK keeps; `None` for other languages.
+    pub(super) siemens: Option<Box<Siemens>>,
+    /// The same for the ISG kernel.
+    pub(super) isg: Option<Box<Isg>>,
+    /// The same for OSP.
+    pub(super) osp: Option<Box<Osp>>,
+    /// The same for NC I.
+    pub(super) nci: Option<Nci>,
+}
+
+/// The block that is being executed.
+pub(super) struct Run<'a, 'l> {
+    pub(super) line: u64,
+    pub(super) block: &'a Block,
+    pub(super) words: &'a mut Words,
+    pub(super) facts: &'a mut Facts,
+    pub(super) steps: &'a mut Vec<Step>,
+    pub(super) report: Report<'a, 'l>,
+}
+
+impl Run<'_, '_> {
+    pub(super) fn act(&mut self, kind: ActionKind, value: f64) {
+        self.steps.push(Step::Action(Action {
+            line: self.line,
+            kind,
+            value,
+        }));
+    }
+
+    pub(super) fn whole(&self) -> Span {
+        Span {
+            start: 0,
+            end: self.block.text_end,
+        }
+    }
+}

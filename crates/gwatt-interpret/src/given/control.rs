@@ -1,0 +1,42 @@
+//! Variables that the caller gives, as the control takes them.
+
+use super::{Given, GivenVariable, TOOL_OF_FANUC};
+use crate::control::Control;
+use crate::expression::Name;
+use gwatt_machine::Family;
+
+impl Control<'_> {
+    /// Takes over what was given.
+    pub(crate) fn give(&mut self, given: &GivenVariable) {
+        let value = given.value;
+        match &given.name {
+            Given::Number(number) if self.is_system_parameter(*number) => {
+                self.give_system_parameter(*number, value);
+            }
+            Given::Number(TOOL_OF_FANUC)
+                if self.machine.controller.language.family == Family::Iso =>
+            {
+                self.tools.give(value);
+            }
+            // There are fewer than a program may keep.
+            Given::Number(number) => {
+                let _ = self.parameters.set(&Name::Number(*number), Ok(Some(value)));
+            }
+            Given::Named(name) => {
+                let _ = self
+                    .parameters
+                    .set(&Name::Text(name.into()), Ok(Some(value)));
+            }
+            Given::R(number) => {
+                if let Some(siemens) = &mut self.siemens {
+                    siemens.keep(*number, value);
+                }
+            }
+            Given::Common(name) => {
+                if let Some(osp) = &mut self.osp {
+                    osp.keep(name, value);
+                }
+            }
+        }
+    }
+}

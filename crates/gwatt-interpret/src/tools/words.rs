@@ -1,0 +1,284 @@
+//! Words that choose, change and measure tools.
+
+use super::{LENGTH_AXIS, OFFSETS_OF_T, ToolLength};
+use crate::control::{Control, Run};
+use crate::tool_table::Tool;
+use gwatt_machine::{ALL_AXES, AXES, AxisValues, Family};
+use gwatt_syntax::source::Span;
+
+impl Control<'_> {
+    /// T: the tool must be in the table, where there is one (RS274/NGC; the
+    /// others also have numbers of offsets and magazines in it).
+    pub(crate) fn select_tool(&mut self, number: f64, run: &mut Run<'_, '_>) {
+        let span = run.words.span(b'T', run.block);
+        if self.machine.controller.language.family == Family::Rs274 {
+            let Some(number) = tool_number(number, span, run) else {
+                return;
+            };
+            if !self.tools.unknown() && self.tools.find(number).is_none() {
+                unknown_tool(number, span, run);
+                return;
+            }
+            self.tools.select(number);
+        } else if number >= 0.0 && number <= f64::from(u32::MAX) {
+            self.tools.select(number as u32);
+            if self.dialect().lathe.is_some() && self.osp.is_none() {
+                self.offset_of_lathe(run);
+            }
+        }
+    }
+
+    /// Fanuc's lathes: the last two digits of T are the number of an offset, 0 of none
+    /// ("Tool Offset"). The axes stay; the coordinates of the program change, where a table
+    /// gives the offsets.
+    fn offset_of_lathe(&mut self, run: &mut Run<'_, '_>) {
+        let number = self.tools.selected % OFFSETS_OF_T;
+        let known = if number == 0 {
+            Some(Tool::default())
+        } else {
+            self.tools.find(number).filter(|_| !self.tools.unknown())
+        };
+        self.tools.length_guessed = known.is_none();
+        if known.is_none() && !self.tools.unknown() {
+            let span = run.words.span(b'T', run.block);
+            let message = "offsets of tools that the table does not have are taken as 0";
+            run.report.note_once("no-tool-offset", message, span);
+        }
+        let tool = known.unwrap_or_default();
+        let offset = self.tool_offsets_mm(&tool);
+        if offset != self.position.offsets().tool {
+            self.position.change(|offsets| offsets.tool = offset);
+        }
+    }
+
+    /// M6, and M61 Q of `LinuxCNC`, which only says what is loaded.
+    pub(crate) fn load_tool(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
+        self.forget_way_back();
+        if number == 60 {
+            self.tools.loaded = self.tools.selected;
+            self.tools.loaded_told = self.tools.selected_told;
+            return;
+        }
+        let Some(value) = run.words.take(b'Q') else {
+            run.report
+                .error("tool-number", "M61 without a tool", span)
+                .help("write its number as Q");
+            return;
+        };
+        let at = run.words.span(b'Q', run.block);
+        let Some(tool) = tool_number(value, at, run) else {
+            return;
+        };
+        if !self.tools.unknown() && self.tools.find(tool).is_none() {
+            unknown_tool(tool, at, run);
+            return;
+        }
+        self.tools.loaded = tool;
+        self.tools.loaded_told = true;
+    }
+
+    /// G43 and its kin: the axes stay, the program coordinates change.
+    pub(crate) fn tool_length(&mut self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
+        let family = self.machine.controller.language.family;
+        let rs274 = family == Family::Rs274;
+        if !rs274 && family != Family::Iso {
+            // These have their lengths elsewhere than in H.
+            run.words.take(b'H');
+            let message = "the tool length is taken as 0";
+            run.report.note_once("no-tool-table", message, span);
+            self.tools.length_guessed = form != ToolLength::Off;
+            return;
+        }
+        let offset = match form {
+            ToolLength::Off => Some([0.0; AXES]),
+            ToolLength::Given => self.given_length(span, run),
+            ToolLength::On | ToolLength::Reversed | ToolLength::Added if rs274 => {
+                self.length_of_h(form, span, run)
+            }
+            ToolLength::On | ToolLength::Reversed | ToolLength::Added => {
+                let number = run.words.take(b'H');
+                self.fanuc_length(form, number, span, run)
+            }
+        };
+        match form {
+            ToolLength::Off => {
+                self.tools.length = None;
+                self.tools.length_guessed = false;
+            }
+            ToolLength::Given => self.tools.length_guessed = false,
+            ToolLength::On | ToolLength::Reversed | ToolLength::Added => {}
+        }
+        if let Some(offset) = offset {
+            self.position.change(|offsets| offsets.tool = offset);
+        }
+    }
+
+    /// H in a block of its own while G43 is in force (Fanuc).
+    pub(crate) fn tool_length_again(&mut self, run: &mut Run<'_, '_>) {
+        if self.machine.controller.language.family != Family::Iso {
+            return;
+        }
+        let Some((form, _)) = self.tools.length else {
+            return;
+        };
+        let span = run.words.span(b'H', run.block);
+        let number = run.words.take(b'H');
+        if number.is_some()
+            && let Some(offset) = self.fanuc_length(form, number, span, run)
+        {
+            self.position.change(|offsets| offsets.tool = offset);
+        }
+    }
+
+    fn length_of_h(
+        &mut self,
+        form: ToolLength,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> Option<AxisValues> {
+        let h = run.words.take(b'H');
+        if h.is_none() && form == ToolLength::Added {
+            run.report
+                .error("tool-number", "G43.2 without a tool", span)
+                .help("write its number as H");
+            return None;
+        }
+        let at = if h.is_some() {
+            run.words.span(b'H', run.block)
+        } else {
+            span
+        };
+        let number = match h {
+            Some(value) => tool_number(value, at, run)?,
+            None => self.tools.loaded,
+        };
+        // H0 is the tool in the spindle.
+        let number = if number == 0 {
+            self.tools.loaded
+        } else {
+            number
+        };
+        self.tools.length_guessed = self.tools.find(number).is_none() || self.tools.unknown();
+        let tool = self.known_tool(number, at, run)?;
+        let mut offset = self.tool_offsets_mm(&tool);
+        if form == ToolLength::Added {
+            let before = self.position.offsets().tool;
+            for (sum, before) in offset.iter_mut().zip(before) {
+                *sum += before;
+            }
+        }
+        Some(offset)
+    }
+
+    /// G43.1: the axis words are the offsets; those not named stay.
+    fn given_length(&mut self, span: Span, run: &mut Run<'_, '_>) -> Option<AxisValues> {
+        let has_motion = run.facts.motion_word.is_some();
+        if has_motion || !run.words.has_axes() {
+            run.report
+                .error("tool-length", "G43.1 needs axis words, and no motion", span)
+                .help("write it in a block of its own, as in G43.1 Z12.5");
+            return None;
+        }
+        let mut offset = self.position.offsets().tool;
+        let words: arrayvec::ArrayVec<_, AXES> = run.words.axes().collect();
+        for (axis, value) in words {
+            run.words.take(ALL_AXES[axis].letter());
+            offset[axis] = self.length_mm(axis, value);
+        }
+        Some(offset)
+    }
+
+    /// Fanuc: H is the number of an offset along Z; H0 takes it back.
+    fn fanuc_length(
+        &mut self,
+        form: ToolLength,
+        number: Option<f64>,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> Option<AxisValues> {
+        let number = match number {
+            Some(value) => tool_number(value, span, run)?,
+            None => self.tools.length.map_or(0, |(_, number)| number),
+        };
+        self.tools.length = Some((form, number));
+        self.tools.length_guessed = number != 0 && self.tools.find(number).is_none();
+        let tool = if number == 0 {
+            Tool::default()
+        } else {
+            self.known_tool(number, span, run)?
+        };
+        let mut offset = [0.0; AXES];
+        let length = self.tool_offsets_mm(&tool)[LENGTH_AXIS];
+        offset[LENGTH_AXIS] = if form == ToolLength::Reversed {
+            -length
+        } else {
+            length
+        };
+        Some(offset)
+    }
+
+    /// A tool; without a table one of no length, with a note.
+    pub(crate) fn known_tool(
+        &self,
+        number: u32,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> Option<Tool> {
+        if let Some(tool) = self.tools.find(number)
+            && !(number == 0 && self.tools.unknown())
+        {
+            return Some(tool);
+        }
+        if self.tools.unknown() {
+            let message = "without a tool table the tool length is taken as 0";
+            run.report.note_once("no-tool-table", message, span);
+            let number = number.max(self.tools.loaded);
+            return Some(Tool {
+                number,
+                ..Tool::default()
+            });
+        }
+        unknown_tool(number, span, run);
+        None
+    }
+
+    /// Radius in mm and orientation of a tool, or of the one in the spindle;
+    /// `None` if they are not known.
+    pub(crate) fn tool_edge(&self, number: Option<u32>) -> Option<(f64, u8)> {
+        let number = number.filter(|number| *number != 0);
+        let number = number.unwrap_or(self.tools.loaded);
+        let tool = self.tools.find(number)?;
+        let native = self.position.offsets().native(0);
+        let known = number != 0 || !self.tools.unknown();
+        known.then_some((tool.diameter / 2.0 * native, tool.orientation))
+    }
+
+    /// Offsets of a tool in mm (degrees).
+    pub(crate) fn tool_offsets_mm(&self, tool: &Tool) -> AxisValues {
+        let offsets = self.position.offsets();
+        std::array::from_fn(|axis| tool.offsets[axis] * offsets.native(axis))
+    }
+}
+
+/// The number of a tool; anything else is reported.
+pub(crate) fn tool_number(value: f64, span: Span, run: &mut Run<'_, '_>) -> Option<u32> {
+    let whole = (value + 0.5).floor();
+    // LinuxCNC takes what is this near to a whole number for one.
+    if (whole - value).abs() < 1e-4 && (0.0..=99_999_999.0).contains(&whole) {
+        return Some(whole as u32);
+    }
+    run.report
+        .error("tool-number", "this is no number of a tool", span)
+        .help("write a whole number from 0");
+    None
+}
+
+fn unknown_tool(number: u32, span: Span, run: &mut Run<'_, '_>) {
+    run.report
+        .error(
+            "unknown-tool",
+            format!("tool {number} is not in the tool table"),
+            span,
+        )
+        .help("add it to the table of --tool-table, or check the number");
+}
