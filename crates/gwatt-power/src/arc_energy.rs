@@ -4,7 +4,7 @@
 //! draw, by quadrature between the instants at which power has a kink: where an
 //! axis turns back, and where its mechanical or electrical power changes sign.
 
-use super::arc::Circle;
+use super::arc_circle::Circle;
 use super::circle::Motion;
 use super::quadrants::Pieces;
 use super::quadrature::integral;

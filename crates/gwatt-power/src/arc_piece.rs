@@ -4,7 +4,7 @@
 //! for. Output: samples of the power, and upper bounds between two samples for
 //! `search`.
 
-use super::arc::Circle;
+use super::arc_circle::Circle;
 use super::axis::Side;
 use super::circle::{Motion, Reach};
 use super::search::Bounded;

@@ -5,7 +5,7 @@
 //! others are judged at once.
 
 use super::assessment::{Assessment, Certificate, Loads};
-use super::bus::{Shown, SpindleBus, SpindleShare};
+use super::bus::{Shown, SpindleBus};
 use super::demand::{Demand, Want};
 use super::duty_cycle::{DutyCycle, Rating};
 use super::effect::{Effect, Switched};
@@ -17,6 +17,7 @@ use super::model::PowerModel;
 use super::motion::Motion;
 use super::observer::Observer;
 use super::pending::{Pending, Rider, Successor};
+use super::spindle_share::SpindleShare;
 use gwatt_machine::{Machine, PathMode};
 use gwatt_motion::{Action, Move, MoveKind};
 use gwatt_plan::{Overrides, PathFigures, path_figures, plan};

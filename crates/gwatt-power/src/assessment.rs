@@ -1,7 +1,7 @@
 //! What is known of a move once it is judged.
 
-use super::bus::SpindleShare;
 use super::demand::Demand;
+use super::spindle_share::SpindleShare;
 
 /// Which bound a figure rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

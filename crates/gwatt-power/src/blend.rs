@@ -8,7 +8,7 @@
 //! its own. Each phase of the profile is cut where an axis turns back; all are
 //! of constant acceleration.
 
-use super::arc::Circle;
+use super::arc_circle::Circle;
 use super::arc_energy;
 use super::axis::Side;
 use super::circle::{ArcAxis, Shape};

@@ -3,7 +3,7 @@
 //!
 //! Input: an arc and a phase of its profile. Output: an iterator of times.
 
-use super::arc::Circle;
+use super::arc_circle::Circle;
 use gwatt_plan::{Phase, PhaseKind};
 use std::f64::consts::FRAC_PI_2;
 

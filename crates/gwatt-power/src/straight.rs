@@ -15,6 +15,7 @@
 //! [`stretch`](super::stretch).
 
 use super::axis::{AxisPower, Side};
+use super::axis_bound::axis_bound_w;
 use super::demand::{Totals, Want};
 use super::interval::{Interval, Ramp};
 use super::model::{ConverterPower, PowerModel};
@@ -103,9 +104,6 @@ pub(super) fn totals(
     totals
 }
 
-/// What rounding may make of a bound, as a share.
-const ROUNDING: f64 = 1e-9;
-
 /// Upper bounds of what a straight path draws and feeds back, W, at a speed of at
 /// most `v` (mm/s) and accelerations of size `a` (mm/s²) at most.
 ///
@@ -126,28 +124,6 @@ pub(super) fn bound_w(
         fed_back_w += fed_back;
     }
     [drawn_w, fed_back_w]
-}
-
-/// The same of one axis, whose share of the path does not change.
-#[inline]
-pub(super) fn axis_bound_w(
-    power: &AxisPower,
-    axis: usize,
-    mv: &Move,
-    [v, a]: [f64; 2],
-) -> [f64; 2] {
-    let direction = (mv.end[axis] - mv.start[axis]) * power.si_per_unit / mv.length_mm;
-    let inertia = power.mass * (direction * a).abs();
-    let gravity = power.gravity * direction.signum();
-    let speed = direction.abs() * v;
-    let drive = inertia * power.accel_factor(Side::Motor, true);
-    let brake = inertia * power.accel_factor(Side::Regen, false);
-    let drag = power.coulomb_most() + power.viscous_most() * speed;
-    let force = drive.max(brake) + drag + gravity.abs();
-    let drawn_w = (speed * (drive + drag + gravity)).max(0.0) * power.inverse_efficiency;
-    let least = power.coulomb * power.friction_factor(Side::Regen) + gravity;
-    let fed_back_w = (speed * (brake - least)).max(0.0) * power.efficiency;
-    [drawn_w + power.copper * force * force, fed_back_w].map(|power_w| power_w * (1.0 + ROUNDING))
 }
 
 /// Whether a phase has one acceleration.

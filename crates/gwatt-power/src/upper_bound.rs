@@ -13,7 +13,7 @@
 //! the path is the same all along, come on top one by one.
 
 use super::axis::{AxisPower, Side};
-use super::straight;
+use super::axis_bound::axis_bound_w;
 use gwatt_machine::AxisSet;
 use gwatt_motion::Move;
 
@@ -77,7 +77,7 @@ impl UpperBound {
             idle_w + v_si * force * self.inverse_efficiency + self.copper * force * force;
         let mut fed_back_w = v_si * (inertia + self.excess);
         for axis in AxisSet(mv.moving.0 & self.axes.0 & !XYZ).iter() {
-            let [drawn, fed_back] = straight::axis_bound_w(&axes[axis], axis, mv, [v, a]);
+            let [drawn, fed_back] = axis_bound_w(&axes[axis], axis, mv, [v, a]);
             drawn_w += drawn;
             fed_back_w += fed_back;
         }

@@ -2,6 +2,7 @@
 //! them are through, then carried out.
 
 use super::SpindleBus;
+use super::queued::Queued;
 use crate::Assessment;
 use crate::spindle_trace::SpindleSpan;
 use crate::surface_speed::Surface;
@@ -10,14 +11,6 @@ use gwatt_motion::{Action, ActionKind, Move};
 
 /// Commands that wait before it is looked whether they still must.
 const QUEUE: usize = 4096;
-
-/// A command that waits for the moves before it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Queued {
-    /// How many moves come before it.
-    pub(super) after: u64,
-    pub(super) action: Action,
-}
 
 impl SpindleBus<'_> {
     /// Takes an action.

@@ -15,6 +15,7 @@
 mod count;
 mod driven;
 mod constant_speed;
+mod glided;
 mod emit;
 mod joints;
 mod open;

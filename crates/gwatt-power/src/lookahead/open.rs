@@ -1,6 +1,6 @@
 //! A move that waits for what is planned after it, and how moves take part.
 
-use super::constant_speed::Glided;
+use super::glided::Glided;
 use super::pace::Pace;
 use crate::assessment::Assessment;
 use crate::demand::Want;

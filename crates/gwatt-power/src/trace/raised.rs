@@ -131,7 +131,7 @@ impl Tracer<'_> {
     pub(super) fn raised_turn(
         &self,
         mv: &Move,
-        circle: &super::super::arc::Circle<'_>,
+        circle: &super::super::arc_circle::Circle<'_>,
         part: &Phase,
         out: &mut impl FnMut(Slice),
     ) {
@@ -149,7 +149,7 @@ impl Tracer<'_> {
     pub(super) fn raised_blend(
         &self,
         lead: &Move,
-        (blend, circle): (&Blend, &super::super::arc::Circle<'_>),
+        (blend, circle): (&Blend, &super::super::arc_circle::Circle<'_>),
         part: &Phase,
         out: &mut impl FnMut(Slice),
     ) {
@@ -169,7 +169,7 @@ impl Tracer<'_> {
     fn turned_floor_w(
         &self,
         mv: &Move,
-        circle: &super::super::arc::Circle<'_>,
+        circle: &super::super::arc_circle::Circle<'_>,
         own: &Phase,
         shares: &impl Fn([f64; 2]) -> PathShares,
     ) -> f64 {

@@ -1,6 +1,6 @@
 //! Slices of arcs and blends: raised chords of the power.
 
-use super::super::arc::Circle;
+use super::super::arc_circle::Circle;
 use super::super::arc_piece::{Piece, Sample};
 use super::super::blend;
 use super::super::quadrants::Pieces;

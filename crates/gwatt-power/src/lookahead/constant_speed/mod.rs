@@ -9,6 +9,7 @@
 mod terms;
 
 use super::Ahead;
+use super::glided::Glided;
 use super::joints::glide_over;
 use super::open::Open;
 use super::pace::Pace;
@@ -54,14 +55,6 @@ struct Glide {
     /// The first move that is not final.
     first: u64,
     /// Σ 2·a·L, at least, of the moves after the first one.
-    ramp2: f64,
-}
-
-/// What a move that glides comes to.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Glided {
-    length_mm: f64,
-    /// 2·a·L, at least.
     ramp2: f64,
 }
 
@@ -285,16 +278,6 @@ impl Ahead {
             } else {
                 side.planner.push(&side.element);
             }
-        }
-    }
-}
-
-impl Glided {
-    /// A line that is run as it is.
-    fn whole(line: &Line, accel_share: f64) -> Self {
-        Self {
-            length_mm: line.length_mm,
-            ramp2: 2.0 * accel_share * line.least_accel_mm_s2 * line.length_mm,
         }
     }
 }
