@@ -1,16 +1,16 @@
 //! The file's structs to the validated machine.
 
+use super::converter_name::converter_of;
 use super::findings::Findings;
-use super::machine_file::{
-    LimitsTable, LoadTable, MachineFile, PathModeName, PathTable, RapidName,
-};
+use super::machine_file::{LimitsTable, LoadTable, MachineFile, PathTable};
+use super::path_name::{path_mode, rapid_path};
 use super::value::{At, Num, Number, PerAxis};
 use super::{
     axis, converter, drive_curve, levels, look_ahead, offsets, outputs, own_language, parts,
     path_accel, plausible, preset, response, servo, spindle, tool, word,
 };
 use crate::axis::{AXES, Axis, AxisSet};
-use crate::controller::{Controller, PathMode, RapidPath};
+use crate::controller::Controller;
 use crate::model::{Converter, Limits, Load, Machine, Path};
 use crate::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
@@ -124,22 +124,6 @@ pub(crate) fn machine(
     complete.then_some(machine)
 }
 
-/// Path mode of its name.
-pub(crate) fn path_mode(name: PathModeName) -> PathMode {
-    match name {
-        PathModeName::ExactStop => PathMode::ExactStop,
-        PathModeName::LookAhead => PathMode::LookAhead,
-    }
-}
-
-/// Rapid path of its name.
-pub(crate) fn rapid_path(name: RapidName) -> RapidPath {
-    match name {
-        RapidName::Linear => RapidPath::Linear,
-        RapidName::Independent => RapidPath::Independent,
-    }
-}
-
 /// Drives that follow a step of speed more quickly are rare.
 const RESPONSE_TIME_S: f64 = 0.01;
 
@@ -227,20 +211,6 @@ fn load(
         power_w: power_w.as_ref()?.value,
         converter,
     })
-}
-
-/// The converter of that name.
-pub(super) fn converter_of(
-    findings: &mut Findings<'_>,
-    name: &At<String>,
-    converters: &[Converter],
-) -> Option<usize> {
-    let found = converters.iter().position(|other| other.name == name.value);
-    if found.is_none() {
-        let message = format!("no converter is named \"{}\"", name.value);
-        findings.error("machine-load", &name.span, message, None);
-    }
-    found
 }
 
 fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::look_ahead::LookAheadTable;
-use super::machine_file::{PathModeName, RapidName};
-use super::printer::PrinterTable;
+use super::path_name::{PathModeName, RapidName};
+use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
 
 /// What a controller reads, how it plans, and which words limit it.

@@ -4,6 +4,7 @@
 //! in one way only, is checked where the machine is assembled, so that all
 //! mistakes of a file are reported at once.
 
+use super::path_name::{PathModeName, RapidName};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -16,7 +17,7 @@ use super::levels::LevelsTable;
 use super::look_ahead::LookAheadTable;
 use super::offsets::OffsetsTable;
 use super::outputs::OutputsTable;
-use super::printer::RetractTable;
+use super::printer_table::RetractTable;
 use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, ResponseTime, Share,
@@ -196,22 +197,6 @@ pub(crate) struct OwnLanguageTable {
     /// axis counts at its full speed and acceleration, and its place is not known
     /// afterwards. They must leave feed and modes as they are.
     pub(crate) unknown_moves: Option<Vec<At<String>>>,
-}
-
-/// What happens at the joint of two blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum PathModeName {
-    ExactStop,
-    LookAhead,
-}
-
-/// How rapids run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum RapidName {
-    Linear,
-    Independent,
 }
 
 /// The spindle.

@@ -6,6 +6,7 @@
 //! collected on the way, each with its line.
 
 mod assemble;
+mod converter_name;
 mod axis;
 mod axis_table;
 mod controller_file;
@@ -19,6 +20,7 @@ mod levels;
 mod load;
 mod look_ahead;
 mod machine_file;
+mod path_name;
 mod named_knob;
 mod offsets;
 mod outputs;
@@ -29,7 +31,9 @@ mod path_accel;
 mod plausible;
 mod preset;
 mod printer;
+mod printer_table;
 mod profile;
+mod one_letter;
 mod quantity;
 mod ratings;
 mod response;

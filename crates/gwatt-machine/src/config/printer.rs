@@ -1,84 +1,15 @@
 //! `[language.printer]`: what 3D printers differ in.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
+use super::printer_table::{ExtruderModeName, RetractTable, SpeedCapName};
 
 use super::controller_file::{FamilyName, LanguageTable};
 use super::findings::Findings;
-use super::profile::one_letter;
-use super::value::{At, Letter, NotNegative, Number, Positive};
+use super::one_letter::one_letter;
+use super::value::{At, Letter};
 use super::word;
 use crate::axis::AxisSet;
 use crate::printer::{Command, ExtruderMode, Printer, Retract};
 use crate::units::SECONDS_PER_MINUTE;
-
-/// What 3D printers differ in; the defaults are Marlin's.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PrinterTable {
-    /// What G90 and G91 mean for the extruder; default "follows".
-    pub(crate) extruder_mode: Option<ExtruderModeName>,
-    /// Whether a line may hold several commands; default false.
-    pub(crate) several_commands: Option<bool>,
-    /// Unit of M203; default per-second.
-    pub(crate) speed_cap: Option<SpeedCapName>,
-    /// Whether M204 and `SET_VELOCITY_LIMIT` set the limits of X and Y
-    /// themselves; default false.
-    pub(crate) velocity_limit: Option<bool>,
-    /// Axes that M204's P, T and S do not limit when no other axis moves;
-    /// default the extruder.
-    pub(crate) path_accel_spares: Option<Vec<At<Letter>>>,
-    /// Axes that home together, in the order of homing; default XY, then Z.
-    pub(crate) home_together: Option<Vec<Vec<At<Letter>>>>,
-    /// G10 and G11 until the program sets them.
-    pub(crate) retract: Option<At<RetractTable>>,
-    /// Letters that make a G0 or G1 end at an endstop; default none.
-    pub(crate) endstop_letters: Option<Vec<At<String>>>,
-    /// Extended commands that certainly move nothing; `*` at the end stands for
-    /// anything.
-    pub(crate) ignored_macros: Option<Vec<At<String>>>,
-    /// Commands whose moves are not known: every axis counts at its full speed
-    /// and acceleration, and its place is not known afterwards. They must leave
-    /// feed and modes as they are.
-    pub(crate) unknown_moves: Option<Vec<At<String>>>,
-    /// Commands that shift the coordinates: the next move of an axis counts at
-    /// full speed and acceleration.
-    pub(crate) shifts: Option<Vec<At<String>>>,
-}
-
-/// What G90 and G91 mean for the extruder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ExtruderModeName {
-    Follows,
-    Own,
-    Either,
-}
-
-/// Unit of M203.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum SpeedCapName {
-    None,
-    PerSecond,
-    PerMinute,
-}
-
-/// How filament is retracted.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct RetractTable {
-    /// Length that is pulled back in mm; default 3.
-    pub(crate) length_mm: Option<NotNegative>,
-    /// Its speed in mm/s; default 45.
-    pub(crate) speed_mm_s: Option<Positive>,
-    /// Length that is pushed forward in addition in mm; default 0.
-    pub(crate) extra_mm: Option<Number>,
-    /// Speed of pushing forward in mm/s; default `speed_mm_s`.
-    pub(crate) recover_mm_s: Option<Positive>,
-    /// How far Z is lifted in mm; default 0.
-    pub(crate) lift_mm: Option<NotNegative>,
-}
 
 /// The table of a profile, or the defaults.
 pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> Printer {

@@ -1,6 +1,5 @@
 //! The profile's structs to the controller.
 
-use super::assemble::{path_mode, rapid_path};
 use super::controller_file::{
     ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
     DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
@@ -9,6 +8,8 @@ use super::controller_file::{
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
 use super::named_knob;
+use super::one_letter::one_letter;
+use super::path_name::{path_mode, rapid_path};
 use super::value::At;
 use super::word;
 use crate::axis::AxisId;
@@ -212,15 +213,6 @@ pub(crate) fn ignored(findings: &mut Findings<'_>, words: &[At<String>]) -> (Vec
         }
     }
     (g, m)
-}
-
-pub(super) fn one_letter(findings: &mut Findings<'_>, text: &At<String>) -> Option<u8> {
-    let letter = word::letter(&text.value);
-    if letter.is_none() {
-        let message = format!("\"{}\" is not a letter", text.value);
-        findings.error("machine-word", &text.span, message, None);
-    }
-    letter
 }
 
 fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner> {

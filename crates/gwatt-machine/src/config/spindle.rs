@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::assemble::converter_of;
+use super::converter_name::converter_of;
 use super::drive_curve::{points, torque_points};
 use super::findings::Findings;
 use super::machine_file::SpindleTable;
