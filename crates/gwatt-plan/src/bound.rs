@@ -5,10 +5,12 @@
 //! not lowered where a short move never reaches its speed, since blending may
 //! carry the speed through.
 
-use super::arc::{axis_speed, excess, plane_share, tangent_ranges};
-use super::limits::{PathLimits, feed_factor, moving, rapid_factor};
+use super::arc::{axis_speed, excess};
+use super::arc_plane::{plane_share, tangent_ranges};
+use super::axis_limits::{feed_factor, moving, rapid_factor};
 use super::lookahead::Blend;
-use super::trajectory::{Caps, Overrides};
+use super::overrides::{Caps, Overrides};
+use super::path_limits::PathLimits;
 use gwatt_machine::{AXES, AxisSet, AxisValues, Machine, RapidPath};
 use gwatt_motion::{Arc, FeedMode, Move, MoveKind};
 use std::f64::consts::{FRAC_PI_2, PI};

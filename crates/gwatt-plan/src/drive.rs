@@ -14,10 +14,9 @@
 //! kinks. On an arc each axis has any speed up to the path's, so that the lowest up
 //! to that counts, in the part that the arc rule leaves for speeding up.
 
-use super::arc;
 use super::curve::{AccelCurve, fastest};
 use super::driven_ramp::{self, Kink, Kinks};
-use super::limits::{self, PathLimits};
+use super::path_limits::PathLimits;
 use super::profile::Profile;
 use arrayvec::ArrayVec;
 use gwatt_machine::{ALL_AXES, ArcRule, Axis, AxisKind, ForcePoint, Machine};
@@ -132,7 +131,7 @@ fn lowest_of(machine: &Machine, parts: &[Part], speed: f64) -> f64 {
 fn parts(machine: &Machine, mv: &Move) -> Parts {
     match &mv.arc {
         Some(arc) => arc_parts(machine, mv, arc),
-        None => limits::moving(machine, mv)
+        None => crate::axis_limits::moving(machine, mv)
             .filter_map(|(axis, _)| in_proportion(mv, axis))
             .collect(),
     }
@@ -153,15 +152,15 @@ fn in_proportion(mv: &Move, axis: usize) -> Option<Part> {
 /// Of an arc: what is left of each axis' acceleration for speeding up, whatever
 /// directions it meets.
 fn arc_parts(machine: &Machine, mv: &Move, of: &Arc) -> Parts {
-    let plane = arc::plane_axes(machine, mv, of);
+    let plane = crate::arc_plane::plane_axes(machine, mv, of);
     let linux_cnc = machine.controller.planner.arc_rule == ArcRule::LinuxCnc;
     let along = if linux_cnc {
-        arc::LINUXCNC_TANGENTIAL_SHARE
+        crate::arc_plane::LINUXCNC_TANGENTIAL_SHARE
     } else {
         FRAC_1_SQRT_2
     };
     let mut parts = Parts::new();
-    for (axis, own) in limits::moving(machine, mv) {
+    for (axis, own) in crate::axis_limits::moving(machine, mv) {
         let in_plane = plane.iter().find(|(plane, _)| *plane == axis);
         let across = in_plane.is_none();
         let part = in_proportion(mv, axis).filter(|_| across);

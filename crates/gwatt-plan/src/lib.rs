@@ -9,12 +9,15 @@
 //! between two states.
 
 mod arc;
+mod arc_plane;
 mod bound;
 pub mod curve;
 mod drive;
 mod driven_ramp;
 pub mod jerk;
 mod limits;
+mod axis_limits;
+mod path_limits;
 pub mod lookahead;
 pub mod period;
 mod power_law;
@@ -28,15 +31,17 @@ mod slope;
 mod spindle;
 mod track;
 mod trajectory;
+mod overrides;
 
 pub use bound::{PathShares, SpeedBound, blended_bound, blended_speed, path_bound, speed_bound};
 pub use lookahead::Blend;
+pub use overrides::{Caps, Overrides};
 pub use phase::{Phase, PhaseKind, State};
 pub use profile::{Phases, Profile};
 pub use section::Section;
 pub use spindle::{SpindleCaps, SpindleDrive};
 pub use track::{AxisStates, Nearest, Track};
 pub use trajectory::{
-    Caps, Overrides, PathFigures, Plan, Trajectory, UnknownMotion, driven_accel, is_independent,
-    path_figures, plan, plan_with, ramps,
+    PathFigures, Plan, Trajectory, UnknownMotion, driven_accel, is_independent, path_figures, plan,
+    plan_with, ramps,
 };

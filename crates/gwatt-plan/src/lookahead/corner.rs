@@ -7,20 +7,16 @@
 //! a circle that touches both sides and stays the distance d from the corner
 //! has the radius `R = d·s/(1 − s)`, and is run at `v² = a·R` (Jeon 2011).
 
+use super::rounding::{EXTRUDER, UNIT};
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use super::element::{Element, Joint};
 use super::passage::Passage;
-use gwatt_machine::{AXES, AxisId, AxisValues, CornerAngle, CornerRule};
+use gwatt_machine::{AXES, AxisValues, CornerAngle, CornerRule};
 
 /// Cosines beyond this are no corner, or a reversal.
 const STRAIGHT: f64 = 0.999_999;
 const LINEAR: usize = 3;
-pub(super) const EXTRUDER: usize = AxisId::E as usize;
-/// How far from 1 the square of a direction may be that counts as a unit.
-pub(super) const UNIT: f64 = 1e-9;
-/// What rounding may make of the figures of a corner, as a share.
-pub(super) const ROUNDING: f64 = 1e-6;
 
 /// What the rules must know of the element before a joint.
 #[derive(Debug, Clone)]

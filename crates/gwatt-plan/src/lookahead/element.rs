@@ -4,9 +4,11 @@
 //! direction at both ends, per unit of path, and the limits along the path.
 
 use super::super::arc;
+use super::super::axis_limits::lower;
 use super::super::drive::{self, Heading};
-use super::super::limits::{self, PathLimits, lower};
-use super::super::trajectory::{Caps, Overrides};
+use super::super::limits::{self};
+use super::super::overrides::{Caps, Overrides};
+use super::super::path_limits::PathLimits;
 use gwatt_machine::{AXES, AxisValues, Machine};
 use gwatt_motion::{Arc, Corner, Move, MoveKind, Square};
 
@@ -152,7 +154,7 @@ impl<T> Element<T> {
         self.length_mm = mv.length_mm;
         self.feed_mm_s = match mv.kind {
             MoveKind::Rapid => f64::INFINITY,
-            kind => mv.feed_mm_s * limits::feed_factor(kind, overrides),
+            kind => mv.feed_mm_s * crate::axis_limits::feed_factor(kind, overrides),
         };
         self.pace = mv.pace;
         self.drive_accel_mm_s2 = f64::INFINITY;
@@ -234,7 +236,7 @@ impl<T> Element<T> {
     }
 
     fn bend(&mut self, machine: &Machine, mv: &Move, of: &Arc) {
-        let share = arc::plane_share(mv, of);
+        let share = crate::arc_plane::plane_share(mv, of);
         let sense = of.sweep_rad.signum();
         for (angle, side) in [
             (of.start_angle_rad, &mut self.start),

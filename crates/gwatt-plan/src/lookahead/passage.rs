@@ -3,9 +3,9 @@
 
 use std::f64::consts::SQRT_2;
 
-use super::super::limits::lower;
-use super::corner::{EXTRUDER, ROUNDING, UNIT};
-use super::glide::Line;
+use super::super::axis_limits::lower;
+use super::line::Line;
+use super::rounding::{EXTRUDER, ROUNDING, UNIT};
 use gwatt_machine::{CornerAngle, CornerRule};
 
 /// What rounding may make of a cosine.

@@ -4,11 +4,12 @@
 //! blends, with the speeds and accelerations that the planner gives them; how long
 //! an element runs while the one before it still brakes.
 
-use super::super::arc::{self, LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE};
-use super::super::limits::lower;
+use super::super::arc::{self};
+use super::super::arc_plane::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
+use super::super::axis_limits::lower;
 use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
-use super::planner::Piece;
+use super::pieces::Piece;
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
 use gwatt_machine::AXES;
 

@@ -1,6 +1,6 @@
 //! Blends that touch arcs.
 
-use super::super::super::arc::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
+use super::super::super::arc_plane::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
 use super::super::vector::{Vector, add, angle, cross, dot, length, scale, sub, unit};
 use super::corner::legs_give;
 use super::{ANGLE_MIN, ARC_LENGTH_MIN_MM, Axes, Circle, Corner, Fit, Side};

@@ -1,7 +1,7 @@
 //! The circle in a corner of two lines, or of the tangents of arcs.
 
-use super::super::super::arc::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
-use super::super::super::limits::lower;
+use super::super::super::arc_plane::LINUXCNC_NORMAL_SHARE as NORMAL_SHARE;
+use super::super::super::axis_limits::lower;
 use super::super::vector::{Vector, add, cross, dot, length, scale, sub};
 use super::{ANGLE_MIN, ARC_LENGTH_MIN_MM, Axes, Fit, Leg};
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -14,7 +14,7 @@
 mod arcs;
 mod corner;
 
-use super::super::limits::{self, lower};
+use super::super::axis_limits::lower;
 use super::vector::{Vector, angle, scale};
 use gwatt_machine::{AxisValues, Machine};
 
@@ -46,7 +46,9 @@ impl Axes {
             speed: speeds.map(Option::unwrap_or_default),
             least_speed: speeds.into_iter().flatten().fold(f64::INFINITY, f64::min),
             speeds: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, |axis| axis.rapid_mm_s)),
-            jerks: std::array::from_fn(|i| axis(i).map_or(f64::INFINITY, limits::own_jerk)),
+            jerks: std::array::from_fn(|i| {
+                axis(i).map_or(f64::INFINITY, crate::axis_limits::own_jerk)
+            }),
         }
     }
 

@@ -14,15 +14,16 @@
 
 mod optimiser;
 
-use super::super::arc::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
+use super::super::arc_plane::LINUXCNC_TANGENTIAL_SHARE as TANGENTIAL_SHARE;
 use super::blend::{Axes, Fit, fit};
 use super::element::{Element, Joint};
 use super::join::{Joined, Joiner, chords};
+use super::node::Node;
 use super::pending::{Braking, Pending};
-use super::planner::{Blend, Load, Piece};
+use super::pieces::{Blend, Load, Piece};
 use super::ramp::Slack;
 use super::vector::{Vector, add, dot, scale, sub};
-use super::window::{Node, Window};
+use super::window::Window;
 use optimiser::Optimiser;
 
 /// Elements after one over which the optimiser surely raises its speeds.

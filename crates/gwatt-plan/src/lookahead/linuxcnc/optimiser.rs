@@ -27,8 +27,8 @@ mod tests;
 
 use std::collections::VecDeque;
 
-use super::super::planner::Load;
-use super::super::window::{Node, OPEN_MAX, lower};
+use super::super::node::{Node, OPEN_MAX, lower};
+use super::super::pieces::Load;
 
 /// Joints at their limits after which a pass ends.
 pub(super) const HITS: usize = 5;

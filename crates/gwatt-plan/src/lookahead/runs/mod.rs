@@ -32,7 +32,7 @@ use std::collections::VecDeque;
 use super::super::profile::Profile;
 use super::super::s_curve::{SCurve, Steepness};
 use super::super::section::Section;
-use super::window::{Node, OPEN_MAX, Span, lower};
+use super::node::{Node, OPEN_MAX, Span, lower};
 
 /// How far a higher speed may lower another one by rounding, as a share.
 const ROUNDING: f64 = 1e-12;

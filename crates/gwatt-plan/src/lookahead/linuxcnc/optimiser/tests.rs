@@ -1,8 +1,8 @@
 //! The optimiser against its passes, one by one, over a queue that keeps all.
 
-use super::super::super::planner::{Load, Piece};
+use super::super::super::node::Node;
+use super::super::super::pieces::{Load, Piece};
 use super::super::super::ramp::Slack;
-use super::super::super::window::Node;
 use super::Optimiser;
 use crate::random::Random;
 
