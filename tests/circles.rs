@@ -8,13 +8,7 @@ use std::path::Path;
 use crate::layers::{CRATES, folder_of, rust_files};
 
 /// How many files each circle of a crate has.
-const LEFT: [(&str, &[usize]); 5] = [
-    ("gwatt-identify", &[6]),
-    ("gwatt-limit", &[16]),
-    ("gwatt-machine", &[17]),
-    ("gwatt-plan", &[2, 5, 6]),
-    ("gwatt-power", &[4, 4, 25]),
-];
+const LEFT: [(&str, &[usize]); 1] = [("gwatt-identify", &[6])];
 
 type Module = Vec<String>;
 

@@ -1,6 +1,6 @@
 //! Changes: values of the words that a block gets, and the move that results.
 
-use super::level::level_of;
+use super::knob_level::level_of;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{
     AXES, AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
@@ -209,7 +209,7 @@ impl Change {
             set_rapid_share(machine, &mut changed, knob, percent);
         }
         if let Some((knob, level)) = level_of(machine, self.accel) {
-            super::level::put(knob, level, &mut changed);
+            super::knob_level::put(knob, level, &mut changed);
         } else if let Some((knob, values)) = self.accel
             && let Some(knob) = machine.controller.knobs.get(knob)
         {

@@ -9,9 +9,10 @@ use std::collections::VecDeque;
 
 use super::case::Ends;
 use super::change::Change;
-use super::limiter::{Outcome, Slot};
+use super::members::{Member, Window, change, put};
+use super::slot::{Outcome, Slot};
 use super::solver::Solver;
-use super::window::{Member, Window, change, lower, put};
+use super::window::lower;
 use gwatt_plan::{Plan, Trajectory, plan};
 
 /// The share of the time without stops that the time with them must stay under.

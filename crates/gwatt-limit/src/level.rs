@@ -3,25 +3,19 @@
 //! There is nothing to solve: each level that is gentler than what is in force is tried, by
 //! itself and with the speed that it leaves, and what fits and takes the least time is taken.
 
+use super::knob_level::{level_of, put};
+use super::level_groups::Groups;
 use std::collections::VecDeque;
 
-use arrayvec::ArrayVec;
-
 use super::case::Case;
-use super::change::{Change, Permit};
+use super::change::Change;
 use super::lever::{Levers, Obstacle, SpeedLever};
-use super::limiter::Slot;
+use super::members::Window;
 use super::options::Strategy;
+use super::slot::Slot;
 use super::solver::Solver;
-use super::window::{self, Window};
-use gwatt_machine::{
-    AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, LEVEL_GROUPS, Level, Machine,
-};
-use gwatt_motion::{Move, MoveKind};
+use gwatt_machine::{AxisSet, AxisValues, Knob, KnobTarget, Level};
 use gwatt_plan::plan;
-
-/// Groups of levels, by the indices of their knobs.
-pub(super) type Groups = ArrayVec<usize, LEVEL_GROUPS>;
 
 /// Above which share of the time a level is not worth its words.
 const SOONER: f64 = 1.0 - 1e-6;
@@ -30,61 +24,6 @@ const SOONER_AS_FEED: f64 = 1.0 - 1e-3;
 
 /// Up to how many levels below the one in force are tried with the speeds of a window.
 pub(super) const DEEPEST: usize = 6;
-
-/// The groups whose levels may be written for moves of this kind, as feeds (true) or rapids.
-pub(super) fn groups(machine: &Machine, permit: &Permit, as_feed: bool) -> Groups {
-    let mut found = Groups::new();
-    if !permit.levels {
-        return found;
-    }
-    for (index, knob) in machine.controller.knobs.iter().enumerate() {
-        let acts = match knob.target {
-            KnobTarget::FeedAccel => as_feed,
-            KnobTarget::RapidAccel | KnobTarget::RapidSpeed => !as_feed,
-            KnobTarget::Accel => true,
-            KnobTarget::Jerk
-            | KnobTarget::Speed
-            | KnobTarget::SpeedShare
-            | KnobTarget::CruiseRatio => false,
-        };
-        let may = knob.verified && (knob.between_moves || permit.rests);
-        if knob.argument == KnobArgument::Level && acts && may {
-            // There are no more groups than this.
-            let _ = found.try_push(index);
-        }
-    }
-    found
-}
-
-/// The level that a change puts in force.
-pub(super) fn level_of(
-    machine: &Machine,
-    accel: Option<(usize, AxisValues)>,
-) -> Option<(&Knob, &Level)> {
-    let (knob, values) = accel?;
-    let knob = machine.controller.knobs.get(knob)?;
-    let index = values.first().copied()?;
-    let levels = knob.levels.as_ref()?;
-    let level = levels.list.iter().zip(0_u32..);
-    let mut level = level.filter(|(_, at)| f64::from(*at) == index);
-    level.next().map(|(level, _)| (knob, level))
-}
-
-/// A move under a level.
-pub(super) fn put(knob: &Knob, level: &Level, mv: &mut Move) {
-    if knob.sets_accel() {
-        mv.accel_mm_s2 = level.accel_mm_s2;
-    }
-    if mv.kind == MoveKind::Rapid && knob.target != KnobTarget::FeedAccel && sets_speed(knob) {
-        mv.rapid_factor = level.rapid_factor;
-    }
-}
-
-/// Whether a group of levels says how fast rapids are.
-fn sets_speed(knob: &Knob) -> bool {
-    let levels = knob.levels.iter().flat_map(|levels| &levels.list);
-    levels.clone().any(|level| level.rapid_factor != 1.0)
-}
 
 impl Solver<'_> {
     /// The quickest level that lets no axis accelerate harder than this.
@@ -234,9 +173,9 @@ pub(super) fn step_down(
         };
         let change = Change {
             accel: Some(accel),
-            ..window::change(slots, member)
+            ..super::members::change(slots, member)
         };
-        window::put(solver, slots, member, change);
+        super::members::put(solver, slots, member, change);
         any = true;
     }
     any

@@ -1,7 +1,7 @@
 //! Levers: which words may bring one move down, and what stands in the way.
 
 use super::change::Permit;
-use super::level::{Groups, groups};
+use super::level_groups::{Groups, groups};
 use super::options::LimitOptions;
 use gwatt_machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
 use gwatt_motion::{Move, MoveKind, own_path_speed};

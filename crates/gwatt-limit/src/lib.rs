@@ -8,11 +8,13 @@
 //! [`Solver`] one by itself.
 
 mod accels;
+mod accel_grid;
 mod along;
 mod bounds;
 mod by_axis;
 mod case;
 mod change;
+mod decide;
 mod depth;
 mod first_feed;
 mod halt;
@@ -21,8 +23,12 @@ mod jerk;
 mod joints;
 mod law;
 mod level;
+mod level_groups;
+mod knob_level;
 mod lever;
 mod limiter;
+mod slot;
+mod settle;
 mod optimum;
 mod options;
 mod pace;
@@ -36,15 +42,17 @@ mod stages;
 mod steps;
 mod stop;
 mod window;
+mod members;
 
 pub use case::Ends;
 pub use change::{Change, Permit};
 pub use depth::{Deeper, Depths};
 pub use first_feed::FirstFeed;
 pub use lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, UNTOUCHABLE};
-pub use limiter::{Limiter, Outcome, Waiting};
+pub use limiter::Limiter;
 pub use options::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 pub use pace::{Paced, Paces};
 pub use place::Place;
+pub use slot::{Outcome, Waiting};
 pub use solver::Solver;
 pub use split::{Piece, Split};

@@ -4,75 +4,23 @@
 //! A move waits until nothing after it can change it any more: a blended one
 //! until the move after the next is known, all others not at all.
 
+use super::slot::{Outcome, Slot, Waiting};
 use std::collections::VecDeque;
 
 use super::case::{Case, Ends};
-use super::change::{Change, Permit};
+use super::change::Change;
 use super::depth::Depths;
-use super::lever::{Obstacle, levers};
+use super::lever::levers;
 use super::options::{LimitOptions, Strategy};
 use super::pace::{Paces, fitting_mm_s};
+use super::road::SPLIT_TRIES;
+use super::settle;
 use super::solver::Solver;
-use super::split::{SPLIT_TRIES, Split};
 use super::window;
 use gwatt_machine::{Machine, RapidJoint};
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::plan;
 use gwatt_power::{Assessment, Certificate};
-
-/// What was decided for one move.
-///
-/// Boxed, since most moves fit and nothing is decided for them.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outcome {
-    /// The change; `None` where the move fits or cannot be helped.
-    pub change: Option<Box<Change>>,
-    /// The pieces that it is written in, where these are more than one; the change is
-    /// that of the last one then.
-    pub split: Option<Box<Split>>,
-    /// Why it is not, where that was asked for.
-    pub unsplit: Option<&'static str>,
-    /// Why a move that does not fit stays as it is.
-    pub obstacle: Option<Box<Obstacle>>,
-    /// Why one that fits does, though its preset says less and counts always.
-    pub unset: Option<Box<Obstacle>>,
-}
-
-impl Outcome {
-    /// What comes of a move that fits, by preset or law.
-    pub(super) fn anyway(found: Result<Option<Change>, Obstacle>) -> Self {
-        let mut outcome = Self::default();
-        match found {
-            Ok(change) => outcome.change = change.map(Box::new),
-            Err(unset) => outcome.unset = Some(Box::new(unset)),
-        }
-        outcome
-    }
-}
-
-/// A move that waits for its decision, and what may be changed about its block.
-#[derive(Debug, Clone)]
-pub struct Waiting<'a> {
-    /// The move.
-    pub mv: &'a Move,
-    /// What may be changed.
-    pub permit: Permit,
-}
-
-/// What is known of a move that may still be changed.
-#[derive(Debug, Clone)]
-pub(super) struct Slot {
-    pub(super) assessment: Assessment,
-    /// Switched loads during the move.
-    pub(super) loads: u32,
-    /// The move with its change, where it has one.
-    pub(super) changed: Option<Box<Move>>,
-    pub(super) outcome: Outcome,
-    /// The controller may run from this move into the next one that moves.
-    pub(super) joined: bool,
-    /// It has no length and is passed on the way to the next.
-    pub(super) rider: bool,
-}
 
 /// Decides for the moves of one program.
 #[derive(Debug)]
@@ -168,7 +116,7 @@ impl<'m> Limiter<'m> {
         let mut needed = self.slots.len() - 1;
         if let Some(center) = previous {
             self.slots[center].joined = joined;
-            window::settle(&self.solver, &mut self.slots, find, center);
+            settle::settle(&self.solver, &mut self.slots, find, center);
             if joined {
                 needed = center;
             }
@@ -209,7 +157,7 @@ impl<'m> Limiter<'m> {
         }
         if let Some(center) = self.last_moving() {
             self.slots[center].joined = false;
-            window::settle(&self.solver, &mut self.slots, find, center);
+            settle::settle(&self.solver, &mut self.slots, find, center);
         }
         self.emit(self.slots.len(), sink);
     }
@@ -412,18 +360,5 @@ impl Limiter<'_> {
             Err(obstacle) => outcome.obstacle = Some(Box::new(obstacle)),
         }
         Some(outcome)
-    }
-}
-
-impl Slot {
-    fn new(mv: &Move, assessment: &Assessment) -> Self {
-        Self {
-            assessment: *assessment,
-            loads: mv.loads,
-            changed: None,
-            outcome: Outcome::default(),
-            joined: false,
-            rider: false,
-        }
     }
 }

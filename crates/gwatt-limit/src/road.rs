@@ -4,18 +4,20 @@
 //! fit, begun and ended as the move is. Stages up and stages down (`stages`) meet at the
 //! speed that the length of the way leaves, or with a cruise between them.
 
-use super::accels::{Accels, GRID};
+use super::accel_grid::{Accels, GRID};
 use super::along::straight_accel_mm_s2;
 use super::case::Case;
 use super::change::Change;
 use super::solver::Solver;
-use super::split::SPLIT_TRIES;
 use super::stages::{Stages, Terms, stages};
 use gwatt_machine::AxisValues;
 use gwatt_motion::Move;
 use gwatt_plan::lookahead::Speeds2;
 use gwatt_plan::{Plan, Profile, Trajectory, plan};
 use gwatt_power::Want;
+
+/// How often pieces are tried next to the block's neighbours, each time coarser ones.
+pub(super) const SPLIT_TRIES: u8 = 4;
 
 /// The load that stretches are designed for, and the one that they must keep as they will
 /// be written: places are rounded.

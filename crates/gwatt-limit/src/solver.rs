@@ -5,18 +5,17 @@ use super::change::{
     Change, Permit, feed_unit, feed_word, limit_path_accel, round_feed_down, round_to_step,
     set_rapid_share,
 };
-use super::law;
-use super::lever::{Levers, Obstacle, SpeedLever, levers};
-use super::optimum;
-use super::options::{Law, LimitOptions, Strategy};
-use super::refusal::too_much;
+use super::lever::{Obstacle, SpeedLever};
+use super::options::LimitOptions;
 use super::root::largest;
-use super::steps;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{AXES, AxisValues, KnobArgument, Machine};
 use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::{Overrides, Trajectory, blended_bound, blended_speed, plan, ramps};
 use gwatt_power::{Assessment, PowerModel, SpindleShare, Want};
+
+/// In how many rounds the power of steps is expected to fall.
+pub(super) const STEP_ROUNDS: u8 = 3;
 
 /// How often a rounded value is lowered by one more step before giving up.
 pub(super) const RETRIES: u32 = 3;
@@ -41,63 +40,6 @@ impl<'m> Solver<'m> {
             largest,
             how,
         }
-    }
-
-    /// The change that makes a move fit which does not.
-    ///
-    /// # Errors
-    /// What stands in the way.
-    pub fn solve(
-        &self,
-        mv: &Move,
-        assessment: &Assessment,
-        permit: &Permit,
-        ends: Ends,
-    ) -> Result<Change, Obstacle> {
-        let case = Case {
-            mv,
-            assessment,
-            permit,
-            ends,
-            exact_stop: false,
-        };
-        let levers = levers(self.machine, self.how, mv, permit);
-        if mv.kind == MoveKind::Dwell
-            || assessment.top_speed_mm_s == 0.0 && mv.unknown_start.is_empty()
-        {
-            if assessment.spindle.drawn_w > 0.0 || assessment.spindle.fed_back_w > 0.0 {
-                return Err(Obstacle::new(
-                    "spindle-power",
-                    "the spindle, with base load and switched loads, exceeds the limit",
-                    "a lower S, or a drive that runs up more slowly; gwatt writes no S",
-                ));
-            }
-            return Err(Obstacle::new(
-                "base-load",
-                "base load, switched loads and holding the axes alone exceed the limit",
-                "no feed and no acceleration changes that: a larger converter is needed",
-            ));
-        }
-        self.sooner_stopped(case, |case| self.by_strategy(case, &levers))
-    }
-
-    /// The change that the strategy says.
-    fn by_strategy(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        let change = match (self.how.strategy, self.how.law) {
-            (Strategy::Preset, _) => self.by_preset(case, levers)?,
-            (strategy, Law::Patent) => law::squared_ratio(self, case, levers, strategy)?,
-            (Strategy::Speed, _) => self.by_speed(case, levers)?,
-            (Strategy::Accel, _) => self.by_accel(case, levers)?,
-            // Under the robust bound a neighbour's speed meets this move's
-            // acceleration: where a pair was not enough, speeds alone go down.
-            (Strategy::Optimal | Strategy::Split, _)
-                if case.ends > Ends::Any(2) && levers.speed.is_some() =>
-            {
-                self.by_speed(case, levers)?
-            }
-            (Strategy::Optimal | Strategy::Split, _) => self.optimal(case, levers)?,
-        };
-        self.verify(case, change)
     }
 
     /// Whether a move fits however late it begins during a run of the spindle.
@@ -137,12 +79,12 @@ impl<'m> Solver<'m> {
 
     /// Load ratio of a move, changed or not, at the largest overrides.
     pub(super) fn load(&self, case: Case<'_>, mv: &Move) -> f64 {
-        if let Some(load) = steps::load(self, case, mv) {
+        if let Some(load) = self.load_by_steps(case, mv) {
             return load;
         }
         let depth = match case.ends {
-            Ends::Any(depth) if steps::exceed(self, case, mv) => {
-                depth.saturating_sub(steps::ROUNDS)
+            Ends::Any(depth) if self.exceeds_by_steps(case, mv) => {
+                depth.saturating_sub(STEP_ROUNDS)
             }
             Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
             _ if mv.stray.is_far() => 2,
@@ -193,20 +135,6 @@ impl<'m> Solver<'m> {
         let known = mv.unknown_start.is_empty() && mv.length_mm > 0.0;
         let open = matches!(case.ends, Ends::Any(_)) && !self.gets_stops(case.mv, mv);
         known && (open || mv.stray.is_far())
-    }
-
-    pub(super) fn by_speed(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        let found = self.by_speed_word(case, levers);
-        match self.how.strategy {
-            Strategy::Speed => self.with_levels(case, levers, found),
-            _ => found,
-        }
-    }
-
-    fn by_speed_word(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
-        self.speed(case, lever, &Change::default())
-            .ok_or_else(|| too_much(case))
     }
 
     /// The highest speed that fits, on top of what `with` changes already.
@@ -280,35 +208,6 @@ impl<'m> Solver<'m> {
             feed = round_feed_down(feed * (1.0 - 2e-5));
         }
         None
-    }
-
-    fn by_accel(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        let found = self.by_accel_word(case, levers);
-        self.with_levels(case, levers, found)
-    }
-
-    fn by_accel_word(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        let knob = levers.accel.ok_or_else(|| self.no_accel_lever(case))?;
-        // A block that is too short for its speed reaches less of it the more slowly it
-        // accelerates, so that friction alone at full speed decides nothing.
-        if let Some(change) = self.accel_alone(case, knob) {
-            return Ok(change);
-        }
-        let Some(load) = self.cruise_load(case).filter(|load| *load > 1.0) else {
-            return Err(too_much(case));
-        };
-        Err(Obstacle::new(
-            "friction-alone",
-            format!(
-                "friction alone takes {:.1} % of the limit at the wanted speed",
-                load * 100.0
-            ),
-            if self.how.allowed.feed {
-                "lower the speed: --strategy optimal or speed"
-            } else {
-                "lower the speed: --strategy optimal or speed, with --allow feed for feeds"
-            },
-        ))
     }
 
     /// The highest acceleration that fits, on top of what `with` changes.
@@ -408,36 +307,8 @@ impl<'m> Solver<'m> {
         Some(values)
     }
 
-    fn optimal(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        let found = self.optimal_words(case, levers);
-        self.with_levels(case, levers, found)
-    }
-
-    fn optimal_words(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
-        match *levers {
-            // Steps do not fall with the acceleration.
-            Levers { speed: Some(_), .. } if steps::load(self, case, case.mv).is_some() => {
-                self.by_speed(case, levers)
-            }
-            Levers {
-                speed: Some(speed),
-                accel,
-                jerk,
-                ..
-            } if accel.or(jerk).is_some() => {
-                optimum::best_pair(self, case, speed, levers).ok_or_else(|| too_much(case))
-            }
-            Levers { speed: Some(_), .. } => self.by_speed(case, levers),
-            Levers { accel: Some(_), .. } => self.by_accel_word(case, levers),
-            Levers {
-                jerk: Some(knob), ..
-            } => self.jerk_alone(case, knob).ok_or_else(|| too_much(case)),
-            _ => Err(self.no_speed_lever(case)),
-        }
-    }
-
     /// Load of a cruise at the wanted speed; `None` for moves without a path.
-    fn cruise_load(&self, case: Case<'_>) -> Option<f64> {
+    pub(crate) fn cruise_load(&self, case: Case<'_>) -> Option<f64> {
         let mv = case.mv;
         let mut slow = mv.clone();
         // So slow a start that the ramps need next to nothing.

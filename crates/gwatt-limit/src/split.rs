@@ -10,16 +10,13 @@
 use super::case::{Case, Ends};
 use super::change::{Change, Permit};
 use super::lever::{Levers, levers};
-use super::road::{Lengths, MOST, NO_FIT, Road, SHORT};
+use super::road::{Lengths, MOST, NO_FIT, Road, SHORT, SPLIT_TRIES};
 use super::solver::Solver;
-use super::steps;
 use gwatt_machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
 use gwatt_motion::{Corner, Move, MoveKind};
 use gwatt_plan::{is_independent, plan};
 use gwatt_power::{Assessment, Certificate, plans_lines};
 
-/// How often pieces are tried next to the block's neighbours, each time coarser ones.
-pub(super) const SPLIT_TRIES: u8 = 4;
 /// What pieces must bring in, as a share of the time.
 const GAIN: f64 = 1e-3;
 
@@ -161,7 +158,7 @@ impl Solver<'_> {
         if unlike {
             return Err(UNLIKE);
         }
-        if steps::load(self, case, mv).is_some() || assessment.loads.steps > MOST {
+        if self.load_by_steps(case, mv).is_some() || assessment.loads.steps > MOST {
             return Err(NO_FIT);
         }
         let mut road = Road::new(self, case, knob, &planned);

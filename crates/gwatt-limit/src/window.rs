@@ -4,6 +4,7 @@
 //! The bound grows with every speed and acceleration, so lowering a move for
 //! one window never harms another.
 
+use super::members::{Member, Window, change, put};
 use std::collections::VecDeque;
 
 use arrayvec::ArrayVec;
@@ -11,74 +12,17 @@ use arrayvec::ArrayVec;
 use super::bounds::{envelope, factor, path_speed, scale};
 use super::case::{Case, Ends};
 use super::change::{Change, Permit};
-use super::halt;
 use super::law;
 use super::level;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
-use super::limiter::{Outcome, Slot, Waiting};
 use super::options::{Law, Strategy};
 use super::refusal::no_value_for_all;
 use super::root::largest;
+use super::slot::{Outcome, Slot};
 use super::solver::Solver;
 use gwatt_machine::AxisValues;
 use gwatt_motion::Move;
 use gwatt_plan::{SpeedBound, blended_bound, plan};
-
-/// A move of a window.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Member<'a> {
-    /// Of its slot.
-    pub(super) index: usize,
-    pub(super) mv: &'a Move,
-    pub(super) permit: Permit,
-}
-
-impl Member<'_> {
-    /// The move with its change.
-    pub(super) fn changed<'s>(&'s self, slots: &'s VecDeque<Slot>) -> &'s Move {
-        slots[self.index].changed.as_deref().unwrap_or(self.mv)
-    }
-
-    /// The move with its change, for the solver.
-    pub(super) fn case<'s>(&'s self, slots: &'s VecDeque<Slot>) -> Case<'s> {
-        Case {
-            mv: self.mv,
-            assessment: &slots[self.index].assessment,
-            permit: &self.permit,
-            ends: Ends::Rest,
-            exact_stop: false,
-        }
-    }
-}
-
-/// Lowers the window around `center` if it does not fit; `find` gives the move of a slot.
-pub(super) fn settle<'a>(
-    solver: &Solver<'_>,
-    slots: &mut VecDeque<Slot>,
-    find: &impl Fn(usize) -> Option<Waiting<'a>>,
-    center: usize,
-) {
-    let loads = slots[center].loads;
-    // Untouched, the window is the one that the assessment was made for.
-    let untouched = |slot: &Slot| slot.outcome.change.is_none() && slot.loads == loads;
-    if solver.model.fits(&slots[center].assessment.demand) && slots.iter().all(untouched) {
-        return;
-    }
-    let window: Window<'a> = indices(slots, center)
-        .into_iter()
-        .filter_map(|index| {
-            let Waiting { mv, permit } = find(index)?;
-            Some(Member { index, mv, permit })
-        })
-        .collect();
-    if !solver.how.allowed.stop {
-        return lower(solver, slots, &window, center);
-    }
-    let before = window.iter().map(|member| slots[member.index].clone());
-    let before = before.collect();
-    lower(solver, slots, &window, center);
-    halt::consider(solver, slots, &window, center, &before);
-}
 
 /// Lowers a window if it does not fit.
 pub(super) fn lower(
@@ -181,33 +125,8 @@ fn by_law(
     by_speed && lower_speed(solver, slots, window, &others)
 }
 
-/// Changes a move.
-pub(super) fn put(
-    solver: &Solver<'_>,
-    slots: &mut VecDeque<Slot>,
-    member: &Member<'_>,
-    change: Change,
-) {
-    let slot = &mut slots[member.index];
-    slot.changed = Some(Box::new(change.apply(
-        solver.machine,
-        member.mv,
-        &member.permit,
-    )));
-    slot.outcome.change = (!change.is_none()).then(|| Box::new(change));
-}
-
-/// What a move gets so far.
-pub(super) fn change(slots: &VecDeque<Slot>, member: &Member<'_>) -> Change {
-    let change = slots[member.index].outcome.change.as_deref();
-    change.copied().unwrap_or(Change::NONE)
-}
-
-/// A move and the neighbours that it is joined to.
-pub(super) type Window<'a> = ArrayVec<Member<'a>, 3>;
-
 /// Indices of the window around `center`, across moves of no length.
-fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
+pub(crate) fn indices(slots: &VecDeque<Slot>, center: usize) -> ArrayVec<usize, 3> {
     let mut window = ArrayVec::new();
     let before = slots.iter().take(center).rposition(|slot| !slot.rider);
     window.extend(before.filter(|before| slots[*before].joined));

@@ -10,7 +10,11 @@ use gwatt_syntax::source::Span;
 impl Control<'_> {
     /// The edge by the words and tables of controls other than LinuxCNC's.
     /// Without any table its radius is taken as 0, as lengths are.
-    pub(in crate::compensation) fn nose_by_offset(&mut self, run: &mut Run<'_, '_>, span: Span) -> Option<Nose> {
+    pub(in crate::compensation) fn nose_by_offset(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        span: Span,
+    ) -> Option<Nose> {
         let number = match self.machine.controller.language.family {
             Family::Siemens => return self.nose_of_edge(run, span),
             _ if self.dialect().lathe.is_some() => {
