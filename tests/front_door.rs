@@ -132,3 +132,34 @@ fn moves_end_with_the_error() {
     let looped = "#1=0\nWHILE [#1 LT 3] DO1\nG0 X10\nG0 X0\n#1=#1+1\nEND1\nM30\n";
     assert_eq!(Moves::of(looped, &machine, &options).count(), 6);
 }
+
+/// Results are data: rows under the names of the columns, figures as the commands print them.
+#[test]
+fn results_are_data() {
+    let machine = machine();
+    let report = serde_json::to_value(report(TOO_MUCH, &machine).unwrap()).unwrap();
+    let columns: Vec<&str> = gwatt::report::COLUMNS.to_vec();
+    let block = report["blocks"][0].as_object().unwrap();
+    assert!(
+        columns.iter().all(|column| block.contains_key(*column)),
+        "{block:?}"
+    );
+    let summary = &report["summary"];
+    assert_eq!(
+        (
+            &summary["peak_line"],
+            &summary["program_lines"],
+            &summary["moves"]
+        ),
+        (&2.into(), &4.into(), &2.into())
+    );
+    assert_eq!(summary["unfit"][0]["line"], 2);
+    assert_eq!(summary["fits"], false);
+    let limited = serde_json::to_value(limit(TOO_MUCH, &machine).unwrap().summary).unwrap();
+    assert_eq!(limited["before"]["peak_w"], summary["peak_w"]);
+    assert_eq!(limited["after"]["fits"], true);
+    assert_eq!(
+        (&limited["certified"], &limited["edited_lines"]),
+        (&true.into(), &1.into())
+    );
+}

@@ -16,6 +16,19 @@
 //! # }
 //! ```
 //!
+//! Figures are data for serde, under the names that the commands give them in JSON:
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (machine, _) = gwatt::Machine::load("three-axis")?;
+//! let report = gwatt::report("G21 G90\nG0 X100\nM30\n", &machine)?;
+//! let report = serde_json::to_value(&report)?;
+//! assert_eq!(report["summary"]["peak_line"], 2);
+//! assert_eq!(report["blocks"][0]["move"], "rapid");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! [`check`], [`report`] and [`limit`] take a program that is at hand and the usual
 //! [`Options`]; [`Limit`] says what `limit` may do, and reads and writes streams of any
 //! length. [`Moves`](crate::Moves) gives the moves of a program one by one. Whoever wants rows as they
@@ -25,6 +38,8 @@ mod error;
 mod limiting;
 
 use std::io::Cursor;
+
+use serde::Serialize;
 
 pub use error::Error;
 pub use limiting::{Limit, Limited};
@@ -69,12 +84,13 @@ pub fn check_as(
 }
 
 /// Figures of a program and of each of its moves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Report {
     /// Those of the whole program, its energy among them.
     pub summary: Summary,
     /// Those of each move, in the order in which they are made.
+    #[serde(rename = "blocks")]
     pub rows: Vec<Row>,
 }
 

@@ -88,7 +88,7 @@ struct ReportTail<'a> {
 
 /// What all runs of a line come to.
 #[derive(Serialize)]
-struct LineFigures<'a> {
+pub(super) struct LineFigures<'a> {
     line: u64,
     file: &'a str,
     runs: u64,
@@ -99,7 +99,7 @@ struct LineFigures<'a> {
 }
 
 impl<'a> LineFigures<'a> {
-    fn list(summary: &'a Summary) -> Vec<Self> {
+    pub(super) fn list(summary: &'a Summary) -> Vec<Self> {
         let lines = summary.by_line.iter();
         lines
             .map(|line| Self {
@@ -142,7 +142,7 @@ struct LimitTail<'a> {
 
 /// What would make a program fit that does not.
 #[derive(Serialize)]
-struct PriceRecord {
+pub(super) struct PriceRecord {
     allow: String,
     duration_s: Figure,
     duration_after_s: Figure,
@@ -161,7 +161,7 @@ impl From<&Price> for PriceRecord {
 
 /// What a word for acceleration would bring.
 #[derive(Serialize)]
-struct IdealRecord<'a> {
+pub(super) struct IdealRecord<'a> {
     duration_s: Figure,
     #[serde(skip_serializing_if = "Option::is_none")]
     duration_in_pieces_s: Option<Figure>,
@@ -221,13 +221,13 @@ struct SetTail<'a> {
 
 /// A dwell that the original does not have.
 #[derive(Serialize)]
-struct PauseRecord {
+pub(super) struct PauseRecord {
     line: u64,
     seconds: Figure,
 }
 
 impl PauseRecord {
-    fn list(summary: &LimitSummary) -> Vec<Self> {
+    pub(super) fn list(summary: &LimitSummary) -> Vec<Self> {
         let pauses = summary.pauses.iter().map(|pause| Self {
             line: pause.line,
             seconds: Figure(pause.seconds),

@@ -28,6 +28,7 @@ mod overlay_chart;
 mod patch;
 mod quantity;
 mod record;
+mod results;
 #[cfg(feature = "sarif")]
 mod sarif;
 mod series;
