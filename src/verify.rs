@@ -27,7 +27,7 @@ pub fn has_regeneration(log: &PowerTrace) -> bool {
     least < -0.02 * most
 }
 
-/// The prediction for a recording: so fine that it can be held against it, and with what is
+/// The prediction for a recording: so fine that it can be compared with it, and with what is
 /// fed back where the recording has it.
 ///
 /// # Errors

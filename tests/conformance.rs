@@ -1,12 +1,12 @@
 //! Programs against LinuxCNC's own interpreter, `rs274`.
 //!
-//! The programs in `tests/conformance/` are held against what `rs274` printed
+//! The programs in `tests/conformance/` are compared with what `rs274` printed
 //! once (`*.expected`), and where it is installed against what it prints now.
 //! `GWATT_CONFORMANCE=dir:dir` adds programs in other folders, with
 //! `GWATT_CONFORMANCE_SUBS=dir:dir` for their subroutines and
 //! `GWATT_CONFORMANCE_TABLE` as tool table, in mm; `GWATT_CONFORMANCE_REPORT` names a
 //! file that gets a line for each program. `GWATT_CONFORMANCE_WRITE=1` writes the
-//! `.expected` files anew.
+//! `.expected` files again.
 
 mod canon;
 mod event;

@@ -1,7 +1,7 @@
 //! Coordinate systems, tools, turned and polar coordinates, spindle speed by
 //! surface, saved state: by hand-worked programs.
 //!
-//! The figures for LinuxCNC were also held against its own interpreter.
+//! The figures for LinuxCNC were also compared with its own interpreter.
 
 use std::sync::Arc;
 
@@ -83,7 +83,7 @@ fn a_helix_that_only_linuxcnc_bears_is_refused() {
 }
 
 /// In G18 the plane turns along with X: a circle as chords, which ends where rs274 has it.
-/// A helix there is refused: the planner sees to each axis of a circle only.
+/// A helix there is refused: the planner handles each axis of a circle only.
 #[test]
 fn arcs_in_another_plane_of_a_turned_system() {
     let other_plane = "G10 L2 P1 R90\nG18 G2 X10 Z0 I5 F600\n";

@@ -208,7 +208,7 @@ fn the_nose_of_a_lathe_tool() {
 5 feed X29.2000 F100.00
 6 feed X35.0000 F100.00
 ");
-    // G71 goes by the contour as it is programmed; G70 by the shifted one: in
+    // G71 follows the contour as it is programmed; G70 the shifted one: in
     // from (15, 5) to next to the first move, and back to where it began.
     let contour = "T0303\nG98 G0 X30. Z5.\nG71 P10 Q20 D4. R1. F100.\nN10 G42 G0 X10.\nG1 Z-20. F100.\nX24.\nN20 G40 X28.\nG70 P10 Q20\nM30\n";
     let table = "T3 D1.6 Q3\n";

@@ -1,7 +1,7 @@
 //! The order of execution: calls, branches, loops, and where they stop.
 //!
 //! O-words: LinuxCNC, "O Codes"; M98, M99 and macros: B-63944EN, "Custom Macro".
-//! What LinuxCNC makes of O-words is held against it in `conformance.rs`; here
+//! What LinuxCNC makes of O-words is compared with it in `conformance.rs`; here
 //! stand the messages, the limits and what must hold for any program.
 
 mod random;

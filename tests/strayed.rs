@@ -1,5 +1,5 @@
 //! Paths that differ from the moves that stand for them: spirals, and arcs in tilted
-//! planes. Their bound is held against the path itself, point by point.
+//! planes. Their bound is compared with the path itself, point by point.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;

@@ -20,7 +20,7 @@ const SHOWN: usize = 3;
 /// The baselines of a run.
 #[derive(Debug, Default)]
 pub struct Baselines {
-    /// What findings are held against, with the name of its file.
+    /// What findings are compared with, with the name of its file.
     known: Option<(PathBuf, Baseline)>,
     /// What is to be written, and where.
     written: Option<(PathBuf, Spool, Baseline)>,
@@ -31,7 +31,7 @@ pub struct Baselines {
 }
 
 impl Baselines {
-    /// Reads the one that findings are held against.
+    /// Reads the one that findings are compared with.
     pub fn new(args: &CheckArgs, programs: &[Program]) -> Result<Self> {
         let read = |path: &PathBuf| {
             let shown = path.display();

@@ -69,7 +69,7 @@ impl Beside {
         }
     }
 
-    /// Puts it in the place of `path`, at once.
+    /// Puts it in place of `path`, at once.
     ///
     /// # Errors
     /// Those of the system; nothing is replaced then.
@@ -247,7 +247,7 @@ mod tests {
         names
     }
 
-    /// Both kinds of file in the place of another one.
+    /// Both kinds of file in place of another one.
     #[test]
     fn a_file_appears_whole_in_place_of_the_old_one() {
         let folder = tempfile::tempdir().unwrap();

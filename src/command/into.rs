@@ -82,7 +82,7 @@ impl Merged {
         Ok(Self { spool })
     }
 
-    /// Puts the new file in the place of the old one, which keeps another name.
+    /// Puts the new file in place of the old one, which keeps another name.
     pub fn deliver(self, path: &Path, terminal: Terminal) -> Result<()> {
         let real =
             fs::canonicalize(path).with_context(|| format!("cannot write {}", path.display()))?;

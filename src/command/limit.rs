@@ -239,7 +239,7 @@ fn deliver(
     Ok(())
 }
 
-/// Puts the spool in the place of the program, which keeps another name.
+/// Puts the spool in place of the program, which keeps another name.
 fn replace(program: &Path, spool: Spool) -> Result<PathBuf> {
     let program =
         fs::canonicalize(program).with_context(|| format!("cannot write {}", program.display()))?;

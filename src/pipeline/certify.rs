@@ -1,5 +1,5 @@
 //! The certificate: what was written is read, interpreted, planned and
-//! evaluated again, and held against the original. A plain block that stands in
+//! evaluated again, and compared with the original. A plain block that stands in
 //! both programs byte for byte is not read again while both are in the same
 //! state: it could only give the same move.
 //!

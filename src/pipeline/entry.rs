@@ -43,7 +43,7 @@ pub(super) struct Entry {
     marked: bool,
     /// The state after it.
     pub(super) mark: Mark,
-    /// The same, as far as plain blocks go by it; `None` after a plain one.
+    /// The same, as far as plain blocks depend on it; `None` after a plain one.
     pub(super) fast_path_state: Option<FastPathState>,
     pub(super) knobs: Option<KnobState>,
     pub(super) feed_mode: FeedMode,

@@ -223,7 +223,7 @@ pub(super) fn added_stop(mv: &Move, original: Option<&Expected>, stops: &Stops) 
 }
 
 /// Whether an action sets a path mode that the original does not set here: each move is
-/// held against the mode that it had.
+/// compared with the mode that it had.
 pub(super) fn added_mode(action: &Action, original: Option<&Expected>) -> bool {
     let same = matches!(original, Some(Expected::Action(original))
         if original.kind == action.kind && original.value == action.value);

@@ -27,7 +27,7 @@ const NEXT_TO: &str = "fits by what `limit` writes next to it";
 const BY_ITSELF: &str = "by itself it ";
 
 /// Lets the limiter decide about a program that does not fit: where it could not lower a
-/// move, its own reason stands in the place of the advice in `summary`.
+/// move, its own reason stands in place of the advice in `summary`.
 ///
 /// # Errors
 /// See [`Failure`].

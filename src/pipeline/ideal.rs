@@ -89,7 +89,7 @@ pub(crate) fn is_worth(gain_s: f64, duration_s: f64) -> bool {
 
 /// The machine with words that are exact, act on each move by itself and between two that
 /// run into each other: for the accelerations of feeds and of rapids, and for the speed of
-/// rapids in the place of an F.
+/// rapids in place of an F.
 fn with_word(machine: &Machine) -> Machine {
     let word = |target| Knob {
         code: None,

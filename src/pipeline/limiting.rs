@@ -291,7 +291,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
                 stopped.reasons.push(last_round(&depths, how.allowed));
                 return Ok(stopped);
             }
-            // The changes made neighbours exceed the limit: planned anew with more.
+            // The changes made neighbours exceed the limit: planned again with more.
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
         }

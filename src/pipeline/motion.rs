@@ -235,7 +235,7 @@ impl Mover<'_, '_> {
         Ok(())
     }
 
-    /// Hands on what the planner has finished.
+    /// Passes on what the planner has finished.
     fn pump(&mut self) -> Result<(), Failure> {
         while let Some(planned) = self.planner.as_mut().and_then(PathPlanner::pop) {
             self.take(&planned)?;

@@ -18,7 +18,7 @@ pub struct Options {
     pub certificate: Option<Certificate>,
     /// The program runs once: limits over time need not bear it again at once.
     pub once: bool,
-    /// Of `limit` alone: feeds that it writes in the place of rapids get a comment that says
+    /// Of `limit` alone: feeds that it writes in place of rapids get a comment that says
     /// so, and feeds with this comment are taken for what it says: their F may be lowered
     /// like that of a rapid. `None`: comments say nothing.
     pub rapid_mark: Option<RapidMark>,

@@ -17,7 +17,7 @@ pub(super) const NOT_SET: &str = "preset-not-set";
 /// The lines, counted.
 #[derive(Debug, Default)]
 pub(super) struct PresetNotes {
-    /// They got a speed in the place of a preset.
+    /// They got a speed in place of a preset.
     without: Lines,
     /// They stay as they are; with the first one's reason.
     unset: Lines,

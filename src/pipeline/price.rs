@@ -97,7 +97,7 @@ impl Feeds {
         }
     }
 
-    /// What was found by limiting the whole program is said in the place of what a block by
+    /// What was found by limiting the whole program is said in place of what a block by
     /// itself would take.
     fn take_into(&self, refused: &mut LimitSummary) {
         for reason in &mut refused.reasons {

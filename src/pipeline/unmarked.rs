@@ -1,4 +1,4 @@
-//! Feeds that an earlier run of `limit` may have written in the place of rapids, in a
+//! Feeds that an earlier run of `limit` may have written in place of rapids, in a
 //! program without marks.
 
 use super::{LimitOptions, LimitSummary, Options};

@@ -31,8 +31,8 @@
 //!
 //! [`check`], [`report`] and [`limit`] take a program that is at hand and the usual
 //! [`Options`]; [`Limit`] says what `limit` may do, and reads and writes streams of any
-//! length. [`Moves`](crate::Moves) gives the moves of a program one by one. Whoever wants rows as they
-//! come, series over time or sets of programs finds them in [`pipeline`](crate::pipeline).
+//! length. [`Moves`](crate::Moves) gives the moves of a program one by one. Rows as they
+//! come, series over time and sets of programs are in [`pipeline`](crate::pipeline).
 
 mod error;
 mod limiting;

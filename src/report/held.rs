@@ -1,4 +1,4 @@
-//! Findings of a program, held against those that are known.
+//! Findings of a program, compared with those that are known.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -69,7 +69,7 @@ impl Held {
         held
     }
 
-    /// Findings that look alike: the worst is held against the worst.
+    /// Findings that look alike: the worst is compared with the worst.
     fn group(&mut self, mut now: Vec<&Known>, mut then: Vec<&Known>) {
         let worst_first = |a: &&Known, b: &&Known| b.badness()[0].total_cmp(&a.badness()[0]);
         now.sort_by(worst_first);

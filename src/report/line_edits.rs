@@ -1,4 +1,4 @@
-//! What is put in the place of lines of a program.
+//! What is put in place of lines of a program.
 
 use std::io;
 use std::str;

@@ -3,7 +3,7 @@
 //! nothing left to move.
 //!
 //! Input: the block, what it does, and places in the coordinates and units of the program.
-//! Output: its lines. Whether they do the same is checked by whoever reads them again.
+//! Output: its lines. Whether they do the same is checked by the pipeline, which reads them again.
 
 use std::fmt::Write as _;
 

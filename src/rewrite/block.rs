@@ -225,7 +225,7 @@ impl<'m> Rewriter<'m> {
         self.stopped = false;
     }
 
-    /// The stop or end of a block whose motion was changed, on a line of its own: whoever
+    /// The stop or end of a block whose motion was changed, on a line of its own: anyone who
     /// looks at the state there finds the original's.
     fn stop_after(&mut self, word: Span, view: &BlockView<'_>, out: &mut Vec<u8>) {
         self.complete_line(out);

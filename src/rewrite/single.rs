@@ -3,7 +3,7 @@
 //! Input: the cycle's block and what it does, with places in the coordinates and units of
 //! the program. Output: lines that do the same without the cycle. What cannot be said in
 //! single blocks is refused with the reason; whether the lines do the same is checked by
-//! whoever reads them again.
+//! the pipeline, which reads them again.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -55,7 +55,7 @@ fn a_program_is_changed_in_place_again_and_again() {
     assert_eq!((diff.code, diff.stdout.as_str()), (0, ""));
 }
 
-/// Without marks a feed in the place of a rapid cuts: a note where its F looks written.
+/// Without marks a feed in place of a rapid cuts: a note where its F looks written.
 #[test]
 fn what_an_earlier_run_wrote_without_marks_is_noted() {
     let shop = shop();

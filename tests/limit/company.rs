@@ -1,5 +1,5 @@
 //! Blocks that select a tool or end the program move too: their motion is changed, and
-//! whoever looks at the state where the program stops finds the original's.
+//! anyone who looks at the state where the program stops finds the original's.
 
 use insta::assert_snapshot;
 

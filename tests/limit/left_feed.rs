@@ -41,7 +41,7 @@ fn rapids_before_blocks_with_their_own_feed() {
     );
 }
 
-/// After the loop one F is in force again, which the next block counts on, and so does whoever
+/// After the loop one F is in force again, which the next block counts on, and so does anyone who
 /// looks at the end.
 #[test]
 fn what_counts_on_the_feed_gets_it() {

@@ -1,4 +1,4 @@
-//! Random programs on random machines: what `limit` promises, held against an
+//! Random programs on random machines: what `limit` promises, compared with an
 //! own reader and own formulas.
 
 use super::reader::{Move, read};

@@ -37,7 +37,7 @@ fn file() -> impl Strategy<Value = &'static str> {
     prop::sample::select(texts)
 }
 
-/// What is put in the place of a piece.
+/// What is put in place of a piece.
 fn piece() -> impl Strategy<Value = String> {
     prop_oneof![
         Just(String::new()),

@@ -1,4 +1,4 @@
-//! Series of programs with look-ahead, and of exact stops, held against the second
+//! Series of programs with look-ahead, and of exact stops, compared with the second
 //! implementation and the report.
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! The second implementation itself, held against cases worked by hand.
+//! The second implementation itself, compared with cases worked by hand.
 
 use super::compare::{Compared, machine, rows};
 use super::plant::Plant;

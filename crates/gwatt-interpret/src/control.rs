@@ -60,7 +60,7 @@ pub(super) struct Control<'m> {
     pub(super) bent: bool,
     /// Cutter compensation, while it is on or being left.
     pub(super) compensation: Option<Box<Compensation>>,
-    /// What the next one goes by.
+    /// What the next one depends on.
     pub(super) choice: Choice,
     /// Chamfers and rounded corners, once the program has any.
     pub(super) corners: Option<Box<Corners>>,

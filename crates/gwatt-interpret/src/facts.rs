@@ -34,7 +34,7 @@ pub struct Facts {
     pub guessed: Option<&'static str>,
     /// First and last line, from 1, of the contour that its turning cycle is about.
     pub contour: Option<[u64; 2]>,
-    /// Compensation is on, or lets go of moves: such blocks follow each other
+    /// Compensation is on, or releases moves: such blocks follow each other
     /// without anything between them.
     pub compensated: bool,
     /// It changes the tool, saves or restores the state or does more that shows it: the

@@ -1,4 +1,4 @@
-//! What a plain straight block goes by, and what it leaves after.
+//! What a plain straight block depends on, and what it leaves after.
 //!
 //! A block that takes the short way (see `direct`) and changes neither motion
 //! word nor feed reads no state but this one, and changes nothing but the place
@@ -51,7 +51,7 @@ impl Control<'_> {
 }
 
 impl Interpreter<'_> {
-    /// What a plain block that comes next goes by.
+    /// What a plain block that comes next depends on.
     #[must_use]
     pub fn fast_path_state(&self) -> FastPathState {
         self.control.fast_path_state()

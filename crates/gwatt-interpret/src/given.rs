@@ -1,4 +1,4 @@
-//! Variables that the control keeps, with the values that whoever runs the program
+//! Variables that the control keeps, with the values that the one who runs the program
 //! gives them: `#500=1.5`, `#<_depth>=2`, `R1=3`, `VC1=4`.
 
 mod control;

@@ -42,7 +42,7 @@ pub(crate) enum Transfer {
 pub(crate) enum Siemens {
     /// At the next line, as for a word that only ends or begins something.
     Next,
-    /// GOTO and its kin.
+    /// GOTO and similar words.
     Jump {
         to: String,
         direction: Direction,

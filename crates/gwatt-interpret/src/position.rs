@@ -17,7 +17,7 @@ use super::tool_table::ToolTable;
 use gwatt_machine::{AXES, AxisSet, AxisValues, Machine};
 use gwatt_motion::Start;
 
-/// Switches of block delete: `/` and `/1` go by the first, `/2` to `/9` by those
+/// Switches of block delete: `/` and `/1` obey the first, `/2` to `/9` those
 /// of their numbers (B-63944EN, "Optional Block Skip").
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BlockDelete(u16);

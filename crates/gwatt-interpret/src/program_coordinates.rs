@@ -24,7 +24,7 @@ pub(super) struct Programmed {
     system: Option<Affine>,
     scaling: Option<Affine>,
     mirror: [Option<f64>; SPACE],
-    /// The coordinates that the control goes by.
+    /// The coordinates that the control takes as the present ones.
     believed: AxisValues,
 }
 

@@ -142,7 +142,7 @@ impl Control<'_> {
     }
 
     /// Mirroring in X from X0 changes the sign of every X and with it no power,
-    /// as long as no weight hangs on X.
+    /// as long as X carries no weight.
     fn mirror_x(&self, span: Span, run: &mut Run<'_, '_>) {
         let weightless = self.machine.axes[0].is_none_or(|axis| axis.gravity_n == 0.0);
         if weightless && self.position.at[0] == 0.0 && self.position.absolute(0, 0.0) == 0.0 {

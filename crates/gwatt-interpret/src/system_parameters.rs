@@ -52,7 +52,7 @@ impl Control<'_> {
     /// Assigns one of them; false for those that only the control sets
     /// ("Cannot assign to read-only parameter"), and for all other numbers.
     ///
-    /// An assigned offset takes effect when its system is selected anew.
+    /// An assigned offset takes effect when its system is selected again.
     pub(super) fn set_system_parameter(&mut self, number: u32, value: f64) -> bool {
         if !self.is_system_parameter(number) {
             return false;

@@ -214,7 +214,7 @@ impl Control<'_> {
         program[1] = radius * sin;
     }
 
-    /// After a turn has begun or ended, Fanuc goes by the last programmed
+    /// After a turn has begun or ended, Fanuc starts from the last programmed
     /// coordinates of the axes that are not named, which differ from where they
     /// stand: an absolute move must name all of them first.
     fn name_adrift(

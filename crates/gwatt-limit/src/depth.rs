@@ -2,7 +2,7 @@
 //!
 //! Lowering one block changes how its neighbours run: the next one accelerates
 //! from a lower speed, and may then exceed the limit although it did not before.
-//! The program is planned anew with the changes, and blocks that do not fit
+//! The program is planned again with the changes, and blocks that do not fit
 //! then are lowered one step deeper, until all fit. A deeper step depends less
 //! on the neighbours, so that this ends: after [`ROUNDS`] rounds all lines go
 //! deeper together, however many of them take turns.
@@ -88,7 +88,7 @@ impl Depths {
             }
             lower = paces.lower(lines.iter().filter_map(|line| line.paced));
         }
-        // Those that no word slows down, and pieces of lines, go by rounds.
+        // Those that no word slows down, and pieces of lines, are lowered by rounds.
         let places: Vec<Place> = lines.iter().map(|line| line.place).collect();
         let deeper = self.go_deeper(&places) || lower;
         self.rounds += u32::from(deeper);

@@ -24,7 +24,7 @@ impl Solver<'_> {
         preset(self, case, levers)
     }
 
-    /// Whether a move that does not fit gets a speed in the place of a preset.
+    /// Whether a move that does not fit gets a speed in place of a preset.
     pub(super) fn falls_back(&self, mv: &Move) -> bool {
         self.how.strategy == Strategy::Preset
             && self.how.preset_else == PresetElse::Speed

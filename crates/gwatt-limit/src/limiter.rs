@@ -62,7 +62,7 @@ impl<'m> Limiter<'m> {
         self.solver.how.strategy == Strategy::Split
     }
 
-    /// Takes the next move. Outcomes are handed on in the order of the moves;
+    /// Takes the next move. Outcomes are passed on in the order of the moves;
     /// until then the caller keeps them, and `find` gives the one at a place,
     /// counted from the first that waits. It is asked only where that matters.
     pub fn push<'a>(
@@ -136,7 +136,7 @@ impl<'m> Limiter<'m> {
             && self.solver.model.fits(&assessment.demand)
     }
 
-    /// Hands on what was waiting, at the end of the program.
+    /// Passes on what was waiting, at the end of the program.
     pub fn finish<'a>(
         &mut self,
         find: &impl Fn(usize) -> Option<Waiting<'a>>,
@@ -162,7 +162,7 @@ impl<'m> Limiter<'m> {
         self.emit(self.slots.len(), sink);
     }
 
-    /// Hands on the first `count` that wait.
+    /// Passes on the first `count` that wait.
     fn emit(&mut self, count: usize, sink: &mut impl FnMut(Outcome)) {
         for _ in 0..count {
             let Some(slot) = self.slots.pop_front() else {

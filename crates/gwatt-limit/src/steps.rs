@@ -3,7 +3,7 @@
 //! The speeds of a polyline fall together, and with them the steps: what they ask
 //! for besides friction falls with the third power of the speed where several lie
 //! within the drives' response, with the second where one stands alone. The program
-//! is planned anew with the changes in any case; a deeper round expects less.
+//! is planned again with the changes in any case; a deeper round expects less.
 
 use super::case::{Case, Ends};
 use super::options::Strategy;

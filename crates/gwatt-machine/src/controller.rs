@@ -242,11 +242,11 @@ pub enum Family {
     Iso,
     /// RS274/NGC as `LinuxCNC` reads it.
     Rs274,
-    /// Marlin and its kin: 3D printers.
+    /// Marlin and similar firmware: 3D printers.
     Marlin,
     /// ISG kernel, Beckhoff `TwinCAT` CNC.
     Isg,
-    /// Siemens SINUMERIK 840D and its kin.
+    /// Siemens SINUMERIK 840D and its relatives.
     Siemens,
     /// Beckhoff `TwinCAT` NC I, classic dialect.
     Nci,

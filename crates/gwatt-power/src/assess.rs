@@ -130,7 +130,7 @@ impl<'m> Assessor<'m> {
         self.observer.motions.get_or_insert_default().drain(..)
     }
 
-    /// What was found about limits over time, of the moves handed on so far.
+    /// What was found about limits over time, of the moves passed on so far.
     #[must_use]
     pub fn ratings(&self) -> Vec<Rating> {
         let watch = self.observer.watch.as_ref();
@@ -143,7 +143,7 @@ impl<'m> Assessor<'m> {
         self.requested
     }
 
-    /// Whether moves are planned together, or held against limits over time, which
+    /// Whether moves are planned together, or checked against limits over time, which
     /// takes about as long as reading them.
     #[must_use]
     pub fn weighs(&self) -> bool {
@@ -157,7 +157,7 @@ impl<'m> Assessor<'m> {
         open || self.last_held().is_some() || !self.line.is_empty() || self.may_blend(mv)
     }
 
-    /// Takes something that moves no axis: it may stop the motion. Hands on what
+    /// Takes something that moves no axis: it may stop the motion. Passes on what
     /// can be judged then.
     pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.act_lower(action);
@@ -246,7 +246,7 @@ impl<'m> Assessor<'m> {
         }
     }
 
-    /// Takes the next move with the text of its line, and hands on what can be
+    /// Takes the next move with the text of its line, and passes on what can be
     /// judged now. Where the machine has a spindle, its waits come among them as
     /// moves of kind [`MoveKind::Spindle`].
     #[inline]
@@ -338,7 +338,7 @@ impl<'m> Assessor<'m> {
         self.hold(mv, text, assessment, figures.as_ref(), rested, sink);
     }
 
-    /// Hands on what was waiting, at the end of the program.
+    /// Passes on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.finish_lower();
         let Some(mut bus) = self.bus.take() else {

@@ -68,7 +68,7 @@ impl Motion {
         Some(Self::new(mv.clone(), course))
     }
 
-    /// The axes stand, in the place of `mv`.
+    /// The axes stand, in place of `mv`.
     pub(super) fn rest(mv: Move, duration_s: f64) -> Self {
         Self::new(mv, Course::Rest(duration_s))
     }

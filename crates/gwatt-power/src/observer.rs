@@ -69,7 +69,7 @@ impl Observer {
         }
     }
 
-    /// What the spindle does during the moves handed on since, in their order.
+    /// What the spindle does during the moves passed on since, in their order.
     #[inline]
     pub fn spindle_loads(&mut self, model: &PowerModel, loads: &mut Option<Vec<SpindleLoad>>) {
         if let (Some(watch), Some(loads)) = (&mut self.watch, loads) {

@@ -15,7 +15,7 @@
 //! * a cruise draws no more than one at the largest speed, and braking takes and gives
 //!   at each place what it does at the largest override, later.
 //!
-//! From one override to the next lower one each of these is held against all that the
+//! From one override to the next lower one each of these is compared with all that the
 //! spindle does between the earliest and the latest instant.
 
 use super::demand::larger;
@@ -125,7 +125,7 @@ fn parts(
     };
     let axes = Axes::new(model, converter, mv, plan, side);
     let cruise_w = Axes::new(model, converter, mv, &steady, side).power_w(0.0, 1.0);
-    // Where what an axis gives is credited, or it is held against its weight, next to rest
+    // Where what an axis gives is credited, or it is compared with its weight, next to rest
     // may be the worst.
     let rest_w = model.tracer_of(converter, side.flow()).rest_w(mv);
     let mut parts = vec![Part {

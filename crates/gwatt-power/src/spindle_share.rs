@@ -1,6 +1,6 @@
 //! What the spindle asks for next to the axes.
 
-/// What the spindle takes of a move's converter, for whoever lowers the move.
+/// What the spindle takes of a move's converter, for the limiter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SpindleShare {
     /// What it draws at most on top of the axes, however late the move begins,

@@ -1,6 +1,6 @@
 //! Several drives on one supply, planned together in interpolation periods.
 //!
-//! Every period each drive plans anew from what it put out last: with its own limits, and with
+//! Every period each drive plans again from what it put out last: with its own limits, and with
 //! what its [share](share) of the supply leaves it to accelerate with. Braking takes no power and
 //! is as hard as the drive's own limits; nothing that is fed back is credited.
 

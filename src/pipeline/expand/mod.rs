@@ -4,7 +4,7 @@
 //! Input: a program, and the lines whose moves have to be lowered. Output: the program with
 //! the cycles of these lines written out, from the block that begins each of them to the one
 //! that ends it, and for each of its lines the one that it comes from. It is read again and
-//! held against the original step by step, so it makes the same moves or is not handed on.
+//! compared with the original step by step, so it makes the same moves or is not passed on.
 
 mod compare;
 mod returns;
@@ -408,7 +408,7 @@ fn close(open: &mut Option<Series>, all: &mut Vec<Series>) {
     close(&mut rest, all);
 }
 
-/// The program with lines in the place of others.
+/// The program with lines in place of others.
 fn put_together(
     program: &[u8],
     written: &BTreeMap<u64, Vec<u8>>,

@@ -26,7 +26,7 @@ pub(super) fn limit(
         let mut next = Job::new(job.programs, job.machine, job.how, ways_through, found);
         for (number, (summary, wanted)) in set.programs.iter().zip(&mut wanted).enumerate() {
             if found.calls(number) {
-                // Only its own run would be held against the original.
+                // Only its own run would be compared with the original.
                 continue;
             }
             let all = summary.reasons.len() >= Summary::KEPT;

@@ -27,7 +27,7 @@ pub(super) struct Element {
 }
 
 impl Compensation {
-    /// Takes the next step of a block; hands on what is known by it.
+    /// Takes the next step of a block; passes on what is known by it.
     pub(super) fn follow(&mut self, step: Step, out: &mut Vec<Step>) -> Result<(), Fault> {
         let mut mv = match step {
             Step::Move(mv) if self.radius_mm > 0.0 && mv.kind != MoveKind::Dwell => mv,

@@ -21,7 +21,7 @@ const SWEEP_TOLERANCE_RAD: [f64; 2] = [0.0254, 0.001];
 pub(super) struct Hold {
     /// The first is a move along `track`; all after it stay in their place.
     pub(super) steps: Vec<Step>,
-    /// Something was handed on since this was last asked.
+    /// Something was passed on since this was last asked.
     pub(super) handed_on: bool,
     /// What the first move runs on.
     track: Option<Track>,
@@ -29,7 +29,7 @@ pub(super) struct Hold {
     guard: Guard,
     /// Where it ends if nothing shortens it.
     pub(super) end: Vector,
-    /// The tool's centre after what was handed on.
+    /// The tool's centre after what was passed on.
     from: Vector,
     /// The same as the machine sees it.
     pub(super) tool: Vector,
@@ -97,24 +97,24 @@ impl Hold {
         Ok(())
     }
 
-    /// Hands on what waits as it is: the next move does not touch its end.
+    /// Passes on what waits as it is: the next move does not touch its end.
     pub(super) fn release(&mut self, out: &mut Vec<Step>) -> Result<(), Fault> {
         self.guard = Guard::None;
         self.emit(self.end, out)
     }
 
-    /// Hands on what waits; it ends at `end`.
+    /// Passes on what waits; it ends at `end`.
     pub(super) fn release_to(&mut self, end: Vector, out: &mut Vec<Step>) -> Result<(), Fault> {
         self.guard = Guard::None;
         self.emit(end, out)
     }
 
-    /// Hands on what waits at the end of the compensation.
+    /// Passes on what waits at the end of the compensation.
     pub(super) fn finish(&mut self, out: &mut Vec<Step>) -> Result<(), Fault> {
         self.release_at(self.end, out)
     }
 
-    /// Hands on what waits; it ends at `end` and must not turn round for that.
+    /// Passes on what waits; it ends at `end` and must not turn round for that.
     pub(super) fn release_at(&mut self, end: Vector, out: &mut Vec<Step>) -> Result<(), Fault> {
         if let Guard::Along(direction) = self.guard
             && dot(sub(end, self.from), direction) < 0.0

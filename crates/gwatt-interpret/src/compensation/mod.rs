@@ -135,7 +135,7 @@ impl Compensation {
         }
     }
 
-    /// Forgets the lines whose moves have been handed on before this block: all
+    /// Forgets the lines whose moves have been passed on before this block: all
     /// but the one that did so.
     fn forget(&mut self) {
         if std::mem::take(&mut self.hold.handed_on) {

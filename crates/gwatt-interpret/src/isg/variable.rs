@@ -130,7 +130,7 @@ impl Reading<'_, '_, '_> {
         keep(kept, name, value, &self.cursor, start)
     }
 
-    /// `P1 = …`, `V.P.A = …`; also `+=` and its kin. False where no variable
+    /// `P1 = …`, `V.P.A = …`; also `+=` and the like. False where no variable
     /// begins.
     pub(super) fn assignment(&mut self) -> Outcome<bool> {
         let start = self.cursor.at;
@@ -270,7 +270,7 @@ impl Reading<'_, '_, '_> {
                 rest /= length;
             }
             let name = Ident::of(format_args!("{name}{indices}"));
-            // A declaration makes it anew at this level.
+            // A declaration makes it again at this level.
             if is_local(&name) {
                 let level = self.state.levels.last_mut();
                 level.map(|level| level.insert(name.clone(), value));

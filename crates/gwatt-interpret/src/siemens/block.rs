@@ -330,7 +330,7 @@ impl Control<'_> {
         run.words.take(b'H');
     }
 
-    /// DYNNORM and its kin act in their block ("Dynamic response").
+    /// DYNNORM and similar words act in their block ("Dynamic response").
     fn dynamic_mode(&mut self, state: &Siemens, run: &mut Run<'_, '_>) {
         let Some((group, level)) = state.extra.level else {
             return;

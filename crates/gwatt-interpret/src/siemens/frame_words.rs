@@ -116,7 +116,7 @@ impl Siemens {
         std::array::from_fn(|axis| at[axis] + self.turns[axis])
     }
 
-    /// Where each axis counts from when it goes by increments: where it was in
+    /// Where each axis counts from when it moves by increments: where it was in
     /// program coordinates, whatever frames have changed since (SD42440
     /// `FRAME_OFFSET_INCR_PROG` = 1, the default: the offset is traversed too).
     pub(super) fn increments_from(&self, at: &AxisValues) -> AxisValues {

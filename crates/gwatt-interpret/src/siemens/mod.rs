@@ -81,7 +81,7 @@ struct Extra {
     machine_coordinates: bool,
     /// CYCLE832: a path mode that blends.
     blends: bool,
-    /// DYNNORM and its kin: a group of levels, and which one of it; `None`: any of them.
+    /// DYNNORM and similar words: a group of levels, and which one of it; `None`: any of them.
     level: Option<(usize, Option<usize>)>,
     cycle: Option<cycle::Call>,
     /// CHF, CHR, RND.

@@ -55,7 +55,7 @@ impl Control<'_> {
             }
         }
         state.polar.pole = pole;
-        // A radius that does not come anew is that of the last place.
+        // A radius that does not come again is that of the last place.
         state.polar.angle_deg = 0.0;
         state.polar.radius = 0.0;
     }

@@ -1,4 +1,4 @@
-//! What the tool radius compensation goes by ("Tool radius compensation (G40,
+//! What the tool radius compensation depends on ("Tool radius compensation (G40,
 //! G41, G42)", "Compensation at the outside corners (G450, G451, DISC)",
 //! "Contour approach and retraction (NORM, KONT)").
 
@@ -53,7 +53,7 @@ impl Radius {
 }
 
 impl Reading<'_, '_, '_> {
-    /// NORM, KONT and their kin, CFC and its kin, DISC.
+    /// NORM, KONT and similar words, CFC and similar words, DISC.
     pub(super) fn radius_word(&mut self, name: &str, start: usize) -> Outcome<()> {
         if name == "DISC" {
             self.state.radius.rounded = self.value_behind(name, start)? != 0.0;

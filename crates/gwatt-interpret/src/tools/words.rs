@@ -77,7 +77,7 @@ impl Control<'_> {
         self.tools.loaded_told = true;
     }
 
-    /// G43 and its kin: the axes stay, the program coordinates change.
+    /// G43 and similar words: the axes stay, the program coordinates change.
     pub(crate) fn tool_length(&mut self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
         let family = self.machine.controller.language.family;
         let rs274 = family == Family::Rs274;

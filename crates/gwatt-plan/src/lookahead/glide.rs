@@ -1,6 +1,6 @@
 //! Gliding: the motion keeps its full speed from one straight element to the next.
 //!
-//! Most lines of a finishing pass are run so. Whoever plans them may follow them
+//! Most lines of a finishing pass are run so. The caller may follow them
 //! without the planner, and give it those that are not final when that ends: it is
 //! then where it would have been.
 

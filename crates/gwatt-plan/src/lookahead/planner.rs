@@ -34,7 +34,7 @@ pub(super) enum Rule<T> {
 /// order. An element is final once nothing after it can change it.
 ///
 /// What changes with the limits of one element: a clone taken before it, given
-/// the changed element and those after it, plans them anew. From the first
+/// the changed element and those after it, plans them again. From the first
 /// piece on that begins as before at a joint that the change did not reach, all
 /// is as it was; under limits of jerk that is a joint that limits the speed.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! The interpolation-period planner: speed commands.
 //!
-//! Every period it decides anew, from what the last period put out, which curve
+//! Every period it decides again, from what the last period put out, which curve
 //! of two or three phases leads to the target, and goes along it for one period.
 //! A phase that ends inside the period ends there: holding its jerk to the end
 //! of the period would overshoot.

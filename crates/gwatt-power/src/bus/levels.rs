@@ -1,4 +1,4 @@
-//! The spindle over time in steps, for whoever watches the converter.
+//! The spindle over time in steps, for limits over time of the converter.
 
 use super::SpindleBus;
 use crate::duty_cycle::{Level, Steps};

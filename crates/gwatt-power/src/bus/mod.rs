@@ -68,7 +68,7 @@ pub(super) struct SpindleBus<'m> {
     asked: Option<u64>,
     /// Commands so far.
     commands: u32,
-    /// What it does during the moves handed on, where that is watched over time.
+    /// What it does during the moves passed on, where that is watched over time.
     pub(super) spindle_loads: Option<Vec<SpindleLoad>>,
     /// The same at 100 %, where that is wanted.
     pub(super) shown: Option<Shown>,

@@ -1,4 +1,4 @@
-//! The spindle at 100 % over time, for whoever wants to see it.
+//! The spindle at 100 % over time, for series and pictures.
 //!
 //! Output: a [`Turning`] for each move that takes time, in the order of the
 //! program, and for each wait of the axes among them.
@@ -12,7 +12,7 @@ use crate::{Assessment, Assessor};
 use gwatt_motion::{Move, MoveKind};
 
 impl Assessor<'_> {
-    /// Takes what the spindle does during the moves handed on since, and during
+    /// Takes what the spindle does during the moves passed on since, and during
     /// the waits among them; `None` where the machine has none. It is known
     /// later than the motion.
     pub fn turnings(&mut self) -> Option<std::vec::Drain<'_, Turning>> {

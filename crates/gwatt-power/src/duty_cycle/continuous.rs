@@ -11,7 +11,7 @@ use super::terms::Terms;
 
 /// The mean over windows, bounded in two ways where the timing of moves is not
 /// known: such a move counts as if it lasted for ever, or with the square of its
-/// power over its longest time in the place of its shortest. The lower bound holds.
+/// power over its longest time in place of its shortest. The lower bound holds.
 #[derive(Debug, Clone)]
 pub(super) struct Continuous {
     lasting: Rms,

@@ -8,7 +8,7 @@ use super::rating::{Measure, Place, Rating};
 use super::store::Store;
 use gwatt_machine::{Capacitor, Converter};
 
-/// What one direction of a converter's power is held against.
+/// What one direction of a converter's power is checked against.
 #[derive(Debug, Default)]
 pub(super) struct Limits {
     /// What the capacitor lacks, or holds in excess.

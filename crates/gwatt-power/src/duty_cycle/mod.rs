@@ -73,7 +73,7 @@ pub(super) struct DutyCycle {
     powers: Vec<[f64; 3]>,
     /// The program runs again and again.
     pub repeated: bool,
-    /// What bounds are reckoned with.
+    /// What bounds are computed with.
     models: Models,
     /// The least shares of the largest overrides that bounds go down to: of feeds, of
     /// rapids.
@@ -426,7 +426,7 @@ impl DutyCycle {
 }
 
 impl Track {
-    /// The model that it is reckoned with.
+    /// The model that it is computed with.
     fn model<'a>(&self, model: &'a PowerModel, models: &'a Models) -> &'a PowerModel {
         if self.bounds && self.flow == Flow::FedBack {
             models.fed_back(model)

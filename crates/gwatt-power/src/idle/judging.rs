@@ -9,7 +9,7 @@ use gwatt_motion::Move;
 impl Assessor<'_> {
     /// Takes the end of a line whose steps have been taken; `moved`: some axis moves
     /// in it, or it only turns a knob. After some thousands of lines in a row that move none, what waits is
-    /// handed on with the robust bound, and what follows begins in doubt.
+    /// passed on with the robust bound, and what follows begins in doubt.
     #[inline]
     pub fn end_line(&mut self, moved: bool, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         for lower in &mut self.lower {

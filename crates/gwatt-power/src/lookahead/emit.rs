@@ -15,7 +15,7 @@ use gwatt_motion::Move;
 use gwatt_plan::{Overrides, SpeedBound, blended_bound, blended_speed};
 
 impl Ahead {
-    /// Hands on the moves that are finished, and whose neighbours are. All, when
+    /// Passes on the moves that are finished, and whose neighbours are. All, when
     /// nothing moves after the last one.
     #[inline]
     pub fn emit(

@@ -49,7 +49,7 @@ pub(super) struct Ahead {
     glider: Glider,
     /// At 100 %: times and energies; where that is the same, nothing.
     nominal: Option<Side>,
-    /// Moves that are not handed on.
+    /// Moves that are not passed on.
     open: Queue,
     /// Nothing moves after the last move.
     at_rest: bool,
@@ -60,7 +60,7 @@ pub(super) struct Ahead {
     reach2: Option<f64>,
     /// How far a lower pace may still come late, mm, and up to which speed, mm/s.
     late: Option<(f64, f64)>,
-    /// What was handed on last, and what before that, where nobody waited for what
+    /// What was passed on last, and what before that, where nobody waited for what
     /// may be blended with it.
     unwaited: Option<Extremes>,
     /// Since the last stop a drive leaves less than the axis' own acceleration at the

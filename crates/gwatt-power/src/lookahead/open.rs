@@ -10,7 +10,7 @@ use gwatt_motion::{Corner, Move, MoveKind};
 use gwatt_plan::is_independent;
 use gwatt_plan::lookahead::Joint;
 
-/// A move that is not handed on.
+/// A move that is not passed on.
 #[derive(Debug)]
 pub(super) struct Open {
     pub mv: Move,

@@ -21,7 +21,7 @@ pub(super) struct Queue {
     /// The first that waits, and the next that comes.
     first: u64,
     end: u64,
-    /// The one that moved and was handed on last, unless what comes next begins at
+    /// The one that moved and was passed on last, unless what comes next begins at
     /// rest; it is room then.
     before: Option<Box<Open>>,
     has_before: bool,

@@ -10,7 +10,7 @@ use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::{PathFigures, blended_bound, path_bound, path_figures};
 
 impl Assessor<'_> {
-    /// Lets a move wait for its successor; the one that waited is handed on.
+    /// Lets a move wait for its successor; the one that waited is passed on.
     pub(crate) fn hold(
         &mut self,
         mv: &Move,
