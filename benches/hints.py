@@ -4,7 +4,7 @@
     benches/hints.py target/release/gwatt fanuc=FOLDER haas=FOLDER siemens=FOLDER ...
 
 Programs and machines are those of fit-rate.py. At a share of the program's own largest peak
-every hint "fits with ..." of `check` is held against a run of `limit --allow feed,expand`:
+every hint "fits with ..." of `check` is compared with a run of `limit --allow feed,expand`:
 the line must be lowered there, not refused, and an F that the hint names must be the one
 that is written (the lowest, where the line makes several moves). A line of which `check`
 says that no word helps must not be lowered.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What LinuxCNC's axes do, recorded in every servo cycle, held against gwatt's plan.
+"""What LinuxCNC's axes do, recorded in every servo cycle, compared with gwatt's plan.
 
     benches/recorded.py target/release/gwatt TOOLS --axes XYZABC --seed 1 --count 50
     benches/recorded.py target/release/gwatt TOOLS --axes XYZ --limited FOLDER PROGRAM ...

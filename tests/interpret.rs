@@ -282,7 +282,7 @@ fn each_refusal_once() {
     .map(|program| moves("iso", &format!("{program}\n")))
     .concat();
     assert_snapshot!(all, @r#"
-1 no-feed: a feed move, but no F is in force | write F in this block or before; after G93, G94 or G95 it must be written anew
+1 no-feed: a feed move, but no F is in force | write F in this block or before; after G93, G94 or G95 it must be written again
 1 modal-group-twice: two G words of one modal group in a block | keep the one that is meant, or write two blocks
 1 unsupported-code: G34 is thread cutting or tapping, which gwatt does not support | nothing is estimated for a program with motion that is not understood
 1 no-motion-word: axis words without a motion word in force | write G0, G1, G2 or G3 in this block or before

@@ -78,7 +78,7 @@ fn sources() -> Vec<PathBuf> {
 }
 
 /// The root of the package.
-fn root() -> &'static Path {
+pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 

@@ -51,6 +51,7 @@ mod kept;
 mod okuma;
 mod fanuc;
 mod turning;
+mod words;
 mod pocket;
 mod borrowed;
 mod circles;

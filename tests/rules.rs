@@ -272,7 +272,7 @@ fn the_index_is_the_page() {
     let page = fs::read_to_string(&path).unwrap_or_default();
     assert!(
         page == index(),
-        "docs/rules.md is old: `just bless` writes it anew"
+        "docs/rules.md is old: `just bless` writes it again"
     );
 }
 

@@ -35,7 +35,7 @@ pub enum BaselineError {
     #[error("it is no baseline")]
     Format(#[from] serde_json::Error),
     /// It is of another version.
-    #[error("it has version {0}, and this gwatt reads version {VERSION}: write it anew")]
+    #[error("it has version {0}, and this gwatt reads version {VERSION}: write it again")]
     Version(u32),
 }
 

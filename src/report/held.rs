@@ -271,7 +271,7 @@ mod tests {
     fn other_files_are_refused() {
         let said = |text| Baseline::read(text).unwrap_err().to_string();
         assert_eq!(said("{}"), "it is no baseline");
-        let version = "it has version 9, and this gwatt reads version 1: write it anew";
+        let version = "it has version 9, and this gwatt reads version 1: write it again";
         assert_eq!(said(r#"{"version": 9}"#), version);
         assert_eq!(
             said(r#"{"version": 1, "programs": {"a": [{}]}}"#),

@@ -127,7 +127,7 @@ fn messages() {
                 baseline: ";
     refused(&["--baseline", "gentle.ngc"], none);
     shop.put("new.json", "{\"version\": 2}");
-    let version = "it has version 2, and this gwatt reads version 1: write it anew";
+    let version = "it has version 2, and this gwatt reads version 1: write it again";
     refused(&["--baseline", "new.json"], version);
     let both = "the argument '--baseline <FILE>' cannot be used with '--write-baseline <FILE>'";
     refused(

@@ -1,6 +1,6 @@
 """Reference runs of the period planner: tests/period/reference.csv.
 
-Below the base speed they are Ruckig's velocity control (0.19.4), planned anew
+Below the base speed they are Ruckig's velocity control (0.19.4), planned again
 from its own state where the target changes. Through and above the base speed
 they are a simulation in steps of 1 us of the rule: as much acceleration as
 limit and jerk allow, and -J as soon as the landing asks for it.

@@ -349,7 +349,7 @@ impl Control<'_> {
             None => {
                 run.report
                     .error("no-feed", "a feed move, but no F is in force", span)
-                    .help("write F in this block or before; after G93, G94 or G95 it must be written anew");
+                    .help("write F in this block or before; after G93, G94 or G95 it must be written again");
                 return None;
             }
         };

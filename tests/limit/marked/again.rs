@@ -136,8 +136,8 @@ fn programs_for_every_controller() {
                 tally.try_program(&machine, profile.name, &program);
             }
         }
-        // Other controls have words for slower rapids, let G0 obey F, or have neither.
-        let others = ["isg", "marlin", "reprap", "klipper", "okuma", "okuma-lathe"];
+        // Other controls have words for slower rapids, or let G0 obey F.
+        let others = ["isg", "marlin", "reprap", "klipper"];
         let marks = !others.contains(&profile.name);
         assert_eq!(
             tally.marked > 0 && tally.again > 0,

@@ -159,7 +159,7 @@ impl Reading<'_, '_, '_> {
     pub(super) fn level(&mut self, name: &str, start: usize) -> Outcome<bool> {
         let Some((group, level)) = named(self.control.machine, name) else {
             if name.starts_with("DYN") && name != "DYNNORM" {
-                let message = "dynamic modes (DYNROUGH and its kin) have accelerations of their \
+                let message = "dynamic modes (DYNROUGH and similar ones) have accelerations of their \
                                own: those of the machine file have to be the highest of all that \
                                the program selects, or each mode's stands under [[levels]]";
                 self.note("dynamic-mode", message, start);
