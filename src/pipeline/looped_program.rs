@@ -134,7 +134,7 @@ impl LoopedProgram<'_> {
                 );
                 let written;
                 (written, table) = writer.decide_all()?;
-                decided.befores.push(written.before);
+                decided.originals.push(written.before);
                 decided.reasons.join(written.reasons);
                 decided.may_skip |= written.may_skip;
             }
@@ -158,7 +158,7 @@ impl LoopedProgram<'_> {
         mut rows: Option<&mut dyn RowSink>,
     ) -> Result<Certified, Failure> {
         let machine = self.machine;
-        let worst = worst(&decided.befores);
+        let worst = worst(&decided.originals);
         let mut certified: Option<Certified> = None;
         for (place, (options, written)) in source.paths.iter().zip(paths).enumerate() {
             let rows = if place == worst { rows.take() } else { None };
@@ -187,7 +187,7 @@ fn no_way() -> Failure {
 #[derive(Default)]
 pub(super) struct Decided {
     /// The figures of the original on each path.
-    befores: Vec<Summary>,
+    originals: Vec<Summary>,
     /// What cannot be helped.
     reasons: Reasons,
     /// Some of its blocks may be skipped.
@@ -198,7 +198,7 @@ impl Decided {
     /// What the writing half comes to, with the number of lines that were changed.
     pub(super) fn written(self, edited_lines: u64) -> Result<Written, Failure> {
         Ok(Written {
-            before: worst_of(self.befores).ok_or_else(no_way)?,
+            before: worst_of(self.originals).ok_or_else(no_way)?,
             edited_lines,
             reasons: self.reasons,
             may_skip: self.may_skip,

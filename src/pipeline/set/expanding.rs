@@ -17,8 +17,8 @@ pub(super) fn limit(
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<SetSummary, SetFailure> {
     let mut set = job.limit(rows)?;
-    let mut befores: Vec<Summary> = set.programs.iter().map(|it| it.before.clone()).collect();
-    let mut wanted: Vec<BTreeMap<u64, Way>> = vec![BTreeMap::new(); befores.len()];
+    let mut originals: Vec<Summary> = set.programs.iter().map(|it| it.before.clone()).collect();
+    let mut wanted: Vec<BTreeMap<u64, Way>> = vec![BTreeMap::new(); originals.len()];
     for way in [Way::Placed, Way::WrittenOut] {
         if set.certified() || way == Way::WrittenOut && !job.how.allowed.expand {
             break;
@@ -40,7 +40,7 @@ pub(super) fn limit(
             let (Some(program), Some(ways), Some(before)) = (
                 job.programs.get(number),
                 ways_through.get(number),
-                befores.get_mut(number),
+                originals.get_mut(number),
             ) else {
                 continue;
             };
@@ -63,7 +63,7 @@ pub(super) fn limit(
             set = next.limit(rows)?;
         }
     }
-    for (summary, before) in set.programs.iter_mut().zip(befores) {
+    for (summary, before) in set.programs.iter_mut().zip(originals) {
         summary.before = before;
     }
     Ok(set)

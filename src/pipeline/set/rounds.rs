@@ -78,7 +78,7 @@ impl<'a> Job<'a> {
         if first.certified() || in_time || !after(&first, |it| it.after.unfit_count == 0) {
             return Ok(first);
         }
-        let befores: Vec<_> = first.programs.iter().map(|it| it.before.clone()).collect();
+        let originals: Vec<_> = first.programs.iter().map(|it| it.before.clone()).collect();
         let mut last = None;
         lower_further(self.machine, as_one(&first), &mut |target| {
             let set = self.attempt(target, rows)?;
@@ -87,7 +87,7 @@ impl<'a> Job<'a> {
             Ok(one)
         })?;
         let mut set = last.unwrap_or(first);
-        for (program, before) in set.programs.iter_mut().zip(befores) {
+        for (program, before) in set.programs.iter_mut().zip(originals) {
             program.before = before;
         }
         Ok(set)
