@@ -70,7 +70,9 @@ fn found_in(text: &str, words: &[(String, String)]) -> Vec<String> {
     for (number, line) in (1..).zip(text.lines()) {
         in_list = line == "```words" || in_list && line != "```";
         let quoted = in_list || line.contains("alias = ");
-        let hits = words.iter().filter(|(word, _)| !quoted && stands_in(word, line));
+        let hits = words
+            .iter()
+            .filter(|(word, _)| !quoted && stands_in(word, line));
         found.extend(hits.map(|(word, instead)| format!("{number}: `{word}`, better `{instead}`")));
     }
     found
@@ -95,9 +97,18 @@ fn words_that_are_avoided_stand_nowhere() {
         }
         let text = fs::read_to_string(&path).unwrap();
         let name = path.strip_prefix(root).unwrap().display().to_string();
-        shown.extend(found_in(&text, &words).into_iter().map(|hit| format!("{name}:{hit}")));
+        shown.extend(
+            found_in(&text, &words)
+                .into_iter()
+                .map(|hit| format!("{name}:{hit}")),
+        );
     }
-    assert!(shown.is_empty(), "{} lines\n{}", shown.len(), shown.join("\n"));
+    assert!(
+        shown.is_empty(),
+        "{} lines\n{}",
+        shown.len(),
+        shown.join("\n")
+    );
 }
 
 #[test]
@@ -105,7 +116,10 @@ fn words_are_found_as_wholes() {
     let words = avoided("# Words\n```words\ntold -> known\ntold apart -> distinguished\n```\n");
     assert_eq!(words.len(), 2);
     assert_eq!(
-        found_in("a Told b\nretold\ntold_us\n```words\ntold\n```\nit is told.\n", &words),
+        found_in(
+            "a Told b\nretold\ntold_us\n```words\ntold\n```\nit is told.\n",
+            &words
+        ),
         ["1: `told`, better `known`", "7: `told`, better `known`"]
     );
 }

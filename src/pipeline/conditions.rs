@@ -149,13 +149,8 @@ fn level_conditions(machine: &Machine) -> impl Iterator<Item = String> {
     })
 }
 
-/// What the figures rest on, in plain sentences; `paths` are the ways through the program.
-pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary) -> Vec<String> {
-    let Some(options) = paths.first() else {
-        return Vec::new();
-    };
-    let percent = |factor: f64| factor * 100.0;
-    let limits = &machine.limits;
+/// How moves are planned.
+fn plan_conditions(machine: &Machine, summary: &Summary) -> Vec<String> {
     let modelled = machine.controller.planner.look_ahead.is_some();
     let on_lines = summary.ahead && !modelled;
     let mut conditions = vec![match summary.certificate {
@@ -189,6 +184,42 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
             (machine.path.response_time_s * 1e6).round() / 1e3
         ));
     }
+    conditions
+}
+
+/// What limits over time rest on.
+fn over_time_conditions(machine: &Machine, options: &Options, summary: &Summary) -> Vec<String> {
+    let mut conditions = Vec::new();
+    if summary.over_time.is_empty() {
+        return conditions;
+    }
+    let runs = if options.once {
+        "of one run"
+    } else {
+        "of a program that runs again at once, for ever"
+    };
+    conditions.push(format!("limits over time are less the margin, {runs}"));
+    if machine.limits.override_at.is_none() {
+        conditions.push(over_time_condition(machine, summary));
+    }
+    if summary.certificate == Some(Certificate::Robust) {
+        conditions.push(
+            "blended moves last no longer than with a stop at both ends, and no shorter than \
+             their path at full speed"
+                .to_owned(),
+        );
+    }
+    conditions
+}
+
+/// What the figures rest on, in plain sentences; `paths` are the ways through the program.
+pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary) -> Vec<String> {
+    let Some(options) = paths.first() else {
+        return Vec::new();
+    };
+    let percent = |factor: f64| factor * 100.0;
+    let limits = &machine.limits;
+    let mut conditions = plan_conditions(machine, summary);
     if machine.path.mode == Some(PathMode::ExactStop) {
         conditions
             .push("path.mode of the machine file is exact-stop: G64 is overridden".to_owned());
@@ -226,24 +257,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         }
         .to_owned(),
     );
-    if !summary.over_time.is_empty() {
-        let runs = if options.once {
-            "of one run"
-        } else {
-            "of a program that runs again at once, for ever"
-        };
-        conditions.push(format!("limits over time are less the margin, {runs}"));
-        if limits.override_at.is_none() {
-            conditions.push(over_time_condition(machine, summary));
-        }
-        if summary.certificate == Some(Certificate::Robust) {
-            conditions.push(
-                "blended moves last no longer than with a stop at both ends, and no shorter than \
-                 their path at full speed"
-                    .to_owned(),
-            );
-        }
-    }
+    conditions.extend(over_time_conditions(machine, options, summary));
     conditions.extend(jerk_condition(machine, summary).map(str::to_owned));
     conditions.extend(curve_condition(machine).map(str::to_owned));
     conditions

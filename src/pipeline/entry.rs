@@ -241,13 +241,7 @@ impl Entry {
                 "no motion word is in force that could be put back",
             ),
         ];
-        let reason = |checks: &[(bool, &'static str)]| {
-            checks
-                .iter()
-                .find(|(applies, _)| *applies)
-                .map(|(_, reason)| *reason)
-        };
-        let reasons = [edit, reason(&feed), reason(&rapid)];
+        let reasons = [edit, first_reason(&feed), first_reason(&rapid)];
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
         let reason_help = self.help(machine, reason_text);
         let feed_accel_mm_s2 = self
@@ -437,6 +431,12 @@ impl Entry {
     pub(super) fn feed_before(&self) -> Option<f64> {
         self.mark.feed.as_ref().map(|feed| feed.value)
     }
+}
+
+/// The first reason that applies.
+fn first_reason(checks: &[(bool, &'static str)]) -> Option<&'static str> {
+    let mut applying = checks.iter().filter(|(applies, _)| *applies);
+    applying.next().map(|(_, reason)| *reason)
 }
 
 /// Whether a move ends at rest before a feed: a rapid that is not blended with feeds.

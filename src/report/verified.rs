@@ -94,6 +94,13 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
             names.margin
         ),
     );
+    blocks_above(overlay, &mut text);
+    let _ = writeln!(text, "verdict: {}", verdict(overlay));
+    text
+}
+
+/// The blocks that draw more than predicted, worst first.
+fn blocks_above(overlay: &Overlay, text: &mut String) {
     let worst = worst(overlay);
     let above: Vec<_> = worst
         .iter()
@@ -119,8 +126,6 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
             );
         }
     }
-    let _ = writeln!(text, "verdict: {}", verdict(overlay));
-    text
 }
 
 /// The agreement in a sentence.

@@ -38,36 +38,7 @@ impl Control<'_> {
                 )
                 .help("move the axes to a known position first, or give --start X0,Y0,Z0");
         }
-        for axis in [first, second] {
-            if self.machine.axes[axis].is_none_or(|data| data.kind != AxisKind::Linear) {
-                let letter = ALL_AXES[axis].letter() as char;
-                let message = format!(
-                    "an arc needs the linear axis {letter}, which the machine does not have"
-                );
-                run.report
-                    .error("no-such-axis", message, whole)
-                    .help("choose the plane with G17, G18 or G19");
-            }
-        }
-        let turns = run.words.take(b'P').unwrap_or(1.0);
-        if turns < 1.0 || turns.fract() != 0.0 || turns > 1e6 {
-            let span = run.words.span(b'P', run.block);
-            run.report
-                .error(
-                    "arc-turns",
-                    "P of an arc must be a whole number from 1",
-                    span,
-                )
-                .help("write the number of turns");
-        }
-        let stray = b"IJK"[normal];
-        if run.words.take(stray).is_some_and(|value| value != 0.0) && !self.is_siemens() {
-            let span = run.words.span(stray, run.block);
-            let message = format!("{} does not belong to an arc in this plane", stray as char);
-            run.report
-                .error("arc-center", message, span)
-                .help("choose the plane with G17, G18 or G19");
-        }
+        let turns = self.arc_turns(run);
         if run.report.diagnostics.errors != errors {
             return;
         }
@@ -111,6 +82,40 @@ impl Control<'_> {
             Some(Err(fault)) => report_fault(fault, run, whole),
             None => {}
         }
+    }
+
+    /// The turns of an arc; checks its plane and the words that go with it.
+    fn arc_turns(&self, run: &mut Run<'_, '_>) -> f64 {
+        let [first, second, normal] = self.modal.plane;
+        for axis in [first, second] {
+            if self.machine.axes[axis].is_none_or(|data| data.kind != AxisKind::Linear) {
+                let letter = ALL_AXES[axis].letter() as char;
+                let message = format!(
+                    "an arc needs the linear axis {letter}, which the machine does not have"
+                );
+                let whole = run.whole();
+                run.report
+                    .error("no-such-axis", message, whole)
+                    .help("choose the plane with G17, G18 or G19");
+            }
+        }
+        let turns = run.words.take(b'P').unwrap_or(1.0);
+        if turns < 1.0 || turns.fract() != 0.0 || turns > 1e6 {
+            let span = run.words.span(b'P', run.block);
+            let message = "P of an arc must be a whole number from 1";
+            run.report
+                .error("arc-turns", message, span)
+                .help("write the number of turns");
+        }
+        let stray = b"IJK"[normal];
+        if run.words.take(stray).is_some_and(|value| value != 0.0) && !self.is_siemens() {
+            let span = run.words.span(stray, run.block);
+            let message = format!("{} does not belong to an arc in this plane", stray as char);
+            run.report
+                .error("arc-center", message, span)
+                .help("choose the plane with G17, G18 or G19");
+        }
+        turns
     }
 
     /// Geometry by R, or by I J K; `None` when it was reported.

@@ -182,27 +182,13 @@ impl<'m> Interpreter<'m> {
             };
             return self.control.dollar(&mut run);
         }
-        let mut beyond = !block.issues.is_empty();
-        let mut acts = false;
-        if let Some(siemens) = &mut self.control.siemens {
-            siemens.begin_block();
-            beyond |= is_beyond_words(block, text);
-        } else if let Some(isg) = &self.control.isg {
-            beyond |= isg.is_beyond_words(block);
-        } else if let Some(osp) = &mut self.control.osp {
-            osp.only_keeps = false;
-            beyond |= osp.is_beyond_words(block);
-        }
-        beyond |= self.control.nci.is_some();
+        let beyond = self.control.begin_block(block, text);
         let transfers = beyond && self.control.beyond_words(block, &mut report);
         let reads_state = beyond && self.control.reads_state.take();
         if beyond {
             self.control.learn_from_probe();
         }
-        if let Some(siemens) = &self.control.siemens {
-            acts = siemens.is_active();
-        }
-        acts |= self.control.nci.as_ref().is_some_and(Nci::is_active);
+        let acts = self.control.acts_without_words();
         if !block.issues.is_empty() || block.words.is_empty() && !acts {
             if block.words.is_empty() {
                 self.control.abort(block, &mut report);
@@ -235,12 +221,7 @@ impl<'m> Interpreter<'m> {
         run.facts.executed = true;
         run.facts.reads_state = reads_state;
         self.control.execute(&mut run);
-        if self.control.callee.take().is_some() {
-            let whole = run.whole();
-            run.report
-                .error("program-name", "nothing in this block calls the program that it names", whole)
-                .help("write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its block");
-        }
+        self.control.check_callee(&mut run);
         if self.control.corners.is_some() {
             self.control.insert_corners(&mut run, before, errors);
         }
@@ -273,6 +254,40 @@ impl<'m> Interpreter<'m> {
         };
         self.control.begun = true;
         self.control.command_line(&mut run);
+    }
+}
+
+impl Control<'_> {
+    /// A block begins: whether its language has to read it, since it is more than plain words.
+    fn begin_block(&mut self, block: &Block, text: &[u8]) -> bool {
+        let mut beyond = !block.issues.is_empty();
+        if let Some(siemens) = &mut self.siemens {
+            siemens.begin_block();
+            beyond |= is_beyond_words(block, text);
+        } else if let Some(isg) = &self.isg {
+            beyond |= isg.is_beyond_words(block);
+        } else if let Some(osp) = &mut self.osp {
+            osp.only_keeps = false;
+            beyond |= osp.is_beyond_words(block);
+        }
+        beyond || self.nci.is_some()
+    }
+
+    /// Whether the block does something though it has no words.
+    fn acts_without_words(&self) -> bool {
+        self.siemens.as_ref().is_some_and(|it| it.is_active())
+            || self.nci.as_ref().is_some_and(Nci::is_active)
+    }
+
+    /// Reports a program that is named and not called.
+    fn check_callee(&mut self, run: &mut Run<'_, '_>) {
+        if self.callee.take().is_some() {
+            let whole = run.whole();
+            let message = "nothing in this block calls the program that it names";
+            let help = "write M98 <NAME> or G65 <NAME>; a program's own name stands alone in its \
+                        block";
+            run.report.error("program-name", message, whole).help(help);
+        }
     }
 }
 

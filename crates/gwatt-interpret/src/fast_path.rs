@@ -69,21 +69,12 @@ impl Control<'_> {
         }
         let Straight { end, moving, .. } = &straight;
         let (length_mm, linear) = path_length(&self.position.at, end, *moving, None);
-        let mut feed_mm_s = f64::INFINITY;
-        let mut kind = MoveKind::Rapid;
-        if uses_feed {
+        let (kind, feed_mm_s) = if uses_feed {
             let feed = feed.as_ref().or(self.modal.feed.as_ref())?;
-            if feed.value <= 0.0 {
-                return None;
-            }
-            kind = MoveKind::Feed;
-            feed_mm_s = if linear {
-                feed.linear_mm_s()
-            } else {
-                feed.rotary_deg_s()
-            }
-            .min(self.machine.path.max_feed_mm_s);
-        }
+            (MoveKind::Feed, self.straight_speed(feed, linear)?)
+        } else {
+            (MoveKind::Rapid, f64::INFINITY)
+        };
 
         // From here on, it happens.
         self.moved = true;
@@ -135,6 +126,17 @@ impl Control<'_> {
             self.modal.feed = feed;
         }
         Some(())
+    }
+
+    /// The speed of a straight feed, mm/s; `None` for an F that is none.
+    #[inline]
+    fn straight_speed(&self, feed: &Feed, linear: bool) -> Option<f64> {
+        let speed_mm_s = if linear {
+            feed.linear_mm_s()
+        } else {
+            feed.rotary_deg_s()
+        };
+        (feed.value > 0.0).then(|| speed_mm_s.min(self.machine.path.max_feed_mm_s))
     }
 
     /// Reads words of axes, G0, G1 and F; `None` for others, for none of an

@@ -229,23 +229,10 @@ impl Control<'_> {
             moving.insert(arc.plane[1]);
         }
         let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
-        let mut feed_mm_s = f64::INFINITY;
-        let given = match kind {
-            MoveKind::Thread | MoveKind::Tap => self.special.speed_mm_s,
-            _ => given_mm_s,
+        let way = (end, arc.as_ref(), length_mm, linear);
+        let Some(mut feed_mm_s) = self.speed_of(run, kind, given_mm_s, way) else {
+            return;
         };
-        if let Some(given_mm_s) = given {
-            feed_mm_s = given_mm_s;
-        } else if kind != MoveKind::Rapid {
-            let Some(speed_mm_s) = self.feed_speed(run, end, arc.as_ref(), length_mm, linear)
-            else {
-                return;
-            };
-            feed_mm_s = speed_mm_s;
-            if matches!(kind, MoveKind::Feed | MoveKind::Arc) {
-                feed_mm_s = feed_mm_s.min(self.machine.path.max_feed_mm_s);
-            }
-        }
         let mut rapid_factor = self.knobs.rapid_factor;
         // Threads follow the spindle.
         if self.printer.adjusts && !matches!(kind, MoveKind::Thread | MoveKind::Tap) {
@@ -303,6 +290,33 @@ impl Control<'_> {
         self.position.at = *end;
         self.special.left = None;
         self.position.unknown.0 &= !unknown_start.0;
+    }
+
+    /// The speed that a move is given, by its F or otherwise, mm/s; `None` when it was reported
+    /// that there is none. `way`: its end, its arc, its length and whether linear axes move.
+    #[inline]
+    fn speed_of(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        kind: MoveKind,
+        given_mm_s: Option<f64>,
+        (end, arc, length_mm, linear): (&AxisValues, Option<&Arc>, f64, bool),
+    ) -> Option<f64> {
+        let given = match kind {
+            MoveKind::Thread | MoveKind::Tap => self.special.speed_mm_s,
+            _ => given_mm_s,
+        };
+        if let Some(given_mm_s) = given {
+            return Some(given_mm_s);
+        }
+        if kind == MoveKind::Rapid {
+            return Some(f64::INFINITY);
+        }
+        let speed_mm_s = self.feed_speed(run, end, arc, length_mm, linear)?;
+        Some(match kind {
+            MoveKind::Feed | MoveKind::Arc => speed_mm_s.min(self.machine.path.max_feed_mm_s),
+            _ => speed_mm_s,
+        })
     }
 
     /// The limit of acceleration along the path of a move.

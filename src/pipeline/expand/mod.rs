@@ -14,12 +14,12 @@ mod turning;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use super::executor::Executor;
+use super::executor::{Executor, Line};
 use super::{Failure, LimitSummary, Options, Summary};
 pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 
 use crate::diagnostic::Diagnostic;
-use crate::interpret::Step;
+use crate::interpret::{Interpreter, Step};
 use crate::limit::{NO_KNOB, UNTOUCHABLE};
 use crate::machine::{Family, Machine};
 use crate::rewrite::{CycleBlock, Singles};
@@ -227,6 +227,46 @@ fn survey(program: &[u8], machine: &Machine, paths: &[Options]) -> Result<Vec<Se
     Ok(all)
 }
 
+/// Why a block of a cycle stays as it is.
+fn stays(line: &Line<'_, '_>) -> Option<&'static str> {
+    let facts = &line.facts;
+    if line.key.0 != 0 {
+        return Some("it stands in the file of a subprogram");
+    }
+    let may_differ = line.block.delete_level > 0 || facts.checksum || facts.computed_feed;
+    may_differ.then_some("its block may be skipped, or is worked out by the program")
+}
+
+/// Adds a block of a cycle to its series, in both ways in which it may be written.
+fn take_in(
+    series: &mut Series,
+    (number, block): (u64, &Block),
+    cycle: &CycleBlock<'_>,
+    (interpreter, singles): (&Interpreter<'_>, &Singles<'_>),
+) {
+    let to_r = interpreter.returns_to_r();
+    if series.numbers.is_empty() {
+        let level = singles.with_level(cycle, to_r);
+        series.level = level.map(|bytes| (number, bytes));
+    }
+    for word in &cycle.block.words {
+        if HELD.contains(&word.letter) {
+            let text = word.span.of(cycle.text).to_vec();
+            series.held.insert(word.letter, text);
+        }
+    }
+    let place = |place: &_| interpreter.place_in_program(place);
+    let placed = singles.place_before(cycle, &series.held, to_r, place);
+    add(&mut series.placed, number, placed);
+    add(
+        &mut series.written_out,
+        number,
+        singles.write_out(cycle, &series.held, to_r, place),
+    );
+    let n_word = block.number.map(|word| word.value);
+    series.numbers.insert(number, n_word);
+}
+
 /// The series on one path through the program.
 fn survey_path(
     program: &[u8],
@@ -256,14 +296,8 @@ fn survey_path(
             continue;
         }
         before = returns::Before::of(interpreter.modal());
-        let (text, number) = line.key;
-        let fixed = if text != 0 {
-            Some("it stands in the file of a subprogram")
-        } else if line.block.delete_level > 0 || facts.checksum || facts.computed_feed {
-            Some("its block may be skipped, or is worked out by the program")
-        } else {
-            None
-        };
+        let number = line.key.1;
+        let fixed = stays(&line);
         if lathe && let Some(word) = turning::word(line.block) {
             close(&mut open, all);
             // One that only gives values for the next cycle moves nothing, and stays.
@@ -305,27 +339,12 @@ fn survey_path(
             series.refuse(number, why);
             continue;
         }
-        let to_r = interpreter.returns_to_r();
-        if series.numbers.is_empty() {
-            let level = singles.with_level(&cycle, to_r);
-            series.level = level.map(|bytes| (number, bytes));
-        }
-        for word in &cycle.block.words {
-            if HELD.contains(&word.letter) {
-                let text = word.span.of(cycle.text).to_vec();
-                series.held.insert(word.letter, text);
-            }
-        }
-        let place = |place: &_| interpreter.place_in_program(place);
-        let placed = singles.place_before(&cycle, &series.held, to_r, place);
-        add(&mut series.placed, number, placed);
-        add(
-            &mut series.written_out,
-            number,
-            singles.write_out(&cycle, &series.held, to_r, place),
+        take_in(
+            series,
+            (number, line.block),
+            &cycle,
+            (interpreter, &singles),
         );
-        let n_word = line.block.number.map(|word| word.value);
-        series.numbers.insert(number, n_word);
     }
     close(&mut open, all);
     Ok(())

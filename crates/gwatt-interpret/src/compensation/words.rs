@@ -124,6 +124,19 @@ impl Control<'_> {
         }
     }
 
+    /// The plane and the unit that hold for a compensation: what the block itself sets counts.
+    fn plane_and_unit(&self, run: &Run<'_, '_>) -> ([usize; 3], f64) {
+        let (mut plane, mut mm_per_unit) = (self.modal.plane, self.modal.mm_per_unit);
+        for (code, ..) in &run.words.g {
+            match *code {
+                GCode::Plane(new) => plane = new,
+                GCode::Units { mm_per_unit: new } => mm_per_unit = new,
+                _ => {}
+            }
+        }
+        (plane, mm_per_unit)
+    }
+
     fn compensation_on(
         &mut self,
         left: bool,
@@ -140,15 +153,7 @@ impl Control<'_> {
                 .help("switch it off before: G40");
             return;
         }
-        // What the block itself sets holds for its compensation.
-        let (mut plane, mut mm_per_unit) = (self.modal.plane, self.modal.mm_per_unit);
-        for (code, ..) in &run.words.g {
-            match *code {
-                GCode::Plane(new) => plane = new,
-                GCode::Units { mm_per_unit: new } => mm_per_unit = new,
-                _ => {}
-            }
-        }
+        let (plane, mm_per_unit) = self.plane_and_unit(run);
         let [first, second, normal] = plane;
         let at_end = style.lead == CompensationLead::AtEnd;
         if at_end && !NORMALS.contains(&normal) {

@@ -71,25 +71,16 @@ impl Control<'_> {
         }
         if repeats > 1 && self.polar.is_some() && !self.modal.absolute {
             let whole = run.whole();
+            let message = "a cycle repeated by increments under G16";
             run.report
-                .error(
-                    "cycle-repeats",
-                    "a cycle repeated by increments under G16",
-                    whole,
-                )
+                .error("cycle-repeats", message, whole)
                 .help("write a block for each hole");
             return;
         }
-        hole.clear_mm = if self.osp.is_some() {
-            let Some(clear_mm) = self.osp_clear(hole.r_mm, run) else {
-                return;
-            };
-            clear_mm
-        } else if self.special.to_initial {
-            initial_mm
-        } else {
-            hole.r_mm
+        let Some(clear_mm) = self.iso_clear(hole.r_mm, initial_mm, run) else {
+            return;
         };
+        hole.clear_mm = clear_mm;
         let step: [f64; 2] = if self.modal.absolute {
             [0.0; 2]
         } else {
@@ -117,6 +108,18 @@ impl Control<'_> {
                 return;
             }
         }
+    }
+
+    /// The level that the cycle returns to.
+    fn iso_clear(&mut self, r_mm: f64, initial_mm: f64, run: &mut Run<'_, '_>) -> Option<f64> {
+        if self.osp.is_some() {
+            return self.osp_clear(r_mm, run);
+        }
+        Some(if self.special.to_initial {
+            initial_mm
+        } else {
+            r_mm
+        })
     }
 
     /// The number of repeats: K on a Fanuc, L on a Haas and on older controls.
@@ -264,26 +267,9 @@ impl Control<'_> {
         }
         match hole.number {
             730 | 830 => {
-                let off_mm = self.machine.controller.language.peck_clearance_mm;
-                let mut pecks = 1.0;
-                loop {
-                    let depth_mm = hole.r_mm - hole.peck_mm * pecks;
-                    if depth_mm <= hole.bottom_mm + 1e-9 {
-                        break;
-                    }
-                    if !run.within_limits() {
-                        return false;
-                    }
-                    to(self, run, Feed, depth_mm);
-                    if hole.number == 830 {
-                        to(self, run, Rapid, hole.r_mm);
-                    }
-                    to(self, run, Rapid, (depth_mm + off_mm).min(hole.r_mm));
-                    pecks += 1.0;
+                if !self.iso_pecks(hole, place, run) {
+                    return false;
                 }
-                to(self, run, Feed, hole.bottom_mm);
-                self.iso_wait(hole, run);
-                to(self, run, Rapid, hole.clear_mm);
             }
             740 | 840 => {
                 to(self, run, Tap, hole.bottom_mm);
@@ -347,6 +333,37 @@ impl Control<'_> {
                 }
             }
         }
+        true
+    }
+
+    /// G73 and G83: in pecks; false when they are too many.
+    fn iso_pecks(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) -> bool {
+        use MoveKind::{Feed, Rapid};
+        let normal = self.modal.plane[2];
+        let mut to = |control: &mut Self, run: &mut Run<'_, '_>, kind, level_mm| {
+            place[normal] = level_mm;
+            control.part(run, kind, place);
+        };
+        let off_mm = self.machine.controller.language.peck_clearance_mm;
+        let mut pecks = 1.0;
+        loop {
+            let depth_mm = hole.r_mm - hole.peck_mm * pecks;
+            if depth_mm <= hole.bottom_mm + 1e-9 {
+                break;
+            }
+            if !run.within_limits() {
+                return false;
+            }
+            to(self, run, Feed, depth_mm);
+            if hole.number == 830 {
+                to(self, run, Rapid, hole.r_mm);
+            }
+            to(self, run, Rapid, (depth_mm + off_mm).min(hole.r_mm));
+            pecks += 1.0;
+        }
+        to(self, run, Feed, hole.bottom_mm);
+        self.iso_wait(hole, run);
+        to(self, run, Rapid, hole.clear_mm);
         true
     }
 

@@ -5,7 +5,7 @@
 use crate::control::{Control, Run};
 use crate::letters::{AXIS_LETTERS, POLAR, bit};
 use crate::special::Turning;
-use gwatt_machine::{ALL_AXES, AXES, AxisValues, PathMode};
+use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, PathMode};
 use gwatt_motion::CYCLE as FIXED;
 use gwatt_motion::{ActionKind, Corner, FeedMode, MoveKind};
 
@@ -60,6 +60,17 @@ impl PolarStep {
         place[0] = self.origin[0] + length_mm * cos;
         place[1] = self.origin[1] + length_mm * sin;
     }
+}
+
+/// How the holes of a block are reached.
+struct HoleWay {
+    repeats: u64,
+    /// From one to the next, mm, if not on a circle.
+    step: [f64; 2],
+    circle: Option<PolarStep>,
+    unknown: AxisSet,
+    /// The level before the first.
+    now_mm: f64,
 }
 
 impl Control<'_> {
@@ -129,14 +140,36 @@ impl Control<'_> {
             over_mm = hole.r_mm;
         }
         hole.clear_mm = over_mm;
-        for repeat in 0..repeats {
+        let way = HoleWay {
+            repeats,
+            step,
+            circle,
+            unknown,
+            now_mm,
+        };
+        self.rs274_holes(&hole, place, &way, run);
+        (self.modal.path_mode, self.modal.corner) = before;
+        self.special.active = number;
+    }
+
+    /// The holes of a block, one after the other.
+    fn rs274_holes(
+        &mut self,
+        hole: &Hole,
+        mut place: AxisValues,
+        way: &HoleWay,
+        run: &mut Run<'_, '_>,
+    ) {
+        let [first, second, normal] = self.modal.plane;
+        let mut now_mm = way.now_mm;
+        for repeat in 0..way.repeats {
             let before = run.steps.len();
             if repeat > 0 {
-                if let Some(circle) = &circle {
+                if let Some(circle) = &way.circle {
                     circle.step(&mut place);
                 } else {
-                    place[first] += step[0];
-                    place[second] += step[1];
+                    place[first] += way.step[0];
+                    place[second] += way.step[1];
                 }
             }
             place[normal] = if now_mm > hole.r_mm {
@@ -144,12 +177,12 @@ impl Control<'_> {
             } else {
                 hole.clear_mm
             };
-            self.go(run, MoveKind::Rapid, &place, unknown, None);
+            self.go(run, MoveKind::Rapid, &place, way.unknown, None);
             if place[normal] != hole.r_mm {
                 place[normal] = hole.r_mm;
                 self.part(run, MoveKind::Rapid, &place);
             }
-            if !self.rs274_hole(&hole, &mut place, run) {
+            if !self.rs274_hole(hole, &mut place, run) {
                 break;
             }
             now_mm = hole.clear_mm;
@@ -157,8 +190,6 @@ impl Control<'_> {
                 break;
             }
         }
-        (self.modal.path_mode, self.modal.corner) = before;
-        self.special.active = number;
     }
 
     /// What forbids a cycle.
@@ -257,10 +288,23 @@ impl Control<'_> {
             shift_mm: [0.0; 2],
             middle: 0.0,
         };
-        match number {
+        self.rs274_own_words(&mut hole, same, run)?;
+        Some(hole)
+    }
+
+    /// Reads what only some cycles have; `same`: the cycle of the block before.
+    fn rs274_own_words(
+        &mut self,
+        hole: &mut Hole,
+        same: bool,
+        run: &mut Run<'_, '_>,
+    ) -> Option<()> {
+        let normal = self.modal.plane[2];
+        let held = self.special.held.clone();
+        match hole.number {
             730 | 830 => {
                 let Some(peck) = run.words.take(b'Q').or(held.q.filter(|_| same)) else {
-                    run.cycle_needs("Q", number);
+                    run.cycle_needs("Q", hole.number);
                     return None;
                 };
                 if peck <= 0.0 {
@@ -271,13 +315,13 @@ impl Control<'_> {
                 hole.peck = peck;
             }
             740 | 820 | 840 | 860 | 880 | 890 => {
-                let tap = matches!(number, 740 | 840);
+                let tap = matches!(hole.number, 740 | 840);
                 let dwell = run
                     .words
                     .take(b'P')
                     .or(held.dwell_s.filter(|_| same || tap));
                 let Some(dwell_s) = dwell.or(tap.then_some(0.0)) else {
-                    run.cycle_needs("P", number);
+                    run.cycle_needs("P", hole.number);
                     return None;
                 };
                 if !(0.0..=1e9).contains(&dwell_s) {
@@ -292,7 +336,7 @@ impl Control<'_> {
                 for (index, letter) in [(0, b'I'), (1, b'J'), (2, b'K')] {
                     let word = run.words.take(letter);
                     let Some(value) = word.or(held.ijk[index].filter(|_| same)) else {
-                        run.cycle_needs("I, J and K", number);
+                        run.cycle_needs("I, J and K", hole.number);
                         return None;
                     };
                     self.special.held.ijk[index] = Some(value);
@@ -300,11 +344,16 @@ impl Control<'_> {
                 }
                 let [first, second, _] = self.modal.plane;
                 hole.shift_mm = [first, second].map(|axis| given[axis] * self.modal.mm_per_unit);
-                hole.middle = given[normal] + if self.modal.absolute { 0.0 } else { bottom };
+                hole.middle = given[normal]
+                    + if self.modal.absolute {
+                        0.0
+                    } else {
+                        hole.bottom
+                    };
             }
             _ => {}
         }
-        Some(hole)
+        Some(())
     }
 
     /// The moves at one place, which `place` holds at the level R; false when

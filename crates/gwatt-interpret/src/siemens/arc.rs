@@ -21,43 +21,12 @@ impl Control<'_> {
         mut target: Target,
         run: &mut Run<'_, '_>,
     ) {
+        if !self.siemens_arc_fits(state, &target, run) {
+            return;
+        }
         let whole = run.whole();
         let plane = self.modal.plane;
         let [first, second, _] = plane;
-        let unknown = self.position.unknown;
-        let refused = if state.extra.machine_coordinates {
-            Some((
-                "arc-in-g53",
-                "an arc with G53, G153 or SUPA",
-                "write a straight move",
-            ))
-        } else if !target.unknown.is_empty() || unknown.contains(first) || unknown.contains(second)
-        {
-            let help = "move the axes to a known position first, or give --start X0,Y0,Z0";
-            Some((
-                "arc-from-unknown",
-                "an arc from a position that is not known",
-                help,
-            ))
-        } else {
-            None
-        };
-        if let Some((rule, message, help)) = refused {
-            run.report.error(rule, message, whole).help(help);
-            return;
-        }
-        for axis in [first, second] {
-            if self.machine.axes[axis].is_none_or(|data| data.kind != AxisKind::Linear) {
-                let letter = ALL_AXES[axis].letter() as char;
-                let message = format!(
-                    "an arc needs the linear axis {letter}, which the machine does not have"
-                );
-                run.report
-                    .error("no-such-axis", message, whole)
-                    .help("choose the plane with G17, G18 or G19");
-                return;
-            }
-        }
         let start = state.program_place(&self.position.at);
         let mut ends = Ends {
             plane: [first, second],
@@ -113,6 +82,47 @@ impl Control<'_> {
             },
         };
         self.siemens_go(state, run, MoveKind::Arc, &target, Some(arc));
+    }
+
+    /// Whether an arc may go to a target; reports why not.
+    fn siemens_arc_fits(&self, state: &Siemens, target: &Target, run: &mut Run<'_, '_>) -> bool {
+        let whole = run.whole();
+        let [first, second, _] = self.modal.plane;
+        let unknown = self.position.unknown;
+        let refused = if state.extra.machine_coordinates {
+            Some((
+                "arc-in-g53",
+                "an arc with G53, G153 or SUPA",
+                "write a straight move",
+            ))
+        } else if !target.unknown.is_empty() || unknown.contains(first) || unknown.contains(second)
+        {
+            let help = "move the axes to a known position first, or give --start X0,Y0,Z0";
+            Some((
+                "arc-from-unknown",
+                "an arc from a position that is not known",
+                help,
+            ))
+        } else {
+            None
+        };
+        if let Some((rule, message, help)) = refused {
+            run.report.error(rule, message, whole).help(help);
+            return false;
+        }
+        for axis in [first, second] {
+            if self.machine.axes[axis].is_none_or(|data| data.kind != AxisKind::Linear) {
+                let letter = ALL_AXES[axis].letter() as char;
+                let message = format!(
+                    "an arc needs the linear axis {letter}, which the machine does not have"
+                );
+                run.report
+                    .error("no-such-axis", message, whole)
+                    .help("choose the plane with G17, G18 or G19");
+                return false;
+            }
+        }
+        true
     }
 
     /// An arc in a tilted plane, as chords; false where it is not followed.

@@ -17,12 +17,12 @@ pub(super) const NO_TOOLS: &str = "without a tool table the tool length is taken
 /// Differences of places that are rounding.
 const SAME_MM: f64 = 1e-9;
 
+/// Values by axis, and an angle in the plane (RPL).
+type FrameValues = ([Option<f64>; AXES], Option<f64>);
+
 impl Reading<'_, '_, '_> {
-    pub(super) fn frame_word(&mut self, name: &str, start: usize) -> Outcome<()> {
-        let (additive, kind) = match name.strip_prefix('A') {
-            Some(kind) => (true, kind),
-            None => (false, name),
-        };
+    /// What stands after a word for the frame.
+    fn frame_values(&mut self, name: &str, kind: &str) -> Outcome<FrameValues> {
         let mut values: [Option<f64>; AXES] = [None; AXES];
         let mut in_plane = None;
         while self.cursor.peek().is_some() {
@@ -57,6 +57,15 @@ impl Reading<'_, '_, '_> {
                 }
             }
         }
+        Ok((values, in_plane))
+    }
+
+    pub(super) fn frame_word(&mut self, name: &str, start: usize) -> Outcome<()> {
+        let (additive, kind) = match name.strip_prefix('A') {
+            Some(kind) => (true, kind),
+            None => (false, name),
+        };
+        let (values, in_plane) = self.frame_values(name, kind)?;
         let mut frame = if additive {
             self.state.frame.clone()
         } else {

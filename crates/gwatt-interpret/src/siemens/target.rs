@@ -24,6 +24,18 @@ pub(super) struct Target {
     turns: AxisValues,
 }
 
+/// Reports an axis that the machine does not have.
+fn refuse_axis(letter: u8, run: &mut Run<'_, '_>) {
+    let span = run.words.span(letter, run.block);
+    let letter = letter as char;
+    let message = format!("the machine has no {letter} axis");
+    run.report
+        .error("no-such-axis", message, span)
+        .help(format!(
+            "choose a machine with it, or describe it in the machine file: [axes.{letter}]"
+        ));
+}
+
 impl Siemens {
     /// Keeps what follows from the moves to a target, those since there were `before`
     /// steps.
@@ -136,14 +148,7 @@ impl Control<'_> {
         for (axis, value) in words {
             let letter = ALL_AXES[axis].letter();
             let Some(data) = &self.machine.axes[axis] else {
-                let span = run.words.span(letter, run.block);
-                let message = format!("the machine has no {} axis", letter as char);
-                run.report
-                    .error("no-such-axis", message, span)
-                    .help(format!(
-                        "choose a machine with it, or describe it in the machine file: [axes.{}]",
-                        letter as char
-                    ));
+                refuse_axis(letter, run);
                 continue;
             };
             let diameter = if axis == 0 && state.diameter {

@@ -9,9 +9,10 @@ use super::{
     axis, converter, drive_curve, levels, look_ahead, offsets, outputs, own_language, parts,
     path_accel, plausible, preset, response, servo, spindle, tool, word,
 };
-use crate::axis::{AXES, Axis, AxisSet};
+use crate::MassPart;
+use crate::axis::{AXES, Axis, AxisId, AxisSet};
 use crate::controller::Controller;
-use crate::model::{Converter, Limits, Load, Machine, Path};
+use crate::model::{Converter, ForcePoint, Limits, Load, Machine, Path};
 use crate::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -46,34 +47,14 @@ pub(crate) fn machine(
             mass: table.value.mass_error.as_ref(),
             friction: table.value.friction_error.as_ref(),
         });
-    let mut axes: [Option<Axis>; AXES] = [None; AXES];
-    let mut axis_set = AxisSet::default();
-    let mut force_curves = Vec::new();
-    let mut mass_parts = Vec::new();
-    let mut responses = Responses::default();
-    let mut complete = true;
-    for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
-        axes[id as usize] = axis::axis(findings, id, table, errors);
-        axis_set.insert(id as usize);
-        let curve = drive_curve::force(findings, id, &table.value, axes[id as usize].as_ref());
-        force_curves.extend(curve.map(|curve| (id, curve)));
-        response::take(findings, id, &table.value, &mut responses);
-        if let Some(axis) = &axes[id as usize] {
-            let parts = parts::all(axis.kind, &table.value, axis.mass_kg);
-            mass_parts.extend((!parts.is_empty()).then_some((id, parts)));
-        }
-        complete &= axes[id as usize].is_some();
-    }
-    if let Some(table) = file.axes.as_ref().filter(|_| axis_set.is_empty())
-        && !findings.refused_in("axes")
-    {
-        findings.error(
-            "machine-missing",
-            &table.span,
-            "the machine has no axes",
-            None,
-        );
-    }
+    let AxisTables {
+        mut axes,
+        axis_set,
+        force_curves,
+        mass_parts,
+        responses,
+        complete,
+    } = AxisTables::of(findings, file, errors);
     let limits = limits(findings, file.limits.as_ref().map(|table| &table.value));
     let converters = file.converter.as_ref().map_or_else(Vec::new, |tables| {
         converter::converters(findings, tables, axis_set, limits.margin)
@@ -122,6 +103,51 @@ pub(crate) fn machine(
     };
     // With an axis left out the machine would look weaker than it is.
     complete.then_some(machine)
+}
+
+/// What the tables of the axes say.
+struct AxisTables {
+    axes: [Option<Axis>; AXES],
+    axis_set: AxisSet,
+    force_curves: Vec<(AxisId, Vec<ForcePoint>)>,
+    mass_parts: Vec<(AxisId, Vec<MassPart>)>,
+    responses: Responses,
+    /// None is left out.
+    complete: bool,
+}
+
+impl AxisTables {
+    fn of(findings: &mut Findings<'_>, file: &MachineFile, errors: axis::Errors<'_>) -> Self {
+        let mut found = Self {
+            axes: [None; AXES],
+            axis_set: AxisSet::default(),
+            force_curves: Vec::new(),
+            mass_parts: Vec::new(),
+            responses: Responses::default(),
+            complete: true,
+        };
+        for (id, table) in file.axes.iter().flat_map(|axes| axes.value.iter()) {
+            let axis = axis::axis(findings, id, table, errors);
+            found.axis_set.insert(id as usize);
+            let curve = drive_curve::force(findings, id, &table.value, axis.as_ref());
+            found.force_curves.extend(curve.map(|curve| (id, curve)));
+            response::take(findings, id, &table.value, &mut found.responses);
+            if let Some(axis) = &axis {
+                let parts = parts::all(axis.kind, &table.value, axis.mass_kg);
+                let parts = (!parts.is_empty()).then_some((id, parts));
+                found.mass_parts.extend(parts);
+            }
+            found.complete &= axis.is_some();
+            found.axes[id as usize] = axis;
+        }
+        if let Some(table) = file.axes.as_ref().filter(|_| found.axis_set.is_empty())
+            && !findings.refused_in("axes")
+        {
+            let message = "the machine has no axes";
+            findings.error("machine-missing", &table.span, message, None);
+        }
+        found
+    }
 }
 
 /// Drives that follow a step of speed more quickly are rare.

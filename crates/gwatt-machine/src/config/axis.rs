@@ -117,6 +117,37 @@ impl Builder {
             ],
         );
         let mass = self.with_parts(findings, table, mass);
+        let [coulomb_n, viscous_n_s_m, gravity_n, copper_w_n2] =
+            self.resistances(findings, table, rad_per_m);
+        let (reference_mm_s, reference_mm) = self.reference(findings, table);
+        warn_unused_lead(findings, table);
+        let (rapid, accel, mass) = (rapid?, accel?, mass?);
+        plausible::linear(findings, table, &accel, &mass);
+        Some(Axis {
+            rapid_mm_s: rapid.value,
+            reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
+            reference_mm,
+            accel_mm_s2: accel.value,
+            jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
+            mass_kg: mass.value,
+            coulomb_n,
+            viscous_n_s_m,
+            gravity_n,
+            copper_w_n2,
+            si_per_unit: M_PER_MM,
+            ..self.blank()
+        })
+    }
+
+    /// Coulomb and viscous friction, weight, and what the motor's copper takes; `rad_per_m`: what
+    /// the motor turns by.
+    fn resistances(
+        &self,
+        findings: &mut Findings<'_>,
+        table: &AxisTable,
+        rad_per_m: Option<f64>,
+    ) -> [f64; 4] {
+        let squared = rad_per_m.map(|k| k * k);
         let coulomb_n = self.quantities.optional(
             findings,
             [
@@ -149,24 +180,7 @@ impl Builder {
                 ),
             ],
         );
-        let (reference_mm_s, reference_mm) = self.reference(findings, table);
-        warn_unused_lead(findings, table);
-        let (rapid, accel, mass) = (rapid?, accel?, mass?);
-        plausible::linear(findings, table, &accel, &mass);
-        Some(Axis {
-            rapid_mm_s: rapid.value,
-            reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
-            reference_mm,
-            accel_mm_s2: accel.value,
-            jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
-            mass_kg: mass.value,
-            coulomb_n,
-            viscous_n_s_m,
-            gravity_n,
-            copper_w_n2,
-            si_per_unit: M_PER_MM,
-            ..self.blank()
-        })
+        [coulomb_n, viscous_n_s_m, gravity_n, copper_w_n2]
     }
 
     /// The mass with that of the parts that turn.
@@ -338,88 +352,9 @@ impl Builder {
 
     /// Reports fields of the other kind.
     fn only_fields_of_kind(&self, findings: &mut Findings<'_>, table: &AxisTable) {
-        fn span<B>(number: Option<&Num<B>>) -> Option<Range<usize>> {
-            number.map(|number| number.span.clone())
-        }
-        fn place<T>(table: Option<&At<T>>) -> Option<Range<usize>> {
-            table.map(|table| table.span.clone())
-        }
-        let t = table;
         let (others, this, other) = match self.kind {
-            AxisKind::Linear => (
-                vec![
-                    (
-                        "rapid_deg_min",
-                        span(t.rapid_deg_min.as_ref()),
-                        "rapid_mm_min",
-                    ),
-                    ("accel_deg_s2", span(t.accel_deg_s2.as_ref()), "accel_mm_s2"),
-                    ("jerk_deg_s3", span(t.jerk_deg_s3.as_ref()), "jerk_mm_s3"),
-                    (
-                        "reference_deg_min",
-                        span(t.reference_deg_min.as_ref()),
-                        "reference_mm_min",
-                    ),
-                    (
-                        "reference_deg",
-                        span(t.reference_deg.as_ref()),
-                        "reference_mm",
-                    ),
-                    (
-                        "moved_inertia_kg_m2",
-                        span(t.moved_inertia_kg_m2.as_ref()),
-                        "moved_mass_kg",
-                    ),
-                ],
-                "linear",
-                "rotary",
-            ),
-            AxisKind::Rotary => (
-                vec![
-                    (
-                        "rapid_mm_min",
-                        span(t.rapid_mm_min.as_ref()),
-                        "rapid_deg_min",
-                    ),
-                    (
-                        "reference_mm_min",
-                        span(t.reference_mm_min.as_ref()),
-                        "reference_deg_min",
-                    ),
-                    (
-                        "reference_mm",
-                        span(t.reference_mm.as_ref()),
-                        "reference_deg",
-                    ),
-                    (
-                        "home_mm_min",
-                        span(t.home_mm_min.as_ref()),
-                        "reference_deg_min",
-                    ),
-                    ("home_mm", span(t.home_mm.as_ref()), "reference_deg"),
-                    ("accel_mm_s2", span(t.accel_mm_s2.as_ref()), "accel_deg_s2"),
-                    ("jerk_mm_s3", span(t.jerk_mm_s3.as_ref()), "jerk_deg_s3"),
-                    ("mass_kg", span(t.mass_kg.as_ref()), "inertia_kg_m2"),
-                    ("coulomb_n", span(t.coulomb_n.as_ref()), "friction_nm"),
-                    (
-                        "viscous_n_s_m",
-                        span(t.viscous_n_s_m.as_ref()),
-                        "viscous_nm_s_rad",
-                    ),
-                    ("gravity_n", span(t.gravity_n.as_ref()), "gravity_nm"),
-                    ("lead_mm", span(t.lead_mm.as_ref()), "gear_ratio"),
-                    (
-                        "moved_mass_kg",
-                        span(t.moved_mass_kg.as_ref()),
-                        "moved_inertia_kg_m2",
-                    ),
-                    ("screw", place(t.screw.as_ref()), "gear_ratio"),
-                    ("pulley", place(t.pulley.as_ref()), "gear_ratio"),
-                    ("pinion", place(t.pinion.as_ref()), "gear_ratio"),
-                ],
-                "rotary",
-                "linear",
-            ),
+            AxisKind::Linear => (of_rotary_axes(table), "linear", "rotary"),
+            AxisKind::Rotary => (of_linear_axes(table), "rotary", "linear"),
         };
         for (key, span, instead) in others {
             let Some(span) = span else { continue };
@@ -431,6 +366,69 @@ impl Builder {
             findings.refuse(format!("axes.{letter}.{instead}"));
         }
     }
+}
+
+/// A field of the other kind of axis: its name, where it stands, and what to give instead.
+type Foreign = (&'static str, Option<Range<usize>>, &'static str);
+
+fn span<B>(number: Option<&Num<B>>) -> Option<Range<usize>> {
+    number.map(|number| number.span.clone())
+}
+
+fn place<T>(table: Option<&At<T>>) -> Option<Range<usize>> {
+    table.map(|table| table.span.clone())
+}
+
+/// What only rotary axes have.
+fn of_rotary_axes(t: &AxisTable) -> Vec<Foreign> {
+    let [rapid, accel, jerk] = [
+        span(t.rapid_deg_min.as_ref()),
+        span(t.accel_deg_s2.as_ref()),
+        span(t.jerk_deg_s3.as_ref()),
+    ];
+    let [reference_speed, reference, inertia] = [
+        span(t.reference_deg_min.as_ref()),
+        span(t.reference_deg.as_ref()),
+        span(t.moved_inertia_kg_m2.as_ref()),
+    ];
+    vec![
+        ("rapid_deg_min", rapid, "rapid_mm_min"),
+        ("accel_deg_s2", accel, "accel_mm_s2"),
+        ("jerk_deg_s3", jerk, "jerk_mm_s3"),
+        ("reference_deg_min", reference_speed, "reference_mm_min"),
+        ("reference_deg", reference, "reference_mm"),
+        ("moved_inertia_kg_m2", inertia, "moved_mass_kg"),
+    ]
+}
+
+/// What only linear axes have.
+fn of_linear_axes(t: &AxisTable) -> Vec<Foreign> {
+    let [rapid, reference_speed, home_speed] = [
+        span(t.rapid_mm_min.as_ref()),
+        span(t.reference_mm_min.as_ref()),
+        span(t.home_mm_min.as_ref()),
+    ];
+    let reference = span(t.reference_mm.as_ref());
+    let viscous = span(t.viscous_n_s_m.as_ref());
+    let moved = span(t.moved_mass_kg.as_ref());
+    vec![
+        ("rapid_mm_min", rapid, "rapid_deg_min"),
+        ("reference_mm_min", reference_speed, "reference_deg_min"),
+        ("reference_mm", reference, "reference_deg"),
+        ("home_mm_min", home_speed, "reference_deg_min"),
+        ("home_mm", span(t.home_mm.as_ref()), "reference_deg"),
+        ("accel_mm_s2", span(t.accel_mm_s2.as_ref()), "accel_deg_s2"),
+        ("jerk_mm_s3", span(t.jerk_mm_s3.as_ref()), "jerk_deg_s3"),
+        ("mass_kg", span(t.mass_kg.as_ref()), "inertia_kg_m2"),
+        ("coulomb_n", span(t.coulomb_n.as_ref()), "friction_nm"),
+        ("viscous_n_s_m", viscous, "viscous_nm_s_rad"),
+        ("gravity_n", span(t.gravity_n.as_ref()), "gravity_nm"),
+        ("lead_mm", span(t.lead_mm.as_ref()), "gear_ratio"),
+        ("moved_mass_kg", moved, "moved_inertia_kg_m2"),
+        ("screw", place(t.screw.as_ref()), "gear_ratio"),
+        ("pulley", place(t.pulley.as_ref()), "gear_ratio"),
+        ("pinion", place(t.pinion.as_ref()), "gear_ratio"),
+    ]
 }
 
 /// A lead matters only if something is given at the motor.

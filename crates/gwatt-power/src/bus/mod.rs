@@ -29,15 +29,17 @@ pub(super) use self::shown::Shown;
 pub use self::shown::Turning;
 use crate::assessment::{Assessment, Certificate};
 use crate::cutting::CuttingPower;
-use crate::demand::Want;
+use crate::demand::{Demand, Want};
 use crate::duty_cycle::SpindleLoad;
 use crate::model::PowerModel;
 use crate::overlap;
+use crate::spindle_share::SpindleShare;
 use crate::spindle_state::{SpindleMotor, SpindleState, Window};
+use crate::spindle_trace::SpindleTrace;
 use crate::surface_speed::Surface;
 use gwatt_machine::{Machine, Spindle, SpindleWait};
 use gwatt_motion::{Move, MoveKind};
-use gwatt_plan::{Overrides, plan};
+use gwatt_plan::{Overrides, Plan, plan};
 
 /// The spindle of a machine during a program.
 #[derive(Debug)]
@@ -203,20 +205,8 @@ impl<'m> SpindleBus<'m> {
                 extremes
             }
         };
-        let index = self.spindle.converter;
-        if let (Some(run), Some(plan), Some(converter)) =
-            (exact, &own, self.model.converters.get(index))
-        {
-            let [peak_w, regen_w] = overlap::peaks(&self.model, converter, mv, plan, run);
-            let base_w = self.spindle.base_load_w;
-            let fed_back_w = (regen_w - self.credited_w()).max(0.0);
-            let peaks = [peak_w + base_w + cutting_w, fed_back_w];
-            judged.demand.set_spindle(index, &self.model, peaks);
-        } else {
-            let rests = mv.moving.is_empty() && mv.unknown_start.is_empty();
-            let idle_w = if rests { self.idle_w(mv) } else { 0.0 };
-            self.add(&mut judged.demand, extremes, idle_w, cutting_w);
-        }
+        let exact = exact.zip(own.as_ref());
+        self.meet(mv, exact, (extremes, cutting_w), &mut judged.demand);
         match (covered, &followed) {
             (None, _) => self.count_slower(mv, assessment, own.as_ref(), cutting_w, &mut judged),
             (Some(extremes), followed) if self.slower.is_some() => {
@@ -226,16 +216,7 @@ impl<'m> SpindleBus<'m> {
             }
             (Some(_), _) => {}
         }
-        judged.spindle.drawn_w = later[0].max(0.0) + self.spindle.base_load_w;
-        judged.spindle.fed_back_w = (-later[1]).max(0.0);
-        judged.spindle.runs = runs;
-        judged.spindle.command = self.commands;
-        if self.spindle.wait == SpindleWait::Feeds && mv.kind == MoveKind::Rapid {
-            let target = self.states[0].target();
-            let settled_w = self.motor.holding_w(target) + self.spindle.base_load_w;
-            judged.spindle.settled_w = (target != 0.0).then_some(settled_w);
-        }
-        judged.spindle.drawn_w += self.taken(mv).power_w / self.spindle.efficiency;
+        self.share_of(mv, later, runs, &mut judged.spindle);
         if want.energy {
             self.count_energy(mv, &mut judged, followed.as_ref());
         }
@@ -248,6 +229,43 @@ impl<'m> SpindleBus<'m> {
             None => self.last = Some(mv.clone()),
         }
         sink(mv, &judged, text);
+    }
+
+    /// Adds the spindle to what the axes ask for: exactly, where its run and their plan are
+    /// known, or else between its extremes.
+    fn meet(
+        &self,
+        mv: &Move,
+        exact: Option<((&SpindleTrace, f64), &Plan)>,
+        (extremes, cutting_w): ([f64; 2], f64),
+        demand: &mut Demand,
+    ) {
+        let index = self.spindle.converter;
+        if let (Some((run, plan)), Some(converter)) = (exact, self.model.converters.get(index)) {
+            let [peak_w, regen_w] = overlap::peaks(&self.model, converter, mv, plan, run);
+            let base_w = self.spindle.base_load_w;
+            let fed_back_w = (regen_w - self.credited_w()).max(0.0);
+            let peaks = [peak_w + base_w + cutting_w, fed_back_w];
+            demand.set_spindle(index, &self.model, peaks);
+        } else {
+            let rests = mv.moving.is_empty() && mv.unknown_start.is_empty();
+            let idle_w = if rests { self.idle_w(mv) } else { 0.0 };
+            self.add(demand, extremes, idle_w, cutting_w);
+        }
+    }
+
+    /// What the spindle asks for next to a move: from then on it may be anything between `later`.
+    fn share_of(&self, mv: &Move, later: [f64; 2], runs: bool, share: &mut SpindleShare) {
+        share.drawn_w = later[0].max(0.0) + self.spindle.base_load_w;
+        share.fed_back_w = (-later[1]).max(0.0);
+        share.runs = runs;
+        share.command = self.commands;
+        if self.spindle.wait == SpindleWait::Feeds && mv.kind == MoveKind::Rapid {
+            let target = self.states[0].target();
+            let settled_w = self.motor.holding_w(target) + self.spindle.base_load_w;
+            share.settled_w = (target != 0.0).then_some(settled_w);
+        }
+        share.drawn_w += self.taken(mv).power_w / self.spindle.efficiency;
     }
 
     /// The end of the program: what is still asked for.

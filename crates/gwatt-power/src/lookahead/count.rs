@@ -1,6 +1,7 @@
 //! Pieces of plans, counted for the moves that they belong to.
 
 use super::joints::step_before;
+use super::open::Open;
 use super::{Ahead, Side};
 use crate::demand::Demand;
 use crate::model::PowerModel;
@@ -86,15 +87,7 @@ impl Ahead {
             if let Some(surge) = surge {
                 open.assessment.demand.include(&surge);
             }
-            let top_speed_mm_s = planned.top_speed_mm_s();
-            open.rests |= planned.rests;
-            open.assessment.fastest_s += duration_s;
-            let [start2, end2] = &mut open.assessment.ends2;
-            if open.assessment.top_speed_mm_s == 0.0 {
-                *start2 = planned.speeds2.start;
-            }
-            *end2 = planned.speeds2.end;
-            open.assessment.top_speed_mm_s = open.assessment.top_speed_mm_s.max(top_speed_mm_s);
+            open.count_speeds(planned);
             let doubtful =
                 open.in_doubt || self.reach2.is_some() || !planned.certain || planned.overlaps;
             if doubtful {
@@ -202,6 +195,20 @@ impl Ahead {
             }
         }
         let certain = !peaks || self.is_certain(planned, from, to);
+        let certain = (certain, late.is_none());
+        self.share_out(planned, demand, certain, [peaks, times]);
+    }
+
+    /// Gives each move of a piece its share of what the piece takes and asks for.
+    fn share_out(
+        &mut self,
+        planned: &Planned<u64>,
+        mut demand: Demand,
+        (certain, in_turn): (bool, bool),
+        [peaks, times]: [bool; 2],
+    ) {
+        let (from, own) = (planned.first, planned.tag);
+        let to = planned.next.unwrap_or(own);
         // Half of a blend belongs to what is after it, if that is another move: it
         // may lie between two chords of one arc.
         let halves = if to == own { 1.0 } else { 0.5 };
@@ -226,7 +233,7 @@ impl Ahead {
             };
             let assessment = &mut open.assessment;
             open.certain &= certain;
-            open.in_turn &= late.is_none();
+            open.in_turn &= in_turn;
             open.alone &= from == to && rests && is_whole(&open.mv, planned);
             open.steady &= planned.speeds2.are_one();
             if times {
@@ -363,4 +370,20 @@ impl Ahead {
 fn is_whole(mv: &Move, planned: &Planned<u64>) -> bool {
     matches!(planned.piece, Piece::Along { from_mm, to_mm }
         if from_mm == 0.0 && to_mm >= mv.length_mm)
+}
+
+impl Open {
+    /// Takes in the speeds of a piece of the move.
+    #[inline]
+    fn count_speeds(&mut self, planned: &Planned<u64>) {
+        self.rests |= planned.rests;
+        let assessment = &mut self.assessment;
+        assessment.fastest_s += planned.duration_s();
+        let [start2, end2] = &mut assessment.ends2;
+        if assessment.top_speed_mm_s == 0.0 {
+            *start2 = planned.speeds2.start;
+        }
+        *end2 = planned.speeds2.end;
+        assessment.top_speed_mm_s = assessment.top_speed_mm_s.max(planned.top_speed_mm_s());
+    }
 }

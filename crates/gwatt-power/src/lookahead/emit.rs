@@ -30,9 +30,7 @@ impl Ahead {
         {
             return self.emit_gliding(sink);
         }
-        let nominal = self.nominal.as_ref();
-        let nominal = nominal.map_or(u64::MAX, |nominal| nominal.next);
-        let finished = self.largest.next.min(nominal);
+        let finished = self.finished();
         loop {
             let first = self.open.first();
             let Some(front) = self.open.get(first) else {
@@ -61,14 +59,13 @@ impl Ahead {
             let before = before.filter(|before| !before.rests);
             let driven = self.driven && !own.steady;
             if driven {
-                let largest = self.largest.overrides;
                 let doubtful = self.in_doubt || self.unwaited.is_some();
-                let ends_mm_s = [before, next].map(|adjacent| match adjacent {
-                    _ if doubtful => f64::INFINITY,
-                    Some(adjacent) => blended_speed(machine, &unpaced(&adjacent.mv), largest),
-                    None => 0.0,
-                });
-                own.drive(ends_mm_s, machine, model, largest);
+                own.drive_between(
+                    [before, next],
+                    doubtful,
+                    (machine, model),
+                    self.largest.overrides,
+                );
             }
             let overrides = self.largest.overrides;
             own.include_deviations(machine, model, self.surges.is_some(), overrides);
@@ -77,20 +74,13 @@ impl Ahead {
             // What no piece speaks of is not known.
             let planned = !own.assessment.ahead || own.assessment.top_speed_mm_s > 0.0;
             if planned && own.certain && certain(before) && certain(next) {
-                own.assessment.blended = !own.alone;
-                if own.assessment.ahead && own.in_turn {
-                    observer.kept(model, &own.mv, &mut own.kept);
-                } else if own.assessment.ahead {
-                    let overrides = self.largest.overrides;
-                    let span = if driven {
-                        span(machine, &own.mv, overrides)
-                    } else {
-                        Span::of(own.assessment.fastest_s)
-                    };
-                    own.watch([before, next], span, (machine, model), observer, overrides);
-                } else {
-                    observer.alone(machine, model, &own.mv, self.largest.overrides);
-                }
+                own.observe(
+                    [before, next],
+                    driven,
+                    (machine, model),
+                    observer,
+                    overrides,
+                );
             } else {
                 let overrides = self.largest.overrides;
                 let unwaited = &mut self.unwaited;
@@ -132,7 +122,57 @@ impl Ahead {
     }
 }
 
+impl Ahead {
+    /// The number of the first move that is not finished in one of the plans.
+    #[inline]
+    fn finished(&self) -> u64 {
+        let nominal = self.nominal.as_ref();
+        let nominal = nominal.map_or(u64::MAX, |nominal| nominal.next);
+        self.largest.next.min(nominal)
+    }
+}
+
 impl Open {
+    /// Shows a move that is certain to what watches the power over time.
+    fn observe(
+        &mut self,
+        adjacent: [Option<&Self>; 2],
+        driven: bool,
+        (machine, model): (&Machine, &PowerModel),
+        observer: &mut Observer,
+        overrides: Overrides,
+    ) {
+        self.assessment.blended = !self.alone;
+        if self.assessment.ahead && self.in_turn {
+            observer.kept(model, &self.mv, &mut self.kept);
+        } else if self.assessment.ahead {
+            let span = if driven {
+                span(machine, &self.mv, overrides)
+            } else {
+                Span::of(self.assessment.fastest_s)
+            };
+            self.watch(adjacent, span, (machine, model), observer, overrides);
+        } else {
+            observer.alone(machine, model, &self.mv, overrides);
+        }
+    }
+
+    /// Looks at what the drives leave between the speeds at its ends; any, where they are in doubt.
+    fn drive_between(
+        &mut self,
+        adjacent: [Option<&Self>; 2],
+        doubtful: bool,
+        (machine, model): (&Machine, &PowerModel),
+        largest: Overrides,
+    ) {
+        let ends_mm_s = adjacent.map(|adjacent| match adjacent {
+            _ if doubtful => f64::INFINITY,
+            Some(adjacent) => blended_speed(machine, &unpaced(&adjacent.mv), largest),
+            None => 0.0,
+        });
+        self.drive(ends_mm_s, machine, model, largest);
+    }
+
     /// Adds what the move draws where it does not run exactly as it is planned: in cruises
     /// between surges, at a lower pace, and off its path.
     fn include_deviations(

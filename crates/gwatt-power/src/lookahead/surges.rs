@@ -204,6 +204,33 @@ fn any_ramp(planned: &Planned<u64>, most_mm_s: f64) -> Option<Surge> {
     })
 }
 
+impl Course {
+    /// That of a piece; `straight`: it does not turn.
+    fn of(planned: &Planned<u64>, straight: bool, response_s: f64) -> Self {
+        let top_mm_s = planned.top_speed_mm_s();
+        Self {
+            start2: planned.speeds2.start,
+            end2: planned.speeds2.end,
+            top2: top_mm_s * top_mm_s,
+            ramp2: 2.0 * planned.accel_mm_s2 * planned.length_mm,
+            plain: straight && planned.section.is_none(),
+            // The drives' mean over a step takes in what is around a shorter ramp as well.
+            brief_mm_s: planned.accel_mm_s2 * response_s,
+        }
+    }
+}
+
+/// Slower, friction takes less of what is fed back.
+fn slow_down(surge: &mut Option<Surge>, accel_mm_s2: f64, top_mm_s: f64) {
+    let slowed = surge.get_or_insert(Surge {
+        rises_mm_s: None,
+        falls_mm_s: None,
+        accel_mm_s2,
+        section: None,
+    });
+    slowed.falls_mm_s = Some(slowed.falls_mm_s.unwrap_or(0.0).max(top_mm_s));
+}
+
 impl Ahead {
     /// What a final piece may ask for at lower overrides, if it may do so and that is
     /// of interest.
@@ -222,16 +249,7 @@ impl Ahead {
             Piece::Blend(_) => false,
         };
         let top_mm_s = planned.top_speed_mm_s();
-        // The drives' mean over a step takes in what is around a shorter ramp as well.
-        let response_s = self.steps.response_s();
-        let course = Course {
-            start2: planned.speeds2.start,
-            end2: planned.speeds2.end,
-            top2: top_mm_s * top_mm_s,
-            ramp2: 2.0 * planned.accel_mm_s2 * planned.length_mm,
-            plain: straight && planned.section.is_none(),
-            brief_mm_s: planned.accel_mm_s2 * response_s,
-        };
+        let course = Course::of(planned, straight, self.steps.response_s());
         let gentler = open.mv.arc.is_some() || !straight || planned.section.is_some();
         let turned = (gentler && model.has_copper(&open.mv)).then(|| {
             // Sped up or turned more gently an axis loses less of what it feeds back.
@@ -294,15 +312,8 @@ impl Ahead {
             None => self.shifted(model, planned, (shift, shifted), is_own),
         };
         let mut surge = surge.and_then(|surge| surge.without(shifted));
-        // Slower, friction takes less of what is fed back.
         if slows {
-            let slowed = surge.get_or_insert(Surge {
-                rises_mm_s: None,
-                falls_mm_s: None,
-                accel_mm_s2: planned.accel_mm_s2,
-                section: None,
-            });
-            slowed.falls_mm_s = Some(slowed.falls_mm_s.unwrap_or(0.0).max(top_mm_s));
+            slow_down(&mut surge, planned.accel_mm_s2, top_mm_s);
         }
         let surged = surge.and_then(|surge| self.surged(model, planned, &surge, straight));
         [turned, slower, shift, chords, surged]

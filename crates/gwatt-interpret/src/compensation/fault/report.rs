@@ -62,6 +62,13 @@ impl Fault {
                 "the move that leaves cutter compensation must be straight",
                 "lead out with a straight move after G40",
             ),
+            _ => self.other_words(),
+        }
+    }
+
+    /// The same of what is no matter of the corners.
+    fn other_words(self) -> (&'static str, &'static str) {
+        match self {
             Self::InverseTime => (
                 "inverse-time feed (G93) under cutter compensation is not supported",
                 "write the feed per minute: G94",
